@@ -1,0 +1,235 @@
+//! Vector kernels: the one place of every dot product and norm of a solver.
+//!
+//! A sum is taken over chunks of [`CHUNK`] entries, each with eight interleaved partial sums, and the
+//! chunks are added along a fixed binary tree. The tree depends only on the length, so a result has
+//! the same bits for any number of threads. Vectors shorter than [`PARALLEL`] are handled by the
+//! calling thread; nothing here allocates.
+//!
+//! All functions work on the common length of their arguments; solvers check lengths at their entry.
+
+use rayon::prelude::*;
+
+/// Entries summed by one leaf of the reduction tree.
+pub const CHUNK: usize = 8192;
+
+/// Length from which kernels use the rayon pool.
+pub const PARALLEL: usize = 8 * CHUNK;
+
+const LANES: usize = 8;
+
+/// `x · y`.
+#[must_use]
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len().min(y.len());
+    dot_tree(&x[..n], &y[..n], n >= PARALLEL)
+}
+
+/// Euclidean norm `|x|`.
+#[must_use]
+pub fn norm(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// `|x - y|²` without a temporary.
+#[must_use]
+pub fn distance_squared(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len().min(y.len());
+    distance_tree(&x[..n], &y[..n], n >= PARALLEL)
+}
+
+/// Euclidean distance `|x - y|`.
+#[must_use]
+pub fn distance(x: &[f64], y: &[f64]) -> f64 {
+    distance_squared(x, y).sqrt()
+}
+
+/// Largest absolute entry; NaN if any entry is NaN.
+#[must_use]
+pub fn max_abs(x: &[f64]) -> f64 {
+    let mut m = 0.0_f64;
+    for &v in x {
+        if v.is_nan() {
+            return f64::NAN;
+        }
+        m = m.max(v.abs());
+    }
+    m
+}
+
+/// Whether every entry is finite.
+#[must_use]
+pub fn is_finite(x: &[f64]) -> bool {
+    x.iter().all(|v| v.is_finite())
+}
+
+/// `y += a x`.
+pub fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
+    zip(x, y, move |xi, yi| *yi += a * xi);
+}
+
+/// `y = x + b y`.
+pub fn xpby(x: &[f64], b: f64, y: &mut [f64]) {
+    zip(x, y, move |xi, yi| *yi = xi + b * *yi);
+}
+
+/// `y = a x + b y`.
+pub fn axpby(a: f64, x: &[f64], b: f64, y: &mut [f64]) {
+    zip(x, y, move |xi, yi| *yi = a * xi + b * *yi);
+}
+
+/// `y = x`.
+pub fn copy(x: &[f64], y: &mut [f64]) {
+    zip(x, y, |xi, yi| *yi = xi);
+}
+
+/// `y -= x`.
+pub fn subtract(x: &[f64], y: &mut [f64]) {
+    zip(x, y, |xi, yi| *yi -= xi);
+}
+
+/// `y *= a`.
+pub fn scale(a: f64, y: &mut [f64]) {
+    each(y, move |yi| *yi *= a);
+}
+
+/// `y = a` in every entry.
+pub fn fill(a: f64, y: &mut [f64]) {
+    each(y, move |yi| *yi = a);
+}
+
+/// Linear extrapolation for a warm start: `out = last + ratio (last - before)`.
+///
+/// `ratio` is the new step length divided by the last one; 1 for equal steps, 0 for none.
+pub fn extrapolate(last: &[f64], before: &[f64], ratio: f64, out: &mut [f64]) {
+    copy(last, out);
+    axpy(ratio, last, out);
+    axpy(-ratio, before, out);
+}
+
+fn zip(x: &[f64], y: &mut [f64], f: impl Fn(f64, &mut f64) + Sync + Send) {
+    if y.len() < PARALLEL {
+        for (yi, &xi) in y.iter_mut().zip(x) {
+            f(xi, yi);
+        }
+    } else {
+        y.par_chunks_mut(CHUNK)
+            .zip(x.par_chunks(CHUNK))
+            .for_each(|(yc, xc)| {
+                for (yi, &xi) in yc.iter_mut().zip(xc) {
+                    f(xi, yi);
+                }
+            });
+    }
+}
+
+fn each(y: &mut [f64], f: impl Fn(&mut f64) + Sync + Send) {
+    if y.len() < PARALLEL {
+        y.iter_mut().for_each(f);
+    } else {
+        y.par_chunks_mut(CHUNK)
+            .for_each(|c| c.iter_mut().for_each(&f));
+    }
+}
+
+/// Where the tree over `n > CHUNK` entries is cut: a multiple of the chunk length.
+fn cut(n: usize) -> usize {
+    n.div_ceil(CHUNK).div_ceil(2) * CHUNK
+}
+
+fn dot_tree(x: &[f64], y: &[f64], parallel: bool) -> f64 {
+    if x.len() <= CHUNK {
+        return leaf(x, y, |a, b| a * b);
+    }
+    let c = cut(x.len());
+    let ((x0, x1), (y0, y1)) = (x.split_at(c), y.split_at(c));
+    let (a, b) = if parallel {
+        rayon::join(|| dot_tree(x0, y0, true), || dot_tree(x1, y1, true))
+    } else {
+        (dot_tree(x0, y0, false), dot_tree(x1, y1, false))
+    };
+    a + b
+}
+
+fn distance_tree(x: &[f64], y: &[f64], parallel: bool) -> f64 {
+    if x.len() <= CHUNK {
+        return leaf(x, y, |a, b| (a - b) * (a - b));
+    }
+    let c = cut(x.len());
+    let ((x0, x1), (y0, y1)) = (x.split_at(c), y.split_at(c));
+    let (a, b) = if parallel {
+        rayon::join(
+            || distance_tree(x0, y0, true),
+            || distance_tree(x1, y1, true),
+        )
+    } else {
+        (distance_tree(x0, y0, false), distance_tree(x1, y1, false))
+    };
+    a + b
+}
+
+#[inline]
+fn leaf(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut acc = [0.0; LANES];
+    let (xc, yc) = (x.chunks_exact(LANES), y.chunks_exact(LANES));
+    let (xr, yr) = (xc.remainder(), yc.remainder());
+    for (xs, ys) in xc.zip(yc) {
+        for k in 0..LANES {
+            acc[k] += f(xs[k], ys[k]);
+        }
+    }
+    for (k, (&a, &b)) in xr.iter().zip(yr).enumerate() {
+        acc[k] += f(a, b);
+    }
+    ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(n: usize, f: f64) -> Vec<f64> {
+        (0..n).map(|i| (f * i as f64).sin()).collect()
+    }
+
+    #[test]
+    fn sums_agree_with_plain_loops() {
+        for n in [0, 1, 7, 8, 9, CHUNK, CHUNK + 1, 3 * CHUNK + 5, PARALLEL + 3] {
+            let (x, y) = (wave(n, 0.37), wave(n, 0.11));
+            let plain: f64 = x.iter().zip(&y).map(|(a, b)| a * b).sum();
+            assert!((dot(&x, &y) - plain).abs() <= 1e-12 * (1.0 + n as f64));
+            let plain: f64 = x.iter().zip(&y).map(|(a, b)| (a - b).powi(2)).sum();
+            assert!((distance_squared(&x, &y) - plain).abs() <= 1e-12 * (1.0 + n as f64));
+        }
+    }
+
+    #[test]
+    fn thread_count_changes_no_bit() {
+        let n = 20 * CHUNK + 17;
+        let (x, y) = (wave(n, 0.37), wave(n, 0.11));
+        let serial = dot_tree(&x, &y, false);
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("pool");
+            let d = pool.install(|| dot(&x, &y));
+            assert_eq!(d.to_bits(), serial.to_bits());
+        }
+    }
+
+    #[test]
+    fn elementwise_kernels() {
+        let x = [1.0, 2.0, 3.0];
+        let mut y = [1.0, 1.0, 1.0];
+        axpy(2.0, &x, &mut y);
+        assert_eq!(y, [3.0, 5.0, 7.0]);
+        xpby(&x, -1.0, &mut y);
+        assert_eq!(y, [-2.0, -3.0, -4.0]);
+        axpby(2.0, &x, 1.0, &mut y);
+        assert_eq!(y, [0.0, 1.0, 2.0]);
+        extrapolate(&x, &[0.0, 1.0, 2.0], 1.0, &mut y);
+        assert_eq!(y, [2.0, 3.0, 4.0]);
+        assert_eq!(max_abs(&[-5.0, 2.0]), 5.0);
+        assert!(max_abs(&[1.0, f64::NAN]).is_nan());
+    }
+}
