@@ -1,0 +1,234 @@
+//! Assembly of the stiffness matrix in time linear in the number of tetrahedra.
+//!
+//! First the pattern: which nodes share a tetrahedron. Then every node sums up its own column
+//! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
+//! no sum depends on their number, so the result is the same bit for bit for any thread count.
+
+use rayon::prelude::*;
+use sprs::CsMat;
+use thiserror::Error;
+
+use crate::decomposition::Subdomain;
+use crate::element::{Element, nodal_stress, stiffness_block};
+use crate::hooke::Hooke;
+use crate::materials::{MaterialError, Materials};
+use crate::mesh::TetMesh;
+
+/// A stiffness that cannot be assembled.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum AssemblyError {
+    /// A tetrahedron names a node that does not exist.
+    #[error(
+        "tetrahedron {tet} names node {node}, but there are only {nodes} nodes; give the nodes and tetrahedra of the same mesh or subdomain"
+    )]
+    NodeOutOfRange {
+        /// Tetrahedron number.
+        tet: usize,
+        /// The node that it names.
+        node: u32,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// The subdomain names a tetrahedron or node that the mesh lacks.
+    #[error("the subdomain does not belong to this mesh; decompose the mesh that is assembled")]
+    ForeignSubdomain,
+    /// A region has no material.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+}
+
+/// Assembles the stiffness of linear tetrahedra.
+///
+/// `points` and `tets` are those of a mesh or of a subdomain (local numbers), `hooke(tet)` is the
+/// law of a tetrahedron. Row and column 3 n + i belong to component i at node n. Returns the full
+/// symmetric matrix in compressed columns with sorted indices; symmetric bit for bit. Every pair
+/// of nodes that share a tetrahedron has a stored 3 x 3 block, zeros included.
+///
+/// # Errors
+/// [`AssemblyError::NodeOutOfRange`] if a tetrahedron names a node that does not exist.
+pub fn assemble_stiffness<'h>(
+    points: &[[f64; 3]],
+    tets: &[[u32; 4]],
+    hooke: impl Fn(usize) -> &'h Hooke + Sync,
+) -> Result<CsMat<f64>, AssemblyError> {
+    let nodes = points.len();
+    for (tet, t) in tets.iter().enumerate() {
+        if let Some(&node) = t.iter().find(|&&n| n as usize >= nodes) {
+            return Err(AssemblyError::NodeOutOfRange { tet, node, nodes });
+        }
+    }
+    let pattern = Pattern::new(nodes, tets);
+    // Blocks on and below the diagonal first, then the full matrix from them, so that it is
+    // symmetric bit for bit.
+    let lower: Vec<Vec<Block>> = (0..nodes)
+        .into_par_iter()
+        .map(|node| pattern.lower_blocks(node, points, tets, &hooke))
+        .collect();
+
+    let mut data = vec![0.0; 9 * pattern.nodes.len()];
+    let mut indices = vec![0; 9 * pattern.nodes.len()];
+    let columns = split(&mut data, &pattern.start).into_par_iter();
+    columns
+        .zip(split(&mut indices, &pattern.start))
+        .enumerate()
+        .for_each(|(node, (values, rows))| {
+            let column = pattern.column(node);
+            for (place, &other) in column.iter().enumerate() {
+                let (other, below) = (other as usize, other as usize >= node);
+                let (from, to) = if below { (node, other) } else { (other, node) };
+                let block = &lower[from][pattern.place(from, to)];
+                for i in 0..3 {
+                    for k in 0..3 {
+                        let at = 3 * (k * column.len() + place) + i;
+                        rows[at] = 3 * other + i;
+                        values[at] = if below { block[i][k] } else { block[k][i] };
+                    }
+                }
+            }
+        });
+    let column_ends = (0..nodes).flat_map(|n| {
+        let height = 3 * pattern.column(n).len();
+        let before = 9 * pattern.start[n];
+        (1..=3).map(move |k| before + k * height)
+    });
+    let indptr = std::iter::once(0).chain(column_ends).collect();
+    Ok(CsMat::new_csc(
+        (3 * nodes, 3 * nodes),
+        indptr,
+        indices,
+        data,
+    ))
+}
+
+/// Assembles the stiffness of a subdomain with the materials of its regions.
+///
+/// # Errors
+/// [`AssemblyError`] if a region has no material or the subdomain is not one of this mesh.
+pub fn subdomain_stiffness(
+    mesh: &TetMesh,
+    subdomain: &Subdomain,
+    materials: &Materials,
+) -> Result<CsMat<f64>, AssemblyError> {
+    let region = |&tet: &u32| mesh.regions().get(tet as usize).copied();
+    let regions: Option<Vec<u32>> = subdomain.elements.iter().map(region).collect();
+    let regions = regions.ok_or(AssemblyError::ForeignSubdomain)?;
+    let point = |&node: &u32| mesh.points().get(node as usize).copied();
+    let points: Option<Vec<_>> = subdomain.nodes.iter().map(point).collect();
+    let points = points.ok_or(AssemblyError::ForeignSubdomain)?;
+    let laws = materials.of_tets(&regions)?;
+    assemble_stiffness(&points, &subdomain.tets, |tet| laws[tet])
+}
+
+type Block = [[f64; 3]; 3];
+
+/// Which nodes share a tetrahedron, and which tetrahedra surround each node.
+struct Pattern {
+    /// Neighbours of node n, itself included, ascending: `nodes[start[n]..start[n + 1]]`.
+    start: Vec<usize>,
+    nodes: Vec<u32>,
+    /// Tetrahedra around node n, ascending: `tets[tet_start[n]..tet_start[n + 1]]`.
+    tet_start: Vec<usize>,
+    tets: Vec<u32>,
+}
+
+impl Pattern {
+    fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
+        let mut tet_start = vec![0; nodes + 1];
+        for &node in tets.iter().flatten() {
+            tet_start[node as usize + 1] += 1;
+        }
+        for n in 0..nodes {
+            tet_start[n + 1] += tet_start[n];
+        }
+        let mut next = tet_start.clone();
+        let mut around = vec![0; 4 * tets.len()];
+        for (t, tet) in tets.iter().enumerate() {
+            for &node in tet {
+                around[next[node as usize]] = t as u32;
+                next[node as usize] += 1;
+            }
+        }
+        let columns: Vec<Vec<u32>> = (0..nodes)
+            .into_par_iter()
+            .map(|node| {
+                let own = &around[tet_start[node]..tet_start[node + 1]];
+                let mut column = vec![node as u32];
+                column.extend(own.iter().flat_map(|&t| tets[t as usize]));
+                column.sort_unstable();
+                column.dedup();
+                column
+            })
+            .collect();
+        let mut start = vec![0; nodes + 1];
+        for (n, column) in columns.iter().enumerate() {
+            start[n + 1] = start[n] + column.len();
+        }
+        Self {
+            start,
+            nodes: columns.concat(),
+            tet_start,
+            tets: around,
+        }
+    }
+
+    fn column(&self, node: usize) -> &[u32] {
+        &self.nodes[self.start[node]..self.start[node + 1]]
+    }
+
+    /// Place of `row >= node` among the blocks on and below the diagonal of column `node`.
+    fn place(&self, node: usize, row: usize) -> usize {
+        let before = |limit: usize| self.column(node).partition_point(|&n| (n as usize) < limit);
+        before(row) - before(node)
+    }
+
+    fn lower_blocks<'h>(
+        &self,
+        node: usize,
+        points: &[[f64; 3]],
+        tets: &[[u32; 4]],
+        hooke: &impl Fn(usize) -> &'h Hooke,
+    ) -> Vec<Block> {
+        let height = self
+            .column(node)
+            .iter()
+            .filter(|&&n| n as usize >= node)
+            .count();
+        let mut blocks = vec![[[0.0; 3]; 3]; height];
+        for &t in &self.tets[self.tet_start[node]..self.tet_start[node + 1]] {
+            let tet = tets[t as usize].map(|n| n as usize);
+            let element = Element::new(&tet.map(|n| points[n]));
+            for b in (0..4).filter(|&b| tet[b] == node) {
+                let law = hooke(t as usize).voigt();
+                let stress = nodal_stress(law, element.gradients[b], element.volume);
+                for a in (0..4).filter(|&a| tet[a] >= node) {
+                    let block = stiffness_block(element.gradients[a], &stress);
+                    let sum = &mut blocks[self.place(node, tet[a])];
+                    for i in 0..3 {
+                        for k in 0..3 {
+                            sum[i][k] += block[i][k];
+                        }
+                    }
+                }
+            }
+        }
+        // The diagonal block comes first.
+        for i in 0..3 {
+            for k in 0..i {
+                blocks[0][k][i] = blocks[0][i][k];
+            }
+        }
+        blocks
+    }
+}
+
+/// Cuts the storage of the matrix into the three columns of each node.
+fn split<'a, T>(mut storage: &'a mut [T], start: &[usize]) -> Vec<&'a mut [T]> {
+    let mut parts = Vec::with_capacity(start.len() - 1);
+    for n in 0..start.len() - 1 {
+        let (part, rest) = storage.split_at_mut(9 * (start[n + 1] - start[n]));
+        parts.push(part);
+        storage = rest;
+    }
+    parts
+}

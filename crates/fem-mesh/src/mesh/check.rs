@@ -1,0 +1,181 @@
+//! The checks that a table of nodes and tetrahedra must pass before it becomes a mesh.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use super::MeshError;
+use crate::vec3::{self, Vec3};
+
+/// Six times the volume over the cube of the longest edge, below which a tetrahedron counts as
+/// flat. Coordinates carry about 16 digits, so less than this is mostly rounding.
+const FLAT: f64 = 1e-10;
+
+/// Distance below which two nodes count as one, relative to the diagonal of the mesh.
+const COINCIDENT: f64 = 1e-12;
+
+/// 32-bit tables also number faces (four each tetrahedron) and unknowns (three each node).
+const LIMIT: usize = (u32::MAX / 4) as usize;
+
+pub(super) fn sizes(nodes: usize, tets: usize) -> Result<(), MeshError> {
+    for (what, count) in [("nodes", nodes), ("tetrahedra", tets)] {
+        if count == 0 {
+            return Err(MeshError::Empty { what });
+        }
+        if count > LIMIT {
+            return Err(MeshError::TooLarge {
+                what,
+                count,
+                limit: LIMIT,
+            });
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn coordinates(points: &[Vec3]) -> Result<(), MeshError> {
+    match points.iter().position(|&p| !vec3::is_finite(p)) {
+        Some(node) => Err(MeshError::NotFinite {
+            node,
+            point: points[node],
+        }),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn connectivity(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshError> {
+    for (tet, t) in tets.iter().enumerate() {
+        for (i, &node) in t.iter().enumerate() {
+            if node as usize >= nodes {
+                return Err(MeshError::NodeOutOfRange { tet, node, nodes });
+            }
+            if t[..i].contains(&node) {
+                return Err(MeshError::RepeatedNode { tet, node });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Six times the signed volume over the cube of the longest edge: 1 for three orthogonal edges of
+/// length one would be 1/2.8, a sliver is near zero. NaN for coinciding nodes.
+pub(super) fn flatness(p: &[Vec3; 4]) -> f64 {
+    let mut longest: f64 = 0.0;
+    for i in 0..4 {
+        for j in 0..i {
+            longest = longest.max(vec3::norm(vec3::sub(p[i], p[j])));
+        }
+    }
+    6.0 * vec3::tet_volume(p) / (longest * longest * longest)
+}
+
+pub(super) fn shapes(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError> {
+    let fault = tets.par_iter().enumerate().find_map_first(|(tet, &nodes)| {
+        let p = nodes.map(|n| points[n as usize]);
+        let flatness = flatness(&p);
+        if flatness > FLAT {
+            None
+        } else if flatness < -FLAT {
+            let volume = vec3::tet_volume(&p);
+            Some(MeshError::InvertedTet { tet, nodes, volume })
+        } else {
+            Some(MeshError::DegenerateTet {
+                tet,
+                nodes,
+                flatness,
+            })
+        }
+    });
+    fault.map_or(Ok(()), Err)
+}
+
+pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshError> {
+    let mut used = vec![false; nodes];
+    for &node in tets.iter().flatten() {
+        used[node as usize] = true;
+    }
+    match used.iter().position(|&u| !u) {
+        Some(node) => {
+            let count = used.iter().filter(|&&u| !u).count();
+            Err(MeshError::DanglingNode { node, count })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Coinciding nodes of the same body are a cut that nobody meant; those of different bodies are
+/// allowed, since bodies in contact may have matching nodes.
+pub(super) fn no_coincident(
+    points: &[Vec3],
+    tets: &[[u32; 4]],
+    body_of_tet: impl FnOnce() -> Vec<u32>,
+) -> Result<(), MeshError> {
+    let pairs = coincident_pairs(points);
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    let bodies = body_of_tet();
+    let mut body = vec![0; points.len()];
+    for (tet, label) in tets.iter().zip(&bodies) {
+        for &node in tet {
+            body[node as usize] = *label;
+        }
+    }
+    match pairs.iter().find(|(a, b)| body[*a] == body[*b]) {
+        Some(&(first, second)) => Err(MeshError::CoincidentNodes {
+            first,
+            second,
+            distance: vec3::norm(vec3::sub(points[first], points[second])),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Pairs of nodes closer than the tolerance, through a hash of grid cells.
+fn coincident_pairs(points: &[Vec3]) -> Vec<(usize, usize)> {
+    let (low, high) = extent(points);
+    let tolerance = COINCIDENT * vec3::norm(vec3::sub(high, low));
+    let cell = 4.0 * tolerance;
+    if cell <= 0.0 || !cell.is_finite() {
+        return Vec::new();
+    }
+    let key = |p: Vec3| [0, 1, 2].map(|i| ((p[i] - low[i]) / cell).floor() as i64);
+    let mut pairs = Vec::new();
+    // The last node of each cell, and for each node the one before it in its cell.
+    let mut last: HashMap<[i64; 3], usize> = HashMap::with_capacity(points.len());
+    let mut before = vec![usize::MAX; points.len()];
+    for (node, &p) in points.iter().enumerate() {
+        let from = key(p.map(|x| x - tolerance));
+        let to = key(p.map(|x| x + tolerance));
+        for i in from[0]..=to[0] {
+            for j in from[1]..=to[1] {
+                for k in from[2]..=to[2] {
+                    let mut other = last.get(&[i, j, k]).copied().unwrap_or(usize::MAX);
+                    while other != usize::MAX {
+                        if vec3::norm(vec3::sub(points[other], p)) <= tolerance {
+                            pairs.push((other, node));
+                        }
+                        other = before[other];
+                    }
+                }
+            }
+        }
+        if let Some(previous) = last.insert(key(p), node) {
+            before[node] = previous;
+        }
+    }
+    pairs
+}
+
+/// Smallest box around the points.
+pub(super) fn extent(points: &[Vec3]) -> (Vec3, Vec3) {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for p in points {
+        for i in 0..3 {
+            low[i] = low[i].min(p[i]);
+            high[i] = high[i].max(p[i]);
+        }
+    }
+    (low, high)
+}

@@ -1,0 +1,122 @@
+//! Meshes from meshes: tagging, moving and joining, and repair of raw tables.
+
+use super::{Facet, FacetTag, MeshError, TetMesh};
+use crate::vec3;
+
+impl TetMesh {
+    /// Replaces all facets: every triangle of the boundary for which `tag(centroid, normal)` gives
+    /// a tag gets it. The normal has unit length and points outward.
+    #[must_use]
+    pub fn tag_boundary(
+        mut self,
+        mut tag: impl FnMut([f64; 3], [f64; 3]) -> Option<FacetTag>,
+    ) -> Self {
+        self.facets.clear();
+        self.owners.clear();
+        for facet in self.boundary_facets() {
+            let p = facet.nodes.map(|n| self.points[n as usize]);
+            let area = vec3::area_vector(&p);
+            let normal = vec3::scale(1.0 / vec3::norm(area), area);
+            if let Some(tag) = tag(vec3::centroid(&p), normal) {
+                self.facets.push(Facet {
+                    nodes: facet.nodes,
+                    tag,
+                });
+                self.owners.push(facet.tet);
+            }
+        }
+        self
+    }
+
+    /// Renames tags, for instance to keep those of two bodies apart before [`TetMesh::append`].
+    #[must_use]
+    pub fn map_tags(mut self, mut rename: impl FnMut(FacetTag) -> FacetTag) -> Self {
+        for facet in &mut self.facets {
+            facet.tag = rename(facet.tag);
+        }
+        self
+    }
+
+    /// Moves every node to `map(point)`, keeping connectivity, tags and regions.
+    ///
+    /// # Errors
+    /// [`MeshError`] if the mapped mesh is not valid, for instance inverted by a reflection.
+    pub fn map_points(&self, map: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, MeshError> {
+        let points = self.points.iter().copied().map(map).collect();
+        Self::new(points, self.tets.clone(), self.facets.clone())?
+            .with_regions(self.regions.clone())
+    }
+
+    /// This mesh and, numbered after it, `other` as separate bodies. Tags and regions stay; the
+    /// nodes of `other` are shifted by the number of nodes here. That bodies do not penetrate one
+    /// another is not checked.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the sum is too large to be numbered.
+    pub fn append(&self, other: &Self) -> Result<Self, MeshError> {
+        let nodes = self.points.len() + other.points.len();
+        let tets = self.tets.len() + other.tets.len();
+        super::check::sizes(nodes, tets)?;
+        let (by_node, by_tet) = (self.points.len() as u32, self.tets.len() as u32);
+        let mut sum = self.clone();
+        sum.points.extend(&other.points);
+        sum.tets
+            .extend(other.tets.iter().map(|t| t.map(|n| n + by_node)));
+        sum.facets.extend((other.facets.iter()).map(|f| Facet {
+            nodes: f.nodes.map(|n| n + by_node),
+            ..*f
+        }));
+        sum.owners.extend(other.owners.iter().map(|t| t + by_tet));
+        sum.regions.extend(&other.regions);
+        let shift = |n: u32| if n == super::NONE { n } else { n + by_tet };
+        sum.neighbours
+            .extend(other.neighbours.iter().map(|t| t.map(shift)));
+        Ok(sum)
+    }
+}
+
+/// Swaps the last two nodes of every tetrahedron of negative volume and returns how many there
+/// were. Tetrahedra that name unknown nodes are left for [`TetMesh::new`] to report.
+pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
+    let mut turned = 0;
+    for tet in tets {
+        if tet.iter().all(|&n| (n as usize) < points.len())
+            && vec3::tet_volume(&tet.map(|n| points[n as usize])) < 0.0
+        {
+            tet.swap(2, 3);
+            turned += 1;
+        }
+    }
+    turned
+}
+
+/// Removes nodes that no tetrahedron uses and renumbers the others in the same order. Returns,
+/// for each node that stays, its old number. Facets that use a removed node, and numbers out of
+/// range, are left with a number out of range for [`TetMesh::new`] to report.
+pub fn drop_unused_nodes(
+    points: &mut Vec<[f64; 3]>,
+    tets: &mut [[u32; 4]],
+    facets: &mut [Facet],
+) -> Vec<u32> {
+    const GONE: u32 = u32::MAX;
+    let mut new_number = vec![GONE; points.len()];
+    for &node in tets.iter().flatten() {
+        if let Some(number) = new_number.get_mut(node as usize) {
+            *number = 0;
+        }
+    }
+    let mut kept = Vec::new();
+    for (old, number) in new_number.iter_mut().enumerate() {
+        if *number != GONE {
+            *number = kept.len() as u32;
+            kept.push(old as u32);
+        }
+    }
+    let renumber = |node: u32| new_number.get(node as usize).copied().unwrap_or(GONE);
+    tets.iter_mut().for_each(|t| *t = t.map(renumber));
+    facets
+        .iter_mut()
+        .for_each(|f| f.nodes = f.nodes.map(renumber));
+    *points = kept.iter().map(|&old| points[old as usize]).collect();
+    kept
+}

@@ -1,0 +1,170 @@
+//! Which tetrahedra meet at which face, in linear time.
+
+use super::MeshError;
+
+/// Faces of a tetrahedron, each opposite to the node of its number and numbered counter-clockwise
+/// seen from outside.
+pub(crate) const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// Stands for "no tetrahedron" in the table of neighbours.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Nodes of the face `face` of `tet`, outward.
+pub(crate) fn face_nodes(tet: &[u32; 4], face: usize) -> [u32; 3] {
+    FACES[face].map(|i| tet[i])
+}
+
+/// The three nodes in ascending order, and whether an odd permutation brought them there.
+fn sorted(mut f: [u32; 3]) -> ([u32; 3], bool) {
+    let mut odd = false;
+    for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+        if f[i] > f[j] {
+            f.swap(i, j);
+            odd = !odd;
+        }
+    }
+    (f, odd)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    middle: u32,
+    largest: u32,
+    /// Four times the tetrahedron plus the face.
+    slot: u32,
+    odd: bool,
+}
+
+/// All faces, in buckets by their smallest node, sorted inside.
+pub(crate) struct FaceTable {
+    start: Vec<usize>,
+    entries: Vec<Entry>,
+}
+
+/// The tetrahedra at a face, as (tetrahedron, face) pairs.
+pub(crate) enum Sides {
+    Nobody,
+    One(usize, usize),
+    Two(usize, usize),
+}
+
+impl FaceTable {
+    /// Expects node numbers below `nodes`.
+    pub(crate) fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
+        let mut start = vec![0usize; nodes + 1];
+        for tet in tets {
+            for face in 0..4 {
+                start[sorted(face_nodes(tet, face)).0[0] as usize + 1] += 1;
+            }
+        }
+        for i in 0..nodes {
+            start[i + 1] += start[i];
+        }
+        let mut next = start.clone();
+        let blank = Entry {
+            middle: 0,
+            largest: 0,
+            slot: 0,
+            odd: false,
+        };
+        let mut entries = vec![blank; 4 * tets.len()];
+        for (t, tet) in tets.iter().enumerate() {
+            for face in 0..4 {
+                let ([smallest, middle, largest], odd) = sorted(face_nodes(tet, face));
+                let slot = (4 * t + face) as u32;
+                let place = &mut next[smallest as usize];
+                entries[*place] = Entry {
+                    middle,
+                    largest,
+                    slot,
+                    odd,
+                };
+                *place += 1;
+            }
+        }
+        for i in 0..nodes {
+            entries[start[i]..start[i + 1]].sort_unstable();
+        }
+        Self { start, entries }
+    }
+
+    /// The neighbour of each tetrahedron across each face, [`NONE`] at the boundary.
+    pub(crate) fn neighbours(&self, tets: usize) -> Result<Vec<[u32; 4]>, MeshError> {
+        let mut neighbours = vec![[NONE; 4]; tets];
+        for smallest in 0..self.start.len() - 1 {
+            let bucket = &self.entries[self.start[smallest]..self.start[smallest + 1]];
+            for group in bucket.chunk_by(|a, b| (a.middle, a.largest) == (b.middle, b.largest)) {
+                let face = [smallest as u32, group[0].middle, group[0].largest];
+                match group {
+                    [_] => {}
+                    [a, b] => {
+                        let (first, second) = (a.slot / 4, b.slot / 4);
+                        if a.odd == b.odd {
+                            return Err(MeshError::OverlappingTets {
+                                first: first as usize,
+                                second: second as usize,
+                                face,
+                            });
+                        }
+                        neighbours[first as usize][(a.slot % 4) as usize] = second;
+                        neighbours[second as usize][(b.slot % 4) as usize] = first;
+                    }
+                    _ => {
+                        return Err(MeshError::FaceShared {
+                            face,
+                            count: group.len(),
+                            first: (group[0].slot / 4) as usize,
+                        });
+                    }
+                }
+            }
+        }
+        Ok(neighbours)
+    }
+
+    /// The tetrahedra that have the three nodes as a face. Expects valid node numbers.
+    pub(crate) fn sides(&self, nodes: [u32; 3]) -> Sides {
+        let ([smallest, middle, largest], _) = sorted(nodes);
+        let range = self.start[smallest as usize]..self.start[smallest as usize + 1];
+        let bucket = &self.entries[range];
+        let key = (middle, largest);
+        let begin = bucket.partition_point(|e| (e.middle, e.largest) < key);
+        let mut found = bucket[begin..]
+            .iter()
+            .take_while(|e| (e.middle, e.largest) == key)
+            .map(|e| ((e.slot / 4) as usize, (e.slot % 4) as usize));
+        match (found.next(), found.next()) {
+            (None, _) => Sides::Nobody,
+            (Some((tet, face)), None) => Sides::One(tet, face),
+            (Some((first, _)), Some((second, _))) => Sides::Two(first, second),
+        }
+    }
+}
+
+/// Labels tetrahedra by the connected set they belong to, connected through faces across which
+/// `joined(tet, neighbour)` holds. Labels follow the smallest tetrahedron of each set.
+pub(crate) fn connected_sets(
+    neighbours: &[[u32; 4]],
+    joined: impl Fn(usize, usize) -> bool,
+) -> Vec<u32> {
+    let mut label = vec![NONE; neighbours.len()];
+    let mut stack = Vec::new();
+    let mut sets = 0;
+    for seed in 0..neighbours.len() {
+        if label[seed] != NONE {
+            continue;
+        }
+        label[seed] = sets;
+        stack.push(seed);
+        while let Some(tet) = stack.pop() {
+            for &other in &neighbours[tet] {
+                if other != NONE && label[other as usize] == NONE && joined(tet, other as usize) {
+                    label[other as usize] = sets;
+                    stack.push(other as usize);
+                }
+            }
+        }
+        sets += 1;
+    }
+    label
+}
