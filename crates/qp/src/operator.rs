@@ -7,7 +7,7 @@
 ///
 /// Implementations must be symmetric (`x·Ay = y·Ax`), deterministic (the same bits for the same
 /// input, whatever the number of threads) and must not allocate in
-/// [`apply`](SymmetricOperator::apply). `check_operator_laws`
+/// [`apply`](SymmetricOperator::apply). [`check_operator_laws`](crate::laws::check_operator_laws)
 /// tests the first two.
 pub trait SymmetricOperator: Sync {
     /// Work memory of one product.
@@ -27,7 +27,7 @@ pub trait SymmetricOperator: Sync {
 ///
 /// The right side `e` of `C x = e` is no part of it and is passed to the solvers, because it changes
 /// from one time step to the next while `C` stays. `Q = CᵀC` and `P = I - CᵀC` are then the orthogonal
-/// projectors of the paper. `check_equality_laws` tests that the
+/// projectors of the paper. [`check_equality_laws`](crate::laws::check_equality_laws) tests that the
 /// rows are orthonormal and that the two products are adjoint. A matrix with zero rows is allowed.
 pub trait Equality: Sync {
     /// Work memory of one product.

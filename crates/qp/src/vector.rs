@@ -8,6 +8,7 @@
 //! All functions work on the common length of their arguments; solvers check lengths at their entry.
 
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Entries summed by one leaf of the reduction tree.
 pub const CHUNK: usize = 8192;
@@ -21,7 +22,7 @@ const LANES: usize = 8;
 #[must_use]
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len().min(y.len());
-    dot_tree(&x[..n], &y[..n], n >= PARALLEL)
+    dot_with(x, y, n >= PARALLEL)
 }
 
 /// Euclidean norm `|x|`.
@@ -34,7 +35,24 @@ pub fn norm(x: &[f64]) -> f64 {
 #[must_use]
 pub fn distance_squared(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len().min(y.len());
-    distance_tree(&x[..n], &y[..n], n >= PARALLEL)
+    reduce(0..n, n >= PARALLEL, &|r| {
+        leaf(&x[r.clone()], &y[r], |a, b| (a - b) * (a - b))
+    })
+}
+
+/// Decrease of a quadratic cost between two points from their gradients, free of cancellation:
+/// `q(x0) - q(x1) = (x0 - x1) · (g0 + g1) / 2`.
+#[must_use]
+pub fn decrease(x0: &[f64], g0: &[f64], x1: &[f64], g1: &[f64]) -> f64 {
+    let n = x0.len().min(g0.len()).min(x1.len()).min(g1.len());
+    let sum = reduce(0..n, n >= PARALLEL, &|r| {
+        let mut acc = [0.0; LANES];
+        for (k, i) in r.enumerate() {
+            acc[k % LANES] += (x0[i] - x1[i]) * (g0[i] + g1[i]);
+        }
+        ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
+    });
+    0.5 * sum
 }
 
 /// Euclidean distance `|x - y|`.
@@ -131,42 +149,35 @@ fn each(y: &mut [f64], f: impl Fn(&mut f64) + Sync + Send) {
     }
 }
 
+fn dot_with(x: &[f64], y: &[f64], parallel: bool) -> f64 {
+    let n = x.len().min(y.len());
+    reduce(0..n, parallel, &|r| {
+        leaf(&x[r.clone()], &y[r], |a, b| a * b)
+    })
+}
+
 /// Where the tree over `n > CHUNK` entries is cut: a multiple of the chunk length.
 fn cut(n: usize) -> usize {
     n.div_ceil(CHUNK).div_ceil(2) * CHUNK
 }
 
-fn dot_tree(x: &[f64], y: &[f64], parallel: bool) -> f64 {
-    if x.len() <= CHUNK {
-        return leaf(x, y, |a, b| a * b);
+/// Sum over `range` along the fixed tree.
+fn reduce(range: Range<usize>, parallel: bool, f: &(impl Fn(Range<usize>) -> f64 + Sync)) -> f64 {
+    let n = range.len();
+    if n <= CHUNK {
+        return f(range);
     }
-    let c = cut(x.len());
-    let ((x0, x1), (y0, y1)) = (x.split_at(c), y.split_at(c));
+    let c = range.start + cut(n);
+    let (lo, hi) = (range.start..c, c..range.end);
     let (a, b) = if parallel {
-        rayon::join(|| dot_tree(x0, y0, true), || dot_tree(x1, y1, true))
+        rayon::join(|| reduce(lo, true, f), || reduce(hi, true, f))
     } else {
-        (dot_tree(x0, y0, false), dot_tree(x1, y1, false))
+        (reduce(lo, false, f), reduce(hi, false, f))
     };
     a + b
 }
 
-fn distance_tree(x: &[f64], y: &[f64], parallel: bool) -> f64 {
-    if x.len() <= CHUNK {
-        return leaf(x, y, |a, b| (a - b) * (a - b));
-    }
-    let c = cut(x.len());
-    let ((x0, x1), (y0, y1)) = (x.split_at(c), y.split_at(c));
-    let (a, b) = if parallel {
-        rayon::join(
-            || distance_tree(x0, y0, true),
-            || distance_tree(x1, y1, true),
-        )
-    } else {
-        (distance_tree(x0, y0, false), distance_tree(x1, y1, false))
-    };
-    a + b
-}
-
+/// One leaf: interleaved partial sums of `f(x, y)`.
 #[inline]
 fn leaf(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let mut acc = [0.0; LANES];
@@ -206,7 +217,7 @@ mod tests {
     fn thread_count_changes_no_bit() {
         let n = 20 * CHUNK + 17;
         let (x, y) = (wave(n, 0.37), wave(n, 0.11));
-        let serial = dot_tree(&x, &y, false);
+        let serial = dot_with(&x, &y, false);
         for threads in [1, 2, 5] {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)

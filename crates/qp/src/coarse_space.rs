@@ -1,0 +1,73 @@
+//! What the face method asks of the equality constraint `G x = e`.
+
+use crate::error::QpError;
+
+/// The constraint `G x = e` seen from a face: weighted (oblique) projectors on `Ker G`.
+///
+/// With row weights `W >= 0` that vanish on every component held fixed by the inequality
+/// constraints,
+///
+/// ```text
+/// P_W = I - W Gᵀ (G W Gᵀ)⁻¹ G,        G P_W = 0
+/// ```
+///
+/// changes weighted components only. With 0/1 weights that mark the free components of a face it is the
+/// projector of projected conjugate gradients on that face. The space keeps its factorisation of
+/// `G W Gᵀ` between calls and is therefore used through `&mut`.
+pub trait CoarseSpace {
+    /// Length of `x`.
+    fn dim(&self) -> usize;
+
+    /// Number of rows of `G`.
+    fn rows(&self) -> usize;
+
+    /// Sets the weights and factors `G W Gᵀ` if they differ from the last ones; returns whether it had to.
+    ///
+    /// # Errors
+    /// [`QpError::CoarseDeficient`] if `G W Gᵀ` is singular: the free components do not hold every
+    /// rigid mode. The previous factorisation is then lost.
+    fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError>;
+
+    /// `x <- P_W x`.
+    fn project(&mut self, x: &mut [f64]);
+
+    /// `g <- P_Wᵀ g = g - Gᵀ (G W Gᵀ)⁻¹ G W g`: the residual left after the best multiplier of `G`.
+    fn project_transpose(&mut self, g: &mut [f64]);
+
+    /// Multiplier of `G`: `out = -(G W Gᵀ)⁻¹ G W g`, so that `g + Gᵀ out = P_Wᵀ g`.
+    fn multiplier(&mut self, g: &[f64], out: &mut [f64]);
+
+    /// The least change of unconstrained components (weights of the last
+    /// [`set_weights`](Self::set_weights) where those alone do not suffice) that restores `G x = e`.
+    fn repair(&mut self, x: &mut [f64], e: &[f64]);
+}
+
+/// No equality constraint at all: every projector is the identity.
+#[derive(Debug, Clone, Copy)]
+pub struct NoCoarseSpace {
+    dim: usize,
+}
+
+impl NoCoarseSpace {
+    /// For vectors of length `dim`.
+    #[must_use]
+    pub fn new(dim: usize) -> Self {
+        Self { dim }
+    }
+}
+
+impl CoarseSpace for NoCoarseSpace {
+    fn dim(&self) -> usize {
+        self.dim
+    }
+    fn rows(&self) -> usize {
+        0
+    }
+    fn set_weights(&mut self, _w: &[f64]) -> Result<bool, QpError> {
+        Ok(false)
+    }
+    fn project(&mut self, _x: &mut [f64]) {}
+    fn project_transpose(&mut self, _g: &mut [f64]) {}
+    fn multiplier(&mut self, _g: &[f64], _out: &mut [f64]) {}
+    fn repair(&mut self, _x: &mut [f64], _e: &[f64]) {}
+}

@@ -1,0 +1,180 @@
+//! What can be wrong with the input, and how a solver can break down.
+
+use thiserror::Error;
+
+/// The data of a convex set are wrong.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SetError {
+    /// Lower and upper bounds have different lengths.
+    #[error(
+        "segment {segment}: {lower} lower bounds but {upper} upper bounds; give one of each a component"
+    )]
+    Lengths {
+        /// Segment of the product.
+        segment: usize,
+        /// Number of lower bounds.
+        lower: usize,
+        /// Number of upper bounds.
+        upper: usize,
+    },
+    /// A lower bound above the upper one, NaN, or infinite on the wrong side.
+    #[error(
+        "segment {segment}, component {entry}: no value lies between {lower} and {upper}; put the bounds in order"
+    )]
+    Bounds {
+        /// Segment of the product.
+        segment: usize,
+        /// Component within the segment.
+        entry: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// A radius is negative or NaN.
+    #[error("segment {segment}, disc {entry}: the radius {radius} must be at least 0")]
+    Radius {
+        /// Segment of the product.
+        segment: usize,
+        /// Disc within the segment.
+        entry: usize,
+        /// Its radius.
+        radius: f64,
+    },
+    /// Radii or bounds asked of a segment that has none.
+    #[error("segment {segment} is missing or has no {wanted}; ask for a segment of that kind")]
+    Kind {
+        /// Segment of the product.
+        segment: usize,
+        /// Kind of data asked for.
+        wanted: &'static str,
+    },
+}
+
+/// A solver was given wrong input or broke down. Not reaching a tolerance is no error, see
+/// [`Status`](crate::Status).
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum QpError {
+    /// The set is wrong.
+    #[error("the convex set is wrong: {0}")]
+    Set(#[from] SetError),
+    /// A slice or operator has the wrong length.
+    #[error("{what} has length {found}, the operator needs {expected}")]
+    Length {
+        /// The argument.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length that fits.
+        expected: usize,
+    },
+    /// A setting is out of its range.
+    #[error("setting {name} = {value} is outside its range {range}")]
+    Setting {
+        /// Name of the setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// NaN or infinity in an argument.
+    #[error("{what} contains NaN or infinity at entry {entry}")]
+    Input {
+        /// The argument.
+        what: &'static str,
+        /// First bad entry.
+        entry: usize,
+    },
+    /// NaN or infinity appeared in the iteration.
+    #[error(
+        "{quantity} became NaN or infinite after {products} products; check the operator and the scale of the data"
+    )]
+    NotFinite {
+        /// The quantity.
+        quantity: &'static str,
+        /// Operator products so far.
+        products: usize,
+    },
+    /// A direction of clearly negative curvature was met.
+    #[error(
+        "the operator is not positive semidefinite: curvature {curvature:e} after {products} products"
+    )]
+    Indefinite {
+        /// `p·Ap / p·p`.
+        curvature: f64,
+        /// Operator products so far.
+        products: usize,
+    },
+    /// The cost decreases for ever along a direction without curvature.
+    #[error(
+        "the problem is unbounded below: a feasible direction without curvature was met after {products} products; add a constraint or a support"
+    )]
+    Unbounded {
+        /// Operator products so far.
+        products: usize,
+    },
+    /// A row of an equality matrix depends on the rows before it.
+    #[error(
+        "row {row} of the equality matrix depends on the rows before it (remainder {remainder:e} of its norm); remove it"
+    )]
+    DependentRow {
+        /// The row.
+        row: usize,
+        /// Norm of its part orthogonal to the rows before, relative to its norm.
+        remainder: f64,
+    },
+    /// A dense matrix is not symmetric.
+    #[error(
+        "the matrix is not symmetric: entries ({row}, {col}) and ({col}, {row}) differ by {difference:e}"
+    )]
+    NotSymmetric {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        col: usize,
+        /// Difference of the two entries.
+        difference: f64,
+    },
+}
+
+/// Checks a length.
+pub(crate) fn expect_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), QpError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(QpError::Length {
+            what,
+            found,
+            expected,
+        })
+    }
+}
+
+/// Checks that all entries are finite.
+pub(crate) fn expect_finite(what: &'static str, x: &[f64]) -> Result<(), QpError> {
+    match x.iter().position(|v| !v.is_finite()) {
+        Some(entry) => Err(QpError::Input { what, entry }),
+        None => Ok(()),
+    }
+}
+
+/// Checks the range of a setting.
+pub(crate) fn expect_setting(
+    name: &'static str,
+    value: f64,
+    range: &'static str,
+    inside: bool,
+) -> Result<(), QpError> {
+    if inside {
+        Ok(())
+    } else {
+        Err(QpError::Setting { name, value, range })
+    }
+}

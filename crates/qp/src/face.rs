@@ -1,0 +1,331 @@
+//! The face method: conjugate gradients on the current face, projected by the coarse space of its free
+//! components, and a natural map that predicts the next face.
+//!
+//! Minimises `1/2 xᵀ A x - xᵀ b` over `x` in a [`ProductSet`] with `G x = e`, without a penalty. For
+//! fixed sets of held, free and sliding blocks the problem is linear: held components drop out, a
+//! point on its circle keeps one component along the tangent with the curvature of the circle,
+//! and the rest is solved by conjugate gradients with the projector `P_W`, `W` marking the free
+//! components. The face is left as soon as the estimated error has fallen by `forcing`; then
+//! `x - a g` tells which blocks are held next (a primal-dual active set step), `x` is moved there, made
+//! to satisfy `G x = e` again, and one product keeps `A x` exact.
+//!
+//! The error estimate is the length of the preconditioned residual: the preconditioner approximates the
+//! inverse of `A` on the face, so its length is the distance to the solution up to the quality of
+//! the preconditioner.
+//!
+//! The prediction is not monotone in general. [`Status::Stagnated`] tells that no progress was made for
+//! `patience` faces; [`smalse`](crate::smalse) then continues from `x` and is proved to converge.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a face |
+//! | `res` | `P_Wᵀ (A x - b)` |
+//! | `r`, `z`, `p`, `ap` | residual on the face, preconditioned residual, direction, `A p` |
+//! | `rho` | `r·z` |
+
+use crate::coarse_space::CoarseSpace;
+use crate::error::{QpError, expect_finite, expect_length};
+use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
+use crate::operator::SymmetricOperator;
+use crate::product::{ProductSet, Segment};
+use crate::report::Status;
+use crate::set::ConvexSet;
+use crate::vector;
+
+/// The data of one problem; see the [module](self).
+#[derive(Debug)]
+pub struct FaceProblem<'a, A, M> {
+    /// `A`.
+    pub operator: &'a A,
+    /// Approximates the inverse of `A` on the image of the projector.
+    pub preconditioner: &'a M,
+    /// Diagonal of the preconditioner, positive on constrained components: turns gradients into steps.
+    pub scale: &'a [f64],
+    /// `b`.
+    pub linear: &'a [f64],
+    /// `e`.
+    pub rhs: &'a [f64],
+}
+
+/// Is told the iterate after each settled face and may change bounds and radii of the set.
+pub type FaceHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
+
+/// Solves the problem from the start `x`.
+///
+/// `ax` holds `A x` if `ax_known`, else it is computed. On return both belong to the last iterate, and
+/// [`FaceWorkspace::residual`] holds `P_Wᵀ (A x - b)`. `hook` couples the set to the solution (Coulomb
+/// friction); pass `&mut |_, _| {}` for a fixed set.
+///
+/// # Errors
+/// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
+/// [`QpError::CoarseDeficient`] if the free components do not hold the rigid modes.
+pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &mut ProductSet,
+    x: &mut [f64],
+    ax: &mut [f64],
+    ax_known: bool,
+    settings: &FaceSettings,
+    work: &mut FaceWorkspace<A, M>,
+    hook: &mut FaceHook<'_>,
+) -> Result<FaceReport, QpError> {
+    let n = problem.operator.dim();
+    for (what, found) in [
+        ("x", x.len()),
+        ("ax", ax.len()),
+        ("the linear term", problem.linear.len()),
+        ("the scale", problem.scale.len()),
+        ("the preconditioner", problem.preconditioner.dim()),
+        ("the set", set.dim()),
+        ("the coarse space", coarse.dim()),
+        ("the workspace", work.r.len()),
+    ] {
+        expect_length(what, found, n)?;
+    }
+    expect_length("the right side of the equality", problem.rhs.len(), coarse.rows())?;
+    settings.validate()?;
+    set.validate()?;
+    expect_finite("x", x)?;
+    expect_finite("the linear term", problem.linear)?;
+    expect_finite("the right side of the equality", problem.rhs)?;
+
+    let mut report = FaceReport::new();
+    let constrained = constrained_length(set);
+
+    // start: a feasible point that satisfies G x = e
+    vector::copy(x, &mut work.t);
+    set.project(x);
+    work.face.resize(set);
+    work.face.guess(set, x);
+    set_face(problem, coarse, set, work, &mut report)?;
+    coarse.repair(x, problem.rhs);
+    correct(problem, x, ax, ax_known, work, &mut report);
+
+    let mut last_jump = f64::INFINITY;
+    let mut best = f64::INFINITY;
+    let mut waited = 0;
+    loop {
+        residual(problem, coarse, ax, work);
+        work.face.classify(set, x, &work.residual, problem.scale, settings.natural_step);
+        if set_face(problem, coarse, set, work, &mut report)? {
+            residual(problem, coarse, ax, work);
+        }
+        for (r, g) in work.r.iter_mut().zip(&work.residual) {
+            *r = -g;
+        }
+        work.face.restrict(set, &mut work.r);
+        precondition(problem, coarse, set, work, &mut report);
+        let (x_norm, c_norm) = (vector::norm(x), vector::norm(&x[..constrained]));
+        let limits = Limits::new(settings.tolerance, x_norm, c_norm);
+        let errors = estimate(&work.z, constrained);
+        report.error = ratio(errors.0, x_norm);
+        report.constrained_error = ratio(errors.1, limits.constrained / settings.tolerance);
+        if !(errors.0.is_finite() && x_norm.is_finite()) {
+            return Err(QpError::NotFinite { quantity: "the error estimate", products: report.products() });
+        }
+        // the jump is what the last move to the predicted face changed
+        let settled = report.faces == 0 || last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
+        if errors.0 <= limits.all && errors.1 <= limits.constrained && settled {
+            report.status = Status::Converged;
+            return Ok(report);
+        }
+        let measure = (errors.0 / limits.all).max(errors.1.max(last_jump.min(f64::MAX)) / limits.constrained);
+        if measure < 0.9 * best {
+            best = measure;
+            waited = 0;
+        } else if report.faces > 0 {
+            waited += 1;
+        }
+        if waited >= settings.patience {
+            report.status = Status::Stagnated;
+            return Ok(report);
+        }
+        if report.faces >= settings.max_faces || report.products() >= settings.max_products {
+            report.status = Status::IterationLimit;
+            return Ok(report);
+        }
+
+        conjugate_gradients(problem, coarse, set, x, ax, settings, &limits, constrained, work, &mut report)?;
+        report.faces += 1;
+
+        // the natural map predicts the next face, and x moves there
+        residual(problem, coarse, ax, work);
+        vector::copy(x, &mut work.t);
+        work.face.settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
+        let few = (settings.settled * work.face.free_bounds as f64).max(2.0);
+        if work.face.changed as f64 <= few {
+            hook(x, set);
+            set.validate()?;
+            report.hook_calls += 1;
+        }
+        work.face.settle_discs(set, x, &work.residual, problem.scale, settings.natural_step);
+        last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+        if last_jump > 0.0 {
+            coarse.repair(x, problem.rhs);
+            correct(problem, x, ax, true, work, &mut report);
+        }
+    }
+}
+
+/// Components up to the last constrained one.
+fn constrained_length(set: &ProductSet) -> usize {
+    let mut end = 0;
+    let mut constrained = 0;
+    for segment in set.segments() {
+        end += segment.len();
+        if !matches!(segment, Segment::Free(_)) {
+            constrained = end;
+        }
+    }
+    constrained
+}
+
+/// Absolute limits of the two error estimates.
+struct Limits {
+    all: f64,
+    constrained: f64,
+}
+
+impl Limits {
+    fn new(tolerance: f64, x_norm: f64, c_norm: f64) -> Self {
+        // a vanishing contact force is measured against a millionth of all forces
+        let all = tolerance * x_norm;
+        Self { all, constrained: tolerance * c_norm.max(1e-6 * x_norm) }
+    }
+}
+
+fn ratio(a: f64, b: f64) -> f64 {
+    if a == 0.0 { 0.0 } else { a / b }
+}
+
+fn estimate(z: &[f64], constrained: usize) -> (f64, f64) {
+    (vector::norm(z), vector::norm(&z[..constrained]))
+}
+
+/// `res = P_Wᵀ (A x - b)`.
+fn residual<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    ax: &[f64],
+    work: &mut FaceWorkspace<A, M>,
+) {
+    vector::copy(ax, &mut work.residual);
+    vector::axpy(-1.0, problem.linear, &mut work.residual);
+    coarse.project_transpose(&mut work.residual);
+}
+
+/// Hands the weights of the current face to the coarse space; whether it factored anew.
+fn set_face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    _problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &ProductSet,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) -> Result<bool, QpError> {
+    work.face.weights(set, &mut work.w);
+    let factored = coarse.set_weights(&work.w)?;
+    report.factorisations += usize::from(factored);
+    Ok(factored)
+}
+
+/// `ax += A (x - t)`, or `ax = A x`.
+fn correct<A: SymmetricOperator, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    x: &[f64],
+    ax: &mut [f64],
+    known: bool,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) {
+    if known {
+        for (t, v) in work.t.iter_mut().zip(x) {
+            *t = v - *t;
+        }
+        if work.t.iter().all(|t| *t == 0.0) {
+            return;
+        }
+        problem.operator.apply(&work.t, &mut work.ap, &mut work.operator);
+        vector::axpy(1.0, &work.ap, ax);
+    } else {
+        problem.operator.apply(x, ax, &mut work.operator);
+    }
+    report.corrections += 1;
+}
+
+/// `z = P_W R D M D R r` with `R` the restriction to the face and `D` the damping of sliding discs.
+fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &ProductSet,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) {
+    vector::copy(&work.r, &mut work.ap);
+    work.face.damp(set, &mut work.ap);
+    problem.preconditioner.apply(&work.ap, &mut work.z, &mut work.preconditioner);
+    work.face.restrict(set, &mut work.z);
+    work.face.damp(set, &mut work.z);
+    coarse.project(&mut work.z);
+    report.preconditionings += 1;
+}
+
+/// Projected preconditioned conjugate gradients on the face; `r` and `z` are ready.
+fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &ProductSet,
+    x: &mut [f64],
+    ax: &mut [f64],
+    settings: &FaceSettings,
+    limits: &Limits,
+    constrained: usize,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) -> Result<(), QpError> {
+    vector::copy(&work.z, &mut work.p);
+    let mut rho = vector::dot(&work.r, &work.z);
+    let start = estimate(&work.z, constrained);
+    // below a third of the limits further steps buy nothing
+    let goal = |all: f64, part: f64| {
+        all <= (settings.forcing * start.0).max(0.3 * limits.all)
+            && part <= (settings.forcing * start.1).max(0.3 * limits.constrained)
+    };
+    loop {
+        if report.products() >= settings.max_products || rho <= 0.0 {
+            return Ok(());
+        }
+        problem.operator.apply(&work.p, &mut work.ap, &mut work.operator);
+        report.cg_steps += 1;
+        // A p is added to A x with its full length, before curvature and projection
+        let curvature_free = vector::dot(&work.p, &work.ap);
+        vector::copy(&work.ap, &mut work.t);
+        work.face.add_curvature(set, &work.p, &mut work.ap);
+        let curvature = vector::dot(&work.p, &work.ap);
+        if !curvature.is_finite() {
+            return Err(QpError::NotFinite { quantity: "the curvature", products: report.products() });
+        }
+        if curvature <= 0.0 {
+            let pp = vector::dot(&work.p, &work.p);
+            let size = vector::norm(&work.t) * pp.sqrt();
+            if curvature_free < -1e-10 * size {
+                return Err(QpError::Indefinite { curvature: curvature / pp, products: report.products() });
+            }
+            return Ok(());
+        }
+        let step = rho / curvature;
+        vector::axpy(step, &work.p, x);
+        vector::axpy(step, &work.t, ax);
+        coarse.project_transpose(&mut work.ap);
+        work.face.restrict(set, &mut work.ap);
+        vector::axpy(-step, &work.ap, &mut work.r);
+        precondition(problem, coarse, set, work, report);
+        let errors = estimate(&work.z, constrained);
+        if goal(errors.0, errors.1) {
+            return Ok(());
+        }
+        let next = vector::dot(&work.r, &work.z);
+        vector::xpby(&work.z, next / rho, &mut work.p);
+        rho = next;
+    }
+}

@@ -1,0 +1,213 @@
+//! Settings, report and work memory of the face method.
+
+use crate::error::QpError;
+use crate::operator::SymmetricOperator;
+use crate::report::Status;
+
+/// Settings of [`face`](crate::face::face). All are dimensionless.
+///
+/// | setting | meaning | range | default |
+/// |---|---|---|---|
+/// | `tolerance` | estimated error of `x` relative to its norm, and of its constrained part relative to its own | (0, 1) | 1e-7 |
+/// | `forcing` | decrease of the error estimate on one face before the face is looked at again | (0, 1) | 0.2 |
+/// | `natural_step` | step of the natural map that predicts the next face, in units of the preconditioner's diagonal | (0, 1] | 0.4 |
+/// | `settled` | share of the free bounded components that may change on a face for the hook to be called | [0, 1] | 0.05 |
+/// | `max_faces` | faces | >= 1 | 100 |
+/// | `max_products` | operator products | >= 1 | 10 000 |
+/// | `patience` | faces without a better error estimate before giving up | >= 1 | 12 |
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FaceSettings {
+    /// Relative error asked for.
+    pub tolerance: f64,
+    /// Decrease of the error estimate on one face.
+    pub forcing: f64,
+    /// Step of the natural map, times the preconditioner's diagonal.
+    pub natural_step: f64,
+    /// Share of changing bounds below which the hook is called.
+    pub settled: f64,
+    /// Most faces.
+    pub max_faces: usize,
+    /// Most products.
+    pub max_products: usize,
+    /// Faces without progress before [`Status::Stagnated`].
+    pub patience: usize,
+}
+
+impl Default for FaceSettings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-7,
+            forcing: 0.2,
+            natural_step: 0.4,
+            settled: 0.05,
+            max_faces: 100,
+            max_products: 10_000,
+            patience: 12,
+        }
+    }
+}
+
+impl FaceSettings {
+    /// Sets the relative error asked for.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Sets the decrease of the error estimate on one face.
+    #[must_use]
+    pub fn with_forcing(mut self, forcing: f64) -> Self {
+        self.forcing = forcing;
+        self
+    }
+
+    /// Sets the step of the natural map.
+    #[must_use]
+    pub fn with_natural_step(mut self, step: f64) -> Self {
+        self.natural_step = step;
+        self
+    }
+
+    /// Sets the largest number of faces.
+    #[must_use]
+    pub fn with_max_faces(mut self, faces: usize) -> Self {
+        self.max_faces = faces;
+        self
+    }
+
+    /// Sets the largest number of products.
+    #[must_use]
+    pub fn with_max_products(mut self, products: usize) -> Self {
+        self.max_products = products;
+        self
+    }
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`QpError::Setting`] naming the setting.
+    pub fn validate(&self) -> Result<(), QpError> {
+        let open = |name: &'static str, value: f64| {
+            if value > 0.0 && value < 1.0 {
+                Ok(())
+            } else {
+                Err(QpError::Setting { name, value, range: "(0, 1)" })
+            }
+        };
+        open("tolerance", self.tolerance)?;
+        open("forcing", self.forcing)?;
+        if !(self.natural_step > 0.0 && self.natural_step <= 1.0) {
+            return Err(QpError::Setting { name: "natural_step", value: self.natural_step, range: "(0, 1]" });
+        }
+        if !(self.settled >= 0.0 && self.settled <= 1.0) {
+            return Err(QpError::Setting { name: "settled", value: self.settled, range: "[0, 1]" });
+        }
+        for (name, value) in [
+            ("max_faces", self.max_faces),
+            ("max_products", self.max_products),
+            ("patience", self.patience),
+        ] {
+            if value == 0 {
+                return Err(QpError::Setting { name, value: 0.0, range: "at least 1" });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What [`face`](crate::face::face) did.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FaceReport {
+    /// How it ended.
+    pub status: Status,
+    /// Faces on which conjugate gradients ran.
+    pub faces: usize,
+    /// Conjugate gradient steps, one product each.
+    pub cg_steps: usize,
+    /// Products after a change of face and at the start, to keep `A x` exact.
+    pub corrections: usize,
+    /// Applications of the preconditioner.
+    pub preconditionings: usize,
+    /// Factorisations of `G W Gᵀ`.
+    pub factorisations: usize,
+    /// Calls of the hook.
+    pub hook_calls: usize,
+    /// Last estimated error of `x`, relative to the norm of `x`.
+    pub error: f64,
+    /// Last estimated error of the constrained components, relative to their norm.
+    pub constrained_error: f64,
+}
+
+impl FaceReport {
+    pub(crate) fn new() -> Self {
+        Self {
+            status: Status::IterationLimit,
+            faces: 0,
+            cg_steps: 0,
+            corrections: 0,
+            preconditionings: 0,
+            factorisations: 0,
+            hook_calls: 0,
+            error: f64::INFINITY,
+            constrained_error: f64::INFINITY,
+        }
+    }
+
+    /// All operator products.
+    #[must_use]
+    pub fn products(&self) -> usize {
+        self.cg_steps + self.corrections
+    }
+}
+
+/// Vectors of the face method: seven of the length of `x` and the classification of the blocks.
+#[derive(Debug)]
+pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
+    pub(crate) operator: A::Scratch,
+    pub(crate) preconditioner: M::Scratch,
+    /// `A x - b` without its part in the image of `Gᵀ`.
+    pub(crate) residual: Vec<f64>,
+    pub(crate) r: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+    pub(crate) p: Vec<f64>,
+    pub(crate) ap: Vec<f64>,
+    pub(crate) w: Vec<f64>,
+    pub(crate) t: Vec<f64>,
+    pub(crate) face: crate::face_state::Face,
+}
+
+impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
+    /// Allocates everything the method needs.
+    pub fn new(operator: &A, preconditioner: &M) -> Self {
+        let n = operator.dim();
+        let v = || vec![0.0; n];
+        Self {
+            operator: operator.scratch(),
+            preconditioner: preconditioner.scratch(),
+            residual: v(),
+            r: v(),
+            z: v(),
+            p: v(),
+            ap: v(),
+            w: v(),
+            t: v(),
+            face: crate::face_state::Face::default(),
+        }
+    }
+
+    /// `P_Wᵀ (A x - b)` at the last iterate: the gradient without the part that the multiplier of
+    /// `G x = e` balances.
+    #[must_use]
+    pub fn residual(&self) -> &[f64] {
+        &self.residual
+    }
+
+    /// The weights `W` of the last face: 1 on components free to move in both directions, else 0.
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        &self.w
+    }
+}
