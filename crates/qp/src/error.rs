@@ -116,6 +116,12 @@ pub enum QpError {
         /// Operator products so far.
         products: usize,
     },
+    /// The free components of a face leave a combination of the equality rows without weight.
+    #[error("the free components do not determine the multiplier of the equality ({motion}); more components must be free, or use smalse")]
+    CoarseDeficient {
+        /// What stays undetermined, in the words of the coarse space.
+        motion: String,
+    },
     /// A row of an equality matrix depends on the rows before it.
     #[error(
         "row {row} of the equality matrix depends on the rows before it (remainder {remainder:e} of its norm); remove it"

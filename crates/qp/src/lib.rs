@@ -1,8 +1,12 @@
 //! Quadratic programming with bounds, discs and linear equalities.
 
 mod block;
+mod coarse_space;
 pub mod dense;
 mod error;
+pub mod face;
+mod face_settings;
+mod face_state;
 pub mod kkt;
 pub mod kprgp;
 mod kprgp_settings;
@@ -19,8 +23,11 @@ mod smalse_settings;
 pub mod spectrum;
 pub mod vector;
 
+pub use coarse_space::{CoarseSpace, NoCoarseSpace};
 pub use dense::{DenseEquality, DenseOperator};
 pub use error::{QpError, SetError};
+pub use face::{FaceHook, FaceProblem, face};
+pub use face_settings::{FaceReport, FaceSettings, FaceWorkspace};
 pub use kkt::Kkt;
 pub use kprgp::kprgp;
 pub use kprgp_settings::{
