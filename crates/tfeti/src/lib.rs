@@ -1,1 +1,35 @@
-//! (in construction)
+//! Total FETI.
+mod boundary;
+mod class;
+mod coarse;
+mod coarse_matrix;
+mod contact;
+mod cost;
+mod dense;
+mod dual;
+mod error;
+mod gluing;
+mod inverse;
+mod kernel;
+mod matrices;
+mod mobility;
+mod report;
+mod rows;
+mod sparse;
+mod supports;
+mod system;
+
+pub use class::{Class, Classes, Sharing};
+pub use coarse::{Coarse, CoarseFactor, CoarseScratch, OrthonormalCoarse};
+pub use coarse_matrix::{LineWeight, RowWeights};
+pub use contact::{ContactNodes, ContactPoint};
+pub use cost::{InverseKind, InverseSettings};
+pub use dual::{DualOperator, DualScratch};
+pub use error::TfetiError;
+pub use gluing::{ContactInfo, Gluing, TangentialRows, count_removed};
+pub use kernel::Kernel;
+pub use mobility::{BodyMotion, FreeMotion};
+pub use report::{ClassReport, SetupReport};
+pub use rows::{RemovalReason, RemovedRow, RowKind, RowRanges, RowRule};
+pub use supports::{Directions, Motion, Support};
+pub use system::{Tfeti, TfetiBuilder};

@@ -1,0 +1,210 @@
+//! Contact points and the directions in which they can still move once supports are taken into account.
+
+use crate::error::TfetiError;
+use crate::rows::{RemovalReason, RemovedRow, RowKind, RowRule};
+use crate::supports::{FixedNode, MergedSupports, dot};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use signorini_fem_mesh::Frame;
+
+/// A node that may touch a rigid obstacle, or a node of another body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactPoint {
+    /// Mesh node on the body whose outward normal is given.
+    pub node: u32,
+    /// Node of the other body; `None` for a rigid obstacle. Rows act on `u_node - u_opponent`.
+    pub opponent: Option<u32>,
+    /// Outward normal and two tangents, orthonormal.
+    pub frame: Frame,
+}
+
+/// The contact points of a system.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ContactNodes {
+    /// The points; each node may appear once.
+    pub points: Vec<ContactPoint>,
+    /// Whether there is friction. Without it there are no tangential rows.
+    pub friction: bool,
+}
+
+impl ContactNodes {
+    /// Points against a rigid obstacle, one frame per node.
+    #[must_use]
+    pub fn rigid(nodes: &[u32], frames: &[Frame], friction: bool) -> Self {
+        let point = |(&node, frame): (&u32, &Frame)| ContactPoint { node, opponent: None, frame: *frame };
+        Self { points: nodes.iter().zip(frames).map(point).collect(), friction }
+    }
+}
+
+/// One contact row: what it does to the mean displacements of the node and its opponent.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactRow {
+    /// Coefficients on the displacement of the node (to be spread over its copies).
+    pub(crate) node: [f64; 3],
+    /// Coefficients on the displacement of the opponent, sign included.
+    pub(crate) opponent: [f64; 3],
+    /// The physical direction: the row stands for `scale * direction . (u_node - u_opponent)`.
+    pub(crate) direction: [f64; 3],
+    pub(crate) scale: f64,
+}
+
+/// The rows of one contact point.
+#[derive(Debug, Clone)]
+pub(crate) struct PointRows {
+    /// Position in the list of points.
+    pub(crate) point: usize,
+    pub(crate) normal: ContactRow,
+    pub(crate) tangential: Vec<ContactRow>,
+    /// `(case, relative displacement prescribed by supports)`.
+    pub(crate) prescribed: Vec<(u32, [f64; 3])>,
+}
+
+/// Below this share of a direction that can move, the direction counts as fixed.
+const FIXED: f64 = 1e-8;
+
+/// Rows of all points and what was left out. `copies(node)` is the number of copies of a node.
+pub(crate) fn contact_rows(
+    contact: &ContactNodes,
+    supports: &MergedSupports,
+    rule: RowRule,
+    nodes: usize,
+    copies: impl Fn(u32) -> usize,
+) -> Result<(Vec<PointRows>, Vec<RemovedRow>), TfetiError> {
+    let mut used = vec![false; nodes];
+    let mut rows = Vec::with_capacity(contact.points.len());
+    let mut removed = Vec::new();
+    for (index, point) in contact.points.iter().enumerate() {
+        for node in std::iter::once(point.node).chain(point.opponent) {
+            match used.get_mut(node as usize) {
+                None => return Err(TfetiError::UnknownNode { place: format!("contact point {index}"), node, nodes }),
+                Some(true) => return Err(TfetiError::ContactNodeTwice { node }),
+                Some(flag) => *flag = true,
+            }
+        }
+        check_frame(index, point)?;
+        let (alpha, beta, scale) = match rule {
+            RowRule::Chained => (1.0, f64::from(u8::from(point.opponent.is_some())), 1.0),
+            RowRule::Orthonormal => {
+                // Unit row on the means: weights c/sqrt(k) with c = (1/k_a + 1/k_b)^(-1/2).
+                let a = 1.0 / copies(point.node) as f64;
+                let b = point.opponent.map_or(0.0, |n| 1.0 / copies(n) as f64);
+                let c = (a + b).sqrt().recip();
+                (c * a.sqrt(), c * b.sqrt(), c)
+            }
+        };
+        let space = Space::new(supports.at(point.node), point.opponent.and_then(|n| supports.at(n)), alpha, beta);
+        reduce(index, point, contact.friction, &space, scale, &mut rows, &mut removed);
+    }
+    Ok((rows, removed))
+}
+
+fn check_frame(index: usize, point: &ContactPoint) -> Result<(), TfetiError> {
+    let [t1, t2] = &point.frame.tangents;
+    let axes = [&point.frame.normal, t1, t2];
+    for i in 0..3 {
+        for j in i..3 {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            let error = (dot(axes[i], axes[j]) - expected).abs();
+            if error.is_nan() || error > 1e-10 {
+                return Err(TfetiError::BadFrame { point: index, node: point.node });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Free part of the relative displacement of a point.
+struct Space {
+    alpha: f64,
+    beta: f64,
+    free_node: Matrix3<f64>,
+    free_opponent: Matrix3<f64>,
+    /// Gram matrix of the rows `direction -> (alpha P_a direction, -beta P_b direction)`.
+    gram: Matrix3<f64>,
+    prescribed: Vec<(u32, [f64; 3])>,
+}
+
+impl Space {
+    fn new(node: Option<&FixedNode>, opponent: Option<&FixedNode>, alpha: f64, beta: f64) -> Self {
+        let free = |fixed: Option<&FixedNode>| {
+            let mut matrix = Matrix3::identity();
+            for direction in fixed.iter().flat_map(|f| &f.directions) {
+                let d = Vector3::from(direction.direction);
+                matrix -= d * d.transpose();
+            }
+            matrix
+        };
+        let (free_node, free_opponent) = (free(node), free(opponent));
+        let mut prescribed = node.map(FixedNode::prescribed).unwrap_or_default();
+        for (case, value) in opponent.map(FixedNode::prescribed).unwrap_or_default() {
+            match prescribed.iter_mut().find(|v| v.0 == case) {
+                Some(v) => (0..3).for_each(|c| v.1[c] -= value[c]),
+                None => prescribed.push((case, value.map(|v| -v))),
+            }
+        }
+        prescribed.sort_by_key(|v| v.0);
+        let gram = free_node * (alpha * alpha) + free_opponent * (beta * beta);
+        Self { alpha, beta, free_node, free_opponent, gram, prescribed }
+    }
+
+    fn row(&self, direction: Vector3<f64>, scale: f64, factor: f64) -> ContactRow {
+        let node = self.free_node * direction * (self.alpha * factor);
+        let opponent = self.free_opponent * direction * (-self.beta * factor);
+        ContactRow { node: node.into(), opponent: opponent.into(), direction: direction.into(), scale: scale * factor }
+    }
+
+    /// The row of a direction, divided by its length.
+    fn unit_row(&self, direction: Vector3<f64>, scale: f64, unit: bool) -> ContactRow {
+        let length = direction.dot(&(self.gram * direction)).sqrt();
+        self.row(direction, scale, if unit { length.recip() } else { 1.0 })
+    }
+}
+
+fn reduce(
+    index: usize,
+    point: &ContactPoint,
+    friction: bool,
+    space: &Space,
+    scale: f64,
+    rows: &mut Vec<PointRows>,
+    removed: &mut Vec<RemovedRow>,
+) {
+    let normal = Vector3::from(point.frame.normal);
+    let tangents = point.frame.tangents.map(Vector3::from);
+    let eigen = SymmetricEigen::new(space.gram);
+    let largest = eigen.eigenvalues.max();
+    let held = |k: usize| eigen.eigenvalues[k] <= FIXED * (space.alpha * space.alpha + space.beta * space.beta);
+    let fixed: Vec<Vector3<f64>> = (0..3).filter(|&k| held(k)).map(|k| eigen.eigenvectors.column(k).into()).collect();
+    let mut drop = |kind, reason| removed.push(RemovedRow { node: point.node, kind, reason });
+    let movable = normal - fixed.iter().map(|d| *d * d.dot(&normal)).sum::<Vector3<f64>>();
+    if fixed.len() == 3 || largest <= 0.0 || movable.norm() <= FIXED {
+        drop(RowKind::Normal, RemovalReason::NormalFixed);
+        if friction {
+            let reason = if fixed.len() == 3 { RemovalReason::TangentFixed } else { RemovalReason::NoNormalRow };
+            drop(RowKind::Tangential, reason);
+            drop(RowKind::Tangential, reason);
+        }
+        return;
+    }
+    // With all three directions free the rows keep one common scale, so that the friction disc stays a disc.
+    let unit = !fixed.is_empty();
+    let mut tangential = Vec::new();
+    if friction {
+        match fixed.len() {
+            0 => tangential.extend(tangents.map(|t| space.row(t, scale, 1.0))),
+            1 => {
+                // The one tangential direction orthogonal to the fixed one.
+                let along = [tangents[0].dot(&fixed[0]), tangents[1].dot(&fixed[0])];
+                let length = along[0].hypot(along[1]);
+                let free = (tangents[0] * along[1] - tangents[1] * along[0]) / length;
+                tangential.push(space.unit_row(free, scale, unit));
+                drop(RowKind::Tangential, RemovalReason::TangentFixed);
+            }
+            _ => {
+                drop(RowKind::Tangential, RemovalReason::TangentFixed);
+                drop(RowKind::Tangential, RemovalReason::TangentFixed);
+            }
+        }
+    }
+    let normal = space.unit_row(normal, scale, unit);
+    rows.push(PointRows { point: index, normal, tangential, prescribed: space.prescribed.clone() });
+}

@@ -1,0 +1,203 @@
+//! Which generalised inverse is cheaper for a class: a dense one on the boundary or a sparse factor.
+
+use crate::error::TfetiError;
+
+/// Choice of the generalised inverse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum InverseKind {
+    /// Chosen for each class by a cost model from sizes, members and the expected number of products.
+    #[default]
+    Auto,
+    /// Dense matrix on the boundary unknowns.
+    Dense,
+    /// Sparse Cholesky factor.
+    Sparse,
+}
+
+/// Settings of the generalised inverses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct InverseSettings {
+    /// Dense, sparse, or chosen by cost. Default: by cost.
+    pub kind: InverseKind,
+    /// Whether sparse inverses are projected to the Moore-Penrose inverse. Without the projection a product is a few
+    /// per cent cheaper; `F` then differs outside of the kernel of `G` only, so `P F P` and all solutions are the same.
+    /// Dense inverses are always Moore-Penrose. Default: true.
+    pub moore_penrose: bool,
+    /// Upper bound in bytes for all inverses and factors. Default: 8 GiB.
+    pub memory_limit: u64,
+    /// Number of products with `F` expected, for the cost model. Default: 2000, at least 1.
+    pub expected_products: usize,
+}
+
+impl Default for InverseSettings {
+    fn default() -> Self {
+        Self { kind: InverseKind::Auto, moore_penrose: true, memory_limit: 8 << 30, expected_products: 2000 }
+    }
+}
+
+impl InverseSettings {
+    /// Sets [`InverseSettings::kind`].
+    #[must_use]
+    pub fn with_kind(mut self, kind: InverseKind) -> Self {
+        self.kind = kind;
+        self
+    }
+
+    /// Sets [`InverseSettings::moore_penrose`].
+    #[must_use]
+    pub fn with_moore_penrose(mut self, moore_penrose: bool) -> Self {
+        self.moore_penrose = moore_penrose;
+        self
+    }
+
+    /// Sets [`InverseSettings::memory_limit`].
+    #[must_use]
+    pub fn with_memory_limit(mut self, bytes: u64) -> Self {
+        self.memory_limit = bytes;
+        self
+    }
+
+    /// Sets [`InverseSettings::expected_products`].
+    #[must_use]
+    pub fn with_expected_products(mut self, products: usize) -> Self {
+        self.expected_products = products;
+        self
+    }
+
+    /// Checks the ranges.
+    pub fn validate(&self) -> Result<(), TfetiError> {
+        if self.expected_products == 0 {
+            return Err(TfetiError::Setting { name: "expected_products", value: 0.0, range: "at least 1" });
+        }
+        Ok(())
+    }
+}
+
+/// What the cost model knows of a class.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Size {
+    /// Unknowns of one member.
+    pub(crate) dim: usize,
+    /// Unknowns that `B` touches in some member.
+    pub(crate) boundary: usize,
+    /// Members.
+    pub(crate) members: usize,
+    /// Numbers stored for the sparse factor.
+    pub(crate) factor: usize,
+}
+
+/// From this number of members on a class keeps its whole dense inverse for loads and recovery.
+pub(crate) const SHARED: usize = 4;
+
+impl Size {
+    pub(crate) fn keeps_full(&self) -> bool {
+        self.members >= SHARED && self.dim <= 2500
+    }
+
+    pub(crate) fn dense_bytes(&self) -> u64 {
+        let full = if self.keeps_full() { self.dim * self.dim } else { self.factor };
+        8 * (self.boundary * self.boundary + full) as u64
+    }
+
+    pub(crate) fn sparse_bytes(&self) -> u64 {
+        8 * self.factor as u64
+    }
+
+    /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single ones.
+    fn dense_product(&self) -> f64 {
+        let entries = (self.boundary * self.boundary) as f64;
+        let arithmetic = 2.0 * entries * self.members as f64 / FLOPS;
+        arithmetic.max(8.0 * entries / BANDWIDTH)
+    }
+
+    /// Seconds of a product of all members with the sparse factor: two passes over it for each block of columns.
+    fn sparse_product(&self) -> f64 {
+        let columns = self.members.min(PANEL) as f64;
+        let per_number = 0.12e-9 + 0.42e-9 / columns;
+        (self.factor as f64 * per_number + self.dim as f64 * 6e-9) * self.members as f64
+    }
+
+    /// Seconds to form the dense matrix instead of only the factor.
+    fn dense_setup(&self) -> f64 {
+        let dim = self.dim as f64;
+        if self.keeps_full() {
+            dim * dim * dim / FLOPS
+        } else {
+            self.factor as f64 * 0.14e-9 * self.boundary as f64
+        }
+    }
+
+    pub(crate) fn prefers_dense(&self, products: usize) -> bool {
+        products as f64 * (self.sparse_product() - self.dense_product()) > self.dense_setup()
+    }
+}
+
+/// Columns worked on at once.
+pub(crate) const PANEL: usize = 48;
+const FLOPS: f64 = 8e10;
+const BANDWIDTH: f64 = 1.2e10;
+
+/// Chooses dense (`true`) or sparse for each class within the memory limit.
+pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<bool>, TfetiError> {
+    let mut dense: Vec<bool> = sizes
+        .iter()
+        .map(|size| match settings.kind {
+            InverseKind::Auto => size.prefers_dense(settings.expected_products),
+            InverseKind::Dense => true,
+            InverseKind::Sparse => false,
+        })
+        .collect();
+    let bytes = |dense: &[bool]| -> u64 {
+        sizes.iter().zip(dense).map(|(s, d)| if *d { s.dense_bytes() } else { s.sparse_bytes() }).sum()
+    };
+    let mut needed = bytes(&dense);
+    if needed > settings.memory_limit && settings.kind == InverseKind::Auto {
+        // Give up the dense matrices that cost most memory for the time they save.
+        let mut order: Vec<usize> = (0..sizes.len()).filter(|&k| dense[k]).collect();
+        let worth = |k: usize| {
+            let saved = (sizes[k].sparse_product() - sizes[k].dense_product()).max(0.0);
+            saved / sizes[k].dense_bytes().saturating_sub(sizes[k].sparse_bytes()).max(1) as f64
+        };
+        order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)).then(a.cmp(&b)));
+        for k in order {
+            if needed <= settings.memory_limit {
+                break;
+            }
+            dense[k] = false;
+            needed = needed + sizes[k].sparse_bytes() - sizes[k].dense_bytes().min(needed);
+        }
+        needed = bytes(&dense);
+    }
+    if needed > settings.memory_limit {
+        return Err(TfetiError::Memory { needed, limit: settings.memory_limit });
+    }
+    Ok(dense)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shared_classes_are_dense_single_ones_follow_the_cost() {
+        let shared = Size { dim: 648, boundary: 456, members: 188, factor: 39_740 };
+        assert!(shared.prefers_dense(2000));
+        let single = Size { members: 1, ..shared };
+        assert!(!single.prefers_dense(2000), "one solve streams less than the dense block");
+        let settings = InverseSettings::default();
+        assert_eq!(choose(&[shared, single], &settings), Ok(vec![true, false]));
+    }
+
+    #[test]
+    fn memory_limit_turns_dense_into_sparse_and_then_fails() {
+        let size = Size { dim: 648, boundary: 456, members: 188, factor: 39_740 };
+        let sparse = size.sparse_bytes();
+        let limited = InverseSettings::default().with_memory_limit(sparse);
+        assert_eq!(choose(&[size], &limited), Ok(vec![false]));
+        let impossible = limited.with_memory_limit(sparse - 1);
+        assert_eq!(choose(&[size], &impossible), Err(TfetiError::Memory { needed: sparse, limit: sparse - 1 }));
+        assert!(matches!(choose(&[size], &limited.with_kind(InverseKind::Dense)), Err(TfetiError::Memory { .. })));
+    }
+}

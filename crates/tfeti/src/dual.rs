@@ -1,0 +1,149 @@
+//! The dual operator `F = B K+ B^T`.
+
+use crate::boundary::BoundaryMap;
+use crate::dense;
+use crate::inverse::{Inverse, InverseMemory};
+use crate::matrices::{ClassBase, ClassInverse};
+use signorini_qp::SymmetricOperator;
+use std::sync::Arc;
+
+/// `F = B K+ B^T`, applied without forming it.
+///
+/// Each product gathers the multipliers of every subdomain into the columns of one matrix per class, multiplies it by
+/// the class's boundary inverse (or solves with its sparse factor) and gathers the rows of `B` from the result.
+#[derive(Debug, Clone)]
+pub struct DualOperator {
+    pub(crate) map: Arc<BoundaryMap>,
+    pub(crate) bases: Arc<Vec<ClassBase>>,
+    pub(crate) inverses: Arc<Vec<ClassInverse>>,
+    parallel: bool,
+}
+
+/// Work memory of a product with `F`.
+#[derive(Debug)]
+pub struct DualScratch {
+    boundary: Vec<f64>,
+    lanes: Vec<LaneScratch>,
+}
+
+#[derive(Debug)]
+struct LaneScratch {
+    gathered: Vec<f64>,
+    full: Vec<f64>,
+    solved: Vec<f64>,
+    memory: Option<InverseMemory>,
+}
+
+/// Below this number of floating-point operations a product stays on one thread.
+const SMALL: usize = 1_500_000;
+
+impl DualOperator {
+    pub(crate) fn new(map: Arc<BoundaryMap>, bases: Arc<Vec<ClassBase>>, inverses: Arc<Vec<ClassInverse>>) -> Self {
+        let work = |k: usize| {
+            let per_member = match (&inverses[k].boundary, &inverses[k].full) {
+                (None, Inverse::Sparse { factor, .. }) => 4 * factor.stored(),
+                _ => 18 * map.classes[k].nodes.len() * map.classes[k].nodes.len(),
+            };
+            per_member * map.classes[k].members.len()
+        };
+        let parallel = (0..inverses.len()).map(work).sum::<usize>() > SMALL;
+        Self { map, bases, inverses, parallel }
+    }
+
+    /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
+    #[must_use]
+    pub fn flops(&self) -> u64 {
+        let class = |k: usize| {
+            let size = 3 * self.map.classes[k].nodes.len();
+            let per_member = match (&self.inverses[k].boundary, &self.inverses[k].full) {
+                (None, Inverse::Sparse { factor, .. }) => 4 * factor.stored(),
+                _ => 2 * size * size,
+            };
+            (per_member * self.map.classes[k].members.len()) as u64
+        };
+        (0..self.inverses.len()).map(class).sum()
+    }
+
+    fn lane_scratch(&self, lane: usize) -> LaneScratch {
+        let panels = &self.map.panels[self.map.lanes[lane].panels.clone()];
+        let (mut gathered, mut full) = (0, 0);
+        let mut sparse = Vec::new();
+        for panel in panels {
+            let columns = panel.columns.len();
+            gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
+            if self.inverses[panel.class].boundary.is_none() {
+                full = full.max(self.bases[panel.class].stiffness.dim * columns);
+                sparse.push((&self.inverses[panel.class].full, columns));
+            }
+        }
+        let memory = (!sparse.is_empty()).then(|| InverseMemory::for_all(&sparse));
+        LaneScratch { gathered: vec![0.0; gathered], full: vec![0.0; full], solved: vec![0.0; full], memory }
+    }
+
+    /// `K+ B^T x` as a boundary vector.
+    fn boundary_product(&self, x: &[f64], s: &mut DualScratch) {
+        self.map.for_lanes(&mut s.lanes, &mut s.boundary, self.parallel, &|lane, scratch, part| {
+            for (panel, out) in self.map.panels_of(lane, part) {
+                let columns = panel.columns.len();
+                let gathered = &mut scratch.gathered[..out.len()];
+                self.map.spread(x, panel, gathered);
+                let size = out.len() / columns;
+                let inverse = &self.inverses[panel.class];
+                if let Some(matrix) = &inverse.boundary {
+                    dense::multiply(out, matrix, gathered, size, size, columns);
+                } else if let Some(memory) = &mut scratch.memory {
+                    let base = &self.bases[panel.class];
+                    let nodes = &self.map.classes[panel.class].nodes;
+                    let dim = base.stiffness.dim;
+                    let (full, solved) = (&mut scratch.full[..dim * columns], &mut scratch.solved[..dim * columns]);
+                    full.fill(0.0);
+                    expand(nodes, gathered, full, dim);
+                    inverse.full.apply(&base.kernel, full, solved, columns, memory);
+                    restrict(nodes, solved, out, dim);
+                }
+            }
+        });
+    }
+
+    /// `B K+ B^T x` on the contact rows only (the leading part of `y`), for traces without a full product's gather.
+    pub fn apply_contact(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
+        self.boundary_product(x, s);
+        self.map.collect_contact(&s.boundary, y);
+    }
+}
+
+/// Writes the boundary rows of all columns into full columns.
+pub(crate) fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
+    for (source, target) in boundary.chunks_exact(3 * nodes.len()).zip(full.chunks_exact_mut(dim)) {
+        for (&node, value) in nodes.iter().zip(source.chunks_exact(3)) {
+            target[3 * node as usize..][..3].copy_from_slice(value);
+        }
+    }
+}
+
+/// Reads the boundary rows of full columns.
+pub(crate) fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
+    for (target, source) in boundary.chunks_exact_mut(3 * nodes.len()).zip(full.chunks_exact(dim)) {
+        for (&node, value) in nodes.iter().zip(target.chunks_exact_mut(3)) {
+            value.copy_from_slice(&source[3 * node as usize..][..3]);
+        }
+    }
+}
+
+impl SymmetricOperator for DualOperator {
+    type Scratch = DualScratch;
+
+    fn dim(&self) -> usize {
+        self.map.rows()
+    }
+
+    fn scratch(&self) -> DualScratch {
+        let lanes = (0..self.map.lanes.len()).map(|lane| self.lane_scratch(lane)).collect();
+        DualScratch { boundary: vec![0.0; self.map.len()], lanes }
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
+        self.boundary_product(x, s);
+        self.map.collect(&s.boundary, y);
+    }
+}

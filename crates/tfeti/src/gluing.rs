@@ -1,0 +1,422 @@
+//! The gluing matrix `B = (N, T, B_int, B_Dir)` of the torn body.
+//!
+//! `B` acts on the displacements of all subdomains, node copies included. It is stored by what its rows do: an
+//! *interface block* is three rows (x, y, z) that combine the copies of one node with the same coefficients, every other
+//! row is a list of (copy, vector). Supports and contact act on the mean of the copies, the interface rows on its
+//! complement, so the rows are independent by construction; what would depend is reported in [`Gluing::removed`].
+
+use crate::contact::{ContactNodes, ContactRow, PointRows, contact_rows};
+use crate::error::TfetiError;
+use crate::rows::{RemovedRow, RowKind, RowRanges, RowRule};
+use crate::supports::{MergedSupports, Support};
+use signorini_fem_mesh::{Decomposition, Frame};
+use std::collections::HashMap;
+
+/// Tangential rows of a contact point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum TangentialRows {
+    /// None: no friction, or supports leave no tangential direction.
+    None,
+    /// One row; the friction force is bounded by an interval.
+    Interval {
+        /// The row.
+        row: usize,
+        /// Its unit direction in space.
+        direction: [f64; 3],
+        /// The row is `scale` times the displacement along the direction.
+        scale: f64,
+    },
+    /// Two rows `row, row + 1` along the frame's tangents; the friction force is bounded by a disc.
+    Disc {
+        /// The first row.
+        row: usize,
+        /// The rows are `scale` times the displacements along the tangents.
+        scale: f64,
+    },
+}
+
+/// A contact point that has a normal row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactInfo {
+    /// Position in the list of contact points given.
+    pub point: usize,
+    /// Mesh node.
+    pub node: u32,
+    /// Node of the other body, if any.
+    pub opponent: Option<u32>,
+    /// Outward normal and tangents.
+    pub frame: Frame,
+    /// The normal row.
+    pub row: usize,
+    /// The normal row is `scale` times the normal displacement; the nodal force is `scale * lambda`, the offset of
+    /// the row `scale * gap`. The square root of the number of copies for orthonormal rows at an unsupported node.
+    pub scale: f64,
+    /// The tangential rows.
+    pub tangential: TangentialRows,
+}
+
+/// An entry of a row that is no interface row: a copy and the vector that multiplies its displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CopyEntry {
+    pub(crate) subdomain: u32,
+    pub(crate) local: u32,
+    pub(crate) vector: [f64; 3],
+}
+
+/// An entry of an interface block: a copy and the coefficient that multiplies its displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BlockEntry {
+    pub(crate) subdomain: u32,
+    pub(crate) local: u32,
+    pub(crate) coefficient: f64,
+}
+
+/// The rows of `B`, their names and their counts.
+#[derive(Debug, Clone)]
+pub struct Gluing {
+    rule: RowRule,
+    ranges: RowRanges,
+    block_pointers: Vec<u32>,
+    block_entries: Vec<BlockEntry>,
+    block_nodes: Vec<u32>,
+    row_pointers: Vec<u32>,
+    row_entries: Vec<CopyEntry>,
+    row_nodes: Vec<u32>,
+    contact: Vec<ContactInfo>,
+    removed: Vec<RemovedRow>,
+    prescribed: Vec<Vec<(u32, f64)>>,
+    paper_rows: usize,
+    orthonormal: bool,
+}
+
+impl Gluing {
+    /// Builds the rows. `contact` is `None` for a body without obstacle.
+    pub fn new(
+        decomposition: &Decomposition,
+        nodes: usize,
+        supports: &[Support],
+        contact: Option<&ContactNodes>,
+        rule: RowRule,
+    ) -> Result<Self, TfetiError> {
+        let merged = MergedSupports::new(supports, nodes)?;
+        let none = ContactNodes::default();
+        let contact_nodes = contact.unwrap_or(&none);
+        let copies = |node: u32| decomposition.copies(node as usize).len();
+        let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, copies)?;
+        let mut builder = Builder { decomposition, rule, gluing: Self::empty(rule, merged.cases) };
+        builder.gluing.removed = dropped.into_iter().chain(merged.removed.iter().copied()).collect();
+        builder.contact(contact_nodes, &points);
+        builder.interface(nodes);
+        builder.dirichlet(&merged);
+        let mut gluing = builder.gluing;
+        gluing.ranges.interface.end = gluing.ranges.interface.start + 3 * gluing.blocks();
+        let supported = gluing.row_pointers.len() - 1 - gluing.ranges.contact().len();
+        gluing.ranges.dirichlet = gluing.ranges.interface.end..gluing.ranges.interface.end + supported;
+        for case in &mut gluing.prescribed {
+            for (row, _) in case.iter_mut() {
+                if *row as usize >= gluing.ranges.interface.start {
+                    *row += gluing.ranges.interface.len() as u32;
+                }
+            }
+            case.sort_by_key(|v| v.0);
+        }
+        let torn: usize = decomposition.subdomains().iter().map(|s| s.nodes.len()).sum();
+        let per_point = if contact_nodes.friction { 3 } else { 1 };
+        gluing.paper_rows =
+            3 * (torn - nodes.min(torn)) + 3 * merged.nodes.len() + per_point * contact_nodes.points.len();
+        let entries = gluing.block_entries.len().max(gluing.row_entries.len());
+        if entries.max(gluing.ranges.total()).max(3 * torn) >= u32::MAX as usize {
+            return Err(TfetiError::TooLarge { what: "entries of B", count: entries });
+        }
+        Ok(gluing)
+    }
+
+    fn empty(rule: RowRule, cases: usize) -> Self {
+        Self {
+            rule,
+            ranges: RowRanges { normal: 0..0, discs: 0..0, intervals: 0..0, interface: 0..0, dirichlet: 0..0 },
+            block_pointers: vec![0],
+            block_entries: Vec::new(),
+            block_nodes: Vec::new(),
+            row_pointers: vec![0],
+            row_entries: Vec::new(),
+            row_nodes: Vec::new(),
+            contact: Vec::new(),
+            removed: Vec::new(),
+            prescribed: vec![Vec::new(); cases],
+            paper_rows: 0,
+            orthonormal: rule == RowRule::Orthonormal,
+        }
+    }
+
+    /// How the rows were built.
+    #[must_use]
+    pub fn rule(&self) -> RowRule {
+        self.rule
+    }
+
+    /// Where each kind of row stands.
+    #[must_use]
+    pub fn ranges(&self) -> &RowRanges {
+        &self.ranges
+    }
+
+    /// Number of rows of `B`, which has full rank: the length of dual vectors.
+    #[must_use]
+    pub fn rows_full_rank(&self) -> usize {
+        self.ranges.total()
+    }
+
+    /// Number of rows as the paper counts them: three for each additional copy of a node, three for each supported node
+    /// and three (without friction one) for each contact point, supported or not.
+    #[must_use]
+    pub fn rows_as_paper(&self) -> usize {
+        self.paper_rows
+    }
+
+    /// Whether `B B^T = I`.
+    #[must_use]
+    pub fn is_orthonormal(&self) -> bool {
+        self.orthonormal
+    }
+
+    /// The contact points that have a normal row, in the order of the normal rows.
+    #[must_use]
+    pub fn contact(&self) -> &[ContactInfo] {
+        &self.contact
+    }
+
+    /// Rows left out because they would depend on others, with the reason.
+    #[must_use]
+    pub fn removed(&self) -> &[RemovedRow] {
+        &self.removed
+    }
+
+    /// Number of displacement cases of the supports.
+    #[must_use]
+    pub fn prescribed_cases(&self) -> usize {
+        self.prescribed.len()
+    }
+
+    /// Row offsets `(row, value)` of displacement case `case` with factor one, rows ascending.
+    ///
+    /// They belong to support rows and, where a support also moves a contact point, to contact rows: the offset of a
+    /// contact row is `scale * (gap or slip) + sum factor * value`, and the physical displacement is
+    /// `(B u - sum factor * value) / scale`. Empty for a case that does not exist.
+    #[must_use]
+    pub fn prescribed(&self, case: usize) -> &[(u32, f64)] {
+        self.prescribed.get(case).map_or(&[], Vec::as_slice)
+    }
+
+    /// Mesh node to which a row belongs (for a contact row the first of a pair). `None` beyond the last row.
+    #[must_use]
+    pub fn node(&self, row: usize) -> Option<u32> {
+        let range = &self.ranges.interface;
+        if range.contains(&row) {
+            self.block_nodes.get((row - range.start) / 3).copied()
+        } else {
+            self.row_nodes.get(self.special_of(row)).copied()
+        }
+    }
+
+    /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.
+    #[must_use]
+    pub fn row(&self, row: usize) -> Vec<(usize, usize, f64)> {
+        let range = &self.ranges.interface;
+        let mut out = Vec::new();
+        if row >= self.ranges.total() {
+            return out;
+        }
+        if range.contains(&row) {
+            let (block, component) = ((row - range.start) / 3, (row - range.start) % 3);
+            out.extend(
+                self.block(block)
+                    .iter()
+                    .map(|e| (e.subdomain as usize, 3 * e.local as usize + component, e.coefficient)),
+            );
+        } else {
+            for e in self.special(self.special_of(row)) {
+                for (c, &v) in e.vector.iter().enumerate() {
+                    if v != 0.0 {
+                        out.push((e.subdomain as usize, 3 * e.local as usize + c, v));
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Number of interface blocks.
+    pub(crate) fn blocks(&self) -> usize {
+        self.block_pointers.len() - 1
+    }
+
+    pub(crate) fn block(&self, block: usize) -> &[BlockEntry] {
+        &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
+    }
+
+    /// Number of rows that are not interface rows: contact rows, then support rows.
+    pub(crate) fn specials(&self) -> usize {
+        self.row_pointers.len() - 1
+    }
+
+    pub(crate) fn special(&self, special: usize) -> &[CopyEntry] {
+        &self.row_entries[self.row_pointers[special] as usize..self.row_pointers[special + 1] as usize]
+    }
+
+    /// Row number of a special row.
+    pub(crate) fn special_row(&self, special: usize) -> usize {
+        if special < self.ranges.interface.start { special } else { special + self.ranges.interface.len() }
+    }
+
+    fn special_of(&self, row: usize) -> usize {
+        if row < self.ranges.interface.start { row } else { row - self.ranges.interface.len() }
+    }
+}
+
+struct Builder<'a> {
+    decomposition: &'a Decomposition,
+    rule: RowRule,
+    gluing: Gluing,
+}
+
+impl Builder<'_> {
+    /// Spreads a vector that multiplies the mean displacement of a node over its copies.
+    fn spread(&mut self, node: u32, vector: [f64; 3]) {
+        if vector == [0.0; 3] {
+            return;
+        }
+        let copies = self.decomposition.copies(node as usize);
+        let (used, factor) = match self.rule {
+            RowRule::Orthonormal => (copies.len(), 1.0 / (copies.len() as f64).sqrt()),
+            RowRule::Chained => (1, 1.0),
+        };
+        let vector = vector.map(|v| v * factor);
+        let entries = copies.iter().take(used).map(|c| CopyEntry { subdomain: c.subdomain, local: c.local, vector });
+        self.gluing.row_entries.extend(entries);
+    }
+
+    fn close(&mut self, node: u32) -> usize {
+        self.gluing.row_pointers.push(self.gluing.row_entries.len() as u32);
+        self.gluing.row_nodes.push(node);
+        self.gluing.row_pointers.len() - 2
+    }
+
+    fn contact_row(&mut self, node: u32, opponent: Option<u32>, row: &ContactRow, prescribed: &[(u32, [f64; 3])]) -> usize {
+        self.spread(node, row.node);
+        if let Some(opponent) = opponent {
+            self.spread(opponent, row.opponent);
+        }
+        let number = self.close(node);
+        for (case, moved) in prescribed {
+            let along: f64 = (0..3).map(|c| row.direction[c] * moved[c]).sum();
+            if along != 0.0 {
+                self.gluing.prescribed[*case as usize].push((number as u32, -row.scale * along));
+            }
+        }
+        number
+    }
+
+    fn contact(&mut self, contact: &ContactNodes, points: &[PointRows]) {
+        let place = |p: &PointRows| (contact.points[p.point].node, contact.points[p.point].opponent);
+        for p in points {
+            let (node, opponent) = place(p);
+            let row = self.contact_row(node, opponent, &p.normal, &p.prescribed);
+            self.gluing.contact.push(ContactInfo {
+                point: p.point,
+                node,
+                opponent,
+                frame: contact.points[p.point].frame,
+                row,
+                scale: p.normal.scale,
+                tangential: TangentialRows::None,
+            });
+            let skew = |r: &ContactRow| {
+                let length: f64 = (0..3).map(|c| r.node[c] * r.node[c] + r.opponent[c] * r.opponent[c]).sum();
+                (length - 1.0).abs() > 1e-12
+            };
+            if skew(&p.normal) || p.tangential.iter().any(skew) {
+                self.gluing.orthonormal = false;
+            }
+        }
+        let normal = self.gluing.specials();
+        for (k, p) in points.iter().enumerate().filter(|(_, p)| p.tangential.len() == 2) {
+            let (node, opponent) = place(p);
+            let row = self.contact_row(node, opponent, &p.tangential[0], &p.prescribed);
+            self.contact_row(node, opponent, &p.tangential[1], &p.prescribed);
+            self.gluing.contact[k].tangential = TangentialRows::Disc { row, scale: p.tangential[0].scale };
+        }
+        let discs = self.gluing.specials();
+        for (k, p) in points.iter().enumerate().filter(|(_, p)| p.tangential.len() == 1) {
+            let (node, opponent) = place(p);
+            let tangent = &p.tangential[0];
+            let row = self.contact_row(node, opponent, tangent, &p.prescribed);
+            let (direction, scale) = (tangent.direction, tangent.scale);
+            self.gluing.contact[k].tangential = TangentialRows::Interval { row, direction, scale };
+        }
+        let end = self.gluing.specials();
+        let ranges = &mut self.gluing.ranges;
+        (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
+        ranges.interface = end..end;
+    }
+
+    fn interface(&mut self, nodes: usize) {
+        for node in 0..nodes {
+            let copies = self.decomposition.copies(node);
+            for j in 1..copies.len() {
+                let entry = |k: usize, coefficient: f64| {
+                    let copy = &copies[k];
+                    BlockEntry { subdomain: copy.subdomain, local: copy.local, coefficient }
+                };
+                match self.rule {
+                    RowRule::Orthonormal => {
+                        let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
+                        self.gluing.block_entries.extend((0..j).map(|k| entry(k, scale)));
+                        self.gluing.block_entries.push(entry(j, -(j as f64) * scale));
+                    }
+                    RowRule::Chained => {
+                        self.gluing.block_entries.extend([entry(j - 1, 1.0), entry(j, -1.0)]);
+                    }
+                }
+                self.gluing.block_pointers.push(self.gluing.block_entries.len() as u32);
+                self.gluing.block_nodes.push(node as u32);
+            }
+        }
+    }
+
+    fn dirichlet(&mut self, merged: &MergedSupports) {
+        for fixed in &merged.nodes {
+            let scale = match self.rule {
+                RowRule::Orthonormal => (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt(),
+                RowRule::Chained => 1.0,
+            };
+            for direction in &fixed.directions {
+                self.spread(fixed.node, direction.direction);
+                let number = self.close(fixed.node);
+                for &(case, value) in &direction.values {
+                    self.gluing.prescribed[case as usize].push((number as u32, scale * value));
+                }
+            }
+        }
+    }
+}
+
+/// Number of removed rows by kind and reason, for reports.
+#[must_use]
+pub fn count_removed(removed: &[RemovedRow]) -> Vec<(RowKind, &'static str, usize)> {
+    let mut counts: HashMap<(RowKind, &'static str), usize> = HashMap::new();
+    for row in removed {
+        use crate::rows::RemovalReason as Reason;
+        let reason = match row.reason {
+            Reason::DoubledSupport { .. } => "direction supported twice",
+            Reason::NormalFixed => "normal direction supported",
+            Reason::TangentFixed => "tangential direction supported",
+            Reason::NoNormalRow => "no normal row",
+        };
+        *counts.entry((row.kind, reason)).or_default() += 1;
+    }
+    let mut out: Vec<_> = counts.into_iter().map(|((kind, reason), count)| (kind, reason, count)).collect();
+    out.sort();
+    out
+}

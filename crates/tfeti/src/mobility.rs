@@ -1,0 +1,267 @@
+//! Rigid motions of whole bodies that no row of `B` stops.
+//!
+//! The rank of `G W G^T` is decided here and not by small pivots: the interface rows join subdomains to bodies, and a
+//! vector of its null space is a rigid motion of bodies that all other rows of positive weight leave alone. That is an
+//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is.
+
+use crate::boundary::BoundaryMap;
+use crate::class::Classes;
+use crate::gluing::{CopyEntry, Gluing};
+use crate::kernel::{Kernel, displacement};
+use crate::matrices::ClassBase;
+use nalgebra::{DMatrix, SymmetricEigen};
+use std::fmt;
+use std::sync::Arc;
+
+/// A rigid motion of the bodies that the rows of positive weight do not stop.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FreeMotion {
+    /// For each body that moves: its number, the translation of its centre and the rotation vector, in units in which
+    /// the largest nodal displacement is about one.
+    pub bodies: Vec<BodyMotion>,
+    /// The motion as a vector of coarse amplitudes, six per subdomain.
+    pub amplitudes: Vec<f64>,
+}
+
+/// Rigid motion of one body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyMotion {
+    /// Body number; bodies are numbered by their first subdomain.
+    pub body: usize,
+    /// A subdomain of the body.
+    pub subdomain: usize,
+    /// Translation of the centre.
+    pub translation: [f64; 3],
+    /// Rotation about the centre, times the radius of the body.
+    pub rotation: [f64; 3],
+}
+
+impl fmt::Display for FreeMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, m) in self.bodies.iter().enumerate() {
+            let [t, r] = [m.translation, m.rotation];
+            let separator = if k > 0 { "; " } else { "" };
+            write!(f, "{separator}body {} (with subdomain {}): ", m.body, m.subdomain)?;
+            write!(f, "translation ({:.3}, {:.3}, {:.3}), ", t[0], t[1], t[2])?;
+            write!(f, "rotation ({:.3}, {:.3}, {:.3})", r[0], r[1], r[2])?;
+        }
+        Ok(())
+    }
+}
+
+/// Bodies and how the rows act on their rigid motions.
+#[derive(Debug)]
+pub(crate) struct Mobility {
+    body_of: Vec<u32>,
+    bodies: Vec<Body>,
+    centres: Vec<[f64; 3]>,
+    classes: Arc<Classes>,
+    bases: Arc<Vec<ClassBase>>,
+}
+
+#[derive(Debug)]
+struct Body {
+    centre: [f64; 3],
+    radius: f64,
+    first: usize,
+}
+
+/// Eigenvalues below this share of the largest belong to free motions. A support of extent `h` on a body of length `L`
+/// gives about `(h/L)^2`.
+const FREE: f64 = 1e-11;
+
+impl Mobility {
+    /// `centres` are the means of the nodes of the subdomains.
+    pub(crate) fn new(classes: Arc<Classes>, bases: Arc<Vec<ClassBase>>, gluing: &Gluing, centres: Vec<[f64; 3]>) -> Self {
+        let mut parent: Vec<u32> = (0..centres.len() as u32).collect();
+        for block in 0..gluing.blocks() {
+            let entries = gluing.block(block);
+            for pair in entries.windows(2) {
+                let (a, b) = (root(&mut parent, pair[0].subdomain), root(&mut parent, pair[1].subdomain));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut bodies: Vec<Body> = Vec::new();
+        let mut body_of = vec![0; centres.len()];
+        let mut members: Vec<Vec<usize>> = Vec::new();
+        for s in 0..centres.len() {
+            let first = root(&mut parent, s as u32) as usize;
+            if first == s {
+                body_of[s] = bodies.len() as u32;
+                bodies.push(Body { centre: [0.0; 3], radius: 1.0, first: s });
+                members.push(vec![s]);
+            } else {
+                body_of[s] = body_of[first];
+                members[body_of[s] as usize].push(s);
+            }
+        }
+        for (body, members) in bodies.iter_mut().zip(&members) {
+            body.centre = crate::kernel::mean(members.iter().map(|&s| centres[s]));
+            let square: f64 = members
+                .iter()
+                .map(|&s| {
+                    let own = bases[classes.place(s).0].kernel.radius();
+                    (0..3).map(|c| (centres[s][c] - body.centre[c]).powi(2)).sum::<f64>() + own * own
+                })
+                .sum();
+            body.radius = (square / members.len() as f64).sqrt();
+        }
+        Self { body_of, bodies, centres, classes, bases }
+    }
+
+    pub(crate) fn bodies(&self) -> usize {
+        self.bodies.len()
+    }
+
+    fn kernel(&self, subdomain: usize) -> &Kernel {
+        &self.bases[self.classes.place(subdomain).0].kernel
+    }
+
+    /// Motion of a subdomain about its own centre when its body moves by `motion` about the body's.
+    fn restrict(&self, subdomain: usize, motion: &[f64; 6]) -> [f64; 6] {
+        let body = &self.bodies[self.body_of[subdomain] as usize];
+        let c = self.centres[subdomain];
+        let arm = std::array::from_fn(|k| (c[k] - body.centre[k]) / body.radius);
+        let [x, y, z] = displacement(motion, &arm);
+        let ratio = self.kernel(subdomain).radius() / body.radius;
+        [x, y, z, motion[3] * ratio, motion[4] * ratio, motion[5] * ratio]
+    }
+
+    /// Adds what a row (entries times `factor`) does to the motions of the bodies.
+    pub(crate) fn act(&self, entries: &[CopyEntry], factor: f64, out: &mut Vec<(usize, [f64; 6])>) {
+        for e in entries {
+            let s = e.subdomain as usize;
+            let body = self.body_of[s] as usize;
+            let at = match out.iter().position(|v| v.0 == body) {
+                Some(at) => at,
+                None => {
+                    out.push((body, [0.0; 6]));
+                    out.len() - 1
+                }
+            };
+            for mode in 0..6 {
+                let mut motion = [0.0; 6];
+                motion[mode] = 1.0;
+                let u = displacement(&self.restrict(s, &motion), self.kernel(s).arm(e.local as usize));
+                out[at].1[mode] += factor * (0..3).map(|c| e.vector[c] * u[c]).sum::<f64>();
+            }
+        }
+    }
+
+    /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.
+    pub(crate) fn free(&self, rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>) -> Vec<FreeMotion> {
+        let dim = 6 * self.bodies.len();
+        let mut gram = DMatrix::<f64>::zeros(dim, dim);
+        for row in rows {
+            for (a, ga) in &row {
+                for (b, gb) in &row {
+                    for i in 0..6 {
+                        for j in 0..6 {
+                            gram[(6 * a + i, 6 * b + j)] += ga[i] * gb[j];
+                        }
+                    }
+                }
+            }
+        }
+        let eigen = SymmetricEigen::new(gram);
+        let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
+        (0..dim)
+            .filter(|&k| eigen.eigenvalues[k] <= FREE * largest)
+            .map(|k| self.describe(&eigen.eigenvectors.column(k).iter().copied().collect::<Vec<_>>()))
+            .collect()
+    }
+
+    fn describe(&self, vector: &[f64]) -> FreeMotion {
+        let part = |body: usize| -> [f64; 6] { std::array::from_fn(|k| vector[6 * body + k]) };
+        let moving = |body: &usize| part(*body).iter().any(|v| v.abs() > 1e-9);
+        let bodies = (0..self.bodies.len()).filter(moving).map(|body| {
+            let [a, b, c, d, e, f] = part(body);
+            let subdomain = self.bodies[body].first;
+            BodyMotion { body, subdomain, translation: [a, b, c], rotation: [d, e, f] }
+        });
+        let mut amplitudes = Vec::with_capacity(6 * self.body_of.len());
+        for s in 0..self.body_of.len() {
+            let motion = self.restrict(s, &part(self.body_of[s] as usize));
+            amplitudes.extend(self.kernel(s).amplitudes(&motion));
+        }
+        FreeMotion { bodies: bodies.collect(), amplitudes }
+    }
+
+    /// As many springs on coarse amplitudes as there are free motions, such that no free motion escapes them:
+    /// `(subdomain, six coefficients)`.
+    pub(crate) fn springs(&self, free: &[FreeMotion]) -> Vec<(usize, [f64; 6])> {
+        // Gaussian elimination with full pivoting on the amplitudes of each body's first subdomain.
+        let mut rows: Vec<Vec<f64>> = free
+            .iter()
+            .map(|m| self.bodies.iter().flat_map(|b| m.amplitudes[6 * b.first..6 * b.first + 6].to_vec()).collect())
+            .collect();
+        let mut springs = Vec::with_capacity(free.len());
+        for k in 0..rows.len() {
+            let mut best = (k, 0, 0.0);
+            for (i, row) in rows.iter().enumerate().skip(k) {
+                for (j, v) in row.iter().enumerate() {
+                    if v.abs() > best.2 {
+                        best = (i, j, v.abs());
+                    }
+                }
+            }
+            let (pivot_row, column, _) = best;
+            rows.swap(k, pivot_row);
+            let pivot = rows[k].clone();
+            for row in rows.iter_mut().skip(k + 1) {
+                let factor = row[column] / pivot[column];
+                for (v, p) in row.iter_mut().zip(&pivot) {
+                    *v -= factor * p;
+                }
+            }
+            let mut spring = [0.0; 6];
+            spring[column % 6] = 1.0;
+            springs.push((self.bodies[column / 6].first, spring));
+        }
+        springs
+    }
+}
+
+fn root(parent: &mut [u32], mut s: u32) -> u32 {
+    while parent[s as usize] != s {
+        parent[s as usize] = parent[parent[s as usize] as usize];
+        s = parent[s as usize];
+    }
+    s
+}
+
+/// `R^T B^T` on the columns of a lane: the amplitudes of the boundary forces of each column.
+pub(crate) fn amplitudes_of_forces(kernel: &Kernel, nodes: &[u32], forces: &[f64], out: &mut [f64]) {
+    for (column, target) in forces.chunks_exact(3 * nodes.len()).zip(out.chunks_exact_mut(6)) {
+        let mut wrench = [0.0; 6];
+        for (&node, f) in nodes.iter().zip(column.chunks_exact(3)) {
+            crate::kernel::add_wrench(&mut wrench, kernel.arm(node as usize), [f[0], f[1], f[2]]);
+        }
+        target.copy_from_slice(&kernel.project_wrench(&wrench));
+    }
+}
+
+/// `R alpha` on the boundary nodes of the columns.
+pub(crate) fn motions_of_amplitudes(kernel: &Kernel, nodes: &[u32], alpha: &[f64], out: &mut [f64]) {
+    for (column, amplitudes) in out.chunks_exact_mut(3 * nodes.len()).zip(alpha.chunks_exact(6)) {
+        let motion = kernel.motion(amplitudes);
+        for (&node, u) in nodes.iter().zip(column.chunks_exact_mut(3)) {
+            u.copy_from_slice(&displacement(&motion, kernel.arm(node as usize)));
+        }
+    }
+}
+
+/// Copies amplitudes in the order of columns into the order of subdomains, or back.
+pub(crate) fn to_subdomains(map: &BoundaryMap, columns: &[f64], subdomains: &mut [f64]) {
+    for (&column, target) in map.column_of.iter().zip(subdomains.chunks_exact_mut(6)) {
+        target.copy_from_slice(&columns[6 * column as usize..][..6]);
+    }
+}
+
+/// The inverse of [`to_subdomains`].
+pub(crate) fn to_columns(map: &BoundaryMap, subdomains: &[f64], columns: &mut [f64]) {
+    for (&column, source) in map.column_of.iter().zip(subdomains.chunks_exact(6)) {
+        columns[6 * column as usize..][..6].copy_from_slice(source);
+    }
+}

@@ -1,0 +1,107 @@
+//! Names of the rows of `B` and of those that were left out.
+
+use std::ops::Range;
+
+/// How the rows of `B` are built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum RowRule {
+    /// Orthonormal rows: Helmert rows over the copies of a node for the interface, the mean of the copies times the
+    /// square root of their number for contact and supports.
+    #[default]
+    Orthonormal,
+    /// The paper's rows: differences of consecutive copies with +1 and -1, one copy for contact and supports.
+    Chained,
+}
+
+/// The four groups of rows, in the order in which they stand in `B`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum RowKind {
+    /// Non-penetration, one row per contact point: `N`.
+    Normal,
+    /// Friction, one or two rows per contact point: `T`.
+    Tangential,
+    /// Gluing of the copies of a node: `B_int`.
+    Interface,
+    /// Supports: `B_Dir`.
+    Dirichlet,
+}
+
+/// Why a row that the paper counts is not in `B`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RemovalReason {
+    /// The support (its number) repeats a direction that is fixed already, with the same prescribed value.
+    DoubledSupport {
+        /// Position in the list of supports.
+        support: usize,
+    },
+    /// The normal direction of a contact point is fixed by supports: the point cannot open or close.
+    NormalFixed,
+    /// A tangential direction of a contact point is fixed by supports.
+    TangentFixed,
+    /// Friction cannot act where there is no contact row.
+    NoNormalRow,
+}
+
+/// A row that would make `B` lose rank and was therefore left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RemovedRow {
+    /// Mesh node.
+    pub node: u32,
+    /// Kind of the row.
+    pub kind: RowKind,
+    /// Why it was left out.
+    pub reason: RemovalReason,
+}
+
+/// Where each kind of row stands in a dual vector.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RowRanges {
+    /// Normal rows.
+    pub normal: Range<usize>,
+    /// Tangential rows of the points with two tangential directions: pairs `t1, t2`.
+    pub discs: Range<usize>,
+    /// Tangential rows of the points with one tangential direction.
+    pub intervals: Range<usize>,
+    /// Interface rows: triples (x, y, z) of one node.
+    pub interface: Range<usize>,
+    /// Support rows.
+    pub dirichlet: Range<usize>,
+}
+
+impl RowRanges {
+    /// All tangential rows.
+    #[must_use]
+    pub fn tangential(&self) -> Range<usize> {
+        self.discs.start..self.intervals.end
+    }
+
+    /// All contact rows: normal and tangential.
+    #[must_use]
+    pub fn contact(&self) -> Range<usize> {
+        self.normal.start..self.intervals.end
+    }
+
+    /// Number of rows of `B`.
+    #[must_use]
+    pub fn total(&self) -> usize {
+        self.dirichlet.end
+    }
+
+    /// Kind of a row; `None` beyond the last.
+    #[must_use]
+    pub fn kind(&self, row: usize) -> Option<RowKind> {
+        if self.normal.contains(&row) {
+            Some(RowKind::Normal)
+        } else if self.tangential().contains(&row) {
+            Some(RowKind::Tangential)
+        } else if self.interface.contains(&row) {
+            Some(RowKind::Interface)
+        } else if self.dirichlet.contains(&row) {
+            Some(RowKind::Dirichlet)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Sparse Cholesky factors. The only file that names the sparse part of the linear algebra library.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::cholesky::llt::factor::LltError;
+use faer::mat::MatMut;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    supernodal::SupernodalLltRef,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Par, Side};
+use std::sync::Arc;
+
+/// Compressed columns of a symmetric matrix: both triangles or the lower one, rows ascending.
+#[derive(Debug, Clone)]
+pub(crate) struct Columns {
+    pub(crate) dim: usize,
+    pub(crate) pointers: Vec<usize>,
+    pub(crate) rows: Vec<usize>,
+    pub(crate) values: Vec<f64>,
+}
+
+impl Columns {
+    /// Copies a sparse matrix that is stored by columns (or is symmetric).
+    pub(crate) fn from_symmetric(matrix: &sprs::CsMat<f64>) -> Self {
+        Self {
+            dim: matrix.cols(),
+            pointers: matrix.proper_indptr().to_vec(),
+            rows: matrix.indices().to_vec(),
+            values: matrix.data().to_vec(),
+        }
+    }
+
+    /// Position of an entry in `values`.
+    pub(crate) fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let range = self.pointers[column]..self.pointers[column + 1];
+        self.rows[range.clone()].binary_search(&row).ok().map(|k| range.start + k)
+    }
+
+    pub(crate) fn column(&self, j: usize) -> (&[usize], &[f64]) {
+        let range = self.pointers[j]..self.pointers[j + 1];
+        (&self.rows[range.clone()], &self.values[range])
+    }
+}
+
+/// A failure of the factorisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FactorError {
+    /// The pivot at this elimination step is not positive.
+    Pivot(usize),
+    /// The pattern could not be analysed (out of memory or index overflow).
+    Pattern,
+}
+
+/// Ordering and pattern of a factor; may serve many matrices of one pattern.
+#[derive(Debug, Clone)]
+pub(crate) struct Symbolic(Arc<SymbolicCholesky<usize>>);
+
+impl Symbolic {
+    /// Analyses the lower triangle of the pattern. The supernodal form is forced: it is the faster one from about 600
+    /// unknowns on, and the only one with half solves.
+    pub(crate) fn new(pattern: &Columns) -> Result<Self, FactorError> {
+        let symbolic =
+            SymbolicSparseColMatRef::new_checked(pattern.dim, pattern.dim, &pattern.pointers, None, &pattern.rows);
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        factorize_symbolic_cholesky(symbolic, Side::Lower, SymmetricOrdering::Amd, params)
+            .map(|s| Self(Arc::new(s)))
+            .map_err(|_| FactorError::Pattern)
+    }
+
+    /// Numbers stored for the factor.
+    pub(crate) fn stored(&self) -> usize {
+        self.0.len_val()
+    }
+}
+
+/// A factor `P A P^T = L L^T`.
+#[derive(Debug, Clone)]
+pub(crate) struct SparseCholesky {
+    symbolic: Symbolic,
+    values: Vec<f64>,
+}
+
+/// Work memory of one thread for solves with a bounded number of columns.
+pub(crate) struct SolveMemory(MemBuffer);
+
+impl std::fmt::Debug for SolveMemory {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "SolveMemory({} bytes)", self.0.len())
+    }
+}
+
+/// Size and alignment of a work memory.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MemoryNeed(StackReq);
+
+impl MemoryNeed {
+    /// Memory that serves both.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self(self.0.or(other.0))
+    }
+}
+
+impl SolveMemory {
+    pub(crate) fn new(need: MemoryNeed) -> Self {
+        Self(MemBuffer::new(need.0))
+    }
+}
+
+impl SparseCholesky {
+    /// Factorises a matrix with the pattern given to [`Symbolic::new`].
+    pub(crate) fn new(symbolic: &Symbolic, matrix: &Columns) -> Result<Self, FactorError> {
+        let mut values = vec![0.0; symbolic.0.len_val()];
+        let mut memory = MemBuffer::new(symbolic.0.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()));
+        let pattern = SymbolicSparseColMatRef::new_checked(matrix.dim, matrix.dim, &matrix.pointers, None, &matrix.rows);
+        symbolic
+            .0
+            .factorize_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(pattern, &matrix.values),
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut memory),
+                Default::default(),
+            )
+            .map_err(|LltError::NonPositivePivot { index }| FactorError::Pivot(index))?;
+        let factor = Self { symbolic: symbolic.clone(), values };
+        match factor.values.iter().position(|v| !v.is_finite()) {
+            Some(position) => Err(FactorError::Pivot(position.min(matrix.dim))),
+            None => Ok(factor),
+        }
+    }
+
+    pub(crate) fn dim(&self) -> usize {
+        self.symbolic.0.nrows()
+    }
+
+    pub(crate) fn stored(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Smallest and largest squared pivot with the elimination step of the smallest.
+    pub(crate) fn pivots(&self) -> (f64, usize, f64) {
+        let mut smallest = (f64::INFINITY, 0);
+        let mut largest = 0.0_f64;
+        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
+            let factor = SupernodalLltRef::new(symbolic, &self.values);
+            for s in 0..symbolic.n_supernodes() {
+                let node = factor.supernode(s);
+                let block = node.val();
+                for j in 0..block.ncols() {
+                    let pivot = block[(j, j)] * block[(j, j)];
+                    if pivot < smallest.0 {
+                        smallest = (pivot, node.start() + j);
+                    }
+                    largest = largest.max(pivot);
+                }
+            }
+        }
+        (smallest.0, smallest.1, largest)
+    }
+
+    /// Work memory that solves with so many columns need.
+    pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
+        Self::need_of(&self.symbolic, columns)
+    }
+
+    /// The same, before there is a factor.
+    pub(crate) fn need_of(symbolic: &Symbolic, columns: usize) -> MemoryNeed {
+        let permuted = StackReq::new::<f64>(symbolic.0.nrows() * columns + 64);
+        MemoryNeed(symbolic.0.solve_in_place_scratch::<f64>(columns, Par::Seq).and(permuted))
+    }
+
+    pub(crate) fn memory(&self, columns: usize) -> SolveMemory {
+        SolveMemory::new(self.need(columns))
+    }
+
+    /// Solves `A X = B` in place, column-major, at most as many columns as the memory was made for.
+    pub(crate) fn solve(&self, rhs: &mut [f64], columns: usize, memory: &mut SolveMemory) {
+        let x = MatMut::from_column_major_slice_mut(rhs, self.dim(), columns);
+        LltRef::new(&self.symbolic.0, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            x,
+            Par::Seq,
+            MemStack::new(&mut memory.0),
+        );
+    }
+
+    /// `out = L^-1 P x`.
+    pub(crate) fn half_solve(&self, x: &[f64], out: &mut [f64], memory: &mut SolveMemory) {
+        match self.symbolic.0.perm() {
+            Some(permutation) => {
+                for (o, &old) in out.iter_mut().zip(permutation.arrays().0) {
+                    *o = x[old];
+                }
+            }
+            None => out.copy_from_slice(x),
+        }
+        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
+            let column = MatMut::from_column_major_slice_mut(out, self.dim(), 1);
+            SupernodalLltRef::new(symbolic, &self.values).l_solve_with_conj(
+                Conj::No,
+                column,
+                Par::Seq,
+                MemStack::new(&mut memory.0),
+            );
+        }
+    }
+
+    /// `out = P^T L^-T y`; `y` is overwritten.
+    pub(crate) fn half_solve_transpose(&self, y: &mut [f64], out: &mut [f64], memory: &mut SolveMemory) {
+        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
+            let column = MatMut::from_column_major_slice_mut(y, self.dim(), 1);
+            SupernodalLltRef::new(symbolic, &self.values).l_transpose_solve_with_conj(
+                Conj::No,
+                column,
+                Par::Seq,
+                MemStack::new(&mut memory.0),
+            );
+        }
+        match self.symbolic.0.perm() {
+            Some(permutation) => {
+                for (&v, &old) in y.iter().zip(permutation.arrays().0) {
+                    out[old] = v;
+                }
+            }
+            None => out.copy_from_slice(y),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laplacian(n: usize) -> Columns {
+        let mut matrix = Columns { dim: n, pointers: vec![0], rows: vec![], values: vec![] };
+        for j in 0..n {
+            for i in j.saturating_sub(1)..(j + 2).min(n) {
+                matrix.rows.push(i);
+                matrix.values.push(if i == j { 2.5 } else { -1.0 });
+            }
+            matrix.pointers.push(matrix.rows.len());
+        }
+        matrix
+    }
+
+    #[test]
+    fn half_solves_compose_to_the_inverse() {
+        let a = laplacian(50);
+        let factor = SparseCholesky::new(&Symbolic::new(&a).unwrap(), &a).unwrap();
+        let mut memory = factor.memory(1);
+        let b: Vec<f64> = (0..50).map(|i| (i as f64).sin()).collect();
+        let mut x = b.clone();
+        factor.solve(&mut x, 1, &mut memory);
+        let (mut half, mut y) = (vec![0.0; 50], vec![0.0; 50]);
+        factor.half_solve(&b, &mut half, &mut memory);
+        factor.half_solve_transpose(&mut half, &mut y, &mut memory);
+        for j in 0..50 {
+            assert!((x[j] - y[j]).abs() < 1e-14);
+            let (rows, values) = a.column(j);
+            let product: f64 = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
+            assert!((product - b[j]).abs() < 1e-13);
+        }
+        let (small, _, large) = factor.pivots();
+        assert!(small > 1.0 && large <= 2.5);
+    }
+
+    #[test]
+    fn indefinite_matrix_is_refused() {
+        let mut a = laplacian(5);
+        let k = a.find(3, 3).unwrap();
+        a.values[k] = -1.0;
+        assert!(matches!(SparseCholesky::new(&Symbolic::new(&a).unwrap(), &a), Err(FactorError::Pivot(_))));
+    }
+}

@@ -1,0 +1,255 @@
+//! The whole T-FETI system of a body, built once and immutable.
+
+use crate::boundary::BoundaryMap;
+use crate::class::{Classes, Sharing};
+use crate::coarse::{Coarse, CoarseFactor};
+use crate::contact::ContactNodes;
+use crate::cost::InverseSettings;
+use crate::dual::DualOperator;
+use crate::error::TfetiError;
+use crate::gluing::Gluing;
+use crate::kernel::{Kernel, mean};
+use crate::matrices::{ClassBase, ClassInverse, assemble, invert};
+use crate::report::SetupReport;
+use crate::rows::RowRule;
+use crate::supports::Support;
+use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a T-FETI system is built from. All fields are borrowed while it is built only.
+#[derive(Debug, Clone, Copy)]
+pub struct TfetiBuilder<'a> {
+    mesh: &'a TetMesh,
+    decomposition: &'a Decomposition,
+    materials: &'a Materials,
+    supports: &'a [Support],
+    contact: Option<&'a ContactNodes>,
+    rule: RowRule,
+    sharing: Sharing,
+    inverse: InverseSettings,
+}
+
+impl<'a> TfetiBuilder<'a> {
+    /// A body without supports and contact.
+    #[must_use]
+    pub fn new(mesh: &'a TetMesh, decomposition: &'a Decomposition, materials: &'a Materials) -> Self {
+        Self {
+            mesh,
+            decomposition,
+            materials,
+            supports: &[],
+            contact: None,
+            rule: RowRule::default(),
+            sharing: Sharing::default(),
+            inverse: InverseSettings::default(),
+        }
+    }
+
+    /// Sets the supports.
+    #[must_use]
+    pub fn supports(mut self, supports: &'a [Support]) -> Self {
+        self.supports = supports;
+        self
+    }
+
+    /// Sets the contact points.
+    #[must_use]
+    pub fn contact(mut self, contact: &'a ContactNodes) -> Self {
+        self.contact = Some(contact);
+        self
+    }
+
+    /// Sets how the rows of `B` are built. Default: orthonormal.
+    #[must_use]
+    pub fn rule(mut self, rule: RowRule) -> Self {
+        self.rule = rule;
+        self
+    }
+
+    /// Sets whether translates share their matrices. Default: they do.
+    #[must_use]
+    pub fn sharing(mut self, sharing: Sharing) -> Self {
+        self.sharing = sharing;
+        self
+    }
+
+    /// Sets how the generalised inverses are chosen.
+    #[must_use]
+    pub fn inverse(mut self, settings: InverseSettings) -> Self {
+        self.inverse = settings;
+        self
+    }
+
+    /// Builds the system.
+    ///
+    /// # Errors
+    /// Any of [`TfetiError`]: bad supports or contact points, unknown materials, subdomains whose stiffness is singular
+    /// beyond the rigid motions, not enough memory. A body that nothing holds is no error here: see
+    /// [`Tfeti::coarse_factor`] and its free motions.
+    pub fn build(self) -> Result<Tfeti, TfetiError> {
+        self.inverse.validate()?;
+        let (mesh, decomposition) = (self.mesh, self.decomposition);
+        let check = |what, found: usize, expected: usize| {
+            if found == expected { Ok(()) } else { Err(TfetiError::DecompositionMismatch { what, found, expected }) }
+        };
+        check("nodes", decomposition.nodes(), mesh.points().len())?;
+        check("elements", decomposition.parts().len(), mesh.tets().len())?;
+        let mut clock = Clock(Instant::now());
+        let classes = Arc::new(Classes::find(mesh, decomposition, self.materials, self.sharing)?);
+        let classes_seconds = clock.lap();
+        let gluing =
+            Arc::new(Gluing::new(decomposition, mesh.points().len(), self.supports, self.contact, self.rule)?);
+        let map = Arc::new(BoundaryMap::new(&classes, &gluing));
+        let gluing_seconds = clock.lap();
+        let bases = Arc::new(assemble(mesh, decomposition, self.materials, &classes)?);
+        let assembly_seconds = clock.lap();
+        let inverses = Arc::new(invert(&classes, &bases, &map, &self.inverse)?);
+        let inverse_seconds = clock.lap();
+        let centres: Vec<[f64; 3]> = decomposition
+            .subdomains()
+            .iter()
+            .map(|s| mean(s.nodes.iter().map(|&n| mesh.points()[n as usize])))
+            .collect();
+        let coarse = Coarse::new(map.clone(), bases.clone(), classes.clone(), gluing.clone(), centres)?;
+        let factor = coarse.factor()?;
+        let coarse_seconds = clock.lap();
+        let dual = DualOperator::new(map.clone(), bases.clone(), inverses.clone());
+        let mut offsets = vec![0];
+        for subdomain in decomposition.subdomains() {
+            offsets.push(offsets[offsets.len() - 1] + 3 * subdomain.nodes.len());
+        }
+        let report = SetupReport {
+            subdomains: classes.subdomains(),
+            classes: crate::report::class_reports(&classes, &map, &inverses),
+            primal_unknowns: decomposition.torn_dofs(),
+            rows: gluing.ranges().clone(),
+            rows_as_paper: gluing.rows_as_paper(),
+            removed: crate::gluing::count_removed(gluing.removed()),
+            inverse_bytes: inverses.iter().map(ClassInverse::bytes).sum(),
+            coarse_bytes: 8 * coarse.factor_size() as u64,
+            table_bytes: map.bytes(),
+            factorisations: bases.len() + 1,
+            free_motions: factor.free_motions().iter().map(ToString::to_string).collect(),
+            classes_seconds,
+            gluing_seconds,
+            assembly_seconds,
+            inverse_seconds,
+            coarse_seconds,
+        };
+        let parts = Parts { classes, gluing, map, bases, inverses, offsets };
+        Ok(Tfeti { parts, dual, coarse, factor, report })
+    }
+}
+
+struct Clock(Instant);
+
+impl Clock {
+    fn lap(&mut self) -> f64 {
+        let seconds = self.0.elapsed().as_secs_f64();
+        self.0 = Instant::now();
+        seconds
+    }
+}
+
+#[derive(Debug)]
+pub(crate) struct Parts {
+    pub(crate) classes: Arc<Classes>,
+    pub(crate) gluing: Arc<Gluing>,
+    pub(crate) map: Arc<BoundaryMap>,
+    pub(crate) bases: Arc<Vec<ClassBase>>,
+    pub(crate) inverses: Arc<Vec<ClassInverse>>,
+    /// First unknown of each subdomain in torn vectors.
+    pub(crate) offsets: Vec<usize>,
+}
+
+/// A T-FETI system: the rows of `B`, the dual operator `F`, the coarse space `G` and what is needed to recover
+/// displacements. Immutable, and shared freely between threads.
+///
+/// *Torn* vectors hold the unknowns of all subdomains one after another (`3 local node + component`).
+#[derive(Debug)]
+pub struct Tfeti {
+    pub(crate) parts: Parts,
+    dual: DualOperator,
+    coarse: Coarse,
+    factor: CoarseFactor,
+    report: SetupReport,
+}
+
+impl Tfeti {
+    /// The rows of `B`.
+    #[must_use]
+    pub fn gluing(&self) -> &Gluing {
+        &self.parts.gluing
+    }
+
+    /// The classes of subdomains.
+    #[must_use]
+    pub fn classes(&self) -> &Classes {
+        &self.parts.classes
+    }
+
+    /// `F = B K+ B^T`.
+    #[must_use]
+    pub fn dual(&self) -> &DualOperator {
+        &self.dual
+    }
+
+    /// `G = R^T B^T`.
+    #[must_use]
+    pub fn coarse(&self) -> &Coarse {
+        &self.coarse
+    }
+
+    /// The factor of `G G^T`. If its free motions are not empty, no row stops the body from moving that way.
+    #[must_use]
+    pub fn coarse_factor(&self) -> &CoarseFactor {
+        &self.factor
+    }
+
+    /// What was built, how large it is and how long it took.
+    #[must_use]
+    pub fn report(&self) -> &SetupReport {
+        &self.report
+    }
+
+    /// Number of subdomains.
+    #[must_use]
+    pub fn subdomains(&self) -> usize {
+        self.parts.classes.subdomains()
+    }
+
+    /// Length of dual vectors.
+    #[must_use]
+    pub fn dual_dim(&self) -> usize {
+        self.parts.gluing.rows_full_rank()
+    }
+
+    /// Length of torn vectors: the paper's `n_p`.
+    #[must_use]
+    pub fn torn_dim(&self) -> usize {
+        self.parts.offsets[self.parts.offsets.len() - 1]
+    }
+
+    /// Unknowns of a subdomain in torn vectors.
+    #[must_use]
+    pub fn torn_range(&self, subdomain: usize) -> std::ops::Range<usize> {
+        self.parts.offsets[subdomain]..self.parts.offsets[subdomain + 1]
+    }
+
+    /// Rigid motions of a subdomain.
+    #[must_use]
+    pub fn kernel(&self, subdomain: usize) -> &Kernel {
+        &self.parts.bases[self.parts.classes.place(subdomain).0].kernel
+    }
+
+    /// `y = K_s x` for one subdomain.
+    pub fn stiffness_times(&self, subdomain: usize, x: &[f64], y: &mut [f64]) {
+        let stiffness = &self.parts.bases[self.parts.classes.place(subdomain).0].stiffness;
+        for (j, target) in y.iter_mut().enumerate() {
+            // Symmetric: column j is row j.
+            let (rows, values) = stiffness.column(j);
+            *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
+        }
+    }
+}
