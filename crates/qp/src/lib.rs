@@ -1,4 +1,90 @@
 //! Quadratic programming with bounds, discs and linear equalities.
+//!
+//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and
+//! `C x = e` with orthonormal rows of `C`.
+//!
+//! `A` is known only through products. This is the form of the dual problems of T-FETI with contact and
+//! friction (normal forces are bounded, tangential ones lie in discs, rigid-body equilibrium is the equality),
+//! but the crate knows no mechanics and serves any problem of this form.
+//!
+//! # Methods
+//!
+//! | function | constraints | reference | vectors besides `x` and `b` |
+//! |---|---|---|---|
+//! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
+//! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
+//! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
+//! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
+//! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
+//!
+//! Solvers take the start in `x` and leave the result there, write reports with counts by cause, and put all
+//! vectors into a workspace that is created once: an iteration allocates nothing. Not reaching a tolerance is
+//! a [`Status`] in an `Ok` report; errors are wrong input or a breakdown ([`QpError`]).
+//!
+//! # Parts of a problem
+//!
+//! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices.
+//! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`].
+//! - The equality: any [`Equality`]; [`DenseEquality::orthonormal`] makes the rows of a matrix orthonormal
+//!   and names a dependent row.
+//! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
+//! - [`laws`] has checkers for own implementations of the three traits.
+//!
+//! # Example: a string over an obstacle
+//!
+//! ```
+//! use signorini_qp::{
+//!     BlockState, ConvexSet, KprgpSettings, KprgpWorkspace, NormSettings, ProductSet, Segment, SymmetricOperator,
+//!     Tolerance, kkt, kprgp, norm_estimate,
+//! };
+//!
+//! /// Stiffness of a string of `n` inner nodes, held at both ends.
+//! struct Stiffness(usize);
+//!
+//! impl SymmetricOperator for Stiffness {
+//!     type Scratch = ();
+//!     fn dim(&self) -> usize {
+//!         self.0
+//!     }
+//!     fn scratch(&self) {}
+//!     fn apply(&self, x: &[f64], y: &mut [f64], _: &mut ()) {
+//!         for i in 0..self.0 {
+//!             let left = if i > 0 { x[i - 1] } else { 0.0 };
+//!             let right = if i + 1 < self.0 { x[i + 1] } else { 0.0 };
+//!             y[i] = 2.0 * x[i] - left - right;
+//!         }
+//!     }
+//! }
+//!
+//! let n = 49;
+//! let stiffness = Stiffness(n);
+//! let load = vec![-0.01; n];
+//! let obstacle = ProductSet::new(vec![Segment::lower(vec![-1.0; n])])?;
+//! let norm = norm_estimate(&stiffness, &NormSettings::default())?.upper;
+//! let mut x = vec![0.0; n];
+//! let mut work = KprgpWorkspace::new(&stiffness);
+//! let tolerance = Tolerance::Relative(1e-8);
+//! let settings = KprgpSettings::default();
+//! let report = kprgp(&stiffness, &load, &obstacle, norm, tolerance, &settings, &mut x, &mut work)?;
+//! assert!(report.status.converged());
+//!
+//! let mut resting = 0;
+//! obstacle.for_each_block(&x, &mut |block| resting += usize::from(block.state == BlockState::AtLower));
+//! assert!(resting > 10);
+//! assert!(kkt::check(&stiffness, &load, &obstacle, &x, norm)?.relative() < 1e-7);
+//! # Ok::<(), signorini_qp::QpError>(())
+//! ```
+//!
+//! # Settings
+//!
+//! The tables are with [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
+//! default and the letter in the paper. All are dimensionless: a problem in other units needs the same
+//! settings and takes the same steps.
+//!
+//! # Determinism
+//!
+//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads
+//! changes no bit of a result. Loops over the set are serial.
 
 mod block;
 mod coarse_space;
@@ -13,9 +99,11 @@ mod kprgp_settings;
 pub mod laws;
 mod objective;
 pub mod operator;
+pub mod pcg;
 mod penalised;
 mod product;
 mod projected;
+mod projected_cg;
 mod report;
 pub mod set;
 pub mod smalse;
@@ -34,8 +122,10 @@ pub use kprgp_settings::{
     Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Measure, Release, Verification,
 };
 pub use operator::{Equality, SymmetricOperator};
+pub use pcg::{CgReport, CgWorkspace, projected_cg};
 pub use product::{ProductSet, Segment};
 pub use projected::{Projected, ProjectedScratch};
+pub use projected_cg::{CgReport, CgWorkspace, Identity, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};
 pub use set::{Block, BlockKind, BlockState, ConvexSet, GradientNorms};
 pub use smalse::smalse;
