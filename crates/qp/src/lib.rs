@@ -99,7 +99,6 @@ mod kprgp_settings;
 pub mod laws;
 mod objective;
 pub mod operator;
-pub mod pcg;
 mod penalised;
 mod product;
 mod projected;
@@ -122,7 +121,6 @@ pub use kprgp_settings::{
     Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Measure, Release, Verification,
 };
 pub use operator::{Equality, SymmetricOperator};
-pub use pcg::{CgReport, CgWorkspace, projected_cg};
 pub use product::{ProductSet, Segment};
 pub use projected::{Projected, ProjectedScratch};
 pub use projected_cg::{CgReport, CgWorkspace, Identity, projected_cg};
