@@ -31,6 +31,8 @@ use crate::smalse_settings::{
 };
 use crate::vector;
 
+/// Least reference of the tolerance, relative to the unprojected load.
+const ROUNDING: f64 = 1e-7;
 /// Outer steps without progress of a stagnating inner solver after which the solve ends.
 const MAX_STAGNATIONS: usize = 3;
 
@@ -253,9 +255,11 @@ fn reference<A: SymmetricOperator, C: Equality>(
         }
         _ => vector::copy(o.b, h),
     }
+    let load = vector::norm(h) + o.norm * vector::norm(o.e);
     o.c.apply(h, &mut o.s.cx, o.c_scratch);
     o.c.apply_transpose(&o.s.cx, &mut o.s.y, o.c_scratch);
     o.s.projections += 1;
     vector::subtract(&o.s.y, h);
-    vector::norm(h)
+    // a load that the equality carries alone leaves nothing but rounding
+    vector::norm(h).max(ROUNDING * load)
 }

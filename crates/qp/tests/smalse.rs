@@ -395,6 +395,67 @@ fn wrong_input_is_named() {
     }
 }
 
+/// Products a well-conditioned dual problem with sliding discs needs, within a band, and what the lengths
+/// of the released discs' own scale save when the penalty is large.
+#[test]
+fn products_stay_within_a_band() {
+    use signorini_qp::Release;
+    let (n, rows, m) = (240, 30, 30);
+    let mut r = Random::new(1);
+    let (a, _) = common::spd(n, 1.7, &mut r);
+    let c = DenseEquality::orthonormal(rows, n, &r.vector(rows * n)).expect("independent");
+    let mut inside = r.vector(n);
+    for i in 0..m {
+        inside[i] = -inside[i].abs() - 0.2;
+    }
+    for v in &mut inside[m..3 * m] {
+        *v *= 0.1;
+    }
+    let mut e = vec![0.0; rows];
+    c.apply(&inside, &mut e, &mut ());
+    let radii = (0..m)
+        .map(|i| 0.3 * inside[i].abs() * if i % 5 == 0 { 0.01 } else { 1.0 })
+        .collect();
+    let b: Vec<f64> = r.vector(n).iter().map(|v| 0.5 * v).collect();
+    let set = ProductSet::new(vec![
+        Segment::upper(vec![0.0; m]),
+        Segment::discs(radii),
+        Segment::Free(n - 3 * m),
+    ])
+    .expect("set");
+    let norm = norm_estimate(&Projected::new(&a, &c), &Default::default())
+        .expect("norm")
+        .upper;
+    let count = |penalty: f64, release: Release| {
+        let mut set = set.clone();
+        let (mut x, mut beta) = (vec![0.0; n], vec![0.0; rows]);
+        let mut work = SmalseWorkspace::new(&a, &c);
+        let settings = SmalseSettings::default()
+            .with_penalty(penalty)
+            .with_inner(KprgpSettings::default().with_release(release));
+        let report = smalse(
+            &a,
+            &b,
+            &c,
+            &e,
+            &mut set,
+            norm,
+            &settings,
+            &mut (),
+            &mut x,
+            &mut beta,
+            &mut work,
+        )
+        .expect("solve");
+        assert!(report.status.converged(), "{report:?}");
+        report.products.total()
+    };
+    let default = count(3.0, Release::Spectral);
+    assert!((90..=135).contains(&default), "{default}");
+    let (fixed, spectral) = (count(30.0, Release::Fixed), count(30.0, Release::Spectral));
+    assert!(10 * spectral < 7 * fixed, "{spectral} {fixed}");
+}
+
 /// Two products with `C` and two with its transpose for one with `A`.
 #[test]
 fn two_projections_a_product() {

@@ -112,7 +112,7 @@ pub fn set(r: &mut Random) -> ProductSet {
     ProductSet::new(segments).expect("valid set")
 }
 
-/// Feasible equality: `C x = e` holds at a random point of the set.
+/// Feasible equality: `C x = e` holds at a point of the set.
 pub fn equality(
     n: usize,
     rows: usize,
@@ -122,8 +122,13 @@ pub fn equality(
     use signorini_qp::{ConvexSet, Equality};
     let g: Vec<f64> = r.vector(rows * n);
     let c = DenseEquality::orthonormal(rows, n, &g).expect("independent rows");
-    let mut x = r.vector(n);
-    set.project(&mut x);
+    // the mean of several points of the set is inside where the set has an inside: multipliers exist
+    let mut x = vec![0.0; n];
+    for _ in 0..8 {
+        let mut y = r.vector(n);
+        set.project(&mut y);
+        vector::axpy(0.125, &y, &mut x);
+    }
     let mut e = vec![0.0; rows];
     c.apply(&x, &mut e, &mut ());
     (c, e)
