@@ -2,6 +2,8 @@
 
 pub mod brick;
 pub mod fields;
+#[cfg(feature = "gmsh")]
+pub mod gmsh;
 #[cfg(feature = "vtu")]
 pub mod output;
 

@@ -80,7 +80,7 @@ impl TetMesh {
         check::no_dangling(points.len(), &tets)?;
         let table = FaceTable::new(points.len(), &tets);
         let neighbours = table.neighbours(tets.len())?;
-        check::no_coincident(&points, &tets, || connected_sets(&neighbours, |_, _| true))?;
+        check::no_coincident(&points, &tets)?;
         let (facets, owners) = place_facets(points.len(), &tets, &table, facets)?;
         let regions = vec![0; tets.len()];
         Ok(Self {

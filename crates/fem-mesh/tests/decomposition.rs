@@ -22,3 +22,66 @@ fn torn_unknowns_are_those_of_table_6_1() {
         assert_eq!(3 * copies, expected);
     }
 }
+
+#[test]
+fn copies_lead_back_to_their_node() {
+    let (mesh, parts) = brick(1);
+    for node in 0..mesh.points().len() {
+        let copies = parts.copies(node);
+        assert!(copies.windows(2).all(|c| c[0].subdomain < c[1].subdomain));
+        for copy in copies {
+            let subdomain = &parts.subdomains()[copy.subdomain as usize];
+            assert_eq!(subdomain.nodes[copy.local as usize] as usize, node);
+            assert_eq!(subdomain.local(node as u32), Some(copy.local as usize));
+        }
+    }
+    for (number, subdomain) in parts.subdomains().iter().enumerate() {
+        for (local, &element) in subdomain.tets.iter().zip(&subdomain.elements) {
+            assert_eq!(parts.part_of(element as usize) as usize, number);
+            assert_eq!(
+                local.map(|n| subdomain.nodes[n as usize]),
+                mesh.tets()[element as usize]
+            );
+        }
+    }
+}
+
+#[test]
+fn translates_of_equal_parity_have_equal_tables() {
+    let (mesh, parts) = brick(2);
+    let parity = |s: usize| (s % 6 + s / 6 % 2 + s / 12) % 2;
+    let subdomains = parts.subdomains();
+    for s in 0..subdomains.len() {
+        let reference = &subdomains[parity(s)];
+        assert_eq!(subdomains[s].tets, reference.tets);
+        let (p, q) = (subdomains[s].points(&mesh), reference.points(&mesh));
+        for n in 0..p.len() {
+            for d in 0..3 {
+                assert!(((p[n][d] - p[0][d]) - (q[n][d] - q[0][d])).abs() < 1e-14);
+            }
+        }
+    }
+    assert_ne!(subdomains[0].tets, subdomains[1].tets);
+}
+
+#[test]
+fn whole_is_one_subdomain_a_body() {
+    let (mesh, _) = brick(1);
+    let whole = Decomposition::whole(&mesh);
+    assert_eq!(whole.subdomains().len(), 1);
+    assert_eq!(whole.torn_dofs(), 3 * mesh.points().len());
+    assert_eq!(whole.subdomains()[0].tets, mesh.tets());
+    let two = mesh
+        .append(&mesh.map_points(|[x, y, z]| [x, y, z + 2.0]).unwrap())
+        .unwrap();
+    assert_eq!(Decomposition::whole(&two).subdomains().len(), 2);
+}
+
+#[test]
+fn parts_by_number_agree_with_boxes() {
+    let (mesh, boxes) = brick(1);
+    assert_eq!(
+        Decomposition::from_parts(&mesh, boxes.parts()).unwrap(),
+        boxes
+    );
+}

@@ -57,8 +57,8 @@ pub(super) fn connectivity(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshEr
     Ok(())
 }
 
-/// Six times the signed volume over the cube of the longest edge: 1 for three orthogonal edges of
-/// length one would be 1/2.8, a sliver is near zero. NaN for coinciding nodes.
+/// Six times the signed volume over the cube of the longest edge: 0.71 for a regular tetrahedron,
+/// near zero for a sliver, NaN if all nodes coincide.
 pub(super) fn flatness(p: &[Vec3; 4]) -> f64 {
     let mut longest: f64 = 0.0;
     for i in 0..4 {
@@ -104,30 +104,47 @@ pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshErr
 }
 
 /// Coinciding nodes of the same body are a cut that nobody meant; those of different bodies are
-/// allowed, since bodies in contact may have matching nodes.
-pub(super) fn no_coincident(
-    points: &[Vec3],
-    tets: &[[u32; 4]],
-    body_of_tet: impl FnOnce() -> Vec<u32>,
-) -> Result<(), MeshError> {
+/// allowed, since bodies in contact may have matching nodes. Here tetrahedra with a common node
+/// belong to the same body.
+pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError> {
     let pairs = coincident_pairs(points);
     if pairs.is_empty() {
         return Ok(());
     }
-    let bodies = body_of_tet();
-    let mut body = vec![0; points.len()];
-    for (tet, label) in tets.iter().zip(&bodies) {
-        for &node in tet {
-            body[node as usize] = *label;
-        }
+    let mut bodies = Bodies((0..points.len()).collect());
+    for tet in tets {
+        tet[1..]
+            .iter()
+            .for_each(|&node| bodies.join(tet[0] as usize, node as usize));
     }
-    match pairs.iter().find(|(a, b)| body[*a] == body[*b]) {
-        Some(&(first, second)) => Err(MeshError::CoincidentNodes {
+    match pairs
+        .into_iter()
+        .find(|&(a, b)| bodies.root(a) == bodies.root(b))
+    {
+        Some((first, second)) => Err(MeshError::CoincidentNodes {
             first,
             second,
             distance: vec3::norm(vec3::sub(points[first], points[second])),
         }),
         None => Ok(()),
+    }
+}
+
+/// Nodes that are joined, as a forest: every node points towards the root of its body.
+struct Bodies(Vec<usize>);
+
+impl Bodies {
+    fn root(&mut self, mut node: usize) -> usize {
+        while self.0[node] != node {
+            self.0[node] = self.0[self.0[node]];
+            node = self.0[node];
+        }
+        node
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b)] = a.min(b);
     }
 }
 

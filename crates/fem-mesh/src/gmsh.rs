@@ -1,0 +1,260 @@
+//! Mesh files of Gmsh, format 4.1, text or binary (feature `gmsh`).
+//!
+//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are
+//! skipped, and nodes that no tetrahedron uses are dropped. The tag of a facet is the physical
+//! group of its surface, the region of a tetrahedron that of its volume; if the file has no
+//! physical groups of that dimension, the numbers of the geometric entities are used. Entities
+//! outside of the groups, if there are any groups, leave triangles untagged and give region 0.
+//! Names of groups are not kept.
+
+mod walk;
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use mshio::{ElementType, MshFile};
+use thiserror::Error;
+
+use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
+
+/// A Gmsh file that cannot be read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum GmshError {
+    /// The file system refuses.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file does not start like a Gmsh file.
+    #[error("this is no Gmsh mesh: it does not start with a $MeshFormat section")]
+    NotGmsh,
+    /// The format is another one.
+    #[error(
+        "the file has Gmsh format {found:?}; only 4.1 is read, so save it with Mesh.MshFileVersion = 4.1 (gmsh -format msh41)"
+    )]
+    Version {
+        /// Version in the file.
+        found: String,
+    },
+    /// The file breaks off or its counts are wrong.
+    #[error(
+        "section {section} of the Gmsh file is damaged at byte {offset}: {what}; export the mesh again"
+    )]
+    Damaged {
+        /// Name of the section.
+        section: &'static str,
+        /// Place in the file.
+        offset: usize,
+        /// What was expected.
+        what: &'static str,
+    },
+    /// A section is absent.
+    #[error("the Gmsh file has no section {section}; export the mesh, not only the geometry")]
+    MissingSection {
+        /// Name of the section.
+        section: &'static str,
+    },
+    /// An element is neither a linear triangle nor a linear tetrahedron.
+    #[error(
+        "the Gmsh file has elements of type {kind} ({name}); only linear triangles and tetrahedra are read, so mesh with order 1 and without recombination"
+    )]
+    Unsupported {
+        /// Number of the type in Gmsh.
+        kind: i32,
+        /// Its name, if known.
+        name: &'static str,
+    },
+    /// A node number is used twice.
+    #[error("the Gmsh file defines node {tag} twice; export the mesh again")]
+    RepeatedNode {
+        /// The number in the file.
+        tag: u64,
+    },
+    /// An element uses a node that is not defined.
+    #[error(
+        "element {element} of the Gmsh file uses node {node}, which the file does not define; export the mesh again"
+    )]
+    UnknownNode {
+        /// The element number in the file.
+        element: u64,
+        /// The node number in the file.
+        node: u64,
+    },
+    /// A surface or volume is in several physical groups.
+    #[error(
+        "{what} {entity} of the Gmsh file is in the physical groups {groups:?}; a part of the mesh has one tag, so keep one group"
+    )]
+    SeveralGroups {
+        /// `"surface"` or `"volume"`.
+        what: &'static str,
+        /// The entity number in the file.
+        entity: i32,
+        /// Its groups.
+        groups: Vec<i32>,
+    },
+    /// The parser refuses.
+    #[error("the Gmsh file cannot be parsed: {message}")]
+    Parser {
+        /// What the parser says.
+        message: String,
+    },
+    /// The mesh in the file is not valid.
+    #[error("the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}")]
+    Mesh(#[from] MeshError),
+}
+
+/// Reads a mesh with its tags and regions from a file.
+///
+/// # Errors
+/// [`GmshError`] if the file cannot be read or understood, or its mesh is not valid.
+pub fn read_gmsh(path: impl AsRef<Path>) -> Result<TetMesh, GmshError> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(|source| GmshError::Io {
+        path: path.into(),
+        source,
+    })?;
+    parse_gmsh(&bytes)
+}
+
+/// Reads a mesh with its tags and regions from the contents of a file.
+///
+/// # Errors
+/// [`GmshError`] if the contents cannot be understood or the mesh is not valid.
+pub fn parse_gmsh(bytes: &[u8]) -> Result<TetMesh, GmshError> {
+    // mshio trusts the counts in the file and drops the node numbers: both are looked at first.
+    let node_tags = walk::node_tags(bytes)?;
+    let file = parse(bytes)?;
+    let nodes = file.data.nodes.as_ref();
+    let mut points: Vec<[f64; 3]> = nodes
+        .iter()
+        .flat_map(|n| &n.node_blocks)
+        .flat_map(|block| &block.nodes)
+        .map(|node| [node.x, node.y, node.z])
+        .collect();
+    if points.len() != node_tags.len() {
+        return Err(GmshError::Parser {
+            message: "numbers and coordinates of nodes differ".into(),
+        });
+    }
+    let mut number = HashMap::with_capacity(node_tags.len());
+    for (place, &tag) in node_tags.iter().enumerate() {
+        if number.insert(tag, place as u32).is_some() {
+            return Err(GmshError::RepeatedNode { tag });
+        }
+    }
+    let groups = Groups::new(&file)?;
+    let (mut tets, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new());
+    for block in file.data.elements.iter().flat_map(|e| &e.element_blocks) {
+        for element in &block.elements {
+            let node = |place: usize| {
+                let node = element.nodes.get(place).copied().unwrap_or(0);
+                let element = element.element_tag;
+                number
+                    .get(&node)
+                    .copied()
+                    .ok_or(GmshError::UnknownNode { element, node })
+            };
+            match block.element_type {
+                ElementType::Tri3 => {
+                    if let Some(tag) = groups.surfaces.of(block.entity_tag) {
+                        let nodes = [node(0)?, node(1)?, node(2)?];
+                        facets.push(Facet {
+                            nodes,
+                            tag: FacetTag(tag),
+                        });
+                    }
+                }
+                ElementType::Tet4 => {
+                    tets.push([node(0)?, node(1)?, node(2)?, node(3)?]);
+                    regions.push(groups.volumes.of(block.entity_tag).unwrap_or(0));
+                }
+                _ => {}
+            }
+        }
+    }
+    orient_tets(&points, &mut tets);
+    drop_unused_nodes(&mut points, &mut tets, &mut facets);
+    Ok(TetMesh::new(points, tets, facets)?.with_regions(regions)?)
+}
+
+/// Calls mshio. The walk has excluded the contents on which it is known to panic; should another
+/// case exist, it ends here as an error as well.
+fn parse(bytes: &[u8]) -> Result<MshFile<u64, i32, f64>, GmshError> {
+    let parsed = std::panic::catch_unwind(|| {
+        mshio::parse_msh_bytes(bytes).map_err(|error| error.to_string())
+    });
+    match parsed {
+        Ok(Ok(file)) => Ok(file),
+        Ok(Err(message)) => Err(GmshError::Parser { message }),
+        Err(_) => Err(GmshError::Parser {
+            message: "the parser gave up".into(),
+        }),
+    }
+}
+
+/// From entities to tags, for one dimension.
+struct Tags {
+    group_of: HashMap<i32, u32>,
+    /// Whether the file has physical groups of this dimension.
+    grouped: bool,
+}
+
+impl Tags {
+    fn new<'a>(
+        what: &'static str,
+        entities: impl Iterator<Item = (i32, &'a Vec<i32>)>,
+    ) -> Result<Self, GmshError> {
+        let mut group_of = HashMap::new();
+        for (entity, groups) in entities {
+            // The sign of a group is an orientation.
+            let mut distinct: Vec<u32> = groups.iter().map(|g| g.unsigned_abs()).collect();
+            distinct.sort_unstable();
+            distinct.dedup();
+            match distinct[..] {
+                [] => {}
+                [group] => {
+                    group_of.insert(entity, group);
+                }
+                _ => {
+                    let groups = groups.clone();
+                    return Err(GmshError::SeveralGroups {
+                        what,
+                        entity,
+                        groups,
+                    });
+                }
+            }
+        }
+        let grouped = !group_of.is_empty();
+        Ok(Self { group_of, grouped })
+    }
+
+    fn of(&self, entity: i32) -> Option<u32> {
+        if self.grouped {
+            self.group_of.get(&entity).copied()
+        } else {
+            Some(entity.unsigned_abs())
+        }
+    }
+}
+
+struct Groups {
+    surfaces: Tags,
+    volumes: Tags,
+}
+
+impl Groups {
+    fn new(file: &MshFile<u64, i32, f64>) -> Result<Self, GmshError> {
+        let entities = file.data.entities.iter();
+        let surfaces = entities.clone().flat_map(|e| &e.surfaces);
+        let volumes = entities.flat_map(|e| &e.volumes);
+        Ok(Self {
+            surfaces: Tags::new("surface", surfaces.map(|s| (s.tag, &s.physical_tags)))?,
+            volumes: Tags::new("volume", volumes.map(|v| (v.tag, &v.physical_tags)))?,
+        })
+    }
+}

@@ -1,0 +1,197 @@
+//! Written files, read back by vtkio.
+#![cfg(feature = "vtu")]
+
+use signorini_fem_mesh::brick::{Brick, Z_MIN};
+use signorini_fem_mesh::output::{
+    Field, OutputError, PvdSeries, write_surface_vtu, write_vtu, write_vtu_pieces,
+};
+use signorini_fem_mesh::{Decomposition, Surface, TetMesh};
+use vtkio::model::{Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, Vtk};
+
+fn pieces(path: &std::path::Path) -> Vec<UnstructuredGridPiece> {
+    let DataSet::UnstructuredGrid { pieces, .. } = Vtk::import(path).unwrap().data else {
+        panic!("not an unstructured grid");
+    };
+    let load = |piece: Piece<_>| piece.into_loaded_piece_data(None).unwrap();
+    pieces.into_iter().map(load).collect()
+}
+
+fn values(attributes: &[Attribute], name: &str) -> Vec<f64> {
+    let found = attributes.iter().find_map(|a| match a {
+        Attribute::DataArray(array) if array.name == name => array.data.cast_into::<f64>(),
+        _ => None,
+    });
+    found.unwrap_or_else(|| panic!("no field {name}"))
+}
+
+fn mesh() -> TetMesh {
+    Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
+        .perturbed(0.1, 1)
+        .build()
+        .unwrap()
+}
+
+fn fields(mesh: &TetMesh) -> (Vec<Field>, Vec<Field>) {
+    let u = mesh
+        .points()
+        .iter()
+        .flat_map(|p| p.map(|x| 0.1 * x))
+        .collect();
+    let heights = mesh.points().iter().map(|p| p[2]).collect();
+    let stress: Vec<[f64; 6]> = (0..mesh.tets().len())
+        .map(|t| [0.0, 1.0, 2.0, 3.0, 4.0, 5.0 + t as f64])
+        .collect();
+    (
+        vec![
+            Field::vector("displacement", u),
+            Field::scalar("height", heights),
+        ],
+        vec![Field::symmetric_tensor("stress", &stress)],
+    )
+}
+
+#[test]
+fn one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("block.vtu");
+    let mesh = mesh();
+    let (points, cells) = fields(&mesh);
+    write_vtu(&path, &mesh, &points, &cells).unwrap();
+    let [piece] = &pieces(&path)[..] else {
+        panic!("one piece is expected")
+    };
+    let coordinates = piece.points.cast_into::<f64>().unwrap();
+    assert_eq!(coordinates, mesh.points().concat());
+    assert!(piece.cells.types.iter().all(|&t| t == CellType::Tetra));
+    let (connectivity, offsets) = piece.cells.cell_verts.clone().into_xml();
+    let tets: Vec<u64> = mesh.tets().iter().flatten().map(|&n| n.into()).collect();
+    assert_eq!(connectivity, tets);
+    assert_eq!(*offsets.last().unwrap() as usize, 4 * mesh.tets().len());
+    let heights = values(&piece.data.point, "height");
+    assert!(heights.iter().zip(mesh.points()).all(|(h, p)| *h == p[2]));
+    let displacement = values(&piece.data.point, "displacement");
+    assert_eq!(displacement[4], 0.1 * mesh.points()[1][1]);
+    let stress = values(&piece.data.cell, "stress");
+    assert_eq!(stress[6..12], [0.0, 1.0, 2.0, 6.0, 3.0, 4.0]);
+}
+
+#[test]
+fn a_piece_for_each_subdomain() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("parts.vtu");
+    let mesh = mesh();
+    let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
+    let (points, cells) = fields(&mesh);
+    write_vtu_pieces(&path, &mesh, &parts, &points, &cells).unwrap();
+    let pieces = pieces(&path);
+    assert_eq!(pieces.len(), 3);
+    for (number, (piece, subdomain)) in pieces.iter().zip(parts.subdomains()).enumerate() {
+        assert_eq!(piece.num_points(), subdomain.nodes.len());
+        assert_eq!(piece.cells.num_cells(), subdomain.tets.len());
+        let height = values(&piece.data.point, "height");
+        let expected = subdomain.points(&mesh);
+        assert!(height.iter().zip(&expected).all(|(h, p)| *h == p[2]));
+        assert!(
+            values(&piece.data.cell, "part")
+                .iter()
+                .all(|&p| p == number as f64)
+        );
+    }
+    let clash = [Field::scalar("part", vec![0.0; mesh.tets().len()])];
+    let error = write_vtu_pieces(&path, &mesh, &parts, &[], &clash).unwrap_err();
+    assert!(matches!(error, OutputError::RepeatedName { .. }));
+    let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
+    let error = write_vtu_pieces(&path, &other, &parts, &[], &[]).unwrap_err();
+    assert!(matches!(
+        error,
+        OutputError::Foreign {
+            what: "decomposition"
+        }
+    ));
+}
+
+#[test]
+fn surface() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("contact.vtu");
+    let mesh = mesh();
+    let surface = Surface::new(&mesh, &[Z_MIN]).unwrap();
+    let area = Field::scalar("area", surface.areas().to_vec());
+    write_surface_vtu(&path, &mesh, &surface, &[area], &[]).unwrap();
+    let [piece] = &pieces(&path)[..] else {
+        panic!("one piece is expected")
+    };
+    assert_eq!(piece.cells.num_cells(), surface.triangles().len());
+    assert!((values(&piece.data.point, "area").iter().sum::<f64>() - 3.0).abs() < 1e-13);
+    let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
+    assert!(matches!(
+        write_surface_vtu(&path, &other, &surface, &[], &[]),
+        Err(OutputError::Foreign { what: "surface" })
+    ));
+}
+
+#[test]
+fn series() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = mesh();
+    let mut series = PvdSeries::create(folder.path().join("new"), "a&b").unwrap();
+    for step in 0..3 {
+        let time = Field::scalar("time", vec![f64::from(step); mesh.points().len()]);
+        series
+            .write(0.5 * f64::from(step), &mesh, &[time], &[])
+            .unwrap();
+    }
+    let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
+    series.write_pieces(2.0, &mesh, &parts, &[], &[]).unwrap();
+    assert_eq!(series.times(), [0.0, 0.5, 1.0, 2.0]);
+    let list = std::fs::read_to_string(series.path()).unwrap();
+    assert_eq!(list.matches("<DataSet").count(), 4);
+    assert!(list.contains("timestep=\"0.5\"") && list.contains("file=\"a&amp;b_0001.vtu\""));
+    let last = pieces(&folder.path().join("new/a&b_0002.vtu"));
+    assert!(
+        values(&last[0].data.point, "time")
+            .iter()
+            .all(|&t| t == 2.0)
+    );
+    for time in [2.0, 1.0, f64::NAN, f64::INFINITY] {
+        let error = series.write(time, &mesh, &[], &[]).unwrap_err();
+        assert!(matches!(error, OutputError::Time { before, .. } if before == 2.0));
+    }
+}
+
+#[test]
+fn bad_fields() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.vtu");
+    let mesh = mesh();
+    let (nodes, cells) = (mesh.points().len(), mesh.tets().len());
+    let point = |field| write_vtu(&path, &mesh, &[field], &[]).unwrap_err();
+    let error = point(Field::vector("u", vec![0.0; nodes]));
+    assert!(matches!(
+        error,
+        OutputError::FieldLength { what: "nodes", .. }
+    ));
+    let error = point(Field::scalar("", vec![0.0; nodes]));
+    assert!(matches!(error, OutputError::Unnamed { what: "nodes" }));
+    let mut values = vec![0.0; cells];
+    values[3] = f64::NAN;
+    let error = write_vtu(&path, &mesh, &[], &[Field::scalar("s", values)]).unwrap_err();
+    assert!(matches!(
+        error,
+        OutputError::NotFinite {
+            what: "cells",
+            index: 3,
+            ..
+        }
+    ));
+    assert!(!path.exists());
+    let nowhere = folder.path().join("absent/x.vtu");
+    assert!(matches!(
+        write_vtu(nowhere, &mesh, &[], &[]),
+        Err(OutputError::Io { .. })
+    ));
+    for name in ["", "a/b", "..", "a\\b"] {
+        let error = PvdSeries::create(folder.path(), name).unwrap_err();
+        assert!(matches!(error, OutputError::SeriesName { .. }), "{name}");
+    }
+}
