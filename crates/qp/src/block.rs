@@ -48,8 +48,9 @@ pub(crate) fn bound_parts(x: f64, g: f64, lo: f64, hi: f64, a: f64) -> Parts<f64
     let state = bound_state(x, lo, hi);
     let projected = match state {
         BlockState::Fixed => 0.0,
-        BlockState::AtLower => g.min(0.0),
-        BlockState::AtUpper => g.max(0.0),
+        // written so that NaN is passed on
+        BlockState::AtLower if g > 0.0 => 0.0,
+        BlockState::AtUpper if g < 0.0 => 0.0,
         _ => g,
     };
     let reduced = if projected > 0.0 {

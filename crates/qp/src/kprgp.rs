@@ -85,25 +85,32 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     expect_length("the workspace", work.vectors.g.len(), n)?;
     expect_finite("the right side b", b)?;
     expect_finite("the start x", x)?;
-    let tolerance = tolerance.resolve(vector::norm(b));
-    expect_setting(
-        "tolerance",
-        tolerance,
-        ">= 0, finite",
-        tolerance >= 0.0 && tolerance.is_finite(),
-    )?;
-
     let mut objective = Plain {
         a,
         b,
         norm,
-        tolerance,
+        tolerance: 0.0,
         scratch: &mut work.scratch,
     };
     let v = &mut work.vectors;
     set.project(x);
     objective.gradient(x, &mut v.g);
     v.stale = 0;
+    let load = vector::norm(b);
+    let tolerance = tolerance.resolve(if load > 0.0 { load } else { vector::norm(&v.g) });
+    if tolerance.is_nan() {
+        return Err(QpError::NotFinite {
+            quantity: "the gradient",
+            products: 1,
+        });
+    }
+    expect_setting(
+        "tolerance",
+        tolerance,
+        ">= 0, finite",
+        tolerance >= 0.0 && tolerance.is_finite(),
+    )?;
+    objective.tolerance = tolerance;
     let mut report = iterate(
         &mut objective,
         set,
@@ -153,6 +160,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         steps: Steps::default(),
         products: Products::default(),
         decrease: 0.0,
+        halvings: 0,
     };
     run.restart(x, v);
     let (mut best, mut waited, mut failed_checks) = (f64::INFINITY, 0, 0);
@@ -216,6 +224,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         chopped: run.norms.chopped.sqrt(),
         measure: run.measure(),
         tolerance: objective.tolerance(),
+        halvings: run.halvings,
         decrease: run.decrease,
         cost: f64::NAN,
     })
@@ -231,6 +240,7 @@ struct Run<'a, S: ?Sized> {
     steps: Steps,
     products: Products,
     decrease: f64,
+    halvings: usize,
 }
 
 impl<S: ConvexSet + ?Sized> Run<'_, S> {
@@ -353,7 +363,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
         if let Some(t) = length {
             vector::copy(&v.g, &mut v.ap);
             if self.settings.expansion == Expansion::ProjectedCg {
-                for_projected(&mut v.p, x, t);
+                step_keeping_start(&mut v.p, x, t);
             } else {
                 vector::copy(x, &mut v.p);
                 vector::axpy(-t, &v.phi, x);
@@ -378,8 +388,21 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
         self.set.project(x);
         objective.gradient(x, &mut v.g);
         v.stale = 0;
-        self.decrease += vector::decrease(&v.p, &v.ap, x, &v.g);
+        let gained = vector::decrease(&v.p, &v.ap, x, &v.g);
+        self.check_fixed(gained, x, v);
+        self.decrease += gained;
         Ok(())
+    }
+
+    /// A fixed step from `v.p` to `x` cannot raise the cost beyond rounding unless the norm was too small.
+    fn check_fixed(&mut self, gained: f64, x: &[f64], v: &Vectors) {
+        if gained < 0.0 {
+            let rounding = f64::EPSILON * vector::norm(x) * vector::norm(&v.ap);
+            if -gained > 0.01 * vector::distance_squared(x, &v.p) / self.fixed + 64.0 * rounding {
+                self.fixed *= 0.5;
+                self.halvings += 1;
+            }
+        }
     }
 
     /// Releases active blocks.
@@ -437,6 +460,9 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
                 t = self.fixed;
                 continue;
             }
+            if t == self.fixed {
+                self.check_fixed(gained, x, v);
+            }
             self.decrease += gained;
             break;
         }
@@ -448,8 +474,8 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
     }
 }
 
-/// `(p, x) = (x, x - t p)`.
-fn for_projected(p: &mut [f64], x: &mut [f64], t: f64) {
+/// `(p, x) = (x, x - t p)`: the step, with the point before it left in `p`.
+fn step_keeping_start(p: &mut [f64], x: &mut [f64], t: f64) {
     for (pi, xi) in p.iter_mut().zip(x) {
         let before = *xi;
         *xi -= t * *pi;

@@ -15,14 +15,14 @@ pub enum Expansion {
     /// Projected step along the free gradient with the fixed length. Has the convergence proof of
     /// Kucera (2008); one product.
     FixedStep,
-    /// Projection of the full conjugate gradient step (Dostal, Krylov.. "projected CG"); one product.
+    /// Projection of the full conjugate gradient step; one product.
     #[default]
     ProjectedCg,
     /// Projected step along the free gradient with the length that minimises the cost along it; two
     /// products, or one if the step stays inside.
     Optimal,
-    /// Projected step along the free gradient with the Barzilai-Borwein length of the last conjugate
-    /// direction, `p·p / p·Ap`; one product.
+    /// Projected step along the free gradient with the shorter Barzilai-Borwein length of the last
+    /// conjugate direction, `p·Ap / Ap·Ap`; one product.
     BarzilaiBorwein,
 }
 
@@ -188,6 +188,9 @@ pub struct KprgpReport {
     pub measure: f64,
     /// The tolerance it was compared with.
     pub tolerance: f64,
+    /// How often the fixed step was halved because it raised the cost: above 0 the `norm` given to the
+    /// solver was too small.
+    pub halvings: usize,
     /// By how much the cost decreased since the (projected) start.
     pub decrease: f64,
     /// Cost `1/2 x·Ax - b·x` at the end.

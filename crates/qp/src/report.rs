@@ -28,7 +28,8 @@ impl Status {
 pub enum Tolerance {
     /// At most this value, in the units of the gradient.
     Absolute(f64),
-    /// At most this multiple of the solver's own reference: `|b|` for KPRGP, `|P (b - A C'e)|` for
+    /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient
+    /// if `b` is zero), `|P (b - A C'e)|` for
     /// SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
     Relative(f64),
     /// At most `factor * reference`, the reference being known to the caller.

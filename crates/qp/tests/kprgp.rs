@@ -286,3 +286,94 @@ fn wrong_input_is_named() {
         Err(QpError::Setting { name: "norm", .. })
     ));
 }
+
+/// An operator that fails after some products.
+struct Failing(std::sync::atomic::AtomicUsize);
+
+impl signorini_qp::SymmetricOperator for Failing {
+    type Scratch = ();
+    fn dim(&self) -> usize {
+        2
+    }
+    fn scratch(&self) {}
+    fn apply(&self, x: &[f64], y: &mut [f64], _: &mut ()) {
+        let count = self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        y[0] = 2.0 * x[0] + x[1];
+        y[1] = if count == 1 {
+            f64::NAN
+        } else {
+            x[0] + 2.0 * x[1]
+        };
+    }
+}
+
+#[test]
+fn not_a_number_is_noticed_where_it_appears() {
+    let settings = KprgpSettings::default();
+    for first in [0, 1] {
+        for bound in [-5.0, 0.0] {
+            let a = Failing(first.into());
+            let set = ProductSet::new(vec![Segment::lower(vec![-5.0, bound])]).expect("set");
+            let mut work = KprgpWorkspace::new(&a);
+            let t = Tolerance::Relative(1e-9);
+            let result = kprgp(
+                &a,
+                &[1.0, -1.0],
+                &set,
+                3.0,
+                t,
+                &settings,
+                &mut [0.0; 2],
+                &mut work,
+            );
+            assert!(
+                matches!(result, Err(QpError::NotFinite { .. })),
+                "{result:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_zero_load_is_measured_by_the_first_gradient() {
+    let a = pair();
+    let set = ProductSet::new(vec![Segment::bounds(vec![1.0, -9.0], vec![2.0, 9.0])]).expect("set");
+    let mut x = [2.0, 3.0];
+    assert_eq!(
+        run(&a, &[0.0; 2], &set, &mut x, &KprgpSettings::default()),
+        Ok(Status::Converged)
+    );
+    assert!(x[0] == 1.0 && (x[1] - 0.5).abs() < 1e-9);
+}
+
+#[test]
+fn a_norm_that_is_too_small_is_survived_and_reported() {
+    let mut halved = 0;
+    for seed in 0..20 {
+        let mut r = Random::new(seed);
+        let set = ProductSet::new(vec![
+            Segment::lower(vec![-0.2; 10]),
+            Segment::discs(vec![0.1; 10]),
+        ])
+        .expect("set");
+        let (a, norm) = common::spd(30, 2.0, &mut r);
+        let b = r.vector(30);
+        let mut x = vec![0.0; 30];
+        let mut work = KprgpWorkspace::new(&a);
+        let settings = KprgpSettings::default()
+            .with_expansion(Expansion::FixedStep)
+            .with_release(Release::Fixed);
+        let t = Tolerance::Relative(1e-8);
+        let report =
+            kprgp(&a, &b, &set, 0.05 * norm, t, &settings, &mut x, &mut work).expect("solve");
+        assert!(report.status.converged(), "{report:?}");
+        assert!(
+            kkt::check(&a, &b, &set, &x, norm)
+                .expect("lengths")
+                .relative()
+                <= 1e-7
+        );
+        halved += report.halvings;
+    }
+    assert!(halved > 0);
+}
