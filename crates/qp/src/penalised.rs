@@ -13,7 +13,8 @@
 //! | | `cr` | `C (A y - b)`, likewise: `r` is `g - Cᵀ(rho cx + beta - cr)` without a product |
 //! | `beta` | `beta` | multiplier |
 //! | `rho` | `rho` | penalty, in the units of `A` |
-//! | `M_k`, `eta`, `eps_1` | `precision`, `cap`, `floor` | inner tolerance `max(min(M |Cx - e|, eta), eps_1)` |
+//! | `M_k`, `eta` | `precision`, `cap` | inner tolerance `min(M |Cx - e|, eta)` |
+//! | `eps_1` | `floor` | no less than this once `|Cx - e|` is within `equality_tolerance` |
 
 use crate::objective::Objective;
 use crate::operator::{Equality, SymmetricOperator};
@@ -56,6 +57,7 @@ pub(crate) struct Penalised<'a, A: SymmetricOperator, C: Equality> {
     pub(crate) precision: f64,
     pub(crate) cap: f64,
     pub(crate) floor: f64,
+    pub(crate) equality_tolerance: f64,
     pub(crate) s: &'a mut State,
     pub(crate) a_scratch: &'a mut A::Scratch,
     pub(crate) c_scratch: &'a mut C::Scratch,
@@ -139,8 +141,12 @@ impl<A: SymmetricOperator, C: Equality> Objective for Penalised<'_, A, C> {
     }
 
     fn tolerance(&self) -> f64 {
-        (self.precision * self.equality())
-            .min(self.cap)
-            .max(self.floor)
+        let equality = self.equality();
+        let t = (self.precision * equality).min(self.cap);
+        if equality <= self.equality_tolerance {
+            t.max(self.floor)
+        } else {
+            t
+        }
     }
 }

@@ -31,6 +31,8 @@ use crate::smalse_settings::{
 };
 use crate::vector;
 
+/// `M` relative to the norm is not reduced below this: it need not fall below `sqrt(rho lambda_min)`.
+const LEAST_PRECISION: f64 = 1e-4;
 /// Least reference of the tolerance, relative to the unprojected load.
 const ROUNDING: f64 = 1e-7;
 /// Outer steps without progress of a stagnating inner solver after which the solve ends.
@@ -118,6 +120,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         precision: settings.precision * norm,
         cap: 0.0,
         floor: 0.0,
+        equality_tolerance: 0.0,
         s: &mut work.state,
         a_scratch: &mut work.a_scratch,
         c_scratch: &mut work.c_scratch,
@@ -141,10 +144,10 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     products.initial += 1;
     let mut steps = Steps::default();
     let (mut outer, mut stagnations) = (0, 0);
-    // rho |C x - e|² of the step before; none at k = 0 and after the set was changed
-    let mut growth: Option<f64> = None;
+    // rho and |C x - e| of the step before; none at k = 0 and after the set or the penalty changed
+    let mut before: Option<(f64, f64)> = None;
     let mut gradient;
-    let mut equality_tolerance;
+    o.equality_tolerance = settings.equality * vector::norm(x).max(e_norm);
     let status = loop {
         // Step 1: x in the set with |g^K| <= min(M_k |C x - e|, eta)
         let left = settings.inner.max_products.saturating_sub(products.total());
@@ -154,8 +157,8 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         gradient = inner.measure;
         outer += 1;
         let equality = o.equality();
-        equality_tolerance = settings.equality * vector::norm(x).max(e_norm);
-        let within = gradient <= o.floor && equality <= equality_tolerance;
+        o.equality_tolerance = settings.equality * vector::norm(x).max(e_norm);
+        let within = gradient <= o.floor && equality <= o.equality_tolerance;
 
         let step = OuterStep {
             index: outer - 1,
@@ -194,21 +197,27 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         }
         // Step 4 compares L_k = L(x_k, beta_k) with L_{k-1}. From x_{k-1} with beta_k Step 1 went down by
         // `decrease`, and the new multiplier had added rho |C x_{k-1} - e|² before.
-        let grew_enough =
-            growth.is_none_or(|g| g - inner.decrease >= 0.5 * o.rho * equality * equality);
+        let grew_enough = before
+            .is_none_or(|(rho, c)| rho * c * c - inner.decrease >= 0.5 * rho * equality * equality);
+        let fell = before.map_or(0.0, |(_, c)| equality / c);
         // Step 3: beta_{k+1} = beta_k + rho (C x - e)
-        growth = Some(o.rho * equality * equality);
+        before = Some((o.rho, equality));
         o.update_multiplier(&mut v.g);
-        if !grew_enough {
-            match settings.update {
-                Update::Precision { shrink } => o.precision *= shrink,
-                Update::Penalty { grow, max } => {
-                    let rho = (grow * o.rho).min(max * norm);
-                    o.set_penalty(rho, &mut v.g);
-                    growth = None;
-                }
-                Update::Fixed => {}
+        let penalty = match settings.update {
+            Update::Precision { shrink } if !grew_enough => {
+                o.precision = (shrink * o.precision).max(LEAST_PRECISION * norm);
+                None
             }
+            Update::Penalty { grow, max } if !grew_enough => Some((grow * o.rho).min(max * norm)),
+            Update::Residual { ratio, grow, max } if fell > ratio => {
+                Some((grow * o.rho).min(max * norm))
+            }
+            _ => None,
+        };
+        if let Some(rho) = penalty.filter(|rho| *rho > o.rho) {
+            o.set_penalty(rho, &mut v.g);
+            // the Lagrangian is another one now
+            before = None;
         }
         if action == HookAction::SetChanged {
             set.validate()?;
@@ -219,7 +228,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
                 v.stale = 0;
                 products.restart += 1;
             }
-            growth = None;
+            before = None;
         }
     };
     o.unproject(&v.g, &mut work.residual, &mut work.mu);
@@ -232,7 +241,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         projected_gradient: gradient,
         tolerance: o.floor,
         equality: o.equality(),
-        equality_tolerance,
+        equality_tolerance: o.equality_tolerance,
         penalty: o.rho / norm,
         precision: o.precision / norm,
     })

@@ -6,7 +6,10 @@ use crate::operator::{Equality, SymmetricOperator};
 use crate::penalised::State;
 use crate::report::{Products, Status, Steps, Tolerance};
 
-/// What changes when the augmented Lagrangian did not grow enough in an outer step (Step 4).
+/// What changes from one outer step to the next (Step 4).
+///
+/// The first two act when the augmented Lagrangian did not grow enough, the third when the residual of the
+/// equality did not fall enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Update {
@@ -17,6 +20,17 @@ pub enum Update {
     },
     /// Dostal's earlier rule: `rho` is multiplied by `grow`, up to `max` times the norm.
     Penalty {
+        /// Above 1.
+        grow: f64,
+        /// Largest penalty relative to the norm.
+        max: f64,
+    },
+    /// `rho` is multiplied by `grow`, up to `max` times the norm, whenever `|Cx - e|` is above `ratio` times
+    /// that of the step before (the classical rule of augmented Lagrangians). Helps where the equality
+    /// can hardly be met inside the set, so that its multiplier is large.
+    Residual {
+        /// In (0, 1).
+        ratio: f64,
         /// Above 1.
         grow: f64,
         /// Largest penalty relative to the norm.
@@ -158,6 +172,17 @@ impl SmalseSettings {
                 shrink > 0.0 && shrink < 1.0,
             ),
             Update::Penalty { grow, max } => {
+                expect_setting(
+                    "update.grow",
+                    grow,
+                    "> 1, finite",
+                    grow > 1.0 && grow.is_finite(),
+                )?;
+                let inside = max >= self.penalty && max.is_finite();
+                expect_setting("update.max", max, "at least the penalty, finite", inside)
+            }
+            Update::Residual { ratio, grow, max } => {
+                expect_setting("update.ratio", ratio, "(0, 1)", ratio > 0.0 && ratio < 1.0)?;
                 expect_setting(
                     "update.grow",
                     grow,

@@ -89,11 +89,16 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn finds_the_minimiser(seed in any::<u64>(), rule in 0_usize..3) {
+    fn finds_the_minimiser(seed in any::<u64>(), rule in 0_usize..4) {
         let mut p = problem(seed);
         let n = p.set.dim();
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.c.rows()]);
-        let update = [Update::Precision { shrink: 0.5 }, Update::Penalty { grow: 2.0, max: 50.0 }, Update::Fixed][rule];
+        let update = [
+            Update::Precision { shrink: 0.5 },
+            Update::Penalty { grow: 2.0, max: 50.0 },
+            Update::Residual { ratio: 0.5, grow: 2.0, max: 1e3 },
+            Update::Fixed,
+        ][rule];
         let (report, residual, mu) = solve(&mut p, &tight().with_update(update), &mut x, &mut beta);
         prop_assert!(report.status.converged(), "{report:?} {:?}", p.set);
         let part = EqualityPart { c: &p.c, e: &p.e, multiplier: &mu };
