@@ -13,6 +13,7 @@
 //! |---|---|---|---|
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
+//! | [`face()`] | set and equality | projected, preconditioned CG on predicted faces; no penalty | see [`FaceWorkspace`] |
 //! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
