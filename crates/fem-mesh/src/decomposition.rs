@@ -288,7 +288,8 @@ impl Decomposition {
 }
 
 /// Gives every piece of a part that is not connected through faces a part number of its own. The
-/// result has no gaps and its parts are connected, so [`Decomposition::from_parts`] accepts it.
+/// pieces are numbered anew, by the smallest tetrahedron of each; the result has no gaps, so
+/// [`Decomposition::from_parts`] accepts it.
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one number for each tetrahedron.

@@ -1,4 +1,82 @@
-//! Tetrahedral meshes, linear elasticity elements, loads, decomposition and surface frames.
+//! Tetrahedral meshes and linear elasticity for domain decomposition with contact.
+//!
+//! This crate turns a body into numbers: a mesh of linear tetrahedra with tagged boundary facets,
+//! stiffness matrices, consistent loads, subdomains, and the normals, tangents and areas that a
+//! contact surface needs. It knows no solver. It is the ground floor of
+//! [`signorini`](https://github.com/signorini-rs/signorini), and usable alone.
+//!
+//! | you want | you use |
+//! |---|---|
+//! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`); [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
+//! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
+//! | a stiffness | [`assemble_stiffness`], [`subdomain_stiffness`], [`element_stiffness`] |
+//! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
+//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`] |
+//! | a contact surface | [`Surface`] with a [`Frame`] and an area at each node |
+//! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`] |
+//! | pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
+//!
+//! # Example
+//!
+//! A block of 3 m x 1 m x 1 m, cut into three cubes and pressed from above:
+//!
+//! ```
+//! use signorini_fem_mesh::brick::{Brick, Z_MAX, Z_MIN};
+//! use signorini_fem_mesh::{
+//!     Decomposition, Hooke, LoadDensity, Materials, Surface, assemble_load, subdomain_stiffness,
+//! };
+//!
+//! let mesh = Brick::new([3.0, 1.0, 1.0], [15, 5, 5]).build()?;
+//! let steel = Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?);
+//!
+//! let parts = Decomposition::boxes(&mesh, [3, 1, 1])?;
+//! assert_eq!(parts.torn_dofs(), 1944);
+//! let stiffness = subdomain_stiffness(&mesh, &parts.subdomains()[0], &steel)?;
+//! assert_eq!(stiffness.shape(), (648, 648));
+//!
+//! let pressure = LoadDensity::pressure(Z_MAX, 1e6);
+//! let forces = assemble_load(&mesh, &parts, &pressure)?;
+//! let resultant: f64 = forces.iter().flatten().sum();
+//! assert!((resultant + 3e6).abs() < 1e-6);
+//!
+//! let foundation = Surface::new(&mesh, &[Z_MIN])?;
+//! assert_eq!(foundation.frames()[0].normal, [0.0, 0.0, -1.0]);
+//! assert!((foundation.total_area() - 3.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! - Points are `[f64; 3]`. A vector of displacements or forces holds component i of node n at
+//!   3 n + i. Tables store node, tetrahedron and subdomain numbers as `u32`.
+//! - A tetrahedron is positive if det(p1 - p0, p2 - p0, p3 - p0) > 0; facets are counter-clockwise
+//!   seen from outside.
+//! - Six-component strains and stresses are in the order xx, yy, zz, yz, xz, xy; strains carry
+//!   the engineering shear (twice the tensor component).
+//! - Units are free, but must be consistent. All tolerances are relative, so that a change of
+//!   units changes nothing but the numbers.
+//!
+//! # What can go wrong
+//!
+//! Every type checks its input on construction and answers with a typed error that names the
+//! place and a remedy: [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`],
+//! [`AssemblyError`], [`DecompositionError`], [`SurfaceError`], [`LoadError`], [`HistoryError`],
+//! [`FieldError`]. Later steps rely on those checks and do not repeat them. Accessors that take
+//! an index panic if it is out of range, like a slice, and say so.
+//!
+//! # Parallelism
+//!
+//! Loops over nodes, elements and subdomains run on the current [`rayon`] pool. Sums have a fixed
+//! order, so results are the same bit for bit for any number of threads.
+//!
+//! # Features
+//!
+//! None is on by default. `vtu` adds [`output`] (crate vtkio), `gmsh` adds [`gmsh`] (crate mshio).
+
+#![cfg_attr(
+    not(all(feature = "vtu", feature = "gmsh")),
+    allow(rustdoc::broken_intra_doc_links)
+)]
 
 pub mod brick;
 pub mod fields;

@@ -1,6 +1,7 @@
 //! VTU files and PVD time series for ParaView (feature `vtu`).
 //!
-//! Arrays are binary (base64 inside the XML, 64-bit headers, little endian, not compressed).
+//! Arrays are binary (base64 inside the XML, 64-bit headers, little endian) and compressed by
+//! zlib, except in files where an array fills its last block exactly.
 //!
 //! ```
 //! use signorini_fem_mesh::output::{Field, PvdSeries};

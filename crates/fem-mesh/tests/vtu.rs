@@ -195,3 +195,38 @@ fn bad_fields() {
         assert!(matches!(error, OutputError::SeriesName { .. }), "{name}");
     }
 }
+
+#[test]
+fn arrays_that_fill_their_last_block() {
+    // 4096 nodes: coordinates and displacements are multiples of the block of compression.
+    let mesh = Brick::new([1.0; 3], [15; 3]).build().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("full.vtu");
+    write_vtu(
+        &path,
+        &mesh,
+        &[Field::vector("u", mesh.points().concat())],
+        &[],
+    )
+    .unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(!text.contains("vtkZLibDataCompressor"));
+    assert_eq!(
+        values(&pieces(&path)[0].data.point, "u"),
+        mesh.points().concat()
+    );
+    let smaller = Brick::new([1.0; 3], [14; 3]).build().unwrap();
+    write_vtu(
+        &path,
+        &smaller,
+        &[Field::vector("u", smaller.points().concat())],
+        &[],
+    )
+    .unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("vtkZLibDataCompressor"));
+    assert_eq!(
+        values(&pieces(&path)[0].data.point, "u"),
+        smaller.points().concat()
+    );
+}

@@ -8,6 +8,7 @@ use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArrayBase, DataSet, ElementType,
     IOBuffer, Piece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
 };
+use vtkio::xml::Compressor;
 
 use super::{Field, OutputError};
 use crate::decomposition::Decomposition;
@@ -201,6 +202,15 @@ fn write(path: &Path, pieces: Vec<UnstructuredGridPiece>) -> Result<(), OutputEr
         path: path.into(),
         source,
     };
+    let format = |message| OutputError::Format {
+        path: path.into(),
+        message,
+    };
+    let (compressor, level) = if pieces.iter().all(compressible) {
+        (Compressor::ZLib, 1)
+    } else {
+        (Compressor::None, 0)
+    };
     let vtk = Vtk {
         // 64-bit headers came with version 1.0 of the format.
         version: Version::new_xml(1, 0),
@@ -215,13 +225,37 @@ fn write(path: &Path, pieces: Vec<UnstructuredGridPiece>) -> Result<(), OutputEr
                 .collect(),
         },
     };
+    let xml = vtk
+        .try_into_xml_format(compressor, level)
+        .map_err(|e| format(e.to_string()))?;
     let mut file = BufWriter::new(File::create(path).map_err(io)?);
-    vtk.write_xml(&mut file).map_err(|error| match error {
-        vtkio::Error::IO(source) => io(source),
-        other => OutputError::Format {
-            path: path.into(),
-            message: other.to_string(),
-        },
-    })?;
+    xml.write(&mut file).map_err(|e| format(e.to_string()))?;
     file.flush().map_err(io)
+}
+
+/// vtkio 0.7.0-rc2 compresses blocks of 32 KiB and puts an empty one behind the last full one,
+/// which VTK takes for damage. So a file is compressed only if every array ends inside a block.
+fn compressible(piece: &UnstructuredGridPiece) -> bool {
+    const BLOCK: usize = 32768;
+    let array_bytes = |attribute: &Attribute| match attribute {
+        Attribute::DataArray(array) => array.data.num_bytes(),
+        Attribute::Field { .. } => 0,
+    };
+    let cells = piece.cells.num_cells();
+    let topology = [
+        cells,
+        8 * cells,
+        8 * piece.cells.num_verts(),
+        piece.points.num_bytes(),
+    ];
+    let fields = piece
+        .data
+        .point
+        .iter()
+        .chain(&piece.data.cell)
+        .map(array_bytes);
+    topology
+        .into_iter()
+        .chain(fields)
+        .all(|bytes| bytes % BLOCK != 0)
 }
