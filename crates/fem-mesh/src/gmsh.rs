@@ -3,13 +3,13 @@
 //! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are
 //! skipped, and nodes that no tetrahedron uses are dropped. The tag of a facet is the physical
 //! group of its surface, the region of a tetrahedron that of its volume; if the file has no
-//! physical groups of that dimension, the numbers of the geometric entities are used. Entities
-//! outside of the groups, if there are any groups, leave triangles untagged and give region 0.
-//! Names of groups are not kept.
+//! physical groups of that dimension, the numbers of the geometric entities are used, and surfaces
+//! between two volumes are skipped. Entities outside of the groups, if there are any groups, leave
+//! triangles untagged and give region 0. Names of groups are not kept.
 
 mod walk;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use mshio::{ElementType, MshFile};
@@ -178,7 +178,33 @@ pub fn parse_gmsh(bytes: &[u8]) -> Result<TetMesh, GmshError> {
     }
     orient_tets(&points, &mut tets);
     drop_unused_nodes(&mut points, &mut tets, &mut facets);
+    if !groups.surfaces.grouped {
+        // Nobody asked for these surfaces by name, and some may lie between two volumes.
+        facets = on_boundary(&points, &tets, facets)?;
+    }
     Ok(TetMesh::new(points, tets, facets)?.with_regions(regions)?)
+}
+
+/// The facets that lie on the boundary of the mesh.
+fn on_boundary(
+    points: &[[f64; 3]],
+    tets: &[[u32; 4]],
+    facets: Vec<Facet>,
+) -> Result<Vec<Facet>, GmshError> {
+    let sorted = |mut nodes: [u32; 3]| {
+        nodes.sort_unstable();
+        nodes
+    };
+    let bare = TetMesh::new(points.to_vec(), tets.to_vec(), Vec::new())?;
+    let boundary: HashSet<_> = bare
+        .boundary_facets()
+        .iter()
+        .map(|f| sorted(f.nodes))
+        .collect();
+    Ok(facets
+        .into_iter()
+        .filter(|f| boundary.contains(&sorted(f.nodes)))
+        .collect())
 }
 
 /// Calls mshio. The walk has excluded the contents on which it is known to panic; should another

@@ -1,6 +1,8 @@
 //! Decompositions of the brick: counts, copies, translates.
 
-use signorini_fem_mesh::{Brick, Decomposition};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use signorini_fem_mesh::{Brick, Decomposition, split_disconnected};
 
 fn brick(n: usize) -> (signorini_fem_mesh::TetMesh, Decomposition) {
     let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n])
@@ -84,4 +86,31 @@ fn parts_by_number_agree_with_boxes() {
         Decomposition::from_parts(&mesh, boxes.parts()).unwrap(),
         boxes
     );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 32,
+        rng_seed: RngSeed::Fixed(6),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// However the tetrahedra are thrown together, the split parts are a valid decomposition that
+    /// loses nothing and refines the parts given.
+    #[test]
+    fn any_parts_can_be_split(numbers in prop::collection::vec(0u32..4, 135)) {
+        let mesh = Brick::new([1.0; 3], [3; 3]).build().unwrap();
+        let split = split_disconnected(&mesh, &numbers).unwrap();
+        let parts = Decomposition::from_parts(&mesh, &split).unwrap();
+        let mut elements = 0;
+        for subdomain in parts.subdomains() {
+            elements += subdomain.elements.len();
+            let first = numbers[subdomain.elements[0] as usize];
+            prop_assert!(subdomain.elements.iter().all(|&e| numbers[e as usize] == first));
+            prop_assert!(subdomain.nodes.windows(2).all(|n| n[0] < n[1]));
+        }
+        prop_assert_eq!(elements, mesh.tets().len());
+        prop_assert!((0..mesh.points().len()).all(|n| !parts.copies(n).is_empty()));
+    }
 }

@@ -157,6 +157,9 @@ fn without_groups_the_entities_count() {
     let mesh = parse_gmsh(text.as_bytes()).unwrap();
     assert_eq!(mesh.regions(), [1, 2]);
     assert_eq!(mesh.tags(), [FacetTag(1), FacetTag(2)]);
+    // The same with the second surface between the two volumes.
+    let inside = text.replace("3 3 1 5\n", "3 1 2 5\n");
+    assert_eq!(parse_gmsh(inside.as_bytes()).unwrap().tags(), [FacetTag(1)]);
 }
 
 #[test]
@@ -252,6 +255,11 @@ fn damaged_files() {
     assert!(matches!(
         damaged("1 1 1\n9", "one 1 1\n9"),
         GmshError::Parser { .. }
+    ));
+    let inside = damaged("2 3 1 2\n", "2 1 2 5\n");
+    assert!(matches!(
+        inside,
+        GmshError::Mesh(MeshError::FacetInside { .. })
     ));
     let nodes = TEXT.split("$Elements").next().unwrap();
     assert!(matches!(
