@@ -92,26 +92,43 @@ impl BoundaryMap {
 
     /// Boundary nodes of each class: those touched in any member.
     fn layout(classes: &Classes, gluing: &Gluing) -> Self {
-        let mut touched: Vec<Vec<bool>> = classes.classes().iter().map(|c| vec![false; c.nodes]).collect();
+        let mut touched: Vec<Vec<bool>> = classes
+            .classes()
+            .iter()
+            .map(|c| vec![false; c.nodes])
+            .collect();
         let mut touch = |subdomain: u32, local: u32| {
             touched[classes.place(subdomain as usize).0][local as usize] = true;
         };
         for block in 0..gluing.blocks() {
-            gluing.block(block).iter().for_each(|e| touch(e.subdomain, e.local));
+            gluing
+                .block(block)
+                .iter()
+                .for_each(|e| touch(e.subdomain, e.local));
         }
         for special in 0..gluing.specials() {
-            gluing.special(special).iter().for_each(|e| touch(e.subdomain, e.local));
+            gluing
+                .special(special)
+                .iter()
+                .for_each(|e| touch(e.subdomain, e.local));
         }
         let (mut copies, mut columns) = (0, 0);
         let mut list = Vec::with_capacity(touched.len());
         let mut column_of = vec![0; classes.subdomains()];
         for (class, touched) in classes.classes().iter().zip(&touched) {
-            let nodes: Vec<u32> = (0..touched.len() as u32).filter(|&n| touched[n as usize]).collect();
+            let nodes: Vec<u32> = (0..touched.len() as u32)
+                .filter(|&n| touched[n as usize])
+                .collect();
             for (k, &member) in class.members.iter().enumerate() {
                 column_of[member as usize] = (columns + k) as u32;
             }
             let next = copies + nodes.len() * class.members.len();
-            list.push(BoundaryClass { nodes, members: class.members.clone(), start: copies, column: columns });
+            list.push(BoundaryClass {
+                nodes,
+                members: class.members.clone(),
+                start: copies,
+                column: columns,
+            });
             copies = next;
             columns += class.members.len();
         }
@@ -179,7 +196,10 @@ impl BoundaryMap {
         let (pointers, order) = transpose(&self.block_pointers, &self.block_copies, self.copies);
         self.spread_pointers = pointers;
         self.spread_blocks = order.iter().map(|&(block, _)| block).collect();
-        self.spread_weights = order.iter().map(|&(_, entry)| self.block_weights[entry as usize]).collect();
+        self.spread_weights = order
+            .iter()
+            .map(|&(_, entry)| self.block_weights[entry as usize])
+            .collect();
         let (pointers, order) = transpose(&self.row_pointers, &self.row_copies, self.copies);
         for copy in 0..self.copies {
             let range = pointers[copy] as usize..pointers[copy + 1] as usize;
@@ -188,7 +208,8 @@ impl BoundaryMap {
             }
             self.special_copies.push(copy as u32);
             for &(special, entry) in &order[range] {
-                self.special_rows.push(gluing.special_row(special as usize) as u32);
+                self.special_rows
+                    .push(gluing.special_row(special as usize) as u32);
                 self.special_vectors.push(self.row_vectors[entry as usize]);
             }
             self.special_pointers.push(self.special_rows.len() as u32);
@@ -203,11 +224,20 @@ impl BoundaryMap {
             for k in 0..count {
                 let columns = members * k / count..members * (k + 1) / count;
                 let nodes = boundary.nodes.len();
-                let copies = boundary.start + columns.start * nodes..boundary.start + columns.end * nodes;
-                let special = |copy: usize| self.special_copies.partition_point(|&c| (c as usize) < copy);
+                let copies =
+                    boundary.start + columns.start * nodes..boundary.start + columns.end * nodes;
+                let special = |copy: usize| {
+                    self.special_copies
+                        .partition_point(|&c| (c as usize) < copy)
+                };
                 let specials = special(copies.start)..special(copies.end);
                 work.push((columns.len() * nodes * (nodes + 64)) as u64);
-                self.panels.push(Panel { class, columns, copies, specials });
+                self.panels.push(Panel {
+                    class,
+                    columns,
+                    copies,
+                    specials,
+                });
             }
         }
         // Lanes of about equal work; the split depends on the problem only.
@@ -220,7 +250,11 @@ impl BoundaryMap {
             if full || k + 1 == self.panels.len() {
                 let first = &self.panels[start];
                 let column = self.classes[first.class].column + first.columns.start;
-                self.lanes.push(Lane { panels: start..k + 1, copy: first.copies.start, column });
+                self.lanes.push(Lane {
+                    panels: start..k + 1,
+                    copy: first.copies.start,
+                    column,
+                });
                 start = k + 1;
             }
         }
@@ -237,7 +271,10 @@ impl BoundaryMap {
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        let words = self.spread_pointers.len() + self.spread_blocks.len() + self.block_pointers.len() + self.block_copies.len();
+        let words = self.spread_pointers.len()
+            + self.spread_blocks.len()
+            + self.block_pointers.len()
+            + self.block_copies.len();
         let numbers = self.spread_weights.len() + self.block_weights.len();
         (4 * words + 8 * numbers + 56 * self.row_copies.len()) as u64
     }
@@ -248,7 +285,11 @@ impl BoundaryMap {
     }
 
     /// Panels of a lane with the part of the lane's boundary vector that belongs to each.
-    pub(crate) fn panels_of<'a>(&'a self, lane: &Lane, y: &'a mut [f64]) -> impl Iterator<Item = (&'a Panel, &'a mut [f64])> {
+    pub(crate) fn panels_of<'a>(
+        &'a self,
+        lane: &Lane,
+        y: &'a mut [f64],
+    ) -> impl Iterator<Item = (&'a Panel, &'a mut [f64])> {
         let mut rest = y;
         self.panels[lane.panels.clone()].iter().map(move |panel| {
             let (part, tail) = std::mem::take(&mut rest).split_at_mut(3 * panel.copies.len());
@@ -264,7 +305,10 @@ impl BoundaryMap {
         for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
             let range = pair[0] as usize..pair[1] as usize;
             let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            for (&block, &weight) in self.spread_blocks[range.clone()].iter().zip(&self.spread_weights[range]) {
+            for (&block, &weight) in self.spread_blocks[range.clone()]
+                .iter()
+                .zip(&self.spread_weights[range])
+            {
                 let value = &interface[3 * block as usize..][..3];
                 a += weight * value[0];
                 b += weight * value[1];
@@ -294,7 +338,10 @@ impl BoundaryMap {
             if self.copies < SMALL {
                 self.collect_blocks(y, 0, interface);
             } else {
-                interface.par_chunks_mut(3 * BLOCKS).enumerate().for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part));
+                interface
+                    .par_chunks_mut(3 * BLOCKS)
+                    .enumerate()
+                    .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part));
             }
         };
         let mut others = || {
@@ -314,7 +361,10 @@ impl BoundaryMap {
         for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
             let range = pair[0] as usize..pair[1] as usize;
             let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            for (&copy, &weight) in self.block_copies[range.clone()].iter().zip(&self.block_weights[range]) {
+            for (&copy, &weight) in self.block_copies[range.clone()]
+                .iter()
+                .zip(&self.block_weights[range])
+            {
                 let value = &y[3 * copy as usize..][..3];
                 a += weight * value[0];
                 b += weight * value[1];
@@ -328,7 +378,8 @@ impl BoundaryMap {
 
     fn collect_rows(&self, y: &[f64], first: usize, out: &mut [f64]) {
         for (k, target) in out.iter_mut().enumerate() {
-            let range = self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
+            let range =
+                self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
             let entry = |e: usize| {
                 let value = &y[3 * self.row_copies[e] as usize..][..3];
                 let v = &self.row_vectors[e];
@@ -355,13 +406,24 @@ impl BoundaryMap {
     }
 
     /// Runs `task` on every lane with its part of a vector of six numbers per column.
-    pub(crate) fn for_columns(&self, amplitudes: &mut [f64], task: &(impl Fn(&Lane, &mut [f64]) + Sync)) {
+    pub(crate) fn for_columns(
+        &self,
+        amplitudes: &mut [f64],
+        task: &(impl Fn(&Lane, &mut [f64]) + Sync),
+    ) {
         let mut none = [(); LANES];
         let parallel = self.copies >= SMALL;
         let count = self.lanes.len();
-        over_lanes(&self.lanes, &mut none[..count], amplitudes, &|lane| 6 * lane.column, parallel, &|lane, (), part| {
-            task(lane, part);
-        });
+        over_lanes(
+            &self.lanes,
+            &mut none[..count],
+            amplitudes,
+            &|lane| 6 * lane.column,
+            parallel,
+            &|lane, (), part| {
+                task(lane, part);
+            },
+        );
     }
 
     /// Whether loops over all copies are worth several threads.

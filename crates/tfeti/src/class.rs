@@ -72,7 +72,13 @@ impl Classes {
         // Per key: (signature, class), sorted by the signature.
         let mut buckets: HashMap<u64, Vec<(f64, usize)>> = HashMap::new();
         for (s, subdomain) in decomposition.subdomains().iter().enumerate() {
-            let candidate = Candidate::new(mesh, &subdomain.nodes, &subdomain.tets, &subdomain.elements, materials)?;
+            let candidate = Candidate::new(
+                mesh,
+                &subdomain.nodes,
+                &subdomain.tets,
+                &subdomain.elements,
+                materials,
+            )?;
             let mut home = None;
             if sharing == Sharing::Translates {
                 let bucket = buckets.entry(candidate.key()).or_default();
@@ -83,7 +89,13 @@ impl Classes {
                         break;
                     }
                     let other = &decomposition.subdomains()[classes[class].members[0] as usize];
-                    let other = Candidate::new(mesh, &other.nodes, &other.tets, &other.elements, materials)?;
+                    let other = Candidate::new(
+                        mesh,
+                        &other.nodes,
+                        &other.tets,
+                        &other.elements,
+                        materials,
+                    )?;
                     if candidate.is_translate_of(&other) {
                         home = Some(class);
                         break;
@@ -133,10 +145,14 @@ impl<'a> Candidate<'a> {
         let mut hooke = Vec::with_capacity(elements.len());
         for &element in elements {
             let region = mesh.regions()[element as usize];
-            hooke.push(materials.get(region).map_err(|error| TfetiError::Material {
-                element: element as usize,
-                message: error.to_string(),
-            })?);
+            hooke.push(
+                materials
+                    .get(region)
+                    .map_err(|error| TfetiError::Material {
+                        element: element as usize,
+                        message: error.to_string(),
+                    })?,
+            );
         }
         let points = mesh.points();
         let origin = nodes.first().map_or([0.0; 3], |&n| points[n as usize]);
@@ -154,7 +170,14 @@ impl<'a> Candidate<'a> {
         }
         let tolerance = 1e-12 * size + 4.0 * f64::EPSILON * largest;
         let signature = signature / (3 * nodes.len().max(1)) as f64;
-        Ok(Self { mesh, nodes, tets, hooke, tolerance, signature })
+        Ok(Self {
+            mesh,
+            nodes,
+            tets,
+            hooke,
+            tolerance,
+            signature,
+        })
     }
 
     fn key(&self) -> u64 {

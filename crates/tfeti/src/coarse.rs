@@ -6,7 +6,9 @@ use crate::coarse_matrix::{CoarseMatrix, ModeTable, RowWeights};
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
 use crate::matrices::ClassBase;
-use crate::mobility::{FreeMotion, Mobility, amplitudes_of_forces, motions_of_amplitudes, to_columns, to_subdomains};
+use crate::mobility::{
+    FreeMotion, Mobility, amplitudes_of_forces, motions_of_amplitudes, to_columns, to_subdomains,
+};
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
 use signorini_qp::Equality;
 use std::sync::Arc;
@@ -49,10 +51,21 @@ impl Coarse {
         let matrix = CoarseMatrix::new(&gluing, &modes, classes.subdomains());
         drop(modes);
         let count = 6 * classes.subdomains();
-        let too_large = |_| TfetiError::TooLarge { what: "coarse unknowns", count };
+        let too_large = |_| TfetiError::TooLarge {
+            what: "coarse unknowns",
+            count,
+        };
         let symbolic = Symbolic::new(matrix.pattern()).map_err(too_large)?;
         let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
-        Ok(Self(Arc::new(CoarseData { map, bases, classes, gluing, matrix, symbolic, mobility })))
+        Ok(Self(Arc::new(CoarseData {
+            map,
+            bases,
+            classes,
+            gluing,
+            matrix,
+            symbolic,
+            mobility,
+        })))
     }
 
     /// Number of rows of `G`: six per subdomain.
@@ -100,7 +113,8 @@ impl Coarse {
 
     /// `out = G^T y`.
     pub fn apply_transpose(&self, y: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0.product_transpose(y, out, &mut s.boundary, &mut s.columns);
+        self.0
+            .product_transpose(y, out, &mut s.boundary, &mut s.columns);
     }
 
     /// `out = G^T y` on the contact rows only (the leading part of `out`).
@@ -125,7 +139,10 @@ impl Coarse {
     }
 
     /// Rigid motions of bodies that rows of positive weight leave free; all rows count if there are no weights.
-    pub fn free_motions(&self, weights: Option<&RowWeights>) -> Result<Vec<FreeMotion>, TfetiError> {
+    pub fn free_motions(
+        &self,
+        weights: Option<&RowWeights>,
+    ) -> Result<Vec<FreeMotion>, TfetiError> {
         if let Some(weights) = weights {
             weights.validate(self.0.gluing.ranges())?;
         }
@@ -153,18 +170,29 @@ impl Coarse {
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
         let free = data.free_motions(weights.as_ref());
         if !free.is_empty() {
-            let diagonal = (0..matrix.dim).filter_map(|i| matrix.find(i, i)).map(|k| matrix.values[k]);
+            let diagonal = (0..matrix.dim)
+                .filter_map(|i| matrix.find(i, i))
+                .map(|k| matrix.values[k]);
             let strength = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
             let strength = if strength > 0.0 { strength } else { 1.0 };
             for (subdomain, spring) in data.mobility.springs(&free) {
-                data.matrix.add_row(&[(subdomain as u32, spring)], strength, &mut matrix.values);
+                data.matrix
+                    .add_row(&[(subdomain as u32, spring)], strength, &mut matrix.values);
             }
         }
         let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
             FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },
-            FactorError::Pattern => TfetiError::TooLarge { what: "coarse unknowns", count: matrix.dim },
+            FactorError::Pattern => TfetiError::TooLarge {
+                what: "coarse unknowns",
+                count: matrix.dim,
+            },
         })?;
-        Ok(CoarseFactor(Arc::new(FactorData { coarse: self.clone(), factor, weights, free })))
+        Ok(CoarseFactor(Arc::new(FactorData {
+            coarse: self.clone(),
+            factor,
+            weights,
+            free,
+        })))
     }
 }
 
@@ -172,11 +200,16 @@ impl CoarseData {
     fn product(&self, x: &[f64], out: &mut [f64], boundary: &mut [f64], columns: &mut [f64]) {
         let map = &self.map;
         let (work, large) = (&mut map.no_work(), map.is_large());
-        map.for_lanes(&mut work[..map.lanes.len()], boundary, large, &|lane, (), part| {
-            for (panel, forces) in map.panels_of(lane, part) {
-                map.spread(x, panel, forces);
-            }
-        });
+        map.for_lanes(
+            &mut work[..map.lanes.len()],
+            boundary,
+            large,
+            &|lane, (), part| {
+                for (panel, forces) in map.panels_of(lane, part) {
+                    map.spread(x, panel, forces);
+                }
+            },
+        );
         let boundary = &*boundary;
         map.for_columns(columns, &|lane, part| {
             let mut rest = part;
@@ -184,7 +217,12 @@ impl CoarseData {
                 let (own, tail) = std::mem::take(&mut rest).split_at_mut(6 * panel.columns.len());
                 rest = tail;
                 let forces = &boundary[map.range_of(panel)];
-                amplitudes_of_forces(&self.bases[panel.class].kernel, &map.classes[panel.class].nodes, forces, own);
+                amplitudes_of_forces(
+                    &self.bases[panel.class].kernel,
+                    &map.classes[panel.class].nodes,
+                    forces,
+                    own,
+                );
             }
         });
         to_subdomains(map, columns, out);
@@ -195,16 +233,33 @@ impl CoarseData {
         to_columns(map, y, columns);
         let (work, large) = (&mut map.no_work(), map.is_large());
         let columns = &*columns;
-        map.for_lanes(&mut work[..map.lanes.len()], boundary, large, &|lane, (), part| {
-            for (panel, motion) in map.panels_of(lane, part) {
-                let class = &map.classes[panel.class];
-                let alpha = &columns[6 * (class.column + panel.columns.start)..6 * (class.column + panel.columns.end)];
-                motions_of_amplitudes(&self.bases[panel.class].kernel, &class.nodes, alpha, motion);
-            }
-        });
+        map.for_lanes(
+            &mut work[..map.lanes.len()],
+            boundary,
+            large,
+            &|lane, (), part| {
+                for (panel, motion) in map.panels_of(lane, part) {
+                    let class = &map.classes[panel.class];
+                    let alpha = &columns[6 * (class.column + panel.columns.start)
+                        ..6 * (class.column + panel.columns.end)];
+                    motions_of_amplitudes(
+                        &self.bases[panel.class].kernel,
+                        &class.nodes,
+                        alpha,
+                        motion,
+                    );
+                }
+            },
+        );
     }
 
-    fn product_transpose(&self, y: &[f64], out: &mut [f64], boundary: &mut [f64], columns: &mut [f64]) {
+    fn product_transpose(
+        &self,
+        y: &[f64],
+        out: &mut [f64],
+        boundary: &mut [f64],
+        columns: &mut [f64],
+    ) {
         self.motions(y, boundary, columns);
         self.map.collect(boundary, out);
     }
@@ -219,13 +274,18 @@ impl CoarseData {
                 return None;
             }
             let mut out = Vec::new();
-            self.mobility.act(gluing.special(special), weight(row).sqrt(), &mut out);
+            self.mobility
+                .act(gluing.special(special), weight(row).sqrt(), &mut out);
             Some(out)
         });
         let combined = lines.iter().filter(|l| l.weight > 0.0).map(|line| {
             let mut out = Vec::new();
             for k in 0..2 {
-                self.mobility.act(gluing.special(line.row + k), line.weight.sqrt() * line.direction[k], &mut out);
+                self.mobility.act(
+                    gluing.special(line.row + k),
+                    line.weight.sqrt() * line.direction[k],
+                    &mut out,
+                );
             }
             out
         });
@@ -333,7 +393,8 @@ impl CoarseFactor {
     /// weights or free motions.
     #[must_use]
     pub fn orthonormal(&self) -> Option<OrthonormalCoarse> {
-        (self.0.weights.is_none() && self.0.free.is_empty()).then(|| OrthonormalCoarse(self.clone()))
+        (self.0.weights.is_none() && self.0.free.is_empty())
+            .then(|| OrthonormalCoarse(self.clone()))
     }
 }
 
@@ -351,7 +412,10 @@ impl OrthonormalCoarse {
     /// `G^T alpha = C^T beta`.
     pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(beta);
-        self.0.0.factor.half_solve_transpose(&mut s.first, alpha, &mut s.memory);
+        self.0
+            .0
+            .factor
+            .half_solve_transpose(&mut s.first, alpha, &mut s.memory);
     }
 
     /// The factor.
@@ -385,7 +449,10 @@ impl Equality for OrthonormalCoarse {
     fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse().0;
         s.first.copy_from_slice(y);
-        self.0.0.factor.half_solve_transpose(&mut s.first, &mut s.second, &mut s.memory);
+        self.0
+            .0
+            .factor
+            .half_solve_transpose(&mut s.first, &mut s.second, &mut s.memory);
         data.product_transpose(&s.second, x, &mut s.boundary, &mut s.columns);
     }
 }

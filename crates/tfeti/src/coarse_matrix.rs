@@ -31,7 +31,10 @@ impl RowWeights {
     /// A diagonal only.
     #[must_use]
     pub fn diagonal(diagonal: Vec<f64>) -> Self {
-        Self { diagonal, lines: Vec::new() }
+        Self {
+            diagonal,
+            lines: Vec::new(),
+        }
     }
 
     pub(crate) fn in_line(&self, row: usize) -> bool {
@@ -43,19 +46,36 @@ impl RowWeights {
     pub(crate) fn validate(&self, ranges: &RowRanges) -> Result<(), TfetiError> {
         let (expected, found) = (ranges.total(), self.diagonal.len());
         if found != expected {
-            return Err(TfetiError::Length { what: "row weights", expected, found });
+            return Err(TfetiError::Length {
+                what: "row weights",
+                expected,
+                found,
+            });
         }
         let bad = |w: &f64| !(w.is_finite() && *w >= 0.0);
         let range = "finite and not negative";
-        if let Some(&value) = self.diagonal.iter().chain(self.lines.iter().map(|l| &l.weight)).find(|w| bad(w)) {
-            return Err(TfetiError::Setting { name: "row weight", value, range });
+        if let Some(&value) = self
+            .diagonal
+            .iter()
+            .chain(self.lines.iter().map(|l| &l.weight))
+            .find(|w| bad(w))
+        {
+            return Err(TfetiError::Setting {
+                name: "row weight",
+                value,
+                range,
+            });
         }
         for (k, line) in self.lines.iter().enumerate() {
             let inside = line.row >= ranges.discs.start && line.row + 1 < ranges.discs.end;
             let ordered = k == 0 || self.lines[k - 1].row + 1 < line.row;
             if !(inside && ordered) {
                 let range = "a pair of tangential rows, each pair once, ascending";
-                return Err(TfetiError::Setting { name: "line row", value: line.row as f64, range });
+                return Err(TfetiError::Setting {
+                    name: "line row",
+                    value: line.row as f64,
+                    range,
+                });
             }
         }
         Ok(())
@@ -105,8 +125,15 @@ pub(crate) struct ModeTable<'a> {
 
 impl<'a> ModeTable<'a> {
     pub(crate) fn new(bases: &[ClassBase], classes: &'a Classes) -> Self {
-        let table = |base: &ClassBase| (0..base.kernel.nodes()).map(|n| base.kernel.node_modes(n)).collect();
-        Self { tables: bases.iter().map(table).collect(), classes }
+        let table = |base: &ClassBase| {
+            (0..base.kernel.nodes())
+                .map(|n| base.kernel.node_modes(n))
+                .collect()
+        };
+        Self {
+            tables: bases.iter().map(table).collect(),
+            classes,
+        }
     }
 
     fn at(&self, subdomain: u32, local: u32) -> &Modes {
@@ -114,7 +141,13 @@ impl<'a> ModeTable<'a> {
     }
 
     /// Row of `G^T`: `(subdomain, six coefficients)`, times `factor`, added to `out`.
-    pub(crate) fn row(&self, gluing: &Gluing, special: usize, factor: f64, out: &mut Vec<(u32, [f64; 6])>) {
+    pub(crate) fn row(
+        &self,
+        gluing: &Gluing,
+        special: usize,
+        factor: f64,
+        out: &mut Vec<(u32, [f64; 6])>,
+    ) {
         for e in gluing.special(special) {
             let modes = self.at(e.subdomain, e.local);
             let at = match out.iter().position(|v| v.0 == e.subdomain) {
@@ -143,24 +176,36 @@ impl CoarseMatrix {
         for block in 0..gluing.blocks() {
             let entries = gluing.block(block);
             for (k, a) in entries.iter().enumerate() {
-                entries[..k].iter().for_each(|b| join(a.subdomain, b.subdomain));
+                entries[..k]
+                    .iter()
+                    .for_each(|b| join(a.subdomain, b.subdomain));
             }
         }
         for special in 0..gluing.specials() {
             let entries = gluing.special(special);
             for (k, a) in entries.iter().enumerate() {
-                entries[..k].iter().for_each(|b| join(a.subdomain, b.subdomain));
+                entries[..k]
+                    .iter()
+                    .for_each(|b| join(a.subdomain, b.subdomain));
             }
         }
         let mut matrix = Self {
             pointers: vec![0],
             neighbours: Vec::new(),
-            interface: Columns { dim: 6 * subdomains, pointers: vec![0], rows: Vec::new(), values: Vec::new() },
+            interface: Columns {
+                dim: 6 * subdomains,
+                pointers: vec![0],
+                rows: Vec::new(),
+                values: Vec::new(),
+            },
         };
         for mut list in lists {
             list.sort_unstable();
             for _ in 0..6 {
-                matrix.interface.rows.extend(list.iter().flat_map(|&i| (0..6).map(move |r| 6 * i as usize + r)));
+                matrix.interface.rows.extend(
+                    list.iter()
+                        .flat_map(|&i| (0..6).map(move |r| 6 * i as usize + r)),
+                );
                 matrix.interface.pointers.push(matrix.interface.rows.len());
             }
             matrix.neighbours.extend(list);
@@ -185,7 +230,14 @@ impl CoarseMatrix {
         (36 * self.pointers[j as usize] + 6 * k, 6 * list.len())
     }
 
-    fn add_block(&self, gluing: &Gluing, block: usize, weight: f64, modes: &ModeTable<'_>, values: &mut [f64]) {
+    fn add_block(
+        &self,
+        gluing: &Gluing,
+        block: usize,
+        weight: f64,
+        modes: &ModeTable<'_>,
+        values: &mut [f64],
+    ) {
         let entries = gluing.block(block);
         for a in entries {
             let ra = modes.at(a.subdomain, a.local);
@@ -196,7 +248,8 @@ impl CoarseMatrix {
                 for c in 0..6 {
                     let column = &mut values[start + c * stride..][..6];
                     for r in 0..6 {
-                        column[r] += factor * (ra[0][r] * rb[0][c] + ra[1][r] * rb[1][c] + ra[2][r] * rb[2][c]);
+                        column[r] += factor
+                            * (ra[0][r] * rb[0][c] + ra[1][r] * rb[1][c] + ra[2][r] * rb[2][c]);
                     }
                 }
             }
@@ -219,7 +272,12 @@ impl CoarseMatrix {
     }
 
     /// `G W G^T`; weight one for all rows if there are no weights.
-    pub(crate) fn assemble(&self, gluing: &Gluing, modes: &ModeTable<'_>, weights: Option<&RowWeights>) -> Columns {
+    pub(crate) fn assemble(
+        &self,
+        gluing: &Gluing,
+        modes: &ModeTable<'_>,
+        weights: Option<&RowWeights>,
+    ) -> Columns {
         let mut matrix = self.interface.clone();
         let values = &mut matrix.values;
         let start = gluing.ranges().interface.start;
@@ -254,12 +312,24 @@ impl CoarseMatrix {
     }
 
     /// Corrects one interface block for weights other than one.
-    fn add_block_components(&self, gluing: &Gluing, block: usize, weights: &[f64], modes: &ModeTable<'_>, values: &mut [f64]) {
+    fn add_block_components(
+        &self,
+        gluing: &Gluing,
+        block: usize,
+        weights: &[f64],
+        modes: &ModeTable<'_>,
+        values: &mut [f64],
+    ) {
         for (c, weight) in weights.iter().enumerate() {
             let row: Vec<(u32, [f64; 6])> = gluing
                 .block(block)
                 .iter()
-                .map(|e| (e.subdomain, modes.at(e.subdomain, e.local)[c].map(|v| v * e.coefficient)))
+                .map(|e| {
+                    (
+                        e.subdomain,
+                        modes.at(e.subdomain, e.local)[c].map(|v| v * e.coefficient),
+                    )
+                })
                 .collect();
             self.add_row(&row, weight - 1.0, values);
         }

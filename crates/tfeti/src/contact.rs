@@ -30,8 +30,15 @@ impl ContactNodes {
     /// Points against a rigid obstacle, one frame per node.
     #[must_use]
     pub fn rigid(nodes: &[u32], frames: &[Frame], friction: bool) -> Self {
-        let point = |(&node, frame): (&u32, &Frame)| ContactPoint { node, opponent: None, frame: *frame };
-        Self { points: nodes.iter().zip(frames).map(point).collect(), friction }
+        let point = |(&node, frame): (&u32, &Frame)| ContactPoint {
+            node,
+            opponent: None,
+            frame: *frame,
+        };
+        Self {
+            points: nodes.iter().zip(frames).map(point).collect(),
+            friction,
+        }
     }
 }
 
@@ -75,7 +82,13 @@ pub(crate) fn contact_rows(
     for (index, point) in contact.points.iter().enumerate() {
         for node in std::iter::once(point.node).chain(point.opponent) {
             match used.get_mut(node as usize) {
-                None => return Err(TfetiError::UnknownNode { place: format!("contact point {index}"), node, nodes }),
+                None => {
+                    return Err(TfetiError::UnknownNode {
+                        place: format!("contact point {index}"),
+                        node,
+                        nodes,
+                    });
+                }
                 Some(true) => return Err(TfetiError::ContactNodeTwice { node }),
                 Some(flag) => *flag = true,
             }
@@ -91,8 +104,21 @@ pub(crate) fn contact_rows(
                 (c * a.sqrt(), c * b.sqrt(), c)
             }
         };
-        let space = Space::new(supports.at(point.node), point.opponent.and_then(|n| supports.at(n)), alpha, beta);
-        reduce(index, point, contact.friction, &space, scale, &mut rows, &mut removed);
+        let space = Space::new(
+            supports.at(point.node),
+            point.opponent.and_then(|n| supports.at(n)),
+            alpha,
+            beta,
+        );
+        reduce(
+            index,
+            point,
+            contact.friction,
+            &space,
+            scale,
+            &mut rows,
+            &mut removed,
+        );
     }
     Ok((rows, removed))
 }
@@ -105,7 +131,10 @@ fn check_frame(index: usize, point: &ContactPoint) -> Result<(), TfetiError> {
             let expected = if i == j { 1.0 } else { 0.0 };
             let error = (dot(axes[i], axes[j]) - expected).abs();
             if error.is_nan() || error > 1e-10 {
-                return Err(TfetiError::BadFrame { point: index, node: point.node });
+                return Err(TfetiError::BadFrame {
+                    point: index,
+                    node: point.node,
+                });
             }
         }
     }
@@ -143,13 +172,25 @@ impl Space {
         }
         prescribed.sort_by_key(|v| v.0);
         let gram = free_node * (alpha * alpha) + free_opponent * (beta * beta);
-        Self { alpha, beta, free_node, free_opponent, gram, prescribed }
+        Self {
+            alpha,
+            beta,
+            free_node,
+            free_opponent,
+            gram,
+            prescribed,
+        }
     }
 
     fn row(&self, direction: Vector3<f64>, scale: f64, factor: f64) -> ContactRow {
         let node = self.free_node * direction * (self.alpha * factor);
         let opponent = self.free_opponent * direction * (-self.beta * factor);
-        ContactRow { node: node.into(), opponent: opponent.into(), direction: direction.into(), scale: scale * factor }
+        ContactRow {
+            node: node.into(),
+            opponent: opponent.into(),
+            direction: direction.into(),
+            scale: scale * factor,
+        }
     }
 
     /// The row of a direction, divided by its length.
@@ -172,14 +213,33 @@ fn reduce(
     let tangents = point.frame.tangents.map(Vector3::from);
     let eigen = SymmetricEigen::new(space.gram);
     let largest = eigen.eigenvalues.max();
-    let held = |k: usize| eigen.eigenvalues[k] <= FIXED * (space.alpha * space.alpha + space.beta * space.beta);
-    let fixed: Vec<Vector3<f64>> = (0..3).filter(|&k| held(k)).map(|k| eigen.eigenvectors.column(k).into()).collect();
-    let mut drop = |kind, reason| removed.push(RemovedRow { node: point.node, kind, reason });
-    let movable = normal - fixed.iter().map(|d| *d * d.dot(&normal)).sum::<Vector3<f64>>();
+    let held = |k: usize| {
+        eigen.eigenvalues[k] <= FIXED * (space.alpha * space.alpha + space.beta * space.beta)
+    };
+    let fixed: Vec<Vector3<f64>> = (0..3)
+        .filter(|&k| held(k))
+        .map(|k| eigen.eigenvectors.column(k).into())
+        .collect();
+    let mut drop = |kind, reason| {
+        removed.push(RemovedRow {
+            node: point.node,
+            kind,
+            reason,
+        })
+    };
+    let movable = normal
+        - fixed
+            .iter()
+            .map(|d| *d * d.dot(&normal))
+            .sum::<Vector3<f64>>();
     if fixed.len() == 3 || largest <= 0.0 || movable.norm() <= FIXED {
         drop(RowKind::Normal, RemovalReason::NormalFixed);
         if friction {
-            let reason = if fixed.len() == 3 { RemovalReason::TangentFixed } else { RemovalReason::NoNormalRow };
+            let reason = if fixed.len() == 3 {
+                RemovalReason::TangentFixed
+            } else {
+                RemovalReason::NoNormalRow
+            };
             drop(RowKind::Tangential, reason);
             drop(RowKind::Tangential, reason);
         }
@@ -206,5 +266,10 @@ fn reduce(
         }
     }
     let normal = space.unit_row(normal, scale, unit);
-    rows.push(PointRows { point: index, normal, tangential, prescribed: space.prescribed.clone() });
+    rows.push(PointRows {
+        point: index,
+        normal,
+        tangential,
+        prescribed: space.prescribed.clone(),
+    });
 }

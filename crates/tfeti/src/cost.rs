@@ -33,7 +33,12 @@ pub struct InverseSettings {
 
 impl Default for InverseSettings {
     fn default() -> Self {
-        Self { kind: InverseKind::Auto, moore_penrose: true, memory_limit: 8 << 30, expected_products: 2000 }
+        Self {
+            kind: InverseKind::Auto,
+            moore_penrose: true,
+            memory_limit: 8 << 30,
+            expected_products: 2000,
+        }
     }
 }
 
@@ -69,7 +74,11 @@ impl InverseSettings {
     /// Checks the ranges.
     pub fn validate(&self) -> Result<(), TfetiError> {
         if self.expected_products == 0 {
-            return Err(TfetiError::Setting { name: "expected_products", value: 0.0, range: "at least 1" });
+            return Err(TfetiError::Setting {
+                name: "expected_products",
+                value: 0.0,
+                range: "at least 1",
+            });
         }
         Ok(())
     }
@@ -97,7 +106,11 @@ impl Size {
     }
 
     pub(crate) fn dense_bytes(&self) -> u64 {
-        let full = if self.keeps_full() { self.dim * self.dim } else { self.factor };
+        let full = if self.keeps_full() {
+            self.dim * self.dim
+        } else {
+            self.factor
+        };
         8 * (self.boundary * self.boundary + full) as u64
     }
 
@@ -150,7 +163,17 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
         })
         .collect();
     let bytes = |dense: &[bool]| -> u64 {
-        sizes.iter().zip(dense).map(|(s, d)| if *d { s.dense_bytes() } else { s.sparse_bytes() }).sum()
+        sizes
+            .iter()
+            .zip(dense)
+            .map(|(s, d)| {
+                if *d {
+                    s.dense_bytes()
+                } else {
+                    s.sparse_bytes()
+                }
+            })
+            .sum()
     };
     let mut needed = bytes(&dense);
     if needed > settings.memory_limit && settings.kind == InverseKind::Auto {
@@ -158,7 +181,11 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
         let mut order: Vec<usize> = (0..sizes.len()).filter(|&k| dense[k]).collect();
         let worth = |k: usize| {
             let saved = (sizes[k].sparse_product() - sizes[k].dense_product()).max(0.0);
-            saved / sizes[k].dense_bytes().saturating_sub(sizes[k].sparse_bytes()).max(1) as f64
+            saved
+                / sizes[k]
+                    .dense_bytes()
+                    .saturating_sub(sizes[k].sparse_bytes())
+                    .max(1) as f64
         };
         order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)).then(a.cmp(&b)));
         for k in order {
@@ -171,7 +198,10 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
         needed = bytes(&dense);
     }
     if needed > settings.memory_limit {
-        return Err(TfetiError::Memory { needed, limit: settings.memory_limit });
+        return Err(TfetiError::Memory {
+            needed,
+            limit: settings.memory_limit,
+        });
     }
     Ok(dense)
 }
@@ -182,22 +212,47 @@ mod tests {
 
     #[test]
     fn shared_classes_are_dense_single_ones_follow_the_cost() {
-        let shared = Size { dim: 648, boundary: 456, members: 188, factor: 39_740 };
+        let shared = Size {
+            dim: 648,
+            boundary: 456,
+            members: 188,
+            factor: 39_740,
+        };
         assert!(shared.prefers_dense(2000));
-        let single = Size { members: 1, ..shared };
-        assert!(!single.prefers_dense(2000), "one solve streams less than the dense block");
+        let single = Size {
+            members: 1,
+            ..shared
+        };
+        assert!(
+            !single.prefers_dense(2000),
+            "one solve streams less than the dense block"
+        );
         let settings = InverseSettings::default();
         assert_eq!(choose(&[shared, single], &settings), Ok(vec![true, false]));
     }
 
     #[test]
     fn memory_limit_turns_dense_into_sparse_and_then_fails() {
-        let size = Size { dim: 648, boundary: 456, members: 188, factor: 39_740 };
+        let size = Size {
+            dim: 648,
+            boundary: 456,
+            members: 188,
+            factor: 39_740,
+        };
         let sparse = size.sparse_bytes();
         let limited = InverseSettings::default().with_memory_limit(sparse);
         assert_eq!(choose(&[size], &limited), Ok(vec![false]));
         let impossible = limited.with_memory_limit(sparse - 1);
-        assert_eq!(choose(&[size], &impossible), Err(TfetiError::Memory { needed: sparse, limit: sparse - 1 }));
-        assert!(matches!(choose(&[size], &limited.with_kind(InverseKind::Dense)), Err(TfetiError::Memory { .. })));
+        assert_eq!(
+            choose(&[size], &impossible),
+            Err(TfetiError::Memory {
+                needed: sparse,
+                limit: sparse - 1
+            })
+        );
+        assert!(matches!(
+            choose(&[size], &limited.with_kind(InverseKind::Dense)),
+            Err(TfetiError::Memory { .. })
+        ));
     }
 }

@@ -29,7 +29,15 @@ pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize
 }
 
 /// `out += factor a^T b` for `a` of shape `k x m` and `b` of shape `k x n`.
-pub(crate) fn add_transposed_product(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
+pub(crate) fn add_transposed_product(
+    out: &mut [f64],
+    factor: f64,
+    a: &[f64],
+    b: &[f64],
+    m: usize,
+    k: usize,
+    n: usize,
+) {
     if m == 0 || n == 0 || k == 0 {
         return;
     }
@@ -44,7 +52,15 @@ pub(crate) fn add_transposed_product(out: &mut [f64], factor: f64, a: &[f64], b:
 }
 
 /// `out += factor a b^T` for `a` of shape `m x k` and `b` of shape `n x k`.
-pub(crate) fn add_product_transposed(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
+pub(crate) fn add_product_transposed(
+    out: &mut [f64],
+    factor: f64,
+    a: &[f64],
+    b: &[f64],
+    m: usize,
+    k: usize,
+    n: usize,
+) {
     if m == 0 || n == 0 || k == 0 {
         return;
     }
@@ -65,7 +81,11 @@ pub(crate) fn cholesky(a: &mut [f64], n: usize, threshold: f64) -> Result<(), us
         return Ok(());
     }
     let params = Default::default();
-    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params));
+    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(
+        n,
+        Par::Seq,
+        params,
+    ));
     llt::factor::cholesky_in_place(
         MatMut::from_column_major_slice_mut(a, n, n),
         Default::default(),

@@ -38,7 +38,11 @@ struct LaneScratch {
 const SMALL: usize = 1_500_000;
 
 impl DualOperator {
-    pub(crate) fn new(map: Arc<BoundaryMap>, bases: Arc<Vec<ClassBase>>, inverses: Arc<Vec<ClassInverse>>) -> Self {
+    pub(crate) fn new(
+        map: Arc<BoundaryMap>,
+        bases: Arc<Vec<ClassBase>>,
+        inverses: Arc<Vec<ClassInverse>>,
+    ) -> Self {
         let work = |k: usize| {
             let per_member = match (&inverses[k].boundary, &inverses[k].full) {
                 (None, Inverse::Sparse { factor, .. }) => 4 * factor.stored(),
@@ -47,7 +51,12 @@ impl DualOperator {
             per_member * map.classes[k].members.len()
         };
         let parallel = (0..inverses.len()).map(work).sum::<usize>() > SMALL;
-        Self { map, bases, inverses, parallel }
+        Self {
+            map,
+            bases,
+            inverses,
+            parallel,
+        }
     }
 
     /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
@@ -77,32 +86,47 @@ impl DualOperator {
             }
         }
         let memory = (!sparse.is_empty()).then(|| InverseMemory::for_all(&sparse));
-        LaneScratch { gathered: vec![0.0; gathered], full: vec![0.0; full], solved: vec![0.0; full], memory }
+        LaneScratch {
+            gathered: vec![0.0; gathered],
+            full: vec![0.0; full],
+            solved: vec![0.0; full],
+            memory,
+        }
     }
 
     /// `K+ B^T x` as a boundary vector.
     fn boundary_product(&self, x: &[f64], s: &mut DualScratch) {
-        self.map.for_lanes(&mut s.lanes, &mut s.boundary, self.parallel, &|lane, scratch, part| {
-            for (panel, out) in self.map.panels_of(lane, part) {
-                let columns = panel.columns.len();
-                let gathered = &mut scratch.gathered[..out.len()];
-                self.map.spread(x, panel, gathered);
-                let size = out.len() / columns;
-                let inverse = &self.inverses[panel.class];
-                if let Some(matrix) = &inverse.boundary {
-                    dense::multiply(out, matrix, gathered, size, size, columns);
-                } else if let Some(memory) = &mut scratch.memory {
-                    let base = &self.bases[panel.class];
-                    let nodes = &self.map.classes[panel.class].nodes;
-                    let dim = base.stiffness.dim;
-                    let (full, solved) = (&mut scratch.full[..dim * columns], &mut scratch.solved[..dim * columns]);
-                    full.fill(0.0);
-                    expand(nodes, gathered, full, dim);
-                    inverse.full.apply(&base.kernel, full, solved, columns, memory);
-                    restrict(nodes, solved, out, dim);
+        self.map.for_lanes(
+            &mut s.lanes,
+            &mut s.boundary,
+            self.parallel,
+            &|lane, scratch, part| {
+                for (panel, out) in self.map.panels_of(lane, part) {
+                    let columns = panel.columns.len();
+                    let gathered = &mut scratch.gathered[..out.len()];
+                    self.map.spread(x, panel, gathered);
+                    let size = out.len() / columns;
+                    let inverse = &self.inverses[panel.class];
+                    if let Some(matrix) = &inverse.boundary {
+                        dense::multiply(out, matrix, gathered, size, size, columns);
+                    } else if let Some(memory) = &mut scratch.memory {
+                        let base = &self.bases[panel.class];
+                        let nodes = &self.map.classes[panel.class].nodes;
+                        let dim = base.stiffness.dim;
+                        let (full, solved) = (
+                            &mut scratch.full[..dim * columns],
+                            &mut scratch.solved[..dim * columns],
+                        );
+                        full.fill(0.0);
+                        expand(nodes, gathered, full, dim);
+                        inverse
+                            .full
+                            .apply(&base.kernel, full, solved, columns, memory);
+                        restrict(nodes, solved, out, dim);
+                    }
                 }
-            }
-        });
+            },
+        );
     }
 
     /// `B K+ B^T x` on the contact rows only (the leading part of `y`), for traces without a full product's gather.
@@ -114,7 +138,10 @@ impl DualOperator {
 
 /// Writes the boundary rows of all columns into full columns.
 pub(crate) fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
-    for (source, target) in boundary.chunks_exact(3 * nodes.len()).zip(full.chunks_exact_mut(dim)) {
+    for (source, target) in boundary
+        .chunks_exact(3 * nodes.len())
+        .zip(full.chunks_exact_mut(dim))
+    {
         for (&node, value) in nodes.iter().zip(source.chunks_exact(3)) {
             target[3 * node as usize..][..3].copy_from_slice(value);
         }
@@ -123,7 +150,10 @@ pub(crate) fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usi
 
 /// Reads the boundary rows of full columns.
 pub(crate) fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
-    for (target, source) in boundary.chunks_exact_mut(3 * nodes.len()).zip(full.chunks_exact(dim)) {
+    for (target, source) in boundary
+        .chunks_exact_mut(3 * nodes.len())
+        .zip(full.chunks_exact(dim))
+    {
         for (&node, value) in nodes.iter().zip(target.chunks_exact_mut(3)) {
             value.copy_from_slice(&source[3 * node as usize..][..3]);
         }
@@ -138,8 +168,13 @@ impl SymmetricOperator for DualOperator {
     }
 
     fn scratch(&self) -> DualScratch {
-        let lanes = (0..self.map.lanes.len()).map(|lane| self.lane_scratch(lane)).collect();
-        DualScratch { boundary: vec![0.0; self.map.len()], lanes }
+        let lanes = (0..self.map.lanes.len())
+            .map(|lane| self.lane_scratch(lane))
+            .collect();
+        DualScratch {
+            boundary: vec![0.0; self.map.len()],
+            lanes,
+        }
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {

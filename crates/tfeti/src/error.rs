@@ -16,7 +16,9 @@ pub enum TfetiError {
         pivot: usize,
     },
     /// The rigid motions of a subdomain are dependent: its nodes lie on one line.
-    #[error("subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions")]
+    #[error(
+        "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions"
+    )]
     Collinear {
         /// Subdomain number.
         subdomain: usize,
@@ -56,7 +58,9 @@ pub enum TfetiError {
         direction: usize,
     },
     /// Prescribed displacements that do not fit the support.
-    #[error("support {support}: {found} prescribed displacements for {nodes} nodes; give one for all or one for each")]
+    #[error(
+        "support {support}: {found} prescribed displacements for {nodes} nodes; give one for all or one for each"
+    )]
     MotionLength {
         /// Position in the list of supports.
         support: usize,
@@ -91,7 +95,9 @@ pub enum TfetiError {
         difference: f64,
     },
     /// A node that takes part in two contact points.
-    #[error("node {node} takes part in more than one contact point; a node may touch one opponent only")]
+    #[error(
+        "node {node} takes part in more than one contact point; a node may touch one opponent only"
+    )]
     ContactNodeTwice {
         /// Mesh node.
         node: u32,
@@ -154,7 +160,9 @@ pub enum TfetiError {
         limit: u64,
     },
     /// The coarse matrix is not positive definite although no free motion was found.
-    #[error("the coarse matrix G W G^T is not positive definite (pivot {pivot}); some subdomains are held by interface rows of weight zero only")]
+    #[error(
+        "the coarse matrix G W G^T is not positive definite (pivot {pivot}); some subdomains are held by interface rows of weight zero only"
+    )]
     CoarseSingular {
         /// Elimination step at which the pivot vanished.
         pivot: usize,

@@ -104,15 +104,23 @@ impl Gluing {
         let contact_nodes = contact.unwrap_or(&none);
         let copies = |node: u32| decomposition.copies(node as usize).len();
         let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, copies)?;
-        let mut builder = Builder { decomposition, rule, gluing: Self::empty(rule, merged.cases) };
-        builder.gluing.removed = dropped.into_iter().chain(merged.removed.iter().copied()).collect();
+        let mut builder = Builder {
+            decomposition,
+            rule,
+            gluing: Self::empty(rule, merged.cases),
+        };
+        builder.gluing.removed = dropped
+            .into_iter()
+            .chain(merged.removed.iter().copied())
+            .collect();
         builder.contact(contact_nodes, &points);
         builder.interface(nodes);
         builder.dirichlet(&merged);
         let mut gluing = builder.gluing;
         gluing.ranges.interface.end = gluing.ranges.interface.start + 3 * gluing.blocks();
         let supported = gluing.row_pointers.len() - 1 - gluing.ranges.contact().len();
-        gluing.ranges.dirichlet = gluing.ranges.interface.end..gluing.ranges.interface.end + supported;
+        gluing.ranges.dirichlet =
+            gluing.ranges.interface.end..gluing.ranges.interface.end + supported;
         for case in &mut gluing.prescribed {
             for (row, _) in case.iter_mut() {
                 if *row as usize >= gluing.ranges.interface.start {
@@ -121,13 +129,21 @@ impl Gluing {
             }
             case.sort_by_key(|v| v.0);
         }
-        let torn: usize = decomposition.subdomains().iter().map(|s| s.nodes.len()).sum();
+        let torn: usize = decomposition
+            .subdomains()
+            .iter()
+            .map(|s| s.nodes.len())
+            .sum();
         let per_point = if contact_nodes.friction { 3 } else { 1 };
-        gluing.paper_rows =
-            3 * (torn - nodes.min(torn)) + 3 * merged.nodes.len() + per_point * contact_nodes.points.len();
+        gluing.paper_rows = 3 * (torn - nodes.min(torn))
+            + 3 * merged.nodes.len()
+            + per_point * contact_nodes.points.len();
         let entries = gluing.block_entries.len().max(gluing.row_entries.len());
         if entries.max(gluing.ranges.total()).max(3 * torn) >= u32::MAX as usize {
-            return Err(TfetiError::TooLarge { what: "entries of B", count: entries });
+            return Err(TfetiError::TooLarge {
+                what: "entries of B",
+                count: entries,
+            });
         }
         Ok(gluing)
     }
@@ -135,7 +151,13 @@ impl Gluing {
     fn empty(rule: RowRule, cases: usize) -> Self {
         Self {
             rule,
-            ranges: RowRanges { normal: 0..0, discs: 0..0, intervals: 0..0, interface: 0..0, dirichlet: 0..0 },
+            ranges: RowRanges {
+                normal: 0..0,
+                discs: 0..0,
+                intervals: 0..0,
+                interface: 0..0,
+                dirichlet: 0..0,
+            },
             block_pointers: vec![0],
             block_entries: Vec::new(),
             block_nodes: Vec::new(),
@@ -230,11 +252,13 @@ impl Gluing {
         }
         if range.contains(&row) {
             let (block, component) = ((row - range.start) / 3, (row - range.start) % 3);
-            out.extend(
-                self.block(block)
-                    .iter()
-                    .map(|e| (e.subdomain as usize, 3 * e.local as usize + component, e.coefficient)),
-            );
+            out.extend(self.block(block).iter().map(|e| {
+                (
+                    e.subdomain as usize,
+                    3 * e.local as usize + component,
+                    e.coefficient,
+                )
+            }));
         } else {
             for e in self.special(self.special_of(row)) {
                 for (c, &v) in e.vector.iter().enumerate() {
@@ -253,7 +277,8 @@ impl Gluing {
     }
 
     pub(crate) fn block(&self, block: usize) -> &[BlockEntry] {
-        &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
+        &self.block_entries
+            [self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
     }
 
     /// Number of rows that are not interface rows: contact rows, then support rows.
@@ -262,16 +287,25 @@ impl Gluing {
     }
 
     pub(crate) fn special(&self, special: usize) -> &[CopyEntry] {
-        &self.row_entries[self.row_pointers[special] as usize..self.row_pointers[special + 1] as usize]
+        &self.row_entries
+            [self.row_pointers[special] as usize..self.row_pointers[special + 1] as usize]
     }
 
     /// Row number of a special row.
     pub(crate) fn special_row(&self, special: usize) -> usize {
-        if special < self.ranges.interface.start { special } else { special + self.ranges.interface.len() }
+        if special < self.ranges.interface.start {
+            special
+        } else {
+            special + self.ranges.interface.len()
+        }
     }
 
     fn special_of(&self, row: usize) -> usize {
-        if row < self.ranges.interface.start { row } else { row - self.ranges.interface.len() }
+        if row < self.ranges.interface.start {
+            row
+        } else {
+            row - self.ranges.interface.len()
+        }
     }
 }
 
@@ -293,17 +327,29 @@ impl Builder<'_> {
             RowRule::Chained => (1, 1.0),
         };
         let vector = vector.map(|v| v * factor);
-        let entries = copies.iter().take(used).map(|c| CopyEntry { subdomain: c.subdomain, local: c.local, vector });
+        let entries = copies.iter().take(used).map(|c| CopyEntry {
+            subdomain: c.subdomain,
+            local: c.local,
+            vector,
+        });
         self.gluing.row_entries.extend(entries);
     }
 
     fn close(&mut self, node: u32) -> usize {
-        self.gluing.row_pointers.push(self.gluing.row_entries.len() as u32);
+        self.gluing
+            .row_pointers
+            .push(self.gluing.row_entries.len() as u32);
         self.gluing.row_nodes.push(node);
         self.gluing.row_pointers.len() - 2
     }
 
-    fn contact_row(&mut self, node: u32, opponent: Option<u32>, row: &ContactRow, prescribed: &[(u32, [f64; 3])]) -> usize {
+    fn contact_row(
+        &mut self,
+        node: u32,
+        opponent: Option<u32>,
+        row: &ContactRow,
+        prescribed: &[(u32, [f64; 3])],
+    ) -> usize {
         self.spread(node, row.node);
         if let Some(opponent) = opponent {
             self.spread(opponent, row.opponent);
@@ -319,7 +365,12 @@ impl Builder<'_> {
     }
 
     fn contact(&mut self, contact: &ContactNodes, points: &[PointRows]) {
-        let place = |p: &PointRows| (contact.points[p.point].node, contact.points[p.point].opponent);
+        let place = |p: &PointRows| {
+            (
+                contact.points[p.point].node,
+                contact.points[p.point].opponent,
+            )
+        };
         for p in points {
             let (node, opponent) = place(p);
             let row = self.contact_row(node, opponent, &p.normal, &p.prescribed);
@@ -333,7 +384,9 @@ impl Builder<'_> {
                 tangential: TangentialRows::None,
             });
             let skew = |r: &ContactRow| {
-                let length: f64 = (0..3).map(|c| r.node[c] * r.node[c] + r.opponent[c] * r.opponent[c]).sum();
+                let length: f64 = (0..3)
+                    .map(|c| r.node[c] * r.node[c] + r.opponent[c] * r.opponent[c])
+                    .sum();
                 (length - 1.0).abs() > 1e-12
             };
             if skew(&p.normal) || p.tangential.iter().any(skew) {
@@ -341,19 +394,34 @@ impl Builder<'_> {
             }
         }
         let normal = self.gluing.specials();
-        for (k, p) in points.iter().enumerate().filter(|(_, p)| p.tangential.len() == 2) {
+        for (k, p) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.tangential.len() == 2)
+        {
             let (node, opponent) = place(p);
             let row = self.contact_row(node, opponent, &p.tangential[0], &p.prescribed);
             self.contact_row(node, opponent, &p.tangential[1], &p.prescribed);
-            self.gluing.contact[k].tangential = TangentialRows::Disc { row, scale: p.tangential[0].scale };
+            self.gluing.contact[k].tangential = TangentialRows::Disc {
+                row,
+                scale: p.tangential[0].scale,
+            };
         }
         let discs = self.gluing.specials();
-        for (k, p) in points.iter().enumerate().filter(|(_, p)| p.tangential.len() == 1) {
+        for (k, p) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.tangential.len() == 1)
+        {
             let (node, opponent) = place(p);
             let tangent = &p.tangential[0];
             let row = self.contact_row(node, opponent, tangent, &p.prescribed);
             let (direction, scale) = (tangent.direction, tangent.scale);
-            self.gluing.contact[k].tangential = TangentialRows::Interval { row, direction, scale };
+            self.gluing.contact[k].tangential = TangentialRows::Interval {
+                row,
+                direction,
+                scale,
+            };
         }
         let end = self.gluing.specials();
         let ranges = &mut self.gluing.ranges;
@@ -367,19 +435,31 @@ impl Builder<'_> {
             for j in 1..copies.len() {
                 let entry = |k: usize, coefficient: f64| {
                     let copy = &copies[k];
-                    BlockEntry { subdomain: copy.subdomain, local: copy.local, coefficient }
+                    BlockEntry {
+                        subdomain: copy.subdomain,
+                        local: copy.local,
+                        coefficient,
+                    }
                 };
                 match self.rule {
                     RowRule::Orthonormal => {
                         let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
-                        self.gluing.block_entries.extend((0..j).map(|k| entry(k, scale)));
-                        self.gluing.block_entries.push(entry(j, -(j as f64) * scale));
+                        self.gluing
+                            .block_entries
+                            .extend((0..j).map(|k| entry(k, scale)));
+                        self.gluing
+                            .block_entries
+                            .push(entry(j, -(j as f64) * scale));
                     }
                     RowRule::Chained => {
-                        self.gluing.block_entries.extend([entry(j - 1, 1.0), entry(j, -1.0)]);
+                        self.gluing
+                            .block_entries
+                            .extend([entry(j - 1, 1.0), entry(j, -1.0)]);
                     }
                 }
-                self.gluing.block_pointers.push(self.gluing.block_entries.len() as u32);
+                self.gluing
+                    .block_pointers
+                    .push(self.gluing.block_entries.len() as u32);
                 self.gluing.block_nodes.push(node as u32);
             }
         }
@@ -388,7 +468,9 @@ impl Builder<'_> {
     fn dirichlet(&mut self, merged: &MergedSupports) {
         for fixed in &merged.nodes {
             let scale = match self.rule {
-                RowRule::Orthonormal => (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt(),
+                RowRule::Orthonormal => {
+                    (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt()
+                }
                 RowRule::Chained => 1.0,
             };
             for direction in &fixed.directions {
@@ -416,7 +498,10 @@ pub fn count_removed(removed: &[RemovedRow]) -> Vec<(RowKind, &'static str, usiz
         };
         *counts.entry((row.kind, reason)).or_default() += 1;
     }
-    let mut out: Vec<_> = counts.into_iter().map(|((kind, reason), count)| (kind, reason, count)).collect();
+    let mut out: Vec<_> = counts
+        .into_iter()
+        .map(|((kind, reason), count)| (kind, reason, count))
+        .collect();
     out.sort();
     out
 }

@@ -29,10 +29,12 @@ pub(crate) struct InverseMemory(Option<SolveMemory>);
 impl InverseMemory {
     /// Memory that serves each of some inverses with its number of columns.
     pub(crate) fn for_all(inverses: &[(&Inverse, usize)]) -> Self {
-        let needs = inverses.iter().filter_map(|(inverse, columns)| match inverse {
-            Inverse::Dense(_) => None,
-            Inverse::Sparse { factor, .. } => Some(factor.need(*columns)),
-        });
+        let needs = inverses
+            .iter()
+            .filter_map(|(inverse, columns)| match inverse {
+                Inverse::Dense(_) => None,
+                Inverse::Sparse { factor, .. } => Some(factor.need(*columns)),
+            });
         Self(needs.reduce(MemoryNeed::or).map(SolveMemory::new))
     }
 }
@@ -50,7 +52,14 @@ impl Inverse {
     }
 
     /// `out = K+ x` for column-major blocks; `x` is overwritten.
-    pub(crate) fn apply(&self, kernel: &Kernel, x: &mut [f64], out: &mut [f64], columns: usize, memory: &mut InverseMemory) {
+    pub(crate) fn apply(
+        &self,
+        kernel: &Kernel,
+        x: &mut [f64],
+        out: &mut [f64],
+        columns: usize,
+        memory: &mut InverseMemory,
+    ) {
         let dim = 3 * kernel.nodes();
         match self {
             Self::Dense(values) => dense::multiply(out, values, x, dim, dim, columns),
@@ -80,7 +89,10 @@ fn remove_rigid(kernel: &Kernel, x: &mut [f64]) {
 
 /// Mean of the diagonal: the scale of the matrix.
 fn scale(stiffness: &Columns) -> f64 {
-    let trace: f64 = (0..stiffness.dim).filter_map(|i| stiffness.find(i, i)).map(|k| stiffness.values[k]).sum();
+    let trace: f64 = (0..stiffness.dim)
+        .filter_map(|i| stiffness.find(i, i))
+        .map(|k| stiffness.values[k])
+        .sum();
     trace / stiffness.dim.max(1) as f64
 }
 
@@ -90,7 +102,11 @@ fn threshold(dim: usize) -> f64 {
 }
 
 /// The whole Moore-Penrose inverse as a dense matrix.
-pub(crate) fn dense_inverse(stiffness: &Columns, kernel: &Kernel, subdomain: usize) -> Result<Inverse, TfetiError> {
+pub(crate) fn dense_inverse(
+    stiffness: &Columns,
+    kernel: &Kernel,
+    subdomain: usize,
+) -> Result<Inverse, TfetiError> {
     let dim = stiffness.dim;
     let modes = kernel.modes();
     let a = scale(stiffness);
@@ -135,12 +151,20 @@ fn sub(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
 }
 
 fn cross(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    [
+        p[1] * q[2] - p[2] * q[1],
+        p[2] * q[0] - p[0] * q[2],
+        p[0] * q[1] - p[1] * q[0],
+    ]
 }
 
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    if length > 0.0 { v.map(|c| c / length) } else { [1.0, 0.0, 0.0] }
+    if length > 0.0 {
+        v.map(|c| c / length)
+    } else {
+        [1.0, 0.0, 0.0]
+    }
 }
 
 /// `K` plus springs of mean stiffness that stop the six rigid motions and nothing else.
@@ -176,7 +200,8 @@ pub(crate) fn sparse_inverse(
 ) -> Result<Inverse, TfetiError> {
     let matrix = regularised(stiffness, kernel);
     let singular = |pivot| TfetiError::Singular { subdomain, pivot };
-    let factor = SparseCholesky::new(symbolic, &matrix).map_err(|error| pattern_error(error, subdomain))?;
+    let factor =
+        SparseCholesky::new(symbolic, &matrix).map_err(|error| pattern_error(error, subdomain))?;
     let (smallest, pivot, largest) = factor.pivots();
     if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
         return Err(singular(pivot));
@@ -188,7 +213,10 @@ pub(crate) fn sparse_inverse(
 pub(crate) fn pattern_error(error: FactorError, subdomain: usize) -> TfetiError {
     match error {
         FactorError::Pivot(pivot) => TfetiError::Singular { subdomain, pivot },
-        FactorError::Pattern => TfetiError::TooLarge { what: "entries of a subdomain factor", count: subdomain },
+        FactorError::Pattern => TfetiError::TooLarge {
+            what: "entries of a subdomain factor",
+            count: subdomain,
+        },
     }
 }
 

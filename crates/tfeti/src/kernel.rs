@@ -28,7 +28,11 @@ pub(crate) fn mean(points: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
             sum[c] += p[c] - first[c];
         }
     }
-    [first[0] + sum[0] / count, first[1] + sum[1] / count, first[2] + sum[2] / count]
+    [
+        first[0] + sum[0] / count,
+        first[1] + sum[1] / count,
+        first[2] + sum[2] / count,
+    ]
 }
 
 /// The motion `t + omega x arm` of `motion = (t, omega)`.
@@ -36,7 +40,11 @@ pub(crate) fn mean(points: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
 pub(crate) fn displacement(motion: &[f64; 6], arm: &[f64; 3]) -> [f64; 3] {
     let [tx, ty, tz, wx, wy, wz] = *motion;
     let [rx, ry, rz] = *arm;
-    [tx + wy * rz - wz * ry, ty + wz * rx - wx * rz, tz + wx * ry - wy * rx]
+    [
+        tx + wy * rz - wz * ry,
+        ty + wz * rx - wx * rz,
+        tz + wx * ry - wy * rx,
+    ]
 }
 
 /// Adds the work conjugate of [`displacement`]: force and moment of `force` at `arm`.
@@ -57,9 +65,16 @@ impl Kernel {
     pub fn new(points: &[[f64; 3]], subdomain: usize) -> Result<Self, TfetiError> {
         let count = points.len().max(1) as f64;
         let centre = mean(points.iter().copied());
-        let mut arms: Vec<[f64; 3]> =
-            points.iter().map(|p| [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]]).collect();
-        let radius = (arms.iter().map(|r| r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sum::<f64>() / count).sqrt();
+        let mut arms: Vec<[f64; 3]> = points
+            .iter()
+            .map(|p| [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]])
+            .collect();
+        let radius = (arms
+            .iter()
+            .map(|r| r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+            .sum::<f64>()
+            / count)
+            .sqrt();
         let collinear = TfetiError::Collinear { subdomain };
         if !(radius.is_finite() && radius > 0.0) {
             return Err(collinear);
@@ -69,7 +84,12 @@ impl Kernel {
                 *c /= radius;
             }
         }
-        let mut kernel = Self { radius, arms, transform: identity(), inverse: identity() };
+        let mut kernel = Self {
+            radius,
+            arms,
+            transform: identity(),
+            inverse: identity(),
+        };
         // Cholesky of the Gram matrix, twice: the second pass removes what rounding left for slender subdomains.
         for _ in 0..2 {
             let lower = cholesky6(&kernel.gram()).ok_or_else(|| collinear.clone())?;
@@ -273,7 +293,12 @@ mod tests {
 
     #[test]
     fn nodes_on_a_line_are_refused() {
-        let points: Vec<[f64; 3]> = (0..5).map(|i| [f64::from(i), 2.0 * f64::from(i), 0.0]).collect();
-        assert_eq!(Kernel::new(&points, 7).unwrap_err(), TfetiError::Collinear { subdomain: 7 });
+        let points: Vec<[f64; 3]> = (0..5)
+            .map(|i| [f64::from(i), 2.0 * f64::from(i), 0.0])
+            .collect();
+        assert_eq!(
+            Kernel::new(&points, 7).unwrap_err(),
+            TfetiError::Collinear { subdomain: 7 }
+        );
     }
 }

@@ -4,7 +4,9 @@ use crate::boundary::BoundaryMap;
 use crate::class::Classes;
 use crate::cost::{InverseSettings, Size, choose};
 use crate::error::TfetiError;
-use crate::inverse::{Inverse, boundary_block, dense_inverse, pattern_error, regularised, sparse_inverse};
+use crate::inverse::{
+    Inverse, boundary_block, dense_inverse, pattern_error, regularised, sparse_inverse,
+};
 use crate::kernel::Kernel;
 use crate::sparse::{Columns, Symbolic};
 use rayon::prelude::*;
@@ -45,12 +47,29 @@ pub(crate) fn assemble(
         .map(|class| {
             let s = class.members[0] as usize;
             let subdomain = &decomposition.subdomains()[s];
-            let points: Vec<[f64; 3]> = subdomain.nodes.iter().map(|&n| mesh.points()[n as usize]).collect();
-            let regions: Vec<u32> = subdomain.elements.iter().map(|&e| mesh.regions()[e as usize]).collect();
-            let material = |message: String| TfetiError::Material { element: subdomain.elements[0] as usize, message };
-            let hooke = materials.of_tets(&regions).map_err(|e| material(e.to_string()))?;
-            let matrix = assemble_stiffness(&points, &subdomain.tets, |t| hooke[t]).map_err(|e| material(e.to_string()))?;
-            Ok(ClassBase { stiffness: Columns::from_symmetric(&matrix), kernel: Kernel::new(&points, s)? })
+            let points: Vec<[f64; 3]> = subdomain
+                .nodes
+                .iter()
+                .map(|&n| mesh.points()[n as usize])
+                .collect();
+            let regions: Vec<u32> = subdomain
+                .elements
+                .iter()
+                .map(|&e| mesh.regions()[e as usize])
+                .collect();
+            let material = |message: String| TfetiError::Material {
+                element: subdomain.elements[0] as usize,
+                message,
+            };
+            let hooke = materials
+                .of_tets(&regions)
+                .map_err(|e| material(e.to_string()))?;
+            let matrix = assemble_stiffness(&points, &subdomain.tets, |t| hooke[t])
+                .map_err(|e| material(e.to_string()))?;
+            Ok(ClassBase {
+                stiffness: Columns::from_symmetric(&matrix),
+                kernel: Kernel::new(&points, s)?,
+            })
         })
         .collect()
 }
@@ -66,7 +85,8 @@ pub(crate) fn invert(
         .into_par_iter()
         .map(|k| {
             let subdomain = classes.classes()[k].members[0] as usize;
-            Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel)).map_err(|e| pattern_error(e, subdomain))
+            Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel))
+                .map_err(|e| pattern_error(e, subdomain))
         })
         .collect::<Result<_, _>>()?;
     let sizes: Vec<Size> = (0..bases.len())
@@ -87,9 +107,16 @@ pub(crate) fn invert(
                 dense_inverse(&base.stiffness, &base.kernel, subdomain)?
             } else {
                 let project = settings.moore_penrose || dense[k];
-                sparse_inverse(&base.stiffness, &base.kernel, &symbolic[k], project, subdomain)?
+                sparse_inverse(
+                    &base.stiffness,
+                    &base.kernel,
+                    &symbolic[k],
+                    project,
+                    subdomain,
+                )?
             };
-            let boundary = dense[k].then(|| boundary_block(&full, &base.kernel, &map.classes[k].nodes));
+            let boundary =
+                dense[k].then(|| boundary_block(&full, &base.kernel, &map.classes[k].nodes));
             Ok(ClassInverse { full, boundary })
         })
         .collect()

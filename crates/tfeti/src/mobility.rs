@@ -42,7 +42,11 @@ impl fmt::Display for FreeMotion {
         for (k, m) in self.bodies.iter().enumerate() {
             let [t, r] = [m.translation, m.rotation];
             let separator = if k > 0 { "; " } else { "" };
-            write!(f, "{separator}body {} (with subdomain {}): ", m.body, m.subdomain)?;
+            write!(
+                f,
+                "{separator}body {} (with subdomain {}): ",
+                m.body, m.subdomain
+            )?;
             write!(f, "translation ({:.3}, {:.3}, {:.3}), ", t[0], t[1], t[2])?;
             write!(f, "rotation ({:.3}, {:.3}, {:.3})", r[0], r[1], r[2])?;
         }
@@ -73,12 +77,20 @@ const FREE: f64 = 1e-11;
 
 impl Mobility {
     /// `centres` are the means of the nodes of the subdomains.
-    pub(crate) fn new(classes: Arc<Classes>, bases: Arc<Vec<ClassBase>>, gluing: &Gluing, centres: Vec<[f64; 3]>) -> Self {
+    pub(crate) fn new(
+        classes: Arc<Classes>,
+        bases: Arc<Vec<ClassBase>>,
+        gluing: &Gluing,
+        centres: Vec<[f64; 3]>,
+    ) -> Self {
         let mut parent: Vec<u32> = (0..centres.len() as u32).collect();
         for block in 0..gluing.blocks() {
             let entries = gluing.block(block);
             for pair in entries.windows(2) {
-                let (a, b) = (root(&mut parent, pair[0].subdomain), root(&mut parent, pair[1].subdomain));
+                let (a, b) = (
+                    root(&mut parent, pair[0].subdomain),
+                    root(&mut parent, pair[1].subdomain),
+                );
                 parent[a.max(b) as usize] = a.min(b);
             }
         }
@@ -89,7 +101,11 @@ impl Mobility {
             let first = root(&mut parent, s as u32) as usize;
             if first == s {
                 body_of[s] = bodies.len() as u32;
-                bodies.push(Body { centre: [0.0; 3], radius: 1.0, first: s });
+                bodies.push(Body {
+                    centre: [0.0; 3],
+                    radius: 1.0,
+                    first: s,
+                });
                 members.push(vec![s]);
             } else {
                 body_of[s] = body_of[first];
@@ -102,12 +118,21 @@ impl Mobility {
                 .iter()
                 .map(|&s| {
                     let own = bases[classes.place(s).0].kernel.radius();
-                    (0..3).map(|c| (centres[s][c] - body.centre[c]).powi(2)).sum::<f64>() + own * own
+                    (0..3)
+                        .map(|c| (centres[s][c] - body.centre[c]).powi(2))
+                        .sum::<f64>()
+                        + own * own
                 })
                 .sum();
             body.radius = (square / members.len() as f64).sqrt();
         }
-        Self { body_of, bodies, centres, classes, bases }
+        Self {
+            body_of,
+            bodies,
+            centres,
+            classes,
+            bases,
+        }
     }
 
     pub(crate) fn bodies(&self) -> usize {
@@ -125,7 +150,14 @@ impl Mobility {
         let arm = std::array::from_fn(|k| (c[k] - body.centre[k]) / body.radius);
         let [x, y, z] = displacement(motion, &arm);
         let ratio = self.kernel(subdomain).radius() / body.radius;
-        [x, y, z, motion[3] * ratio, motion[4] * ratio, motion[5] * ratio]
+        [
+            x,
+            y,
+            z,
+            motion[3] * ratio,
+            motion[4] * ratio,
+            motion[5] * ratio,
+        ]
     }
 
     /// Adds what a row (entries times `factor`) does to the motions of the bodies.
@@ -143,14 +175,20 @@ impl Mobility {
             for mode in 0..6 {
                 let mut motion = [0.0; 6];
                 motion[mode] = 1.0;
-                let u = displacement(&self.restrict(s, &motion), self.kernel(s).arm(e.local as usize));
+                let u = displacement(
+                    &self.restrict(s, &motion),
+                    self.kernel(s).arm(e.local as usize),
+                );
                 out[at].1[mode] += factor * (0..3).map(|c| e.vector[c] * u[c]).sum::<f64>();
             }
         }
     }
 
     /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.
-    pub(crate) fn free(&self, rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>) -> Vec<FreeMotion> {
+    pub(crate) fn free(
+        &self,
+        rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>,
+    ) -> Vec<FreeMotion> {
         let dim = 6 * self.bodies.len();
         let mut gram = DMatrix::<f64>::zeros(dim, dim);
         for row in rows {
@@ -168,7 +206,16 @@ impl Mobility {
         let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
         (0..dim)
             .filter(|&k| eigen.eigenvalues[k] <= FREE * largest)
-            .map(|k| self.describe(&eigen.eigenvectors.column(k).iter().copied().collect::<Vec<_>>()))
+            .map(|k| {
+                self.describe(
+                    &eigen
+                        .eigenvectors
+                        .column(k)
+                        .iter()
+                        .copied()
+                        .collect::<Vec<_>>(),
+                )
+            })
             .collect()
     }
 
@@ -178,14 +225,22 @@ impl Mobility {
         let bodies = (0..self.bodies.len()).filter(moving).map(|body| {
             let [a, b, c, d, e, f] = part(body);
             let subdomain = self.bodies[body].first;
-            BodyMotion { body, subdomain, translation: [a, b, c], rotation: [d, e, f] }
+            BodyMotion {
+                body,
+                subdomain,
+                translation: [a, b, c],
+                rotation: [d, e, f],
+            }
         });
         let mut amplitudes = Vec::with_capacity(6 * self.body_of.len());
         for s in 0..self.body_of.len() {
             let motion = self.restrict(s, &part(self.body_of[s] as usize));
             amplitudes.extend(self.kernel(s).amplitudes(&motion));
         }
-        FreeMotion { bodies: bodies.collect(), amplitudes }
+        FreeMotion {
+            bodies: bodies.collect(),
+            amplitudes,
+        }
     }
 
     /// As many springs on coarse amplitudes as there are free motions, such that no free motion escapes them:
@@ -194,7 +249,12 @@ impl Mobility {
         // Gaussian elimination with full pivoting on the amplitudes of each body's first subdomain.
         let mut rows: Vec<Vec<f64>> = free
             .iter()
-            .map(|m| self.bodies.iter().flat_map(|b| m.amplitudes[6 * b.first..6 * b.first + 6].to_vec()).collect())
+            .map(|m| {
+                self.bodies
+                    .iter()
+                    .flat_map(|b| m.amplitudes[6 * b.first..6 * b.first + 6].to_vec())
+                    .collect()
+            })
             .collect();
         let mut springs = Vec::with_capacity(free.len());
         for k in 0..rows.len() {
@@ -232,8 +292,16 @@ fn root(parent: &mut [u32], mut s: u32) -> u32 {
 }
 
 /// `R^T B^T` on the columns of a lane: the amplitudes of the boundary forces of each column.
-pub(crate) fn amplitudes_of_forces(kernel: &Kernel, nodes: &[u32], forces: &[f64], out: &mut [f64]) {
-    for (column, target) in forces.chunks_exact(3 * nodes.len()).zip(out.chunks_exact_mut(6)) {
+pub(crate) fn amplitudes_of_forces(
+    kernel: &Kernel,
+    nodes: &[u32],
+    forces: &[f64],
+    out: &mut [f64],
+) {
+    for (column, target) in forces
+        .chunks_exact(3 * nodes.len())
+        .zip(out.chunks_exact_mut(6))
+    {
         let mut wrench = [0.0; 6];
         for (&node, f) in nodes.iter().zip(column.chunks_exact(3)) {
             crate::kernel::add_wrench(&mut wrench, kernel.arm(node as usize), [f[0], f[1], f[2]]);
@@ -243,8 +311,16 @@ pub(crate) fn amplitudes_of_forces(kernel: &Kernel, nodes: &[u32], forces: &[f64
 }
 
 /// `R alpha` on the boundary nodes of the columns.
-pub(crate) fn motions_of_amplitudes(kernel: &Kernel, nodes: &[u32], alpha: &[f64], out: &mut [f64]) {
-    for (column, amplitudes) in out.chunks_exact_mut(3 * nodes.len()).zip(alpha.chunks_exact(6)) {
+pub(crate) fn motions_of_amplitudes(
+    kernel: &Kernel,
+    nodes: &[u32],
+    alpha: &[f64],
+    out: &mut [f64],
+) {
+    for (column, amplitudes) in out
+        .chunks_exact_mut(3 * nodes.len())
+        .zip(alpha.chunks_exact(6))
+    {
         let motion = kernel.motion(amplitudes);
         for (&node, u) in nodes.iter().zip(column.chunks_exact_mut(3)) {
             u.copy_from_slice(&displacement(&motion, kernel.arm(node as usize)));

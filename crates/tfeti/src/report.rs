@@ -67,11 +67,19 @@ impl SetupReport {
     /// Seconds of the whole set-up.
     #[must_use]
     pub fn seconds(&self) -> f64 {
-        self.classes_seconds + self.gluing_seconds + self.assembly_seconds + self.inverse_seconds + self.coarse_seconds
+        self.classes_seconds
+            + self.gluing_seconds
+            + self.assembly_seconds
+            + self.inverse_seconds
+            + self.coarse_seconds
     }
 }
 
-pub(crate) fn class_reports(classes: &Classes, map: &BoundaryMap, inverses: &[ClassInverse]) -> Vec<ClassReport> {
+pub(crate) fn class_reports(
+    classes: &Classes,
+    map: &BoundaryMap,
+    inverses: &[ClassInverse],
+) -> Vec<ClassReport> {
     let report = |k: usize| ClassReport {
         members: classes.classes()[k].members.len(),
         unknowns: 3 * classes.classes()[k].nodes,
@@ -87,9 +95,25 @@ impl fmt::Display for SetupReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let dense = self.classes.iter().filter(|c| c.dense).count();
         let rows = &self.rows;
-        writeln!(f, "{} subdomains in {} classes ({dense} dense), n_p = {}", self.subdomains, self.classes.len(), self.primal_unknowns)?;
-        let [n, t, i, d] = [rows.normal.len(), rows.tangential().len(), rows.interface.len(), rows.dirichlet.len()];
-        writeln!(f, "n_d = {} (normal {n}, tangential {t}, interface {i}, supports {d}); as the paper counts {}", rows.total(), self.rows_as_paper)?;
+        writeln!(
+            f,
+            "{} subdomains in {} classes ({dense} dense), n_p = {}",
+            self.subdomains,
+            self.classes.len(),
+            self.primal_unknowns
+        )?;
+        let [n, t, i, d] = [
+            rows.normal.len(),
+            rows.tangential().len(),
+            rows.interface.len(),
+            rows.dirichlet.len(),
+        ];
+        writeln!(
+            f,
+            "n_d = {} (normal {n}, tangential {t}, interface {i}, supports {d}); as the paper counts {}",
+            rows.total(),
+            self.rows_as_paper
+        )?;
         for (kind, reason, count) in &self.removed {
             writeln!(f, "removed {count} {kind:?} rows: {reason}")?;
         }
@@ -97,9 +121,24 @@ impl fmt::Display for SetupReport {
             writeln!(f, "free motion: {motion}")?;
         }
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-        writeln!(f, "memory: inverses {:.1} MiB, coarse factor {:.1} MiB, tables {:.1} MiB", mib(self.inverse_bytes), mib(self.coarse_bytes), mib(self.table_bytes))?;
-        let times = [self.classes_seconds, self.gluing_seconds, self.assembly_seconds, self.inverse_seconds, self.coarse_seconds];
+        writeln!(
+            f,
+            "memory: inverses {:.1} MiB, coarse factor {:.1} MiB, tables {:.1} MiB",
+            mib(self.inverse_bytes),
+            mib(self.coarse_bytes),
+            mib(self.table_bytes)
+        )?;
+        let times = [
+            self.classes_seconds,
+            self.gluing_seconds,
+            self.assembly_seconds,
+            self.inverse_seconds,
+            self.coarse_seconds,
+        ];
         let [a, b, c, d, e] = times.map(|t| 1e3 * t);
-        write!(f, "set-up: classes {a:.1} ms, rows {b:.1} ms, assembly {c:.1} ms, inverses {d:.1} ms, coarse {e:.1} ms")
+        write!(
+            f,
+            "set-up: classes {a:.1} ms, rows {b:.1} ms, assembly {c:.1} ms, inverses {d:.1} ms, coarse {e:.1} ms"
+        )
     }
 }

@@ -1,7 +1,7 @@
 //! Supports: which directions of which nodes are fixed, and by how much they are moved.
 
 use crate::error::TfetiError;
-use crate::rows::{RemovedRow, RemovalReason, RowKind};
+use crate::rows::{RemovalReason, RemovedRow, RowKind};
 
 /// Directions fixed by a support.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,13 +53,21 @@ impl Support {
     /// Fixes all components of the nodes at zero.
     #[must_use]
     pub fn fixed(nodes: Vec<u32>) -> Self {
-        Self { nodes, directions: Directions::All, motion: None }
+        Self {
+            nodes,
+            directions: Directions::All,
+            motion: None,
+        }
     }
 
     /// Fixes some directions of the nodes at zero.
     #[must_use]
     pub fn partial(nodes: Vec<u32>, directions: Directions) -> Self {
-        Self { nodes, directions, motion: None }
+        Self {
+            nodes,
+            directions,
+            motion: None,
+        }
     }
 
     /// The same support, moved.
@@ -142,25 +150,40 @@ impl MergedSupports {
             if let Some(motion) = &support.motion {
                 if motion.values.len() != 1 && motion.values.len() != support.nodes.len() {
                     let (found, nodes) = (motion.values.len(), support.nodes.len());
-                    return Err(TfetiError::MotionLength { support: s, found, nodes });
+                    return Err(TfetiError::MotionLength {
+                        support: s,
+                        found,
+                        nodes,
+                    });
                 }
                 merged.cases = merged.cases.max(motion.case as usize + 1);
             }
             for (k, &node) in support.nodes.iter().enumerate() {
                 if node as usize >= nodes {
-                    return Err(TfetiError::UnknownNode { place: format!("support {s}"), node, nodes });
+                    return Err(TfetiError::UnknownNode {
+                        place: format!("support {s}"),
+                        node,
+                        nodes,
+                    });
                 }
                 let motion = match &support.motion {
                     None => None,
                     Some(motion) => {
-                        let value = if motion.values.len() == 1 { motion.values[0] } else { motion.values[k] };
+                        let value = if motion.values.len() == 1 {
+                            motion.values[0]
+                        } else {
+                            motion.values[k]
+                        };
                         if !value.iter().all(|v| v.is_finite()) {
                             return Err(TfetiError::BadMotion { support: s, node });
                         }
                         Some((motion.case, value))
                     }
                 };
-                let entry = fixed[node as usize].get_or_insert_with(|| FixedNode { node, directions: Vec::new() });
+                let entry = fixed[node as usize].get_or_insert_with(|| FixedNode {
+                    node,
+                    directions: Vec::new(),
+                });
                 for direction in &directions {
                     if let Some(row) = add_direction(entry, s, direction, motion)? {
                         merged.removed.push(row);
@@ -180,17 +203,26 @@ impl MergedSupports {
 fn unit_directions(s: usize, support: &Support) -> Result<Vec<[f64; 3]>, TfetiError> {
     let mut directions = support.directions.vectors();
     if support.nodes.is_empty() {
-        return Err(TfetiError::EmptySupport { support: s, what: "nodes" });
+        return Err(TfetiError::EmptySupport {
+            support: s,
+            what: "nodes",
+        });
     }
     if directions.is_empty() {
-        return Err(TfetiError::EmptySupport { support: s, what: "directions" });
+        return Err(TfetiError::EmptySupport {
+            support: s,
+            what: "directions",
+        });
     }
     for (k, direction) in directions.iter_mut().enumerate() {
         // Scaled first, so that neither tiny nor huge vectors lose their length.
         let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let finite = direction.iter().all(|v| v.is_finite());
         if !finite || largest == 0.0 {
-            return Err(TfetiError::BadDirection { support: s, direction: k });
+            return Err(TfetiError::BadDirection {
+                support: s,
+                direction: k,
+            });
         }
         let scaled = direction.map(|v| v / largest);
         let length = dot(&scaled, &scaled).sqrt();
@@ -242,11 +274,25 @@ fn add_direction(
             value.1 /= length;
         }
         let direction = rest.map(|v| v / length);
-        entry.directions.push(FixedDirection { direction, values, support });
+        entry.directions.push(FixedDirection {
+            direction,
+            values,
+            support,
+        });
         return Ok(None);
     }
     if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > 1e-7 * size) {
-        return Err(TfetiError::ContradictorySupports { node: entry.node, first, second: support, case, difference });
+        return Err(TfetiError::ContradictorySupports {
+            node: entry.node,
+            first,
+            second: support,
+            case,
+            difference,
+        });
     }
-    Ok(Some(RemovedRow { node: entry.node, kind: RowKind::Dirichlet, reason: RemovalReason::DoubledSupport { support } }))
+    Ok(Some(RemovedRow {
+        node: entry.node,
+        kind: RowKind::Dirichlet,
+        reason: RemovalReason::DoubledSupport { support },
+    }))
 }

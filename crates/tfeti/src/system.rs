@@ -33,7 +33,11 @@ pub struct TfetiBuilder<'a> {
 impl<'a> TfetiBuilder<'a> {
     /// A body without supports and contact.
     #[must_use]
-    pub fn new(mesh: &'a TetMesh, decomposition: &'a Decomposition, materials: &'a Materials) -> Self {
+    pub fn new(
+        mesh: &'a TetMesh,
+        decomposition: &'a Decomposition,
+        materials: &'a Materials,
+    ) -> Self {
         Self {
             mesh,
             decomposition,
@@ -91,15 +95,33 @@ impl<'a> TfetiBuilder<'a> {
         self.inverse.validate()?;
         let (mesh, decomposition) = (self.mesh, self.decomposition);
         let check = |what, found: usize, expected: usize| {
-            if found == expected { Ok(()) } else { Err(TfetiError::DecompositionMismatch { what, found, expected }) }
+            if found == expected {
+                Ok(())
+            } else {
+                Err(TfetiError::DecompositionMismatch {
+                    what,
+                    found,
+                    expected,
+                })
+            }
         };
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;
         let mut clock = Clock(Instant::now());
-        let classes = Arc::new(Classes::find(mesh, decomposition, self.materials, self.sharing)?);
+        let classes = Arc::new(Classes::find(
+            mesh,
+            decomposition,
+            self.materials,
+            self.sharing,
+        )?);
         let classes_seconds = clock.lap();
-        let gluing =
-            Arc::new(Gluing::new(decomposition, mesh.points().len(), self.supports, self.contact, self.rule)?);
+        let gluing = Arc::new(Gluing::new(
+            decomposition,
+            mesh.points().len(),
+            self.supports,
+            self.contact,
+            self.rule,
+        )?);
         let map = Arc::new(BoundaryMap::new(&classes, &gluing));
         let gluing_seconds = clock.lap();
         let bases = Arc::new(assemble(mesh, decomposition, self.materials, &classes)?);
@@ -111,7 +133,13 @@ impl<'a> TfetiBuilder<'a> {
             .iter()
             .map(|s| mean(s.nodes.iter().map(|&n| mesh.points()[n as usize])))
             .collect();
-        let coarse = Coarse::new(map.clone(), bases.clone(), classes.clone(), gluing.clone(), centres)?;
+        let coarse = Coarse::new(
+            map.clone(),
+            bases.clone(),
+            classes.clone(),
+            gluing.clone(),
+            centres,
+        )?;
         let factor = coarse.factor()?;
         let coarse_seconds = clock.lap();
         let dual = DualOperator::new(map.clone(), bases.clone(), inverses.clone());
@@ -130,15 +158,40 @@ impl<'a> TfetiBuilder<'a> {
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
             factorisations: bases.len() + 1,
-            free_motions: factor.free_motions().iter().map(ToString::to_string).collect(),
+            free_motions: factor
+                .free_motions()
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
             classes_seconds,
             gluing_seconds,
             assembly_seconds,
             inverse_seconds,
             coarse_seconds,
         };
-        let parts = Parts { classes, gluing, map, bases, inverses, offsets };
-        Ok(Tfeti { parts, dual, coarse, factor, report })
+        let node_of = decomposition
+            .subdomains()
+            .iter()
+            .flat_map(|s| s.nodes.iter().copied())
+            .collect();
+        let nodes = mesh.points().len();
+        let parts = Parts {
+            classes,
+            gluing,
+            map,
+            bases,
+            inverses,
+            offsets,
+        };
+        Ok(Tfeti {
+            parts,
+            dual,
+            coarse,
+            factor,
+            report,
+            node_of,
+            nodes,
+        })
     }
 }
 
@@ -174,6 +227,9 @@ pub struct Tfeti {
     coarse: Coarse,
     factor: CoarseFactor,
     report: SetupReport,
+    /// Mesh node of each node copy, in torn order.
+    pub(crate) node_of: Vec<u32>,
+    pub(crate) nodes: usize,
 }
 
 impl Tfeti {

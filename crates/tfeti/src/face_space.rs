@@ -1,0 +1,113 @@
+//! The coarse space as the face method of `signorini-qp` sees it.
+
+use crate::coarse::{Coarse, CoarseFactor, CoarseScratch};
+use crate::coarse_matrix::RowWeights;
+use crate::error::TfetiError;
+use signorini_qp::{CoarseSpace, QpError};
+
+/// `G x = e` with projectors weighted by the free rows of the current face, see [`CoarseSpace`].
+///
+/// Repairs use the interface and support rows only, so they never touch a contact row, as long as these rows hold the
+/// bodies; otherwise they use the free rows of the face.
+#[derive(Debug)]
+pub struct FaceSpace {
+    coarse: Coarse,
+    /// Factor with the weights of always free rows, if those hold every body.
+    always: Option<CoarseFactor>,
+    face: CoarseFactor,
+    weights: Vec<f64>,
+    rhs: Vec<f64>,
+    alpha: Vec<f64>,
+    scratch: CoarseScratch,
+}
+
+/// Work on a free motion above this fraction of the norm of `e` makes a face deficient.
+const WORK: f64 = 1e-9;
+
+impl FaceSpace {
+    /// For the coarse space of a system; `contact_rows` is the number of leading rows with constraints.
+    ///
+    /// # Errors
+    /// [`TfetiError`] if a factorisation fails.
+    pub fn new(coarse: &Coarse, contact_rows: usize) -> Result<Self, TfetiError> {
+        let mut weights = vec![1.0; coarse.dim()];
+        weights[..contact_rows].fill(0.0);
+        let factor = coarse.factor_weighted(RowWeights::diagonal(weights.clone()))?;
+        let always = factor.free_motions().is_empty().then(|| factor.clone());
+        Ok(Self {
+            scratch: coarse.scratch(),
+            coarse: coarse.clone(),
+            always,
+            face: factor,
+            weights,
+            rhs: vec![0.0; coarse.rows()],
+            alpha: vec![0.0; coarse.rows()],
+        })
+    }
+
+    /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e` does
+    /// no work on them.
+    pub fn set_rhs(&mut self, e: &[f64]) {
+        self.rhs.copy_from_slice(e);
+    }
+
+    /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last face.
+    pub fn amplitudes(&mut self, residual: &[f64], alpha: &mut [f64]) {
+        self.face.amplitudes(residual, alpha, &mut self.scratch);
+    }
+
+    fn deficiency(&self, factor: &CoarseFactor) -> Option<String> {
+        let size = self.rhs.iter().map(|v| v * v).sum::<f64>().sqrt();
+        factor.free_motions().iter().find_map(|motion| {
+            let work: f64 = motion.amplitudes.iter().zip(&self.rhs).map(|(a, e)| a * e).sum();
+            let length = motion.amplitudes.iter().map(|v| v * v).sum::<f64>().sqrt();
+            (work.abs() > WORK * size * length).then(|| motion.to_string())
+        })
+    }
+}
+
+impl CoarseSpace for FaceSpace {
+    fn dim(&self) -> usize {
+        self.coarse.dim()
+    }
+
+    fn rows(&self) -> usize {
+        self.coarse.rows()
+    }
+
+    fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
+        if w == self.weights {
+            return match self.deficiency(&self.face) {
+                Some(motion) => Err(QpError::CoarseDeficient { motion }),
+                None => Ok(false),
+            };
+        }
+        let factor = self
+            .coarse
+            .factor_weighted(RowWeights::diagonal(w.to_vec()))
+            .map_err(|error| QpError::CoarseDeficient { motion: error.to_string() })?;
+        if let Some(motion) = self.deficiency(&factor) {
+            return Err(QpError::CoarseDeficient { motion });
+        }
+        self.weights.copy_from_slice(w);
+        self.face = factor;
+        Ok(true)
+    }
+
+    fn project(&mut self, x: &mut [f64]) {
+        self.face.project(x, None, &mut self.scratch);
+    }
+
+    fn project_transpose(&mut self, g: &mut [f64]) {
+        self.face.project_transpose(g, &mut self.alpha, &mut self.scratch);
+    }
+
+    fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
+        self.face.amplitudes(g, out, &mut self.scratch);
+    }
+
+    fn repair(&mut self, x: &mut [f64], e: &[f64]) {
+        let factor = self.always.as_ref().unwrap_or(&self.face);
+        factor.project(x, Some(e), &mut self.scratch);
+    }
+}

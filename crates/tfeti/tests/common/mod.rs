@@ -1,0 +1,99 @@
+//! The brick of the benchmark, for the tests.
+#![allow(dead_code)]
+
+use signorini_fem_mesh::{
+    Decomposition, Frame, Hooke, LoadDensity, Materials, TetMesh, assemble_load, brick,
+};
+use signorini_tfeti::{ContactNodes, Support};
+
+pub(crate) struct Brick {
+    pub(crate) mesh: TetMesh,
+    pub(crate) decomposition: Decomposition,
+    pub(crate) materials: Materials,
+    pub(crate) fixed: Vec<u32>,
+    pub(crate) bottom: Vec<u32>,
+    pub(crate) frames: Vec<Frame>,
+}
+
+pub(crate) fn steel() -> Materials {
+    Materials::uniform(Hooke::isotropic(211.9e9, 0.277).unwrap())
+}
+
+impl Brick {
+    /// `3n x n x n` subdomains of `cells^3` cubes.
+    pub(crate) fn new(n: usize, cells: usize) -> Self {
+        Self::of(n, cells, 0.0)
+    }
+
+    pub(crate) fn of(n: usize, cells: usize, perturbation: f64) -> Self {
+        let mut builder = brick::Brick::new([3.0, 1.0, 1.0], [3 * n * cells, n * cells, n * cells]);
+        if perturbation > 0.0 {
+            builder = builder.perturbed(perturbation, 7);
+        }
+        let mesh = builder.build().unwrap();
+        let decomposition = Decomposition::boxes(&mesh, [3 * n, n, n]).unwrap();
+        let fixed = mesh.nodes_on(brick::X_MIN);
+        let bottom = mesh.nodes_on(brick::Z_MIN);
+        let frame = Frame {
+            normal: [0.0, 0.0, -1.0],
+            tangents: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        };
+        let frames = vec![frame; bottom.len()];
+        Self {
+            mesh,
+            decomposition,
+            materials: steel(),
+            fixed,
+            bottom,
+            frames,
+        }
+    }
+
+    pub(crate) fn supports(&self) -> Vec<Support> {
+        vec![Support::fixed(self.fixed.clone())]
+    }
+
+    pub(crate) fn contact(&self, friction: bool) -> ContactNodes {
+        ContactNodes::rigid(&self.bottom, &self.frames, friction)
+    }
+
+    pub(crate) fn loads(&self) -> Vec<Vec<f64>> {
+        let top = LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -3.0e7]);
+        let side = LoadDensity::traction(brick::X_MAX, [9.0e6, 1.0e6, -1.5e7]);
+        let mut loads = assemble_load(&self.mesh, &self.decomposition, &top).unwrap();
+        let more = assemble_load(&self.mesh, &self.decomposition, &side).unwrap();
+        for (a, b) in loads.iter_mut().zip(&more) {
+            a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
+        }
+        loads
+    }
+}
+
+/// A reproducible vector without structure.
+pub(crate) fn noise(n: usize, seed: u64) -> Vec<f64> {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    (0..n)
+        .map(|_| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+        })
+        .collect()
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+pub(crate) fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(x, y)| (x - y) * (x - y))
+        .sum::<f64>()
+        .sqrt()
+}
