@@ -117,7 +117,9 @@ pub enum QpError {
         products: usize,
     },
     /// The free components of a face leave a combination of the equality rows without weight.
-    #[error("the free components do not determine the multiplier of the equality ({motion}); more components must be free, or use smalse")]
+    #[error(
+        "the free components do not determine the multiplier of the equality ({motion}); more components must be free, or use smalse"
+    )]
     CoarseDeficient {
         /// What stays undetermined, in the words of the coarse space.
         motion: String,

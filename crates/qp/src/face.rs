@@ -14,7 +14,7 @@
 //! the preconditioner.
 //!
 //! The prediction is not monotone in general. [`Status::Stagnated`] tells that no progress was made for
-//! `patience` faces; [`smalse`](crate::smalse) then continues from `x` and is proved to converge.
+//! `patience` faces; [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
 //!
 //! | local | meaning |
 //! |---|---|
@@ -58,7 +58,7 @@ pub type FaceHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
-/// [`QpError::CoarseDeficient`] if the free components do not hold the rigid modes.
+/// [`QpError::CoarseDeficient`] if not even all components together hold the rigid modes.
 pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
@@ -83,7 +83,11 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     ] {
         expect_length(what, found, n)?;
     }
-    expect_length("the right side of the equality", problem.rhs.len(), coarse.rows())?;
+    expect_length(
+        "the right side of the equality",
+        problem.rhs.len(),
+        coarse.rows(),
+    )?;
     settings.validate()?;
     set.validate()?;
     expect_finite("x", x)?;
@@ -98,7 +102,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     set.project(x);
     work.face.resize(set);
     work.face.guess(set, x);
-    set_face(problem, coarse, set, work, &mut report)?;
+    if let Err(QpError::CoarseDeficient { .. }) = set_face(problem, coarse, set, work, &mut report)
+    {
+        // held by its constraints only: begin with all of them at work
+        work.face.free_all(set);
+        set_face(problem, coarse, set, work, &mut report)?;
+    }
     coarse.repair(x, problem.rhs);
     correct(problem, x, ax, ax_known, work, &mut report);
 
@@ -107,9 +116,16 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     let mut waited = 0;
     loop {
         residual(problem, coarse, ax, work);
-        work.face.classify(set, x, &work.residual, problem.scale, settings.natural_step);
-        if set_face(problem, coarse, set, work, &mut report)? {
-            residual(problem, coarse, ax, work);
+        work.face
+            .classify(set, x, &work.residual, problem.scale, settings.natural_step);
+        match set_face(problem, coarse, set, work, &mut report) {
+            Ok(true) => residual(problem, coarse, ax, work),
+            Ok(false) => {}
+            Err(QpError::CoarseDeficient { .. }) => {
+                report.status = Status::Stagnated;
+                return Ok(report);
+            }
+            Err(error) => return Err(error),
         }
         for (r, g) in work.r.iter_mut().zip(&work.residual) {
             *r = -g;
@@ -122,7 +138,10 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         report.error = ratio(errors.0, x_norm);
         report.constrained_error = ratio(errors.1, limits.constrained / settings.tolerance);
         if !(errors.0.is_finite() && x_norm.is_finite()) {
-            return Err(QpError::NotFinite { quantity: "the error estimate", products: report.products() });
+            return Err(QpError::NotFinite {
+                quantity: "the error estimate",
+                products: report.products(),
+            });
         }
         // the jump is what the last move to the predicted face changed
         let settled = report.faces == 0 || last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
@@ -130,7 +149,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             report.status = Status::Converged;
             return Ok(report);
         }
-        let measure = (errors.0 / limits.all).max(errors.1.max(last_jump.min(f64::MAX)) / limits.constrained);
+        let measure =
+            (errors.0 / limits.all).max(errors.1.max(last_jump.min(f64::MAX)) / limits.constrained);
         if measure < 0.9 * best {
             best = measure;
             waited = 0;
@@ -146,20 +166,33 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             return Ok(report);
         }
 
-        conjugate_gradients(problem, coarse, set, x, ax, settings, &limits, constrained, work, &mut report)?;
+        conjugate_gradients(
+            problem,
+            coarse,
+            set,
+            x,
+            ax,
+            settings,
+            &limits,
+            constrained,
+            work,
+            &mut report,
+        )?;
         report.faces += 1;
 
         // the natural map predicts the next face, and x moves there
         residual(problem, coarse, ax, work);
         vector::copy(x, &mut work.t);
-        work.face.settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
+        work.face
+            .settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
         let few = (settings.settled * work.face.free_bounds as f64).max(2.0);
         if work.face.changed as f64 <= few {
             hook(x, set);
             set.validate()?;
             report.hook_calls += 1;
         }
-        work.face.settle_discs(set, x, &work.residual, problem.scale, settings.natural_step);
+        work.face
+            .settle_discs(set, x, &work.residual, problem.scale, settings.natural_step);
         last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
         if last_jump > 0.0 {
             coarse.repair(x, problem.rhs);
@@ -191,7 +224,10 @@ impl Limits {
     fn new(tolerance: f64, x_norm: f64, c_norm: f64) -> Self {
         // a vanishing contact force is measured against a millionth of all forces
         let all = tolerance * x_norm;
-        Self { all, constrained: tolerance * c_norm.max(1e-6 * x_norm) }
+        Self {
+            all,
+            constrained: tolerance * c_norm.max(1e-6 * x_norm),
+        }
     }
 }
 
@@ -245,7 +281,9 @@ fn correct<A: SymmetricOperator, M: SymmetricOperator>(
         if work.t.iter().all(|t| *t == 0.0) {
             return;
         }
-        problem.operator.apply(&work.t, &mut work.ap, &mut work.operator);
+        problem
+            .operator
+            .apply(&work.t, &mut work.ap, &mut work.operator);
         vector::axpy(1.0, &work.ap, ax);
     } else {
         problem.operator.apply(x, ax, &mut work.operator);
@@ -263,7 +301,9 @@ fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 ) {
     vector::copy(&work.r, &mut work.ap);
     work.face.damp(set, &mut work.ap);
-    problem.preconditioner.apply(&work.ap, &mut work.z, &mut work.preconditioner);
+    problem
+        .preconditioner
+        .apply(&work.ap, &mut work.z, &mut work.preconditioner);
     work.face.restrict(set, &mut work.z);
     work.face.damp(set, &mut work.z);
     coarse.project(&mut work.z);
@@ -295,7 +335,9 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
         if report.products() >= settings.max_products || rho <= 0.0 {
             return Ok(());
         }
-        problem.operator.apply(&work.p, &mut work.ap, &mut work.operator);
+        problem
+            .operator
+            .apply(&work.p, &mut work.ap, &mut work.operator);
         report.cg_steps += 1;
         // A p is added to A x with its full length, before curvature and projection
         let curvature_free = vector::dot(&work.p, &work.ap);
@@ -303,13 +345,19 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
         work.face.add_curvature(set, &work.p, &mut work.ap);
         let curvature = vector::dot(&work.p, &work.ap);
         if !curvature.is_finite() {
-            return Err(QpError::NotFinite { quantity: "the curvature", products: report.products() });
+            return Err(QpError::NotFinite {
+                quantity: "the curvature",
+                products: report.products(),
+            });
         }
         if curvature <= 0.0 {
             let pp = vector::dot(&work.p, &work.p);
             let size = vector::norm(&work.t) * pp.sqrt();
             if curvature_free < -1e-10 * size {
-                return Err(QpError::Indefinite { curvature: curvature / pp, products: report.products() });
+                return Err(QpError::Indefinite {
+                    curvature: curvature / pp,
+                    products: report.products(),
+                });
             }
             return Ok(());
         }

@@ -93,16 +93,28 @@ impl FaceSettings {
             if value > 0.0 && value < 1.0 {
                 Ok(())
             } else {
-                Err(QpError::Setting { name, value, range: "(0, 1)" })
+                Err(QpError::Setting {
+                    name,
+                    value,
+                    range: "(0, 1)",
+                })
             }
         };
         open("tolerance", self.tolerance)?;
         open("forcing", self.forcing)?;
         if !(self.natural_step > 0.0 && self.natural_step <= 1.0) {
-            return Err(QpError::Setting { name: "natural_step", value: self.natural_step, range: "(0, 1]" });
+            return Err(QpError::Setting {
+                name: "natural_step",
+                value: self.natural_step,
+                range: "(0, 1]",
+            });
         }
         if !(self.settled >= 0.0 && self.settled <= 1.0) {
-            return Err(QpError::Setting { name: "settled", value: self.settled, range: "[0, 1]" });
+            return Err(QpError::Setting {
+                name: "settled",
+                value: self.settled,
+                range: "[0, 1]",
+            });
         }
         for (name, value) in [
             ("max_faces", self.max_faces),
@@ -110,7 +122,11 @@ impl FaceSettings {
             ("patience", self.patience),
         ] {
             if value == 0 {
-                return Err(QpError::Setting { name, value: 0.0, range: "at least 1" });
+                return Err(QpError::Setting {
+                    name,
+                    value: 0.0,
+                    range: "at least 1",
+                });
             }
         }
         Ok(())

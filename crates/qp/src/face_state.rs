@@ -18,7 +18,11 @@ pub(crate) enum Disc {
     Free,
     /// On the circle: free along `tau` only, with extra curvature `kappa`; `damp` scales the
     /// preconditioner for it.
-    Sliding { tau: [f64; 2], kappa: f64, damp: f64 },
+    Sliding {
+        tau: [f64; 2],
+        kappa: f64,
+        damp: f64,
+    },
 }
 
 /// Classification of all blocks; unconstrained components are free and not stored.
@@ -97,8 +101,32 @@ impl Face {
         self.free_bounds = free_bounds;
     }
 
+    /// Every bounded component free, every disc with a positive radius free.
+    pub(crate) fn free_all(&mut self, set: &ProductSet) {
+        let Self { free, discs, .. } = self;
+        visit(
+            set,
+            |_, k, lo, hi| free[k] = lo < hi,
+            |_, k, radius| {
+                discs[k] = if radius > 0.0 {
+                    Disc::Free
+                } else {
+                    Disc::Fixed
+                }
+            },
+        );
+        self.free_bounds = self.free.iter().filter(|f| **f).count();
+    }
+
     /// Classifies every block at the feasible point `x` with gradient `g`.
-    pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], g: &[f64], scale: &[f64], step: f64) {
+    pub(crate) fn classify(
+        &mut self,
+        set: &ProductSet,
+        x: &[f64],
+        g: &[f64],
+        scale: &[f64],
+        step: f64,
+    ) {
         let Self { free, discs, .. } = self;
         let (mut changed, mut free_bounds) = (0, 0);
         visit(
@@ -136,7 +164,11 @@ impl Face {
                 }
                 Segment::Discs { .. } => {
                     for pair in w[start..end].chunks_exact_mut(2) {
-                        pair.fill(if self.discs[disc] == Disc::Free { 1.0 } else { 0.0 });
+                        pair.fill(if self.discs[disc] == Disc::Free {
+                            1.0
+                        } else {
+                            0.0
+                        });
                         disc += 1;
                     }
                 }
@@ -210,7 +242,14 @@ impl Face {
 
     /// Moves the bounded components of `x` by the natural map: onto their bound where it predicts that
     /// they are held, else into the interval.
-    pub(crate) fn settle_bounds(&self, set: &ProductSet, x: &mut [f64], g: &[f64], scale: &[f64], step: f64) {
+    pub(crate) fn settle_bounds(
+        &self,
+        set: &ProductSet,
+        x: &mut [f64],
+        g: &[f64],
+        scale: &[f64],
+        step: f64,
+    ) {
         let mut start = 0;
         for segment in set.segments() {
             if let Segment::Bounds { lower, upper } = segment {
@@ -232,15 +271,27 @@ impl Face {
 
     /// Moves the discs of `x` into their circles: sliding points are drawn back along the radius, others
     /// go where the natural map predicts that they slide.
-    pub(crate) fn settle_discs(&self, set: &ProductSet, x: &mut [f64], g: &[f64], scale: &[f64], step: f64) {
+    pub(crate) fn settle_discs(
+        &self,
+        set: &ProductSet,
+        x: &mut [f64],
+        g: &[f64],
+        scale: &[f64],
+        step: f64,
+    ) {
         let (mut start, mut disc) = (0, 0);
         for segment in set.segments() {
             if let Segment::Discs { radii } = segment {
                 for (k, &radius) in radii.iter().enumerate() {
                     let i = start + 2 * k;
                     let sliding = matches!(self.discs[disc], Disc::Sliding { .. });
-                    let moved =
-                        settle_disc([x[i], x[i + 1]], [g[i], g[i + 1]], radius, step * scale[i], sliding);
+                    let moved = settle_disc(
+                        [x[i], x[i + 1]],
+                        [g[i], g[i + 1]],
+                        radius,
+                        step * scale[i],
+                        sliding,
+                    );
                     x[i] = moved[0];
                     x[i + 1] = moved[1];
                     disc += 1;
@@ -265,7 +316,11 @@ fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
         return Disc::Free;
     }
     let kappa = -outward / radius;
-    Disc::Sliding { tau: [-n[1], n[0]], kappa, damp: (1.0 / (1.0 + kappa * scale)).sqrt() }
+    Disc::Sliding {
+        tau: [-n[1], n[0]],
+        kappa,
+        damp: (1.0 / (1.0 + kappa * scale)).sqrt(),
+    }
 }
 
 fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {
@@ -274,7 +329,11 @@ fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> 
     }
     let length = x[0].hypot(x[1]);
     if sliding {
-        return if length > 0.0 { [x[0] * (radius / length), x[1] * (radius / length)] } else { x };
+        return if length > 0.0 {
+            [x[0] * (radius / length), x[1] * (radius / length)]
+        } else {
+            x
+        };
     }
     let s = [x[0] - a * g[0], x[1] - a * g[1]];
     let reach = s[0].hypot(s[1]);

@@ -1,1 +1,57 @@
-//! (in construction)
+//! Three-dimensional quasistatic contact with Coulomb friction by Total FETI: the facade.
+//!
+//! Everything is defined in the crates below and re-exported here.
+//!
+//! | module | package | holds |
+//! |---|---|---|
+//! | [`fem_mesh`] | `signorini-fem-mesh` | tetrahedra, P1 elasticity, loads, decomposition, files |
+//! | [`qp`] | `signorini-qp` | quadratic programming: KPRGP, SMALSE, face method |
+//! | [`tfeti`] | `signorini-tfeti` | gluing, kernels, inverses, dual operator, projectors |
+//! | [`contact`] | `signorini-contact` | scenes, plans, time levels, Coulomb friction, certificates |
+//!
+//! ```
+//! use signorini::prelude::*;
+//!
+//! # fn main() -> Result<(), Error> {
+//! // a steel brick, clamped at one end, pressed on a rough floor 0.1 m below and pulled along it
+//! let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
+//! let steel = Hooke::isotropic(211.9e9, 0.277)?;
+//! let scene = Scene::new(mesh, Materials::uniform(steel))
+//!     .with_support(Support::fixed(brick::X_MIN))
+//!     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?))
+//!     .with_load(Load::traction(brick::X_MAX, [9e8, 0.0, -15e8]).with_history(History::ramp(1.0, 1.0)?))
+//!     .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(Friction::coulomb(0.3)))
+//!     .with_boxes([3, 1, 1])
+//!     .with_analysis(Analysis::quasistatic(1.0, 5));
+//! let mut simulation = Simulation::new(scene, Settings::default())?;
+//! println!("{}", simulation.plan());
+//! while !simulation.is_finished() {
+//!     let frame = simulation.step()?;
+//!     let sum = frame.summary();
+//!     println!("t = {:.2} s: {} nodes touch, {} slide", frame.time(), sum.active, sum.slip);
+//!     assert!(frame.report().status.converged() && frame.certificate().largest() < 1e-6);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes. Both are off by default.
+
+pub use signorini_contact as contact;
+pub use signorini_fem_mesh as fem_mesh;
+pub use signorini_qp as qp;
+pub use signorini_tfeti as tfeti;
+
+mod error;
+pub use error::Error;
+
+/// The names that a program usually needs.
+pub mod prelude {
+    pub use crate::Error;
+    pub use signorini_contact::{
+        Analysis, Certificate, Coefficient, Contact, ContactError, ContactState, DifferenceFormula, Directions, Flow,
+        Frame, Friction, Gap, LevelStatus, Load, Method, Observer, Place, Plan, PointState, Preconditioner, Scene,
+        Settings, Silent, Simulation, SlipBound, State, Support,
+    };
+    pub use signorini_fem_mesh::{Brick, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
+}

@@ -1,0 +1,190 @@
+//! What can be wrong with a scene.
+
+use signorini_fem_mesh as fem;
+use signorini_qp::QpError;
+use signorini_tfeti::TfetiError;
+use thiserror::Error;
+
+/// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ContactError {
+    /// A coefficient of friction or a datum of its law.
+    #[error("friction: the {what} is {value}; it must be finite and not negative (a decay rate positive)")]
+    Coefficient {
+        /// The datum.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A law gave an inadmissible coefficient.
+    #[error("friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite and not negative")]
+    CoefficientAt {
+        /// Mesh node.
+        node: u32,
+        /// Slip rate in m/s.
+        rate: f64,
+        /// What the law gave.
+        value: f64,
+    },
+    /// A given slip bound is negative or not finite.
+    #[error("friction at node {node}: the slip bound {value} Pa must be finite and not negative")]
+    SlipBound {
+        /// Mesh node.
+        node: u32,
+        /// The bound in Pa.
+        value: f64,
+    },
+    /// A difference formula is not consistent.
+    #[error("difference formula {alpha}, {beta}, {gamma}: {rule}; use THREE_STEP or BACKWARD_EULER")]
+    Formula {
+        /// Weight of the new level.
+        alpha: f64,
+        /// Weight of the last level.
+        beta: f64,
+        /// Weight of the level before.
+        gamma: f64,
+        /// The broken rule.
+        rule: &'static str,
+    },
+    /// No time level.
+    #[error("the analysis has no time level; ask for at least one step")]
+    NoLevels,
+    /// A time level out of order or not finite.
+    #[error("time level {level}: {time} s is not finite or not above the level before (the first must be above 0)")]
+    Time {
+        /// The level, from 0.
+        level: usize,
+        /// Its time.
+        time: f64,
+    },
+    /// Unequal steps with a formula that needs equal ones.
+    #[error("time level {level}: step {step} s, but the first is {first} s; the three-step formula needs equal steps, backward Euler does not")]
+    UnequalSteps {
+        /// The level, from 0.
+        level: usize,
+        /// Its step.
+        step: f64,
+        /// The first step.
+        first: f64,
+    },
+    /// A tag of a support or contact surface is on no facet.
+    #[error("{what}: no facet has the tag {tag}; the mesh has the tags {known}")]
+    UnknownTag {
+        /// What referred to it.
+        what: &'static str,
+        /// The tag.
+        tag: u32,
+        /// Tags of the mesh.
+        known: String,
+    },
+    /// A node number beyond the mesh.
+    #[error("{what}: node {node} does not exist, the mesh has {nodes} nodes")]
+    UnknownNode {
+        /// What referred to it.
+        what: &'static str,
+        /// The node.
+        node: u32,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// A list of nodes and a list of values differ in length.
+    #[error("{what}: {values} values for {nodes} nodes; give one, or one a node")]
+    ValueCount {
+        /// What they belong to.
+        what: &'static str,
+        /// Number of values.
+        values: usize,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// A gap is not finite.
+    #[error("contact at node {node}: the gap {value} m is not finite")]
+    Gap {
+        /// Mesh node.
+        node: u32,
+        /// The gap.
+        value: f64,
+    },
+    /// An obstacle has no usable normal.
+    #[error("contact: the obstacle's normal {normal:?} must be finite and not zero")]
+    ObstacleNormal {
+        /// The normal.
+        normal: [f64; 3],
+    },
+    /// A load or support history gave a value that is not finite.
+    #[error("{what} {index}: its history gives {value} at time {time} s")]
+    HistoryValue {
+        /// Load or support.
+        what: &'static str,
+        /// Its position in the scene.
+        index: usize,
+        /// Time in s.
+        time: f64,
+        /// The value.
+        value: f64,
+    },
+    /// Loads that nothing can balance.
+    #[error("level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push it with {force:e} (N or N m); add a support, contact or friction, or balance the loads")]
+    NotHeld {
+        /// Time level, from 0.
+        level: usize,
+        /// The body (connected component of the mesh).
+        body: usize,
+        /// The rigid motion, in words.
+        mode: String,
+        /// Generalised force along it.
+        force: f64,
+    },
+    /// A setting is out of range.
+    #[error("setting {name} = {value} is outside its range {range}")]
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// All time levels are solved.
+    #[error("the scene has {levels} time levels and all are solved")]
+    Finished {
+        /// Number of levels.
+        levels: usize,
+    },
+    /// A checkpoint does not belong to this scene or is damaged.
+    #[error("checkpoint: {reason}")]
+    Checkpoint {
+        /// What does not fit.
+        reason: String,
+    },
+    /// Mesh.
+    #[error(transparent)]
+    Mesh(#[from] fem::MeshError),
+    /// Material.
+    #[error(transparent)]
+    Material(#[from] fem::MaterialError),
+    /// Decomposition.
+    #[error(transparent)]
+    Decomposition(#[from] fem::DecompositionError),
+    /// Load.
+    #[error("load {index}: {source}")]
+    Load {
+        /// Position in the scene.
+        index: usize,
+        /// What is wrong.
+        source: fem::LoadError,
+    },
+    /// Contact surface.
+    #[error(transparent)]
+    Surface(#[from] fem::SurfaceError),
+    /// Fields derived from a solution.
+    #[error(transparent)]
+    Field(#[from] fem::FieldError),
+    /// Domain decomposition.
+    #[error(transparent)]
+    Tfeti(#[from] TfetiError),
+    /// Quadratic programming.
+    #[error(transparent)]
+    Qp(#[from] QpError),
+}

@@ -1,0 +1,169 @@
+//! The default method: the face method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
+//!
+//! Where the face method makes no progress, the paper's method finishes the level from the last iterate; it is proved to
+//! solve every given-friction problem.
+
+use crate::error::ContactError;
+use crate::level::Level;
+use crate::model::{DISCS, Model, Tangential};
+use crate::paper_solver::PaperSolver;
+use crate::report::{LevelReport, LevelStatus};
+use crate::settings::{Preconditioner as Choice, Settings};
+use crate::solver::{Iterate, is_coulomb, level_status};
+use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face};
+use signorini_tfeti::{DualOperator, FaceSpace, Preconditioner};
+
+/// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
+const SAFETY: f64 = 0.1;
+
+#[derive(Debug)]
+pub(crate) struct FaceSolver {
+    space: FaceSpace,
+    preconditioner: Preconditioner,
+    scale: Vec<f64>,
+    set: ProductSet,
+    work: FaceWorkspace<DualOperator, Preconditioner>,
+    settings: FaceSettings,
+    /// Made when it is first needed.
+    paper: Option<Box<PaperSolver>>,
+}
+
+impl FaceSolver {
+    pub(crate) fn new(model: &Model, settings: &Settings, face: &FaceSettings) -> Result<Self, ContactError> {
+        let contact = model.tfeti.gluing().ranges().contact().end;
+        let preconditioner = make_preconditioner(model, settings.preconditioner)?;
+        let mut scale = vec![0.0; model.tfeti.dual_dim()];
+        model.tfeti.lumped_diagonal(0..contact, &mut scale[..contact]);
+        Ok(Self {
+            space: FaceSpace::new(model.tfeti.coarse(), contact)?,
+            work: FaceWorkspace::new(model.tfeti.dual(), &preconditioner),
+            preconditioner,
+            scale,
+            set: model.set.clone(),
+            settings: face.clone().with_tolerance(settings.tolerance * SAFETY),
+            paper: None,
+        })
+    }
+
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<LevelReport, ContactError> {
+        let mut report = LevelReport::new();
+        report.counters.inequality_solves = 1;
+        level.slip_bounds(model, &iterate.lambda, &mut self.set)?;
+        report.counters.slip_bound_updates = usize::from(model.friction().is_some());
+        let start = iterate.lambda.clone();
+        self.space.set_rhs(&level.rhs);
+        let problem = FaceProblem {
+            operator: model.tfeti.dual(),
+            preconditioner: &self.preconditioner,
+            scale: &self.scale,
+            linear: &level.linear,
+            rhs: &level.rhs,
+        };
+        let coulomb = is_coulomb(model);
+        let mut updates = 0;
+        let mut hook = |x: &[f64], set: &mut ProductSet| {
+            if coulomb {
+                level.coulomb_bounds(model, x, set);
+                updates += 1;
+            }
+        };
+        let outcome = face(
+            &problem,
+            &mut self.space,
+            &mut self.set,
+            &mut iterate.lambda,
+            &mut iterate.f_lambda,
+            iterate.known,
+            &self.settings,
+            &mut self.work,
+            &mut hook,
+        );
+        let status = match outcome {
+            Ok(outcome) => {
+                report.iterations = outcome.faces;
+                report.counters.products += outcome.products();
+                report.counters.preconditionings += outcome.preconditionings;
+                report.counters.coarse_factorisations += outcome.factorisations;
+                report.counters.faces += outcome.faces;
+                report.counters.slip_bound_updates += updates;
+                report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
+                outcome.status
+            }
+            // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
+            Err(signorini_qp::QpError::CoarseDeficient { .. } | signorini_qp::QpError::NotFinite { .. }) => {
+                Status::Stagnated
+            }
+            Err(error) => return Err(error.into()),
+        };
+        report.status = level_status(status);
+        if report.status.converged() {
+            iterate.known = true;
+            iterate.alpha.resize(level.rhs.len(), 0.0);
+            let mut residual = iterate.f_lambda.clone();
+            signorini_qp::vector::axpy(-1.0, &level.linear, &mut residual);
+            self.space.amplitudes(&residual, &mut iterate.alpha);
+            return Ok(report);
+        }
+        self.fall_back(model, level, settings, iterate, start, report)
+    }
+
+    fn fall_back(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+        start: Vec<f64>,
+        mut report: LevelReport,
+    ) -> Result<LevelReport, ContactError> {
+        if !iterate.lambda.iter().all(|v| v.is_finite()) || report.status == LevelStatus::Stagnated {
+            iterate.lambda = start;
+        }
+        let mut paper = match self.paper.take() {
+            Some(paper) => paper,
+            None => Box::new(PaperSolver::new(model, settings)?),
+        };
+        iterate.multiplier.clear();
+        let outcome = paper.solve(model, level, settings, iterate);
+        self.paper = Some(paper);
+        let second = outcome?;
+        report.fallback = true;
+        report.status = second.status;
+        report.iterations += second.iterations;
+        report.counters += second.counters;
+        report.steps += second.steps;
+        report.fixed_point = second.fixed_point;
+        iterate.multiplier.clear();
+        Ok(report)
+    }
+}
+
+pub(crate) fn make_preconditioner(model: &Model, choice: Choice) -> Result<Preconditioner, ContactError> {
+    Ok(match choice {
+        Choice::Lumped => model.tfeti.lumped()?,
+        Choice::Dirichlet => model.tfeti.dirichlet()?,
+    })
+}
+
+/// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a
+/// little inside, where they would be taken for sticking.
+pub(crate) fn restore_sliding(model: &Model, set: &ProductSet, sliding: &[bool], lambda: &mut [f64]) {
+    let Some(signorini_qp::Segment::Discs { radii }) = set.segments().get(DISCS) else { return };
+    let start = model.tfeti.gluing().ranges().discs.start;
+    for (point, _) in model.points.iter().zip(sliding).filter(|(_, s)| **s) {
+        if let Tangential::Plane { row, .. } = point.tangential {
+            let radius = radii[(row - start) / 2];
+            let length = lambda[row].hypot(lambda[row + 1]);
+            if length > 0.0 {
+                lambda[row] *= radius / length;
+                lambda[row + 1] *= radius / length;
+            }
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! The method of successive approximations (3.17) and what can be said of its contraction.
+//!
+//! The map `Phi` of (3.15) takes the normal forces that define the slip bounds to the normal forces of the given-friction
+//! problem. Its fixed point solves the Coulomb problem (3.16). The discrete map is contractive for small
+//! coefficients only; the [`Contraction`] watches the ratio of successive changes and says so when it is not.
+
+/// What the sequence of iterates tells about the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Verdict {
+    /// The relative change fell below the tolerance.
+    Converged,
+    /// Changes shrink, more iterations are needed.
+    Contracting,
+    /// Changes do not shrink: the map is not contractive here, the fixed-point form has no limit from this start.
+    NotContractive,
+    /// Too few iterates to tell.
+    Unknown,
+}
+
+/// A running estimate of the contraction rate: the geometric mean of the last ratios of changes.
+#[derive(Debug, Clone, Default)]
+pub struct Contraction {
+    changes: Vec<f64>,
+}
+
+/// Ratios that enter the estimate.
+const WINDOW: usize = 5;
+
+impl Contraction {
+    /// No iterate yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Forgets all changes.
+    pub fn clear(&mut self) {
+        self.changes.clear();
+    }
+
+    /// Records the absolute change between two successive iterates.
+    pub fn record(&mut self, change: f64) {
+        self.changes.push(change);
+    }
+
+    /// Estimated rate; `None` before two changes are known or after an exact fixed point.
+    #[must_use]
+    pub fn rate(&self) -> Option<f64> {
+        let n = self.changes.len();
+        if n < 2 {
+            return None;
+        }
+        let first = n.saturating_sub(WINDOW + 1);
+        let (a, b) = (self.changes[first], self.changes[n - 1]);
+        (a > 0.0 && b > 0.0).then(|| (b / a).powf(1.0 / (n - 1 - first) as f64))
+    }
+
+    /// Whether a full window of changes did not shrink.
+    #[must_use]
+    pub fn is_not_contractive(&self) -> bool {
+        self.changes.len() > WINDOW && self.rate().is_some_and(|rate| rate >= 1.0)
+    }
+
+    /// Number of recorded changes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.changes.len()
+    }
+
+    /// Whether nothing is recorded.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.changes.is_empty()
+    }
+}
+
+/// Result of [`successive_approximations`].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FixedPointReport {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// Evaluations of the map.
+    pub evaluations: usize,
+    /// Last relative change.
+    pub change: f64,
+    /// Estimated contraction rate.
+    pub rate: Option<f64>,
+}
+
+/// Iterates `x <- map(x)` until the relative change is below `tolerance` (0/0 counts as converged).
+///
+/// `map(x, accuracy)` overwrites `x`; `accuracy` is the last relative change, 1 at first, and says how accurate the
+/// evaluation needs to be.
+///
+/// # Errors
+/// Those of the map.
+pub fn successive_approximations<E>(
+    x: &mut [f64],
+    tolerance: f64,
+    max_evaluations: usize,
+    mut map: impl FnMut(&mut [f64], f64) -> Result<(), E>,
+) -> Result<FixedPointReport, E> {
+    let mut contraction = Contraction::new();
+    let mut old = x.to_vec();
+    let mut change = 1.0;
+    let mut verdict = Verdict::Unknown;
+    let mut evaluations = 0;
+    while evaluations < max_evaluations {
+        old.copy_from_slice(x);
+        map(x, change)?;
+        evaluations += 1;
+        let difference = signorini_qp::vector::distance(x, &old);
+        let size = signorini_qp::vector::norm(x);
+        contraction.record(difference);
+        change = if difference == 0.0 { 0.0 } else { difference / size };
+        if change < tolerance {
+            verdict = Verdict::Converged;
+            break;
+        }
+        if contraction.is_not_contractive() || !change.is_finite() && difference > 0.0 && !size.is_finite() {
+            verdict = Verdict::NotContractive;
+            break;
+        }
+        verdict = if contraction.rate().is_some_and(|r| r < 1.0) { Verdict::Contracting } else { Verdict::Unknown };
+    }
+    Ok(FixedPointReport { verdict, evaluations, change, rate: contraction.rate() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Check 8: one node, `lambda <- -u0/a + q lambda` with `q = mu b / a`.
+    fn one_node(mu: f64) -> (f64, FixedPointReport) {
+        let (a, b, u0) = (2.0, 1.0, 1.0);
+        let mut x = [0.0];
+        let report = successive_approximations(&mut x, 1e-12, 2000, |x, _| {
+            x[0] = -u0 / a + mu * b / a * x[0];
+            Ok::<(), ()>(())
+        })
+        .unwrap();
+        (x[0], report)
+    }
+
+    #[test]
+    fn the_one_node_coulomb_map_converges_at_its_rate() {
+        for (mu, q, limit) in [(0.2, 0.1, -0.555556), (0.5, 0.25, -0.666667), (1.0, 0.5, -1.0), (1.9, 0.95, -10.0)] {
+            let (x, report) = one_node(mu);
+            assert_eq!(report.verdict, Verdict::Converged);
+            assert_relative_eq!(x, limit, max_relative = 1e-6);
+            assert_relative_eq!(report.rate.unwrap(), q, max_relative = 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_map_that_is_not_contractive_is_named_so() {
+        let (_, report) = one_node(2.1);
+        assert_eq!(report.verdict, Verdict::NotContractive);
+        assert_relative_eq!(report.rate.unwrap(), 1.05, max_relative = 1e-6);
+        assert!(report.evaluations < 10);
+    }
+
+    #[test]
+    fn nothing_in_contact_is_a_fixed_point_at_once() {
+        let mut x = [0.0; 3];
+        let report = successive_approximations(&mut x, 1e-6, 5, |_, _| Ok::<(), ()>(())).unwrap();
+        assert_eq!((report.verdict, report.evaluations), (Verdict::Converged, 1));
+    }
+}

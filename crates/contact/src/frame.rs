@@ -1,0 +1,252 @@
+//! The frame of a level: displacement, contact forces and states, and fields that are computed when asked for.
+
+use crate::certificate::{Certificate, slip_bound};
+use crate::error::ContactError;
+use crate::level::Level;
+use crate::model::{Model, Tangential};
+use crate::report::LevelReport;
+use signorini_fem_mesh::fields;
+
+/// What a touch point does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ContactState {
+    /// No force.
+    Open,
+    /// Pressed and without tangential difference, or without friction law.
+    Stick,
+    /// Pressed and sliding.
+    Slip,
+}
+
+/// State of one touch point at the end of a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PointState {
+    /// Mesh node.
+    pub node: u32,
+    /// What it does.
+    pub state: ContactState,
+    /// Normal force on the body `lambda_nu`, N, not positive.
+    pub normal_force: f64,
+    /// Friction force on the body, N, in space.
+    pub friction_force: [f64; 3],
+    /// Slip bound, N; 0 without friction.
+    pub slip_bound: f64,
+    /// Distance to the obstacle, m.
+    pub gap: f64,
+    /// Tangential displacement, m, in space.
+    pub tangential_displacement: [f64; 3],
+    /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static scene.
+    pub difference: [f64; 3],
+    /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene.
+    pub slip_rate: f64,
+    /// Area, m².
+    pub area: f64,
+}
+
+/// Sums over the contact surface at the end of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ContactSummary {
+    /// Points with a normal force.
+    pub active: usize,
+    /// Active points that stick.
+    pub stick: usize,
+    /// Active points that slide.
+    pub slip: usize,
+    /// Sum of the normal pressing forces, N.
+    pub normal_force: f64,
+    /// Sum of all contact forces on the body as a vector, N.
+    pub resultant: [f64; 3],
+    /// Sum of the friction forces on the body, N, in space.
+    pub friction_force: [f64; 3],
+    /// Euclidean norm of the nodal normal forces, N.
+    pub normal_norm: f64,
+    /// Euclidean norm of the nodal friction forces, N.
+    pub friction_norm: f64,
+    /// Largest slip rate of active points, m/s.
+    pub max_slip_rate: f64,
+    /// Largest penetration, m.
+    pub max_penetration: f64,
+    /// Work done against friction by the displacement increments of this step, J. With the paper's formula it can be
+    /// slightly negative at points that stick after sliding, see [`DifferenceFormula`](crate::DifferenceFormula).
+    pub friction_work: f64,
+    /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
+    /// `friction_work` for backward Euler.
+    pub dissipation: f64,
+}
+
+/// Result of one level; borrowed from the simulation.
+#[derive(Debug)]
+pub struct Frame<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) level: &'a Level,
+    pub(crate) report: &'a LevelReport,
+    pub(crate) certificate: &'a Certificate,
+    pub(crate) summary: &'a ContactSummary,
+    pub(crate) points: &'a [PointState],
+    pub(crate) torn: &'a [f64],
+}
+
+impl Frame<'_> {
+    /// Position of the level in the analysis, from 0.
+    #[must_use]
+    pub fn level(&self) -> usize {
+        self.level.index
+    }
+
+    /// Time, s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.level.time
+    }
+
+    /// How the level was solved.
+    #[must_use]
+    pub fn report(&self) -> &LevelReport {
+        self.report
+    }
+
+    /// How well all conditions hold.
+    #[must_use]
+    pub fn certificate(&self) -> &Certificate {
+        self.certificate
+    }
+
+    /// Sums over the contact surface.
+    #[must_use]
+    pub fn summary(&self) -> &ContactSummary {
+        self.summary
+    }
+
+    /// States of the touch points, in the order of the plan's contact nodes.
+    #[must_use]
+    pub fn points(&self) -> &[PointState] {
+        self.points
+    }
+
+    /// The displacement of every subdomain, one after another, m.
+    #[must_use]
+    pub fn torn_displacement(&self) -> &[f64] {
+        self.torn
+    }
+
+    /// Displacement at the mesh nodes, `3 node + component`, m: the mean of the copies.
+    #[must_use]
+    pub fn displacement(&self) -> Vec<f64> {
+        self.model.tfeti.nodal_mean(self.torn)
+    }
+
+    /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa.
+    ///
+    /// # Errors
+    /// [`ContactError::Field`] never for a displacement of this simulation.
+    pub fn stress(&self) -> Result<Vec<[f64; 6]>, ContactError> {
+        let scene = &self.model.scene;
+        Ok(fields::stresses(&scene.mesh, &scene.materials, &self.displacement())?)
+    }
+
+    /// Elastic energy, J.
+    ///
+    /// # Errors
+    /// As [`stress`](Self::stress).
+    pub fn strain_energy(&self) -> Result<f64, ContactError> {
+        let scene = &self.model.scene;
+        Ok(fields::strain_energy(&scene.mesh, &scene.materials, &self.displacement())?)
+    }
+
+    /// Sum of all loads at this level, N.
+    #[must_use]
+    pub fn load_resultant(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (factor, load) in self.level.factors.iter().zip(&self.model.loads) {
+            for node in load.force.chunks_exact(3) {
+                for c in 0..3 {
+                    sum[c] += factor * node[c];
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// Evaluates the touch points: `rows` is `B u` in row units, `trace` the tangential displacements before.
+pub(crate) fn point_states(model: &Model, level: &Level, lambda: &[f64], rows: &[f64]) -> Vec<PointState> {
+    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let mut out = Vec::with_capacity(model.points.len());
+    for (k, point) in model.points.iter().enumerate() {
+        let normal_force = point.scale * lambda[point.row];
+        let space = |values: [f64; 2]| match point.tangential {
+            Tangential::None => [0.0; 3],
+            Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
+            Tangential::Plane { .. } => point.frame.vector(0.0, values),
+        };
+        let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+        let mut on_bound = false;
+        let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
+        if let Some((row, count, scale)) = point.tangential.rows() {
+            for j in 0..count {
+                friction[j] = scale * lambda[row + j];
+                displacement[j] = rows[row + j] / scale;
+                difference[j] = alpha * (rows[row + j] - level.offset[row + j]) / scale;
+            }
+            on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
+        }
+        let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
+        let state = if normal_force >= 0.0 {
+            ContactState::Open
+        } else if on_bound && opposed {
+            ContactState::Slip
+        } else {
+            ContactState::Stick
+        };
+        let slip = difference[0].hypot(difference[1]);
+        out.push(PointState {
+            node: point.node,
+            state,
+            normal_force,
+            friction_force: space(friction),
+            slip_bound: bound,
+            gap: (level.offset[point.row] - rows[point.row]) / point.scale,
+            tangential_displacement: space(displacement),
+            difference: space(difference),
+            slip_rate: level.step.map_or(0.0, |dt| slip / dt),
+            area: point.area,
+        });
+    }
+    out
+}
+
+/// Sums over the points; `before` are the tangential displacements at the level before.
+pub(crate) fn summarise(model: &Model, points: &[PointState], lambda: &[f64], rows: &[f64], before: &[f64]) -> ContactSummary {
+    let mut s = ContactSummary::default();
+    let start = model.tangential_start();
+    for (point, touch) in points.iter().zip(&model.points) {
+        let active = point.state != ContactState::Open;
+        s.active += usize::from(active);
+        s.slip += usize::from(point.state == ContactState::Slip);
+        s.normal_force -= point.normal_force;
+        s.normal_norm += point.normal_force.powi(2);
+        for c in 0..3 {
+            s.friction_force[c] += point.friction_force[c];
+            s.resultant[c] += point.friction_force[c] + point.normal_force * touch.frame.normal[c];
+            s.friction_norm += point.friction_force[c].powi(2);
+            s.dissipation -= point.friction_force[c] * point.difference[c];
+        }
+        if active {
+            s.max_slip_rate = s.max_slip_rate.max(point.slip_rate);
+        }
+        s.max_penetration = s.max_penetration.max(-point.gap);
+        if let Some((row, count, scale)) = touch.tangential.rows() {
+            for k in row..row + count {
+                let old = before.get(k - start).copied().unwrap_or(0.0);
+                s.friction_work -= scale * lambda[k] * (rows[k] / scale - old);
+            }
+        }
+    }
+    s.stick = s.active - s.slip;
+    s.normal_norm = s.normal_norm.sqrt();
+    s.friction_norm = s.friction_norm.sqrt();
+    s
+}

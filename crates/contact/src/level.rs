@@ -1,0 +1,118 @@
+//! One time level: the dual problem at a time, and the slip bounds.
+
+use crate::error::ContactError;
+use crate::law::Friction;
+use crate::model::{Model, TouchPoint};
+use crate::state::State;
+use signorini_qp::{ProductSet, vector};
+
+/// Data of one level; vectors are allocated once and rewritten.
+#[derive(Debug, Default)]
+pub(crate) struct Level {
+    /// Position in the analysis, from 0.
+    pub(crate) index: usize,
+    /// Time, s.
+    pub(crate) time: f64,
+    /// Step length; `None` in a static scene.
+    pub(crate) step: Option<f64>,
+    /// Factor of each load.
+    pub(crate) factors: Vec<f64>,
+    /// `c`: gap, old tangential displacement and prescribed displacement, in row units.
+    pub(crate) offset: Vec<f64>,
+    /// `B K+ f`.
+    pub(crate) load: Vec<f64>,
+    /// `d = c - B K+ f`.
+    pub(crate) linear: Vec<f64>,
+    /// `e = -R^T f`.
+    pub(crate) rhs: Vec<f64>,
+    /// Coefficient of friction at each point; empty unless Coulomb.
+    pub(crate) coefficients: Vec<f64>,
+}
+
+impl Level {
+    /// Computes the data of level `index` from the model and the state before it.
+    pub(crate) fn prepare(&mut self, model: &Model, state: &State, index: usize) -> Result<(), ContactError> {
+        let analysis = &model.scene.analysis;
+        let levels = analysis.levels();
+        let time = analysis.time(index).ok_or(ContactError::Finished { levels })?;
+        self.index = index;
+        self.time = time;
+        self.step = analysis.step(index);
+        self.factors.clear();
+        self.factors.extend(model.scene.loads.iter().map(|load| load.history.value(time)));
+        let rows = model.tfeti.dual_dim();
+        self.load.resize(rows, 0.0);
+        self.load.fill(0.0);
+        self.rhs.resize(model.tfeti.coarse().rows(), 0.0);
+        self.rhs.fill(0.0);
+        for (factor, load) in self.factors.iter().zip(&model.loads) {
+            vector::axpy(*factor, &load.dual, &mut self.load);
+            vector::axpy(*factor, &load.coarse, &mut self.rhs);
+        }
+        let cases: Vec<(usize, f64)> = model.motions.iter().map(|h| h.value(time)).enumerate().collect();
+        self.offset = model.tfeti.prescribed_offsets(&cases);
+        if model.plan.effects.gap {
+            for point in &model.points {
+                self.offset[point.row] += point.scale * point.gap;
+            }
+        }
+        if let (true, Some(formula)) = (model.plan.effects.history, analysis.formula()) {
+            let start = model.tangential_start();
+            for point in &model.points {
+                let Some((row, count, scale)) = point.tangential.rows() else { continue };
+                for k in row..row + count {
+                    let (last, before) = state.traces(k - start);
+                    self.offset[k] += scale * formula.offset(last, before);
+                }
+            }
+        }
+        self.linear.resize(rows, 0.0);
+        for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
+            *d = c - l;
+        }
+        self.friction(model, state)
+    }
+
+    fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
+        let Friction::Coulomb(law) = model.friction() else {
+            self.coefficients.clear();
+            return Ok(());
+        };
+        if !self.coefficients.is_empty() && !law.depends_on_rate() {
+            return Ok(());
+        }
+        self.coefficients.clear();
+        for (k, point) in model.points.iter().enumerate() {
+            let rate = state.rates().get(k).copied().unwrap_or(0.0);
+            self.coefficients.push(law.value(point.node, point.position, rate)?);
+        }
+        Ok(())
+    }
+
+    /// Writes the slip bounds into the set: given ones, or the coefficients times the normal forces in `lambda`.
+    pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) -> Result<(), ContactError> {
+        match model.friction() {
+            Friction::None => {}
+            Friction::Given(bound) => {
+                let mut values = Vec::with_capacity(model.points.len());
+                for point in &model.points {
+                    values.push(bound.stress(point.node, point.position)? * point.area);
+                }
+                model.set_slip_bounds(set, |k, _| values[k]);
+            }
+            Friction::Coulomb(_) => self.coulomb_bounds(model, lambda, set),
+        }
+        Ok(())
+    }
+
+    /// Coulomb slip bounds `-F_i lambda_nu,i` in newtons.
+    pub(crate) fn coulomb_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
+        let force = |k: usize, point: &TouchPoint| self.coefficients[k] * normal_force(point, lambda);
+        model.set_slip_bounds(set, force);
+    }
+}
+
+/// Pressing force at a point in newtons, not negative.
+pub(crate) fn normal_force(point: &TouchPoint, lambda: &[f64]) -> f64 {
+    (-point.scale * lambda[point.row]).max(0.0)
+}

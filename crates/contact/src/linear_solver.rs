@@ -1,0 +1,76 @@
+//! Scenes without contact: projected preconditioned conjugate gradients, no inequality anywhere.
+
+use crate::error::ContactError;
+use crate::face_solver::make_preconditioner;
+use crate::level::Level;
+use crate::model::Model;
+use crate::report::LevelReport;
+use crate::settings::Settings;
+use crate::solver::{Iterate, level_status};
+use signorini_qp::{CgWorkspace, Tolerance, projected_cg};
+use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse, Preconditioner};
+
+/// Safety factor between the tolerance of a level and that of conjugate gradients.
+const SAFETY: f64 = 0.01;
+
+pub(crate) struct LinearSolver {
+    coarse: OrthonormalCoarse,
+    coarse_scratch: CoarseScratch,
+    preconditioner: Preconditioner,
+    rhs: Vec<f64>,
+    work: CgWorkspace<DualOperator, OrthonormalCoarse, Preconditioner>,
+}
+
+impl std::fmt::Debug for LinearSolver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("LinearSolver").finish_non_exhaustive()
+    }
+}
+
+impl LinearSolver {
+    pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
+        let factor = model.tfeti.coarse_factor();
+        let coarse = factor.orthonormal().ok_or_else(|| {
+            let mode = factor.free_motions().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+            ContactError::NotHeld { level: 0, body: 0, mode, force: 0.0 }
+        })?;
+        let preconditioner = make_preconditioner(model, settings.preconditioner)?;
+        Ok(Self {
+            coarse_scratch: factor.scratch(),
+            rhs: vec![0.0; model.tfeti.coarse().rows()],
+            work: CgWorkspace::new(model.tfeti.dual(), &coarse, &preconditioner),
+            coarse,
+            preconditioner,
+        })
+    }
+
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<LevelReport, ContactError> {
+        self.coarse.rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
+        let outcome = projected_cg(
+            model.tfeti.dual(),
+            &level.linear,
+            &self.coarse,
+            &self.rhs,
+            &self.preconditioner,
+            Tolerance::Relative(settings.tolerance * SAFETY),
+            10_000,
+            &mut iterate.lambda,
+            &mut self.work,
+        )?;
+        let mut report = LevelReport::new();
+        report.status = level_status(outcome.status);
+        report.iterations = outcome.iterations;
+        report.counters.products = outcome.products;
+        report.counters.preconditionings = outcome.preconditionings;
+        iterate.known = false;
+        iterate.alpha.resize(level.rhs.len(), 0.0);
+        self.coarse.amplitudes(self.work.equality_multiplier(), &mut iterate.alpha, &mut self.coarse_scratch);
+        Ok(report)
+    }
+}

@@ -1,0 +1,224 @@
+//! The model: everything that is computed once from a scene and read-only afterwards.
+
+use crate::error::ContactError;
+use crate::law::Friction;
+use crate::plan::Plan;
+use crate::scene::{Contact, ContactNormal, Gap, Scene};
+use crate::settings::Settings;
+use signorini_fem_mesh::{Decomposition, Frame, History, Surface, assemble_load};
+use signorini_qp::{ProductSet, Segment};
+use signorini_tfeti as tfeti;
+use signorini_tfeti::{ContactNodes, ContactPoint, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
+
+/// A node that can touch the obstacle.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TouchPoint {
+    /// Mesh node.
+    pub node: u32,
+    /// Its position, m.
+    pub position: [f64; 3],
+    /// Normal into the obstacle and two tangents.
+    pub frame: Frame,
+    /// A third of the areas of the adjacent facets, m².
+    pub area: f64,
+    /// Initial distance to the obstacle, m.
+    pub gap: f64,
+    /// Normal row.
+    pub(crate) row: usize,
+    /// Row value over normal displacement, and nodal force over multiplier.
+    pub(crate) scale: f64,
+    pub(crate) tangential: Tangential,
+}
+
+/// Tangential rows of a point, as positions among all tangential rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Tangential {
+    None,
+    /// One row along a direction.
+    Line { row: usize, direction: [f64; 3], scale: f64 },
+    /// Rows `row` and `row + 1` along the tangents of the frame.
+    Plane { row: usize, scale: f64 },
+}
+
+impl Tangential {
+    /// First row, number of rows, scale.
+    pub(crate) fn rows(&self) -> Option<(usize, usize, f64)> {
+        match *self {
+            Self::None => None,
+            Self::Line { row, scale, .. } => Some((row, 1, scale)),
+            Self::Plane { row, scale } => Some((row, 2, scale)),
+        }
+    }
+}
+
+/// Segment numbers of the feasible set.
+pub(crate) const DISCS: usize = 1;
+/// Intervals of points with one tangential direction.
+pub(crate) const INTERVALS: usize = 2;
+
+/// Everything that is computed once.
+#[derive(Debug)]
+pub(crate) struct Model {
+    pub(crate) scene: Scene,
+    pub(crate) plan: Plan,
+    pub(crate) decomposition: Decomposition,
+    pub(crate) tfeti: Tfeti,
+    pub(crate) loads: Vec<LoadResponse>,
+    /// History of each displacement case.
+    pub(crate) motions: Vec<History>,
+    pub(crate) points: Vec<TouchPoint>,
+    /// Nodal areas and nodes of the whole contact surface, fixed nodes included.
+    pub(crate) surface: Option<Surface>,
+    /// Set with zero radii.
+    pub(crate) set: ProductSet,
+}
+
+impl Model {
+    pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
+        scene.validate()?;
+        settings.validate()?;
+        let decomposition = scene.decompose()?;
+        let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
+        let (supports, motions) = supports(&scene)?;
+        let surface = match &scene.contact {
+            Some(contact) => Some(Surface::new(&scene.mesh, &contact.tags)?),
+            None => None,
+        };
+        let nodes = match (&scene.contact, &surface) {
+            (Some(contact), Some(surface)) => Some(contact_nodes(contact, surface)?),
+            _ => None,
+        };
+        let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
+            .supports(&supports)
+            .rule(settings.row_rule)
+            .sharing(settings.sharing)
+            .inverse(settings.inverse);
+        if let Some(nodes) = &nodes {
+            builder = builder.contact(nodes);
+        }
+        let tfeti = builder.build()?;
+        let mut loads = Vec::with_capacity(scene.loads.len());
+        for (index, load) in scene.loads.iter().enumerate() {
+            let local = assemble_load(&scene.mesh, &decomposition, &load.density)
+                .map_err(|source| ContactError::Load { index, source })?;
+            loads.push(tfeti.load_response(&local)?);
+        }
+        let points = match (&scene.contact, &surface) {
+            (Some(contact), Some(surface)) => touch_points(&scene, contact, surface, &tfeti)?,
+            _ => Vec::new(),
+        };
+        let ranges = tfeti.gluing().ranges();
+        let set = ProductSet::new(vec![
+            Segment::upper(vec![0.0; ranges.normal.len()]),
+            Segment::discs(vec![0.0; ranges.discs.len() / 2]),
+            Segment::bounds(vec![0.0; ranges.intervals.len()], vec![0.0; ranges.intervals.len()]),
+            Segment::Free(ranges.interface.len() + ranges.dirichlet.len()),
+        ])
+        .map_err(signorini_qp::QpError::from)?;
+        Ok(Self { scene, plan, decomposition, tfeti, loads, motions, points, surface, set })
+    }
+
+    /// Friction of the contact surface; none without one.
+    pub(crate) fn friction(&self) -> &Friction {
+        self.scene.contact.as_ref().map_or(&Friction::None, Contact::friction)
+    }
+
+    /// Tangential rows.
+    pub(crate) fn tangential_rows(&self) -> usize {
+        self.tfeti.gluing().ranges().tangential().len()
+    }
+
+    /// First tangential row.
+    pub(crate) fn tangential_start(&self) -> usize {
+        self.tfeti.gluing().ranges().tangential().start
+    }
+
+    /// Writes slip bounds (forces in N, one a point) into the set.
+    pub(crate) fn set_slip_bounds(&self, set: &mut ProductSet, bound: impl Fn(usize, &TouchPoint) -> f64) {
+        let ranges = self.tfeti.gluing().ranges();
+        for (k, point) in self.points.iter().enumerate() {
+            match point.tangential {
+                Tangential::None => {}
+                Tangential::Plane { row, scale } => {
+                    let disc = (row - ranges.discs.start) / 2;
+                    if let Ok(radii) = set.radii_mut(DISCS) {
+                        radii[disc] = bound(k, point) / scale;
+                    }
+                }
+                Tangential::Line { row, scale, .. } => {
+                    let interval = row - ranges.intervals.start;
+                    if let Ok((lower, upper)) = set.bounds_mut(INTERVALS) {
+                        let radius = bound(k, point) / scale;
+                        lower[interval] = -radius;
+                        upper[interval] = radius;
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), ContactError> {
+    let mut motions = Vec::new();
+    let mut out = Vec::with_capacity(scene.supports.len());
+    for support in &scene.supports {
+        let nodes = scene.nodes("support", &support.place)?;
+        let mut one = tfeti::Support::partial(nodes, support.directions.clone());
+        if let Some((values, history)) = &support.motion {
+            one = one.with_motion(tfeti::Motion { case: motions.len() as u32, values: values.clone() });
+            motions.push(history.clone());
+        }
+        out.push(one);
+    }
+    Ok((out, motions))
+}
+
+fn contact_nodes(contact: &Contact, surface: &Surface) -> Result<ContactNodes, ContactError> {
+    let fixed = match contact.normal {
+        ContactNormal::Body => None,
+        ContactNormal::Fixed(normal) => {
+            Some(Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal { normal })?)
+        }
+    };
+    let point = |(&node, &frame): (&u32, &Frame)| ContactPoint { node, opponent: None, frame: fixed.unwrap_or(frame) };
+    let points = surface.nodes().iter().zip(surface.frames()).map(point).collect();
+    Ok(ContactNodes { points, friction: contact.friction().is_some() })
+}
+
+fn touch_points(
+    scene: &Scene,
+    contact: &Contact,
+    surface: &Surface,
+    tfeti: &Tfeti,
+) -> Result<Vec<TouchPoint>, ContactError> {
+    let mut points = Vec::with_capacity(tfeti.gluing().contact().len());
+    for info in tfeti.gluing().contact() {
+        let position = scene.mesh.points()[info.node as usize];
+        let gap = match &contact.gap {
+            Gap::None => 0.0,
+            Gap::Constant(value) => *value,
+            Gap::Field(field) => field(position),
+        };
+        if !gap.is_finite() {
+            return Err(ContactError::Gap { node: info.node, value: gap });
+        }
+        let tangential = match info.tangential {
+            TangentialRows::Disc { row, scale } => Tangential::Plane { row, scale },
+            TangentialRows::Interval { row, direction, scale } => Tangential::Line { row, direction, scale },
+            _ => Tangential::None,
+        };
+        let area = surface.local(info.node).map_or(0.0, |local| surface.areas()[local]);
+        points.push(TouchPoint {
+            node: info.node,
+            position,
+            frame: info.frame,
+            area,
+            gap,
+            row: info.row,
+            scale: info.scale,
+            tangential,
+        });
+    }
+    Ok(points)
+}

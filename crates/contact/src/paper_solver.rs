@@ -1,0 +1,228 @@
+//! The paper's methods: successive approximations (3.17) with given-friction problems by SMALSE and KPRGP
+//! (Algorithm 4.1), and the one inexact loop in which the slip bounds follow the outer steps of SMALSE.
+
+use crate::error::ContactError;
+use crate::fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
+use crate::level::Level;
+use crate::model::{INTERVALS, DISCS, Model};
+use crate::report::{LevelReport, LevelStatus};
+use crate::settings::{InnerAccuracy, Method, Settings};
+use crate::solver::{Iterate, is_coulomb, level_status};
+use signorini_qp::{
+    HookAction, NormSettings, OuterStep, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
+    Status, Tolerance, norm_estimate, smalse, vector,
+};
+use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
+
+/// Safety factor between the tolerance of a level and those of SMALSE.
+const SAFETY: f64 = 0.1;
+
+pub(crate) struct PaperSolver {
+    coarse: OrthonormalCoarse,
+    coarse_scratch: CoarseScratch,
+    norm: f64,
+    norm_products: usize,
+    set: ProductSet,
+    rhs: Vec<f64>,
+    work: SmalseWorkspace<DualOperator, OrthonormalCoarse>,
+    settings: SmalseSettings,
+    accuracy: InnerAccuracy,
+    one_loop: bool,
+}
+
+impl std::fmt::Debug for PaperSolver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PaperSolver").field("norm", &self.norm).field("one_loop", &self.one_loop).finish_non_exhaustive()
+    }
+}
+
+impl PaperSolver {
+    pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
+        let (smalse, accuracy, one_loop) = match &settings.method {
+            Method::OneLoop { smalse } => (*smalse, InnerAccuracy::Fixed, true),
+            Method::SuccessiveApproximations { smalse, accuracy } => (*smalse, *accuracy, false),
+            Method::Face(_) => match Method::paper() {
+                Method::SuccessiveApproximations { smalse, accuracy } => (smalse, accuracy, false),
+                _ => (SmalseSettings::default(), InnerAccuracy::default(), false),
+            },
+        };
+        let factor = model.tfeti.coarse_factor();
+        let coarse = factor.orthonormal().ok_or_else(|| {
+            let mode = factor.free_motions().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+            ContactError::NotHeld { level: 0, body: 0, mode, force: 0.0 }
+        })?;
+        let operator = model.tfeti.dual();
+        let estimate = norm_estimate(&Projected::new(operator, &coarse), &NormSettings::default())?;
+        Ok(Self {
+            coarse_scratch: factor.scratch(),
+            work: SmalseWorkspace::new(operator, &coarse),
+            rhs: vec![0.0; model.tfeti.coarse().rows()],
+            set: model.set.clone(),
+            coarse,
+            norm: estimate.upper,
+            norm_products: estimate.products,
+            settings: smalse,
+            accuracy,
+            one_loop,
+        })
+    }
+
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<LevelReport, ContactError> {
+        self.coarse.rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
+        iterate.multiplier.resize(self.rhs.len(), 0.0);
+        let mut report = LevelReport::new();
+        report.counters.setup_products = std::mem::take(&mut self.norm_products);
+        report.counters.inequality_solves = 1;
+        if !is_coulomb(model) {
+            level.slip_bounds(model, &iterate.lambda, &mut self.set)?;
+            report.counters.slip_bound_updates = usize::from(model.friction().is_some());
+            let qp = self.given_friction(model, level, settings.tolerance * SAFETY, iterate)?;
+            add(&mut report, &qp);
+            report.iterations = 1;
+            report.status = level_status(qp.status);
+        } else if self.one_loop {
+            self.inexact_loop(model, level, settings, iterate, &mut report)?;
+        } else {
+            self.fixed_point(model, level, settings, iterate, &mut report)?;
+        }
+        iterate.known = false;
+        iterate.alpha.resize(level.rhs.len(), 0.0);
+        self.coarse.amplitudes(self.work.equality_multiplier(), &mut iterate.alpha, &mut self.coarse_scratch);
+        Ok(report)
+    }
+
+    /// Problem (D(g)) with the slip bounds that are in the set.
+    fn given_friction(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        tolerance: f64,
+        iterate: &mut Iterate,
+    ) -> Result<SmalseReport, ContactError> {
+        let settings = self.settings.with_tolerance(Tolerance::Relative(tolerance)).with_equality(tolerance);
+        let operator = model.tfeti.dual();
+        Ok(smalse(
+            operator,
+            &level.linear,
+            &self.coarse,
+            &self.rhs,
+            &mut self.set,
+            self.norm,
+            &settings,
+            &mut (),
+            &mut iterate.lambda,
+            &mut iterate.multiplier,
+            &mut self.work,
+        )?)
+    }
+
+    /// (3.17): the map takes normal multipliers to normal multipliers.
+    fn fixed_point(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+        report: &mut LevelReport,
+    ) -> Result<(), ContactError> {
+        let normal = model.tfeti.gluing().ranges().normal.clone();
+        let mut x: Vec<f64> = iterate.lambda[normal.clone()].iter().map(|v| v.min(0.0)).collect();
+        let mut inner = Status::Converged;
+        let outcome = successive_approximations(&mut x, settings.tolerance, settings.max_fixed_point, |x, change| {
+            let target = settings.tolerance * SAFETY;
+            let tolerance = match self.accuracy {
+                InnerAccuracy::Adaptive { factor, loosest } => (factor * change).min(loosest).max(target),
+                InnerAccuracy::Fixed => target,
+            };
+            iterate.lambda[normal.clone()].copy_from_slice(x);
+            level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
+            report.counters.slip_bound_updates += 1;
+            let qp = self.given_friction(model, level, tolerance, iterate)?;
+            inner = qp.status;
+            add(report, &qp);
+            x.copy_from_slice(&iterate.lambda[normal.clone()]);
+            Ok::<(), ContactError>(())
+        })?;
+        report.iterations = outcome.evaluations;
+        report.status = match outcome.verdict {
+            Verdict::Converged => level_status(inner),
+            Verdict::NotContractive => LevelStatus::NotContractive,
+            _ => LevelStatus::IterationLimit,
+        };
+        report.fixed_point = Some(outcome);
+        Ok(())
+    }
+
+    /// Slip bounds follow every outer step of one SMALSE run.
+    fn inexact_loop(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+        report: &mut LevelReport,
+    ) -> Result<(), ContactError> {
+        level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
+        let tolerance = settings.tolerance * SAFETY;
+        let mut contraction = Contraction::new();
+        let mut updates = 1;
+        let mut last_change = f64::INFINITY;
+        let smalse_settings = self.settings.with_tolerance(Tolerance::Relative(tolerance)).with_equality(tolerance);
+        let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
+            let old = radii(set);
+            level.coulomb_bounds(model, step.x, set);
+            let new = radii(set);
+            updates += 1;
+            let difference = vector::distance(&old, &new);
+            last_change = if difference == 0.0 { 0.0 } else { difference / vector::norm(&new) };
+            contraction.record(difference);
+            if last_change < tolerance { HookAction::Continue } else { HookAction::SetChanged }
+        };
+        let operator = model.tfeti.dual();
+        let qp = smalse(
+            operator,
+            &level.linear,
+            &self.coarse,
+            &self.rhs,
+            &mut self.set,
+            self.norm,
+            &smalse_settings,
+            &mut hook,
+            &mut iterate.lambda,
+            &mut iterate.multiplier,
+            &mut self.work,
+        )?;
+        add(report, &qp);
+        report.counters.slip_bound_updates += updates;
+        report.iterations = qp.outer;
+        report.status = level_status(qp.status);
+        let verdict = if report.status.converged() { Verdict::Converged } else { Verdict::Unknown };
+        report.fixed_point =
+            Some(FixedPointReport { verdict, evaluations: updates, change: last_change, rate: contraction.rate() });
+        Ok(())
+    }
+}
+
+fn radii(set: &ProductSet) -> Vec<f64> {
+    let mut out = Vec::new();
+    if let Some(Segment::Discs { radii }) = set.segments().get(DISCS) {
+        out.extend_from_slice(radii);
+    }
+    if let Some(Segment::Bounds { upper, .. }) = set.segments().get(INTERVALS) {
+        out.extend_from_slice(upper);
+    }
+    out
+}
+
+fn add(report: &mut LevelReport, qp: &SmalseReport) {
+    report.counters.products += qp.products.total();
+    report.counters.projections += qp.projections;
+    report.counters.quadratic_programs += 1;
+    report.steps += qp.steps;
+}

@@ -1,0 +1,210 @@
+//! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
+
+use crate::clock::Analysis;
+use crate::error::ContactError;
+use crate::law::Friction;
+use crate::scene::{Gap, Scene};
+use crate::settings::{Method, Settings};
+use signorini_fem_mesh::Decomposition;
+use signorini_tfeti::Directions;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+/// What kind of friction a scene has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FrictionKind {
+    /// No tangential rows.
+    None,
+    /// One quadratic program a level.
+    Given,
+    /// Slip bounds follow the contact forces.
+    Coulomb,
+    /// The coefficient follows the slip rate, too.
+    RateDependent,
+}
+
+/// Which effects a scene has; what is `false` here is neither allocated nor computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub struct Effects {
+    /// Inequalities: a contact surface.
+    pub contact: bool,
+    /// A gap: offsets of the normal rows.
+    pub gap: bool,
+    /// Friction.
+    pub friction: FrictionKind,
+    /// History: old tangential displacements.
+    pub history: bool,
+    /// Gluing of several subdomains.
+    pub gluing: bool,
+    /// Supports.
+    pub supports: bool,
+    /// Supports that move.
+    pub motion: bool,
+}
+
+/// Sizes of a scene and the method chosen for it.
+///
+/// `Display` prints it as a short table.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Plan {
+    /// The effects.
+    pub effects: Effects,
+    /// Tetrahedra.
+    pub elements: usize,
+    /// Mesh nodes.
+    pub nodes: usize,
+    /// Subdomains, n_s of the paper.
+    pub subdomains: usize,
+    /// Unknown displacements of all torn subdomains, n_p of the paper.
+    pub primal: usize,
+    /// Contact nodes that can touch (nodes whose normal displacement is fixed by supports are left out).
+    pub contact_nodes: usize,
+    /// Rows of `N`.
+    pub normal_rows: usize,
+    /// Rows of `T`.
+    pub tangential_rows: usize,
+    /// Rows of `B_int`.
+    pub interface_rows: usize,
+    /// Rows of `B_Dir`.
+    pub dirichlet_rows: usize,
+    /// Unknowns of the coarse problem.
+    pub coarse: usize,
+    /// Time levels.
+    pub levels: usize,
+    /// The method that will be used.
+    pub method: &'static str,
+    /// Bytes of the vectors that stay allocated (multipliers, displacements, loads); factors are reported after the set-up.
+    pub vector_bytes: u64,
+}
+
+impl Plan {
+    /// Judges a scene.
+    ///
+    /// # Errors
+    /// [`ContactError`] naming what is wrong with the scene or the settings.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
+        scene.validate()?;
+        settings.validate()?;
+        let decomposition = scene.decompose()?;
+        Self::with_decomposition(scene, settings, &decomposition)
+    }
+
+    /// All rows, n_d of full rank.
+    #[must_use]
+    pub fn dual(&self) -> usize {
+        self.normal_rows + self.tangential_rows + self.interface_rows + self.dirichlet_rows
+    }
+
+    pub(crate) fn with_decomposition(
+        scene: &Scene,
+        settings: &Settings,
+        decomposition: &Decomposition,
+    ) -> Result<Self, ContactError> {
+        let fixed = fixed_directions(scene)?;
+        let nodes = scene.mesh.points().len();
+        let torn_nodes: usize = decomposition.subdomains().iter().map(|s| s.nodes.len()).sum();
+        let interface_rows = 3 * (torn_nodes - nodes);
+        let dirichlet_rows: usize = fixed.values().copied().sum();
+        let friction = scene.contact.as_ref().map_or(&Friction::None, |c| c.friction());
+        let mut touching = BTreeSet::new();
+        if let Some(contact) = &scene.contact {
+            for &tag in &contact.tags {
+                touching.extend(scene.mesh.nodes_on(tag));
+            }
+        }
+        // an estimate at nodes with one or two fixed directions: the set-up counts exactly
+        let free = |node: &u32| 3 - fixed.get(node).copied().unwrap_or(0).min(3);
+        touching.retain(|node| free(node) > 0);
+        let normal_rows = touching.len();
+        let tangential_rows =
+            if friction.is_some() { touching.iter().map(|node| free(node) - 1).sum() } else { 0 };
+        let kind = match friction {
+            Friction::None => FrictionKind::None,
+            Friction::Given(_) => FrictionKind::Given,
+            Friction::Coulomb(c) if c.depends_on_rate() => FrictionKind::RateDependent,
+            Friction::Coulomb(_) => FrictionKind::Coulomb,
+        };
+        let effects = Effects {
+            contact: scene.contact.is_some(),
+            gap: scene.contact.as_ref().is_some_and(|c| !matches!(c.gap, Gap::None)),
+            friction: kind,
+            history: kind != FrictionKind::None && matches!(scene.analysis, Analysis::Quasistatic { .. }),
+            gluing: decomposition.subdomains().len() > 1,
+            supports: !scene.supports.is_empty(),
+            motion: scene.supports.iter().any(|s| s.motion.is_some()),
+        };
+        let method = if effects.contact { settings.method.name() } else { "linear" };
+        let primal = decomposition.torn_dofs();
+        let dual = normal_rows + tangential_rows + interface_rows + dirichlet_rows;
+        let vectors = match settings.method {
+            Method::Face(_) => 16,
+            _ => 18,
+        };
+        Ok(Self {
+            effects,
+            elements: scene.mesh.tets().len(),
+            nodes,
+            subdomains: decomposition.subdomains().len(),
+            primal,
+            contact_nodes: normal_rows,
+            normal_rows,
+            tangential_rows,
+            interface_rows,
+            dirichlet_rows,
+            coarse: 6 * decomposition.subdomains().len(),
+            levels: scene.analysis.levels(),
+            method,
+            vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
+        })
+    }
+}
+
+/// Number of directions fixed at each node.
+fn fixed_directions(scene: &Scene) -> Result<BTreeMap<u32, usize>, ContactError> {
+    let mut axes: BTreeMap<u32, ([bool; 3], usize)> = BTreeMap::new();
+    for support in &scene.supports {
+        for node in scene.nodes("support", &support.place)? {
+            let entry = axes.entry(node).or_insert(([false; 3], 0));
+            match &support.directions {
+                Directions::All => entry.0 = [true; 3],
+                Directions::Components(on) => (0..3).for_each(|c| entry.0[c] |= on[c]),
+                Directions::Vectors(vectors) => entry.1 += vectors.len(),
+                _ => {}
+            }
+        }
+    }
+    let count = |(on, more): ([bool; 3], usize)| (on.iter().filter(|&&b| b).count() + more).min(3);
+    Ok(axes.into_iter().map(|(node, entry)| (node, count(entry))).collect())
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let e = &self.effects;
+        let yes = |on: bool, text: String, absent: &str| if on { text } else { format!("none ({absent})") };
+        writeln!(f, "plan")?;
+        writeln!(f, "  mesh        {} tetrahedra, {} nodes", self.elements, self.nodes)?;
+        writeln!(f, "  subdomains  {} ({} torn unknowns)", self.subdomains, self.primal)?;
+        let gluing = format!("{} rows", self.interface_rows);
+        writeln!(f, "  gluing      {}", yes(e.gluing, gluing, "one subdomain"))?;
+        let moving = if e.motion { ", moving" } else { "" };
+        writeln!(f, "  supports    {}", yes(e.supports, format!("{} rows{moving}", self.dirichlet_rows), "free body"))?;
+        let gap = if e.gap { "with gap" } else { "no gap: zero offset" };
+        let contact = format!("{} nodes, {gap}", self.contact_nodes);
+        writeln!(f, "  contact     {}", yes(e.contact, contact, "no inequality solver"))?;
+        let friction = match e.friction {
+            FrictionKind::None => "none (no tangential rows)".to_owned(),
+            FrictionKind::Given => format!("given, {} rows, no outer loop", self.tangential_rows),
+            FrictionKind::Coulomb => format!("Coulomb, {} rows, no slip rate", self.tangential_rows),
+            FrictionKind::RateDependent => format!("Coulomb, rate dependent, {} rows", self.tangential_rows),
+        };
+        writeln!(f, "  friction    {friction}")?;
+        let history = format!("{} levels, old traces kept", self.levels);
+        writeln!(f, "  history     {}", yes(e.history, history, "each level stands alone"))?;
+        writeln!(f, "  dual        {} rows, coarse {}", self.dual(), self.coarse)?;
+        writeln!(f, "  method      {}", self.method)?;
+        write!(f, "  vectors     {:.1} MB", self.vector_bytes as f64 / 1e6)
+    }
+}

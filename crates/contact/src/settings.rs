@@ -1,0 +1,224 @@
+//! Settings of a simulation: how, not what.
+
+use crate::error::ContactError;
+use signorini_qp::{FaceSettings, SmalseSettings};
+use signorini_tfeti::{InverseSettings, RowRule, Sharing};
+
+/// How the inequality-constrained problem of a time level is solved.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Method {
+    /// The default: faces predicted by the natural map, projected preconditioned conjugate gradients on
+    /// each, slip bounds following as soon as the contact set has settled. Falls back to
+    /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) where the prediction makes no progress.
+    Face(FaceSettings),
+    /// The paper's method (3.17): given-friction problems by SMALSE and KPRGP, repeated with new slip bounds.
+    SuccessiveApproximations {
+        /// Settings of SMALSE.
+        smalse: SmalseSettings,
+        /// How accurately each given-friction problem is solved.
+        accuracy: InnerAccuracy,
+    },
+    /// The paper's one inexact loop: the slip bounds follow the outer steps of SMALSE.
+    OneLoop {
+        /// Settings of SMALSE.
+        smalse: SmalseSettings,
+    },
+}
+
+impl Method {
+    /// The paper's method with the settings that served best on the brick.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self::SuccessiveApproximations { smalse: paper_smalse(), accuracy: InnerAccuracy::default() }
+    }
+
+    /// The paper's one inexact loop with the same settings.
+    #[must_use]
+    pub fn one_loop() -> Self {
+        Self::OneLoop { smalse: paper_smalse() }
+    }
+
+    /// A short name, as the examples print it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Face(_) => "face",
+            Self::SuccessiveApproximations { .. } => "paper",
+            Self::OneLoop { .. } => "one-loop",
+        }
+    }
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Self::Face(FaceSettings::default())
+    }
+}
+
+fn paper_smalse() -> SmalseSettings {
+    SmalseSettings::default()
+}
+
+/// Accuracy of the given-friction problems inside the fixed-point loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum InnerAccuracy {
+    /// The final tolerance each time.
+    Fixed,
+    /// `factor` times the last relative change of the slip bounds, never looser than `loosest` and never tighter
+    /// than the final tolerance.
+    Adaptive {
+        /// In (0, 1).
+        factor: f64,
+        /// In (0, 1).
+        loosest: f64,
+    },
+}
+
+impl Default for InnerAccuracy {
+    fn default() -> Self {
+        Self::Adaptive { factor: 0.1, loosest: 1e-3 }
+    }
+}
+
+/// The preconditioner of the default method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Preconditioner {
+    /// Lumped: the stiffness of the glued unknowns. Cheapest in time for small subdomains.
+    #[default]
+    Lumped,
+    /// Dirichlet: the Schur complement on the glued unknowns. Fewer products for large subdomains.
+    Dirichlet,
+}
+
+/// Settings of a simulation.
+///
+/// | setting | meaning | range | default | the paper's letter |
+/// |---|---|---|---|---|
+/// | `method` | solver of a time level | | [`Method::Face`] | |
+/// | `tolerance` | relative accuracy of the multipliers at every level, and of the fixed point | [1e-12, 0.1] | 1e-6 | `eps` |
+/// | `max_fixed_point` | most evaluations of the Coulomb map a level | >= 1 | 200 | |
+/// | `extrapolate` | start a level from the line through the last two | | true | |
+/// | `row_rule` | scaling of the rows of B | | orthonormal | |
+/// | `sharing` | whether equal subdomains share factors | | automatic | |
+/// | `inverse` | how K+ is held | | by cost | |
+/// | `preconditioner` | of the default method | | lumped | |
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Solver of a time level.
+    pub method: Method,
+    /// Relative accuracy of a level.
+    pub tolerance: f64,
+    /// Most evaluations of the Coulomb map a level.
+    pub max_fixed_point: usize,
+    /// Start from the line through the last two levels.
+    pub extrapolate: bool,
+    /// Scaling of the rows of B.
+    pub row_rule: RowRule,
+    /// Whether equal subdomains share factors.
+    pub sharing: Sharing,
+    /// How the generalised inverse is held.
+    pub inverse: InverseSettings,
+    /// Preconditioner of the default method.
+    pub preconditioner: Preconditioner,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            tolerance: 1e-6,
+            max_fixed_point: 200,
+            extrapolate: true,
+            row_rule: RowRule::default(),
+            sharing: Sharing::default(),
+            inverse: InverseSettings::default(),
+            preconditioner: Preconditioner::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Sets the solver.
+    #[must_use]
+    pub fn with_method(mut self, method: Method) -> Self {
+        self.method = method;
+        self
+    }
+
+    /// Sets the accuracy of a level.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Sets the largest number of evaluations of the Coulomb map a level.
+    #[must_use]
+    pub fn with_max_fixed_point(mut self, max: usize) -> Self {
+        self.max_fixed_point = max;
+        self
+    }
+
+    /// Switches extrapolation in time on or off.
+    #[must_use]
+    pub fn with_extrapolation(mut self, on: bool) -> Self {
+        self.extrapolate = on;
+        self
+    }
+
+    /// Sets the scaling of the rows of B.
+    #[must_use]
+    pub fn with_row_rule(mut self, rule: RowRule) -> Self {
+        self.row_rule = rule;
+        self
+    }
+
+    /// Sets whether equal subdomains share factors.
+    #[must_use]
+    pub fn with_sharing(mut self, sharing: Sharing) -> Self {
+        self.sharing = sharing;
+        self
+    }
+
+    /// Sets how the generalised inverse is held.
+    #[must_use]
+    pub fn with_inverse(mut self, inverse: InverseSettings) -> Self {
+        self.inverse = inverse;
+        self
+    }
+
+    /// Sets the preconditioner of the default method.
+    #[must_use]
+    pub fn with_preconditioner(mut self, preconditioner: Preconditioner) -> Self {
+        self.preconditioner = preconditioner;
+        self
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ContactError> {
+        if !(1e-12..=0.1).contains(&self.tolerance) {
+            return Err(ContactError::Setting { name: "tolerance", value: self.tolerance, range: "[1e-12, 0.1]" });
+        }
+        if self.max_fixed_point == 0 {
+            return Err(ContactError::Setting { name: "max_fixed_point", value: 0.0, range: "at least 1" });
+        }
+        match &self.method {
+            Method::Face(face) => face.validate()?,
+            Method::SuccessiveApproximations { smalse, accuracy } => {
+                smalse.validate()?;
+                if let InnerAccuracy::Adaptive { factor, loosest } = accuracy {
+                    for (name, value) in [("accuracy.factor", *factor), ("accuracy.loosest", *loosest)] {
+                        if !(value > 0.0 && value < 1.0) {
+                            return Err(ContactError::Setting { name, value, range: "(0, 1)" });
+                        }
+                    }
+                }
+            }
+            Method::OneLoop { smalse } => smalse.validate()?,
+        }
+        Ok(())
+    }
+}

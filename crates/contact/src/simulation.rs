@@ -1,0 +1,307 @@
+//! The simulation: set-up, levels, recovery, certificate.
+
+use crate::certificate::{Certificate, Measured, certify};
+use crate::error::ContactError;
+use crate::face_solver::restore_sliding;
+use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
+use crate::level::Level;
+use crate::model::{Model, TouchPoint};
+use crate::observer::{Flow, Observer};
+use crate::plan::Plan;
+use crate::report::{Counters, LevelReport};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::solver::{Iterate, Solver};
+use crate::state::State;
+use signorini_fem_mesh::Decomposition;
+use signorini_qp::vector;
+use signorini_tfeti::Tfeti;
+use std::time::{Duration, Instant};
+
+/// A scene being simulated, level by level.
+///
+/// ```
+/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
+/// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
+///
+/// let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
+/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?))
+///     .with_support(Support::fixed(brick::X_MIN))
+///     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?))
+///     .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(Friction::coulomb(0.3)))
+///     .with_boxes([3, 1, 1])
+///     .with_analysis(Analysis::quasistatic(1.0, 4));
+/// let mut simulation = Simulation::new(scene, Settings::default())?;
+/// while !simulation.is_finished() {
+///     let frame = simulation.step()?;
+///     assert!(frame.report().status.converged());
+///     assert!(frame.certificate().largest() < 1e-6);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Simulation {
+    model: Model,
+    settings: Settings,
+    solver: Solver,
+    state: State,
+    level: Level,
+    iterate: Iterate,
+    report: LevelReport,
+    certificate: Certificate,
+    points: Vec<PointState>,
+    summary: ContactSummary,
+    torn: Vec<f64>,
+    total: Counters,
+    setup: Duration,
+}
+
+impl Simulation {
+    /// Sets up: decomposition, stiffness, inverses, coarse problem, unit loads.
+    ///
+    /// # Errors
+    /// [`ContactError`] naming what is wrong with the scene or the settings.
+    pub fn new(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
+        let start = Instant::now();
+        let model = Model::new(scene, &settings)?;
+        crate::held::check(&model)?;
+        let solver = Solver::new(&model, &settings)?;
+        Ok(Self {
+            state: State::default(),
+            level: Level::default(),
+            iterate: Iterate::default(),
+            report: LevelReport::new(),
+            certificate: Certificate::default(),
+            points: Vec::new(),
+            summary: ContactSummary::default(),
+            torn: Vec::new(),
+            total: Counters::default(),
+            setup: start.elapsed(),
+            model,
+            settings,
+            solver,
+        })
+    }
+
+    /// The plan.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.model.plan
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.model.scene
+    }
+
+    /// The decomposition.
+    #[must_use]
+    pub fn decomposition(&self) -> &Decomposition {
+        &self.model.decomposition
+    }
+
+    /// The T-FETI system, with its set-up report.
+    #[must_use]
+    pub fn tfeti(&self) -> &Tfeti {
+        &self.model.tfeti
+    }
+
+    /// The touch points.
+    #[must_use]
+    pub fn touch_points(&self) -> &[TouchPoint] {
+        &self.model.points
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Wall-clock time of the set-up.
+    #[must_use]
+    pub fn setup_time(&self) -> Duration {
+        self.setup
+    }
+
+    /// Counters of all levels so far.
+    #[must_use]
+    pub fn counters(&self) -> &Counters {
+        &self.total
+    }
+
+    /// The state between levels; store it to continue later.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Continues from a stored state of the same scene.
+    ///
+    /// # Errors
+    /// [`ContactError::Checkpoint`] if the state does not fit.
+    pub fn resume(&mut self, state: State) -> Result<(), ContactError> {
+        let tfeti = &self.model.tfeti;
+        let tangential = self.model.tangential_rows();
+        state.fits(tfeti.dual_dim(), tfeti.coarse().rows(), tangential, self.model.points.len())?;
+        if state.level() > self.model.scene.analysis.levels() {
+            return Err(ContactError::Checkpoint { reason: "it has more levels than this scene".to_owned() });
+        }
+        self.state = state;
+        Ok(())
+    }
+
+    /// Whether all levels are solved.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.state.level() >= self.model.scene.analysis.levels()
+    }
+
+    /// Solves the next level. Not converging is no error: see the frame's report.
+    ///
+    /// # Errors
+    /// [`ContactError::Finished`] after the last level; a breakdown of a solver. The state is then unchanged.
+    pub fn step(&mut self) -> Result<Frame<'_>, ContactError> {
+        let index = self.state.level();
+        self.level.prepare(&self.model, &self.state, index)?;
+        self.start()?;
+        let mut report = self.solver.solve(&self.model, &self.level, &self.settings, &mut self.iterate)?;
+
+        // recovery: u, and from it everything that is reported
+        let tfeti = &self.model.tfeti;
+        let force = combine(&self.model, &self.level);
+        let lambda = std::mem::take(&mut self.iterate.lambda);
+        self.torn = tfeti.recover(&force, &lambda, &self.iterate.alpha)?;
+        report.counters.products += 1;
+        let mut rows = vec![0.0; tfeti.dual_dim()];
+        tfeti.rows_times(&self.torn, &mut rows);
+        let residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
+        let measured = Measured { rows: &rows, u: &self.torn, force: &force, residual: &residual };
+        self.certificate = certify(&self.model, &self.level, &lambda, &measured);
+        self.points = point_states(&self.model, &self.level, &lambda, &rows);
+        let before: Vec<f64> = (0..self.model.tangential_rows()).map(|k| self.state.traces(k).0).collect();
+        self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
+        self.remember(lambda, rows, &mut report);
+        self.total += report.counters;
+        self.report = report;
+        Ok(self.frame())
+    }
+
+    /// Solves all levels that are left, telling the observer; ends early if it says so.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn run(&mut self, observer: &mut impl Observer) -> Result<(), ContactError> {
+        let levels = self.model.scene.analysis.levels() - self.state.level();
+        observer.started(&self.model.plan, levels);
+        let mut solved = 0;
+        while !self.is_finished() {
+            let frame = self.step()?;
+            solved += 1;
+            if observer.level(&frame) == Flow::Stop {
+                break;
+            }
+        }
+        observer.finished(solved);
+        Ok(())
+    }
+
+    /// The frame of the last level solved.
+    #[must_use]
+    pub fn frame(&self) -> Frame<'_> {
+        Frame {
+            model: &self.model,
+            level: &self.level,
+            report: &self.report,
+            certificate: &self.certificate,
+            summary: &self.summary,
+            points: &self.points,
+            torn: &self.torn,
+        }
+    }
+
+    /// Start vectors of a level: zero, the last level, or the line through the last two.
+    fn start(&mut self) -> Result<(), ContactError> {
+        let rows = self.model.tfeti.dual_dim();
+        let extrapolate = |pair: &[Vec<f64>; 2], n: usize, on: bool| -> Vec<f64> {
+            let [last, before] = pair;
+            if last.is_empty() {
+                return vec![0.0; n];
+            }
+            let mut x = last.clone();
+            if on && before.len() == n {
+                vector::extrapolate(last, before, 1.0, &mut x);
+            }
+            x
+        };
+        let on = self.settings.extrapolate;
+        // before the first level everything is at rest: zero is known, too
+        let before_known = self.state.level() != 1 || self.model.plan.levels == 1;
+        let pairs = (self.state.lambda(), self.state.f_lambda());
+        let zero = vec![0.0; rows];
+        if on && !before_known && pairs.0[1].is_empty() {
+            let first = [pairs.0[0].clone(), zero.clone()];
+            let product = [pairs.1[0].clone(), zero];
+            self.iterate.lambda = extrapolate(&first, rows, true);
+            self.iterate.f_lambda = extrapolate(&product, rows, true);
+        } else {
+            self.iterate.lambda = extrapolate(pairs.0, rows, on);
+            self.iterate.f_lambda = extrapolate(pairs.1, rows, on);
+        }
+        self.iterate.known = true;
+        let coarse = self.model.tfeti.coarse().rows();
+        self.iterate.multiplier = extrapolate(self.state.multiplier(), coarse, on);
+        if self.state.sliding().iter().any(|s| *s) {
+            let old = self.iterate.lambda.clone();
+            let mut set = self.model.set.clone();
+            self.level.slip_bounds(&self.model, &self.iterate.lambda, &mut set)?;
+            restore_sliding(&self.model, &set, self.state.sliding(), &mut self.iterate.lambda);
+            self.iterate.known = old == self.iterate.lambda;
+        }
+        Ok(())
+    }
+
+    fn remember(&mut self, lambda: Vec<f64>, rows: Vec<f64>, report: &mut LevelReport) {
+        let effects = &self.model.plan.effects;
+        let quasistatic = self.model.plan.levels > 1;
+        let mut trace = Vec::new();
+        let mut sliding = Vec::new();
+        let mut rate = Vec::new();
+        if effects.history {
+            trace.resize(self.model.tangential_rows(), 0.0);
+            let start = self.model.tangential_start();
+            for point in &self.model.points {
+                if let Some((row, count, scale)) = point.tangential.rows() {
+                    for k in row..row + count {
+                        trace[k - start] = rows[k] / scale;
+                    }
+                }
+            }
+            sliding.extend(self.points.iter().map(|p| p.state == ContactState::Slip));
+        }
+        if effects.history && self.model.friction().depends_on_rate() {
+            rate.extend(self.points.iter().map(|p| p.slip_rate));
+            report.counters.rate_updates += 1;
+        }
+        let (lambda, f_lambda, multiplier) = if quasistatic {
+            // F lambda afresh from the recovered displacement: B u = F lambda + B K+ f + G^T alpha
+            let tfeti = &self.model.tfeti;
+            let mut f_lambda = rows;
+            let mut rigid = vec![0.0; f_lambda.len()];
+            tfeti.coarse().apply_transpose(&self.iterate.alpha, &mut rigid, &mut tfeti.coarse().scratch());
+            for ((f, load), rigid) in f_lambda.iter_mut().zip(&self.level.load).zip(&rigid) {
+                *f -= load + rigid;
+            }
+            (lambda, f_lambda, std::mem::take(&mut self.iterate.multiplier))
+        } else {
+            (Vec::new(), Vec::new(), Vec::new())
+        };
+        self.state.advance(self.settings.extrapolate, lambda, f_lambda, multiplier, trace, rate, sliding);
+    }
+}
+
+fn combine(model: &Model, level: &Level) -> Vec<f64> {
+    let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();
+    model.tfeti.combine_forces(&loads)
+}

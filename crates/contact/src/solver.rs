@@ -1,0 +1,80 @@
+//! The solver of a level: chooses by effect and method, owns all work memory.
+
+use crate::error::ContactError;
+use crate::face_solver::FaceSolver;
+use crate::law::Friction;
+use crate::level::Level;
+use crate::linear_solver::LinearSolver;
+use crate::model::Model;
+use crate::paper_solver::PaperSolver;
+use crate::report::{LevelReport, LevelStatus};
+use crate::settings::{Method, Settings};
+use signorini_qp::Status;
+
+/// Iterate of a level in and out of a solver.
+#[derive(Debug, Default)]
+pub(crate) struct Iterate {
+    /// Multipliers.
+    pub(crate) lambda: Vec<f64>,
+    /// `F lambda`, if known.
+    pub(crate) f_lambda: Vec<f64>,
+    /// Whether `f_lambda` is `F lambda`.
+    pub(crate) known: bool,
+    /// Multiplier of the orthonormal coarse equality, for SMALSE.
+    pub(crate) multiplier: Vec<f64>,
+    /// Rigid amplitudes `alpha` of (5.27), set by the solver.
+    pub(crate) alpha: Vec<f64>,
+}
+
+/// The solvers that a scene can need; only what it needs exists.
+#[derive(Debug)]
+pub(crate) enum Solver {
+    /// No contact: projected conjugate gradients.
+    Linear(Box<LinearSolver>),
+    /// The default.
+    Face(Box<FaceSolver>),
+    /// The paper's methods.
+    Paper(Box<PaperSolver>),
+}
+
+impl Solver {
+    pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
+        if model.points.is_empty() {
+            return Ok(Self::Linear(Box::new(LinearSolver::new(model, settings)?)));
+        }
+        Ok(match &settings.method {
+            Method::Face(face) => Self::Face(Box::new(FaceSolver::new(model, settings, face)?)),
+            Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } => {
+                Self::Paper(Box::new(PaperSolver::new(model, settings)?))
+            }
+        })
+    }
+
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<LevelReport, ContactError> {
+        match self {
+            Self::Linear(solver) => solver.solve(model, level, settings, iterate),
+            Self::Face(solver) => solver.solve(model, level, settings, iterate),
+            Self::Paper(solver) => solver.solve(model, level, settings, iterate),
+        }
+    }
+}
+
+/// Status of a level from the status of a quadratic program.
+pub(crate) fn level_status(status: Status) -> LevelStatus {
+    match status {
+        Status::Converged => LevelStatus::Converged,
+        Status::Stagnated | Status::Stopped => LevelStatus::Stagnated,
+        _ => LevelStatus::IterationLimit,
+    }
+}
+
+/// Whether slip bounds follow the normal forces.
+pub(crate) fn is_coulomb(model: &Model) -> bool {
+    matches!(model.friction(), Friction::Coulomb(_))
+}

@@ -1,0 +1,156 @@
+//! The state between time levels: one serialisable value.
+
+use crate::error::ContactError;
+use serde::{Deserialize, Serialize};
+
+/// What one level hands to the next.
+///
+/// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct State {
+    /// Levels solved.
+    level: usize,
+    /// Multipliers of the last level and the one before.
+    lambda: [Vec<f64>; 2],
+    /// `F lambda` of the same.
+    f_lambda: [Vec<f64>; 2],
+    /// Multiplier of the coarse equality, for the methods that carry one.
+    multiplier: [Vec<f64>; 2],
+    /// Tangential displacements of the last level and the one before, m, one a tangential row.
+    trace: [Vec<f64>; 2],
+    /// Slip rate at each touch point, m/s; only if the coefficient depends on it.
+    rate: Vec<f64>,
+    /// Points that slid at the last level.
+    sliding: Vec<bool>,
+}
+
+/// Marks the format of stored states.
+const MAGIC: u32 = 0x5349_4701;
+
+impl State {
+    /// Levels solved so far.
+    #[must_use]
+    pub fn level(&self) -> usize {
+        self.level
+    }
+
+    /// Bytes held.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        let numbers: usize = pairs.iter().flat_map(|p| p.iter()).map(Vec::len).sum::<usize>() + self.rate.len();
+        8 * numbers + self.sliding.len()
+    }
+
+    /// Writes the state as bytes (postcard).
+    ///
+    /// # Errors
+    /// [`ContactError::Checkpoint`] if the encoder fails.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ContactError> {
+        postcard::to_stdvec(&(MAGIC, self)).map_err(|e| ContactError::Checkpoint { reason: e.to_string() })
+    }
+
+    /// Reads what [`to_bytes`](Self::to_bytes) wrote.
+    ///
+    /// # Errors
+    /// [`ContactError::Checkpoint`] if the bytes are damaged or of another format.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
+        let error = |reason: String| ContactError::Checkpoint { reason };
+        let (magic, state): (u32, Self) =
+            postcard::from_bytes(bytes).map_err(|e| error(format!("the bytes are damaged ({e})")))?;
+        if magic == MAGIC { Ok(state) } else { Err(error("another format or version".to_owned())) }
+    }
+
+    pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
+        &self.lambda
+    }
+
+    pub(crate) fn f_lambda(&self) -> &[Vec<f64>; 2] {
+        &self.f_lambda
+    }
+
+    pub(crate) fn multiplier(&self) -> &[Vec<f64>; 2] {
+        &self.multiplier
+    }
+
+    /// Last and older trace of a tangential row; zero before the start.
+    pub(crate) fn traces(&self, k: usize) -> (f64, f64) {
+        let get = |v: &Vec<f64>| v.get(k).copied().unwrap_or(0.0);
+        (get(&self.trace[0]), get(&self.trace[1]))
+    }
+
+    pub(crate) fn rates(&self) -> &[f64] {
+        &self.rate
+    }
+
+    pub(crate) fn sliding(&self) -> &[bool] {
+        &self.sliding
+    }
+
+    /// Takes over the result of a level. Vectors that the scene does not need are empty.
+    pub(crate) fn advance(
+        &mut self,
+        keep_before: bool,
+        lambda: Vec<f64>,
+        f_lambda: Vec<f64>,
+        multiplier: Vec<f64>,
+        trace: Vec<f64>,
+        rate: Vec<f64>,
+        sliding: Vec<bool>,
+    ) {
+        let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
+            pair.swap(0, 1);
+            pair[0] = new;
+            if !keep_before {
+                pair[1] = Vec::new();
+            }
+        };
+        push(&mut self.lambda, lambda);
+        push(&mut self.f_lambda, f_lambda);
+        push(&mut self.multiplier, multiplier);
+        // old tangential displacements are part of the model, not of the extrapolation
+        self.trace.swap(0, 1);
+        self.trace[0] = trace;
+        self.rate = rate;
+        self.sliding = sliding;
+        self.level += 1;
+    }
+
+    /// Checks that the state fits a model of these sizes.
+    pub(crate) fn fits(&self, rows: usize, coarse: usize, tangential: usize, points: usize) -> Result<(), ContactError> {
+        let fit = |v: &Vec<f64>, n: usize| v.is_empty() || v.len() == n;
+        let good = self.lambda.iter().chain(&self.f_lambda).all(|v| fit(v, rows))
+            && self.multiplier.iter().all(|v| fit(v, coarse))
+            && self.trace.iter().all(|v| fit(v, tangential))
+            && fit(&self.rate, points)
+            && (self.sliding.is_empty() || self.sliding.len() == points);
+        let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        let finite = numbers.iter().flat_map(|p| p.iter()).chain([&self.rate]).flatten().all(|v| v.is_finite());
+        if !good {
+            return Err(ContactError::Checkpoint { reason: "it belongs to another scene: sizes differ".to_owned() });
+        }
+        if !finite {
+            return Err(ContactError::Checkpoint { reason: "it contains NaN or infinity".to_owned() });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_round_trip_and_damage_is_noticed() {
+        let mut state = State::default();
+        state.advance(true, vec![1.0 / 3.0, -2.0], vec![0.1, 0.2], vec![], vec![1e-300], vec![], vec![true]);
+        let bytes = state.to_bytes().unwrap();
+        assert_eq!(State::from_bytes(&bytes).unwrap(), state);
+        assert!(matches!(State::from_bytes(&bytes[..bytes.len() - 1]), Err(ContactError::Checkpoint { .. })));
+        assert!(State::from_bytes(&[0; 40]).is_err());
+        assert!(state.fits(2, 6, 1, 1).is_ok());
+        assert!(state.fits(3, 6, 1, 1).is_err());
+        state.advance(true, vec![f64::NAN, 0.0], vec![0.0; 2], vec![], vec![0.0], vec![], vec![false]);
+        assert!(state.fits(2, 6, 1, 1).is_err());
+    }
+}

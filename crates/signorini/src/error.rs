@@ -1,0 +1,55 @@
+//! One error for programs that use the facade.
+
+use signorini_contact::ContactError;
+use signorini_fem_mesh as fem;
+use thiserror::Error;
+
+/// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Scene, settings, simulation.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// Mesh.
+    #[error(transparent)]
+    Mesh(#[from] fem::MeshError),
+    /// Brick.
+    #[error(transparent)]
+    Brick(#[from] fem::BrickError),
+    /// Hooke's law.
+    #[error(transparent)]
+    Hooke(#[from] fem::HookeError),
+    /// Table of materials.
+    #[error(transparent)]
+    Material(#[from] fem::MaterialError),
+    /// Decomposition.
+    #[error(transparent)]
+    Decomposition(#[from] fem::DecompositionError),
+    /// History.
+    #[error(transparent)]
+    History(#[from] fem::HistoryError),
+    /// Load.
+    #[error(transparent)]
+    Load(#[from] fem::LoadError),
+    /// Contact surface.
+    #[error(transparent)]
+    Surface(#[from] fem::SurfaceError),
+    /// Derived fields.
+    #[error(transparent)]
+    Field(#[from] fem::FieldError),
+    /// Domain decomposition.
+    #[error(transparent)]
+    Tfeti(#[from] signorini_tfeti::TfetiError),
+    /// Quadratic programming.
+    #[error(transparent)]
+    Qp(#[from] signorini_qp::QpError),
+    /// Result files.
+    #[cfg(feature = "vtu")]
+    #[error(transparent)]
+    Output(#[from] fem::output::OutputError),
+    /// Gmsh files.
+    #[cfg(feature = "gmsh")]
+    #[error(transparent)]
+    Gmsh(#[from] fem::gmsh::GmshError),
+}
