@@ -284,6 +284,22 @@ impl BoundaryMap {
         3 * panel.copies.start..3 * panel.copies.end
     }
 
+    /// Node copies of a panel.
+    pub(crate) fn copies_of(&self, panel: &Panel) -> Range<usize> {
+        panel.copies.clone()
+    }
+
+    /// A number for each boundary copy, from its subdomain and local node.
+    pub(crate) fn copy_values(&self, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.copies);
+        for class in &self.classes {
+            for &member in &class.members {
+                out.extend(class.nodes.iter().map(|&n| value(member as usize, n as usize)));
+            }
+        }
+        out
+    }
+
     /// Panels of a lane with the part of the lane's boundary vector that belongs to each.
     pub(crate) fn panels_of<'a>(
         &'a self,

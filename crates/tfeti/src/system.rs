@@ -175,6 +175,7 @@ impl<'a> TfetiBuilder<'a> {
             .flat_map(|s| s.nodes.iter().copied())
             .collect();
         let nodes = mesh.points().len();
+        let heterogeneous = has_several_laws(mesh, self.materials);
         let parts = Parts {
             classes,
             gluing,
@@ -191,8 +192,19 @@ impl<'a> TfetiBuilder<'a> {
             report,
             node_of,
             nodes,
+            heterogeneous,
         })
     }
+}
+
+/// Whether regions in use have different Hooke tensors.
+fn has_several_laws(mesh: &TetMesh, materials: &Materials) -> bool {
+    let law = |region: u32| materials.get(region).ok().map(|h| *h.voigt());
+    let mut regions = mesh.regions().to_vec();
+    regions.dedup();
+    regions.sort_unstable();
+    regions.dedup();
+    regions.windows(2).any(|pair| law(pair[0]) != law(pair[1]))
 }
 
 struct Clock(Instant);
@@ -230,6 +242,8 @@ pub struct Tfeti {
     /// Mesh node of each node copy, in torn order.
     pub(crate) node_of: Vec<u32>,
     pub(crate) nodes: usize,
+    /// Whether elements differ in their Hooke tensors.
+    pub(crate) heterogeneous: bool,
 }
 
 impl Tfeti {

@@ -1,0 +1,324 @@
+//! The lumped and the Dirichlet preconditioner.
+//!
+//! Both are `B_D S B_D^T` with a stiffness `S` on the boundary nodes: the block `K_bb` (lumped) or the Schur complement
+//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and one material `B_D = B`; otherwise `B_D` distributes
+//! forces by stiffness, see [`Scaling`].
+
+use crate::boundary::BoundaryMap;
+use crate::cost::{PANEL, SHARED};
+use crate::dense;
+use crate::error::TfetiError;
+use crate::inverse::pattern_error;
+use crate::matrices::ClassBase;
+use crate::scaling::Scaling;
+use crate::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
+use crate::system::Tfeti;
+use rayon::prelude::*;
+use signorini_qp::SymmetricOperator;
+use std::sync::Arc;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Lumped,
+    Dirichlet,
+}
+
+/// A preconditioner for `F`: symmetric, positive semidefinite, close to the inverse of `F` on the kernel of `G`.
+#[derive(Debug)]
+pub struct Preconditioner {
+    map: Arc<BoundaryMap>,
+    classes: Vec<BoundaryStiffness>,
+    scaling: Option<Scaling>,
+}
+
+/// Stiffness on the boundary nodes of a class.
+#[derive(Debug)]
+enum BoundaryStiffness {
+    Dense(Vec<f64>),
+    Lumped(Columns),
+    Schur { boundary: Columns, coupling: Coupling, factor: SparseCholesky },
+}
+
+/// `K_ib` by columns.
+#[derive(Debug)]
+struct Coupling {
+    interior: usize,
+    columns: Columns,
+}
+
+/// Work memory of a preconditioner.
+#[derive(Debug)]
+pub struct PreconditionerScratch {
+    boundary: Vec<f64>,
+    lanes: Vec<LaneScratch>,
+    dual: Vec<f64>,
+    masked: Vec<f64>,
+}
+
+#[derive(Debug)]
+struct LaneScratch {
+    gathered: Vec<f64>,
+    interior: Vec<f64>,
+    memory: Option<SolveMemory>,
+}
+
+impl Tfeti {
+    /// The lumped preconditioner `B_D K_bb B_D^T`: cheap, no further factorisation.
+    ///
+    /// # Errors
+    /// [`TfetiError::Memory`] never, [`TfetiError::Singular`] never; the signature leaves room for other choices.
+    pub fn lumped(&self) -> Result<Preconditioner, TfetiError> {
+        Preconditioner::new(self, Kind::Lumped)
+    }
+
+    /// The Dirichlet preconditioner `B_D S B_D^T` with the Schur complement on the boundary nodes: fewer iterations, as
+    /// costly as a product with `F`. Classes whose interior is not held by their boundary use the lumped block.
+    ///
+    /// # Errors
+    /// [`TfetiError::TooLarge`] if a factor cannot be numbered.
+    pub fn dirichlet(&self) -> Result<Preconditioner, TfetiError> {
+        Preconditioner::new(self, Kind::Dirichlet)
+    }
+}
+
+impl Preconditioner {
+    fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
+        let map = system.parts.map.clone();
+        let classes = (0..map.classes.len())
+            .into_par_iter()
+            .map(|k| BoundaryStiffness::new(&system.parts.bases[k], &map, k, kind))
+            .collect::<Result<_, _>>()?;
+        let needs_scaling = !system.gluing().is_orthonormal() || system.heterogeneous;
+        let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
+        Ok(Self { map, classes, scaling })
+    }
+
+    /// `y = W M W x` with `W` one on the free rows and zero on the others.
+    pub fn apply_masked(&self, x: &[f64], free: &[bool], y: &mut [f64], s: &mut PreconditionerScratch) {
+        let mut masked = std::mem::take(&mut s.masked);
+        for ((m, x), free) in masked.iter_mut().zip(x).zip(free) {
+            *m = if *free { *x } else { 0.0 };
+        }
+        self.apply(&masked, y, s);
+        s.masked = masked;
+        for (y, free) in y.iter_mut().zip(free) {
+            if !free {
+                *y = 0.0;
+            }
+        }
+    }
+
+    fn stiffness_product(&self, x: &[f64], s: &mut PreconditionerScratch) {
+        let parallel = self.map.is_large();
+        let divide = self.scaling.as_ref().map(Scaling::weights);
+        self.map.for_lanes(&mut s.lanes, &mut s.boundary, parallel, &|lane, scratch, part| {
+            for (panel, out) in self.map.panels_of(lane, part) {
+                let columns = panel.columns.len();
+                let gathered = &mut scratch.gathered[..out.len()];
+                self.map.spread(x, panel, gathered);
+                let weights = divide.map(|w| &w[self.map.copies_of(panel)]);
+                scale_nodes(weights, gathered);
+                let class = &self.classes[panel.class];
+                class.apply(gathered, out, columns, &mut scratch.interior, &mut scratch.memory);
+                scale_nodes(weights, out);
+            }
+        });
+    }
+}
+
+fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64]) {
+    for (w, value) in weights.unwrap_or_default().iter().zip(values.chunks_exact_mut(3)) {
+        value.iter_mut().for_each(|v| *v *= w);
+    }
+}
+
+impl SymmetricOperator for Preconditioner {
+    type Scratch = PreconditionerScratch;
+
+    fn dim(&self) -> usize {
+        self.map.rows()
+    }
+
+    fn scratch(&self) -> PreconditionerScratch {
+        let lane = |k: usize| {
+            let (mut gathered, mut interior, mut need) = (0, 0, None);
+            for panel in &self.map.panels[self.map.lanes[k].panels.clone()] {
+                let columns = panel.columns.len();
+                gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
+                if let BoundaryStiffness::Schur { coupling, factor, .. } = &self.classes[panel.class] {
+                    interior = interior.max(coupling.interior * columns);
+                    let own = factor.need(columns);
+                    need = Some(need.map_or(own, |n: crate::sparse::MemoryNeed| n.or(own)));
+                }
+            }
+            let memory = need.map(SolveMemory::new);
+            LaneScratch { gathered: vec![0.0; gathered], interior: vec![0.0; interior], memory }
+        };
+        let rows = self.map.rows();
+        PreconditionerScratch {
+            boundary: vec![0.0; self.map.len()],
+            lanes: (0..self.map.lanes.len()).map(lane).collect(),
+            dual: vec![0.0; if self.scaling.is_some() { rows } else { 0 }],
+            masked: vec![0.0; rows],
+        }
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut PreconditionerScratch) {
+        let Some(scaling) = &self.scaling else {
+            self.stiffness_product(x, s);
+            self.map.collect(&s.boundary, y);
+            return;
+        };
+        let mut dual = std::mem::take(&mut s.dual);
+        scaling.solve(x, &mut dual);
+        self.stiffness_product(&dual, s);
+        self.map.collect(&s.boundary, &mut dual);
+        scaling.solve(&dual, y);
+        s.dual = dual;
+    }
+}
+
+impl BoundaryStiffness {
+    fn new(base: &ClassBase, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
+        let layout = &map.classes[class];
+        let split = Split::new(&base.stiffness, &layout.nodes);
+        let shared = layout.members.len() >= SHARED;
+        if kind == Kind::Lumped || split.coupling.interior == 0 {
+            return Ok(if shared { Self::Dense(to_dense(&split.boundary)) } else { Self::Lumped(split.boundary) });
+        }
+        let subdomain = layout.members.first().map_or(0, |&s| s as usize);
+        let factor = match Symbolic::new(&split.interior).and_then(|s| SparseCholesky::new(&s, &split.interior)) {
+            Ok(factor) => factor,
+            Err(FactorError::Pivot(_)) => return Ok(Self::Lumped(split.boundary)),
+            Err(error) => return Err(pattern_error(error, subdomain)),
+        };
+        let (smallest, _, largest) = factor.pivots();
+        if smallest <= 1e-13 * largest {
+            return Ok(Self::Lumped(split.boundary));
+        }
+        let sparse = Self::Schur { boundary: split.boundary, coupling: split.coupling, factor };
+        Ok(if shared { Self::Dense(sparse.dense()) } else { sparse })
+    }
+
+    fn dim(&self) -> usize {
+        match self {
+            Self::Dense(values) => values.len().isqrt(),
+            Self::Lumped(matrix) | Self::Schur { boundary: matrix, .. } => matrix.dim,
+        }
+    }
+
+    /// The matrix in full, column by column.
+    fn dense(&self) -> Vec<f64> {
+        let dim = self.dim();
+        let (mut out, mut x) = (vec![0.0; dim * dim], vec![0.0; dim * PANEL]);
+        let (mut interior, mut memory) = match self {
+            Self::Schur { coupling, factor, .. } => (vec![0.0; coupling.interior * PANEL], Some(factor.memory(PANEL))),
+            _ => (Vec::new(), None),
+        };
+        for start in (0..dim).step_by(PANEL) {
+            let columns = PANEL.min(dim - start);
+            let x = &mut x[..dim * columns];
+            x.fill(0.0);
+            (0..columns).for_each(|j| x[j * dim + start + j] = 1.0);
+            self.apply(x, &mut out[start * dim..(start + columns) * dim], columns, &mut interior, &mut memory);
+        }
+        dense::mirror_lower(&mut out, dim);
+        out
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], columns: usize, interior: &mut [f64], memory: &mut Option<SolveMemory>) {
+        match self {
+            Self::Dense(values) => {
+                let dim = y.len() / columns;
+                dense::multiply(y, values, x, dim, dim, columns);
+            }
+            Self::Lumped(matrix) => symmetric_product(matrix, x, y),
+            Self::Schur { boundary, coupling, factor } => {
+                symmetric_product(boundary, x, y);
+                let interior = &mut interior[..coupling.interior * columns];
+                interior.fill(0.0);
+                for (x, target) in x.chunks_exact(boundary.dim).zip(interior.chunks_exact_mut(coupling.interior)) {
+                    for (j, value) in x.iter().enumerate().filter(|(_, v)| **v != 0.0) {
+                        let (rows, values) = coupling.columns.column(j);
+                        rows.iter().zip(values).for_each(|(&i, v)| target[i] += v * value);
+                    }
+                }
+                if let Some(memory) = memory {
+                    factor.solve(interior, columns, memory);
+                }
+                for (y, source) in y.chunks_exact_mut(boundary.dim).zip(interior.chunks_exact(coupling.interior)) {
+                    for (j, target) in y.iter_mut().enumerate() {
+                        let (rows, values) = coupling.columns.column(j);
+                        *target -= rows.iter().zip(values).map(|(&i, v)| v * source[i]).sum::<f64>();
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// `Y = A X` for a symmetric sparse matrix.
+fn symmetric_product(matrix: &Columns, x: &[f64], y: &mut [f64]) {
+    for (x, y) in x.chunks_exact(matrix.dim).zip(y.chunks_exact_mut(matrix.dim)) {
+        for (j, target) in y.iter_mut().enumerate() {
+            let (rows, values) = matrix.column(j);
+            *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
+        }
+    }
+}
+
+fn to_dense(matrix: &Columns) -> Vec<f64> {
+    let mut out = vec![0.0; matrix.dim * matrix.dim];
+    for j in 0..matrix.dim {
+        let (rows, values) = matrix.column(j);
+        rows.iter().zip(values).for_each(|(&i, v)| out[i + j * matrix.dim] = *v);
+    }
+    out
+}
+
+/// The blocks of a stiffness matrix by boundary and interior.
+struct Split {
+    boundary: Columns,
+    interior: Columns,
+    coupling: Coupling,
+}
+
+impl Split {
+    fn new(stiffness: &Columns, nodes: &[u32]) -> Self {
+        let dim = stiffness.dim;
+        // Place of each unknown: boundary ones first, with the interior ones counted on their own.
+        let mut on_boundary = vec![false; dim];
+        for &node in nodes {
+            on_boundary[3 * node as usize..3 * node as usize + 3].fill(true);
+        }
+        let mut place = vec![0; dim];
+        let (mut boundary, mut interior) = (0, 0);
+        for i in 0..dim {
+            let counter = if on_boundary[i] { &mut boundary } else { &mut interior };
+            place[i] = *counter;
+            *counter += 1;
+        }
+        let empty = |dim| Columns { dim, pointers: vec![0], rows: Vec::new(), values: Vec::new() };
+        let (mut bb, mut ii, mut ib) = (empty(boundary), empty(interior), empty(boundary));
+        for j in 0..dim {
+            let (rows, values) = stiffness.column(j);
+            for (&i, &v) in rows.iter().zip(values) {
+                let target = match (on_boundary[i], on_boundary[j]) {
+                    (true, true) => &mut bb,
+                    (false, false) => &mut ii,
+                    (false, true) => &mut ib,
+                    (true, false) => continue,
+                };
+                target.rows.push(place[i]);
+                target.values.push(v);
+            }
+            if on_boundary[j] {
+                bb.pointers.push(bb.rows.len());
+                ib.pointers.push(ib.rows.len());
+            } else {
+                ii.pointers.push(ii.rows.len());
+            }
+        }
+        Self { boundary: bb, interior: ii, coupling: Coupling { interior, columns: ib } }
+    }
+}

@@ -1,0 +1,103 @@
+//! Scaling of the preconditioners where copies of a node differ in stiffness or the rows of `B` are not orthonormal.
+
+use crate::dense;
+use crate::error::TfetiError;
+use crate::system::Tfeti;
+
+/// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or to
+/// a contact pair) are coupled by a small matrix, which is inverted once.
+#[derive(Debug)]
+pub(crate) struct Scaling {
+    /// `1 / D` of each boundary copy, relative to the stiffest.
+    weights: Vec<f64>,
+    /// Rows of each group.
+    pointers: Vec<usize>,
+    rows: Vec<u32>,
+    /// Inverse of the matrix of each group, column-major.
+    inverse_pointers: Vec<usize>,
+    inverses: Vec<f64>,
+}
+
+impl Scaling {
+    pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
+        let gluing = system.gluing();
+        // Stiffness of every copy: the mean diagonal entry of its node.
+        let mut compliance = vec![1.0; system.torn_dim() / 3];
+        if system.heterogeneous {
+            for s in 0..system.subdomains() {
+                let stiffness = &system.parts.bases[system.parts.classes.place(s).0].stiffness;
+                let first = system.torn_range(s).start / 3;
+                for (node, value) in compliance[first..first + stiffness.dim / 3].iter_mut().enumerate() {
+                    let diagonal = (3 * node..3 * node + 3).filter_map(|i| stiffness.find(i, i));
+                    let sum: f64 = diagonal.map(|k| stiffness.values[k]).sum();
+                    *value = if sum > 0.0 { 3.0 / sum } else { 1.0 };
+                }
+            }
+            let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
+            compliance.iter_mut().for_each(|v| *v /= smallest);
+        }
+        // Rows by group: a mesh node, or the two nodes of a contact pair.
+        let mut group: Vec<u32> = (0..system.nodes as u32).collect();
+        for info in gluing.contact() {
+            if let Some(opponent) = info.opponent {
+                group[opponent as usize] = info.node;
+            }
+        }
+        let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
+            .filter_map(|row| gluing.node(row).map(|node| (group[node as usize], row as u32)))
+            .collect();
+        members.sort_unstable();
+        let mut out = Self {
+            weights: Vec::new(),
+            pointers: vec![0],
+            rows: Vec::with_capacity(members.len()),
+            inverse_pointers: vec![0],
+            inverses: Vec::new(),
+        };
+        for rows in members.chunk_by(|a, b| a.0 == b.0) {
+            let count = rows.len();
+            let entries: Vec<Vec<(usize, f64)>> = rows
+                .iter()
+                .map(|&(_, row)| {
+                    let entry = |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
+                    gluing.row(row as usize).into_iter().map(entry).collect()
+                })
+                .collect();
+            let mut matrix = vec![0.0; count * count];
+            for i in 0..count {
+                for j in 0..count {
+                    let weight = |(dof, v): &(usize, f64)| {
+                        let same = entries[j].iter().filter(|(other, _)| other == dof);
+                        v * compliance[dof / 3] * same.map(|(_, w)| w).sum::<f64>()
+                    };
+                    matrix[i + j * count] = entries[i].iter().map(weight).sum();
+                }
+            }
+            let inverse = dense::inverse(matrix, count, 0.0).map_err(|pivot| TfetiError::CoarseSingular { pivot })?;
+            out.rows.extend(rows.iter().map(|r| r.1));
+            out.pointers.push(out.rows.len());
+            out.inverses.extend(inverse);
+            out.inverse_pointers.push(out.inverses.len());
+        }
+        out.weights = system.parts.map.copy_values(|subdomain, local| {
+            compliance[system.torn_range(subdomain).start / 3 + local]
+        });
+        Ok(out)
+    }
+
+    /// `1 / D` of each boundary copy.
+    pub(crate) fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// `y = (B D^-1 B^T)^-1 x`.
+    pub(crate) fn solve(&self, x: &[f64], y: &mut [f64]) {
+        for (k, pair) in self.pointers.windows(2).enumerate() {
+            let rows = &self.rows[pair[0]..pair[1]];
+            let inverse = &self.inverses[self.inverse_pointers[k]..self.inverse_pointers[k + 1]];
+            for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
+                y[target as usize] = column.iter().zip(rows).map(|(v, &row)| v * x[row as usize]).sum();
+            }
+        }
+    }
+}
