@@ -294,7 +294,12 @@ impl BoundaryMap {
         let mut out = Vec::with_capacity(self.copies);
         for class in &self.classes {
             for &member in &class.members {
-                out.extend(class.nodes.iter().map(|&n| value(member as usize, n as usize)));
+                out.extend(
+                    class
+                        .nodes
+                        .iter()
+                        .map(|&n| value(member as usize, n as usize)),
+                );
             }
         }
         out

@@ -4,7 +4,8 @@
 //! by a cheap key and then compared entry by entry: a class is never formed because two hashes agree.
 
 use crate::error::TfetiError;
-use signorini_fem_mesh::{Decomposition, Hooke, Materials, TetMesh};
+use rayon::prelude::*;
+use signorini_fem_mesh::{Decomposition, Hooke, Materials, Subdomain, TetMesh};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -67,50 +68,39 @@ impl Classes {
         materials: &Materials,
         sharing: Sharing,
     ) -> Result<Self, TfetiError> {
+        let subdomains = decomposition.subdomains();
+        let candidates: Vec<Candidate<'_>> = subdomains
+            .par_iter()
+            .map(|s| Candidate::new(mesh, s, materials))
+            .collect::<Result<_, _>>()?;
         let mut classes: Vec<Class> = Vec::new();
-        let mut place = Vec::with_capacity(decomposition.subdomains().len());
+        let mut place = Vec::with_capacity(subdomains.len());
         // Per key: (signature, class), sorted by the signature.
         let mut buckets: HashMap<u64, Vec<(f64, usize)>> = HashMap::new();
-        for (s, subdomain) in decomposition.subdomains().iter().enumerate() {
-            let candidate = Candidate::new(
-                mesh,
-                &subdomain.nodes,
-                &subdomain.tets,
-                &subdomain.elements,
-                materials,
-            )?;
+        for (s, candidate) in candidates.iter().enumerate() {
             let mut home = None;
             if sharing == Sharing::Translates {
-                let bucket = buckets.entry(candidate.key()).or_default();
+                let bucket = buckets.entry(candidate.key).or_default();
                 let slack = candidate.tolerance * SIGNATURE_SLACK;
                 let from = bucket.partition_point(|&(v, _)| v < candidate.signature - slack);
-                for &(value, class) in &bucket[from..] {
-                    if value > candidate.signature + slack {
-                        break;
-                    }
-                    let other = &decomposition.subdomains()[classes[class].members[0] as usize];
-                    let other = Candidate::new(
-                        mesh,
-                        &other.nodes,
-                        &other.tets,
-                        &other.elements,
-                        materials,
-                    )?;
-                    if candidate.is_translate_of(&other) {
-                        home = Some(class);
-                        break;
-                    }
-                }
+                let close = bucket[from..]
+                    .iter()
+                    .take_while(|(v, _)| *v <= candidate.signature + slack);
+                let same = |class: usize| {
+                    candidate.is_translate_of(&candidates[classes[class].members[0] as usize])
+                };
+                home = close.map(|&(_, class)| class).find(|&class| same(class));
                 if home.is_none() {
                     let at = bucket.partition_point(|&(v, _)| v < candidate.signature);
                     bucket.insert(at, (candidate.signature, classes.len()));
                 }
             }
             let class = home.unwrap_or_else(|| {
+                let (nodes, elements) = (subdomains[s].nodes.len(), subdomains[s].tets.len());
                 classes.push(Class {
                     members: Vec::new(),
-                    nodes: subdomain.nodes.len(),
-                    elements: subdomain.tets.len(),
+                    nodes,
+                    elements,
                 });
                 classes.len() - 1
             });
@@ -125,92 +115,110 @@ impl Classes {
 /// per unit of position error, by the number of coordinates.
 const SIGNATURE_SLACK: f64 = 4.0;
 
+/// What decides whether a subdomain belongs to a class.
 struct Candidate<'a> {
-    mesh: &'a TetMesh,
-    nodes: &'a [u32],
-    tets: &'a [[u32; 4]],
-    hooke: Vec<&'a Hooke>,
+    points: &'a [[f64; 3]],
+    subdomain: &'a Subdomain,
+    /// Runs of elements with one material.
+    hooke: Vec<(usize, &'a Hooke)>,
     tolerance: f64,
     signature: f64,
+    key: u64,
 }
 
 impl<'a> Candidate<'a> {
     fn new(
         mesh: &'a TetMesh,
-        nodes: &'a [u32],
-        tets: &'a [[u32; 4]],
-        elements: &'a [u32],
+        subdomain: &'a Subdomain,
         materials: &'a Materials,
     ) -> Result<Self, TfetiError> {
-        let mut hooke = Vec::with_capacity(elements.len());
-        for &element in elements {
+        let mut hooke: Vec<(usize, &Hooke)> = Vec::new();
+        let mut last = None;
+        for &element in &subdomain.elements {
             let region = mesh.regions()[element as usize];
-            hooke.push(
-                materials
-                    .get(region)
-                    .map_err(|error| TfetiError::Material {
-                        element: element as usize,
-                        message: error.to_string(),
-                    })?,
-            );
+            if last == Some(region) {
+                if let Some(run) = hooke.last_mut() {
+                    run.0 += 1;
+                }
+                continue;
+            }
+            last = Some(region);
+            let law = materials
+                .get(region)
+                .map_err(|error| TfetiError::Material {
+                    element: element as usize,
+                    message: error.to_string(),
+                })?;
+            match hooke.last_mut() {
+                Some(run) if run.1.voigt() == law.voigt() => run.0 += 1,
+                _ => hooke.push((1, law)),
+            }
         }
         let points = mesh.points();
-        let origin = nodes.first().map_or([0.0; 3], |&n| points[n as usize]);
+        let origin = subdomain
+            .nodes
+            .first()
+            .map_or([0.0; 3], |&n| points[n as usize]);
         let (mut size, mut largest, mut signature) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for (k, &n) in nodes.iter().enumerate() {
+        // Any fixed weights do; these are spread over [-1, 1] and do not repeat.
+        let mut weight = 0.5_f64;
+        for &n in &subdomain.nodes {
             let p = points[n as usize];
             for c in 0..3 {
                 let relative = p[c] - origin[c];
                 size = size.max(relative.abs());
                 largest = largest.max(p[c].abs());
-                // Any fixed weights do; these are spread over [-1, 1] and do not repeat.
-                let weight = ((3 * k + c) as f64 * 0.754_877_666_246_692_8).fract() * 2.0 - 1.0;
+                weight += 0.754_877_666_246_692_8;
+                if weight > 1.0 {
+                    weight -= 2.0;
+                }
                 signature += weight * relative;
             }
         }
         let tolerance = 1e-12 * size + 4.0 * f64::EPSILON * largest;
-        let signature = signature / (3 * nodes.len().max(1)) as f64;
+        let signature = signature / (3 * subdomain.nodes.len().max(1)) as f64;
+        let mut hasher = DefaultHasher::new();
+        subdomain.nodes.len().hash(&mut hasher);
+        for tet in subdomain.tets.iter().step_by(8) {
+            tet.hash(&mut hasher);
+        }
+        for (count, law) in &hooke {
+            count.hash(&mut hasher);
+            law.voigt()
+                .iter()
+                .flatten()
+                .for_each(|v| v.to_bits().hash(&mut hasher));
+        }
         Ok(Self {
-            mesh,
-            nodes,
-            tets,
+            points,
+            subdomain,
             hooke,
             tolerance,
             signature,
+            key: hasher.finish(),
         })
     }
 
-    fn key(&self) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        self.nodes.len().hash(&mut hasher);
-        self.tets.hash(&mut hasher);
-        for pair in self.hooke.chunk_by(|a, b| std::ptr::eq(*a, *b)) {
-            pair.len().hash(&mut hasher);
-            for row in pair[0].voigt() {
-                for value in row {
-                    value.to_bits().hash(&mut hasher);
-                }
-            }
-        }
-        hasher.finish()
-    }
-
     fn is_translate_of(&self, other: &Self) -> bool {
-        if self.nodes.len() != other.nodes.len() || self.tets != other.tets {
+        let (nodes, other_nodes) = (&self.subdomain.nodes, &other.subdomain.nodes);
+        if nodes.len() != other_nodes.len() || self.subdomain.tets != other.subdomain.tets {
             return false;
         }
-        let same = |(a, b): (&&Hooke, &&Hooke)| std::ptr::eq(*a, *b) || a.voigt() == b.voigt();
-        if !self.hooke.iter().zip(&other.hooke).all(same) {
+        let same =
+            |(a, b): (&(usize, &Hooke), &(usize, &Hooke))| a.0 == b.0 && a.1.voigt() == b.1.voigt();
+        if self.hooke.len() != other.hooke.len() || !self.hooke.iter().zip(&other.hooke).all(same) {
             return false;
         }
-        let points = self.mesh.points();
         let tolerance = self.tolerance.max(other.tolerance);
-        let (Some(&first), Some(&other_first)) = (self.nodes.first(), other.nodes.first()) else {
+        let (Some(&first), Some(&other_first)) = (nodes.first(), other_nodes.first()) else {
             return true;
         };
-        let (origin, other_origin) = (points[first as usize], points[other_first as usize]);
-        self.nodes.iter().zip(other.nodes).all(|(&a, &b)| {
-            let (p, q) = (points[a as usize], points[b as usize]);
+        let (origin, other_origin) = (
+            self.points[first as usize],
+            self.points[other_first as usize],
+        );
+        nodes.iter().zip(other_nodes).all(|(&a, &b)| {
+            let (p, q) = (self.points[a as usize], self.points[b as usize]);
             (0..3).all(|c| ((p[c] - origin[c]) - (q[c] - other_origin[c])).abs() <= tolerance)
         })
     }

@@ -55,7 +55,7 @@ impl Coarse {
             what: "coarse unknowns",
             count,
         };
-        let symbolic = Symbolic::new(matrix.pattern()).map_err(too_large)?;
+        let symbolic = Symbolic::new(matrix.pattern(), 6).map_err(too_large)?;
         let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
         Ok(Self(Arc::new(CoarseData {
             map,

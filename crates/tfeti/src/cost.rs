@@ -97,21 +97,12 @@ pub(crate) struct Size {
     pub(crate) factor: usize,
 }
 
-/// From this number of members on a class keeps its whole dense inverse for loads and recovery.
+/// From this number of members on the preconditioners form dense matrices.
 pub(crate) const SHARED: usize = 4;
 
 impl Size {
-    pub(crate) fn keeps_full(&self) -> bool {
-        self.members >= SHARED && self.dim <= 2500
-    }
-
     pub(crate) fn dense_bytes(&self) -> u64 {
-        let full = if self.keeps_full() {
-            self.dim * self.dim
-        } else {
-            self.factor
-        };
-        8 * (self.boundary * self.boundary + full) as u64
+        8 * (self.boundary * self.boundary) as u64 + self.sparse_bytes()
     }
 
     pub(crate) fn sparse_bytes(&self) -> u64 {
@@ -119,10 +110,10 @@ impl Size {
     }
 
     /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single ones.
-    fn dense_product(&self) -> f64 {
+    fn dense_product(&self, bandwidth: f64) -> f64 {
         let entries = (self.boundary * self.boundary) as f64;
         let arithmetic = 2.0 * entries * self.members as f64 / FLOPS;
-        arithmetic.max(8.0 * entries / BANDWIDTH)
+        arithmetic.max(8.0 * entries / bandwidth)
     }
 
     /// Seconds of a product of all members with the sparse factor: two passes over it for each block of columns.
@@ -132,32 +123,37 @@ impl Size {
         (self.factor as f64 * per_number + self.dim as f64 * 6e-9) * self.members as f64
     }
 
-    /// Seconds to form the dense matrix instead of only the factor.
+    /// Seconds to form the dense matrix besides the factor.
     fn dense_setup(&self) -> f64 {
-        let dim = self.dim as f64;
-        if self.keeps_full() {
-            dim * dim * dim / FLOPS
-        } else {
-            self.factor as f64 * 0.14e-9 * self.boundary as f64
-        }
+        self.factor as f64 * 0.14e-9 * self.boundary as f64
     }
 
-    pub(crate) fn prefers_dense(&self, products: usize) -> bool {
-        products as f64 * (self.sparse_product() - self.dense_product()) > self.dense_setup()
+    /// Whether a dense boundary matrix pays within so many products; `resident` tells that all of them stay in cache.
+    pub(crate) fn prefers_dense(&self, products: usize, resident: bool) -> bool {
+        let saved = self.sparse_product() - self.dense_product(bandwidth(resident));
+        products as f64 * saved > self.dense_setup()
     }
 }
 
 /// Columns worked on at once.
 pub(crate) const PANEL: usize = 48;
 const FLOPS: f64 = 8e10;
-const BANDWIDTH: f64 = 1.2e10;
+/// Bytes of dense matrices that still stay in the caches of one processor.
+const CACHE: u64 = 16 << 20;
+
+/// Bytes per second at which a matrix is read.
+fn bandwidth(resident: bool) -> f64 {
+    if resident { 6e10 } else { 1.2e10 }
+}
 
 /// Chooses dense (`true`) or sparse for each class within the memory limit.
 pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<bool>, TfetiError> {
+    let boundary = |s: &Size| 8 * (s.boundary * s.boundary) as u64;
+    let resident = sizes.iter().map(boundary).sum::<u64>() <= CACHE;
     let mut dense: Vec<bool> = sizes
         .iter()
         .map(|size| match settings.kind {
-            InverseKind::Auto => size.prefers_dense(settings.expected_products),
+            InverseKind::Auto => size.prefers_dense(settings.expected_products, resident),
             InverseKind::Dense => true,
             InverseKind::Sparse => false,
         })
@@ -180,7 +176,8 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
         // Give up the dense matrices that cost most memory for the time they save.
         let mut order: Vec<usize> = (0..sizes.len()).filter(|&k| dense[k]).collect();
         let worth = |k: usize| {
-            let saved = (sizes[k].sparse_product() - sizes[k].dense_product()).max(0.0);
+            let saved =
+                (sizes[k].sparse_product() - sizes[k].dense_product(bandwidth(resident))).max(0.0);
             saved
                 / sizes[k]
                     .dense_bytes()
@@ -218,17 +215,20 @@ mod tests {
             members: 188,
             factor: 39_740,
         };
-        assert!(shared.prefers_dense(2000));
+        assert!(shared.prefers_dense(2000, true));
         let single = Size {
             members: 1,
             ..shared
         };
         assert!(
-            !single.prefers_dense(2000),
+            !single.prefers_dense(2000, false),
             "one solve streams less than the dense block"
         );
         let settings = InverseSettings::default();
-        assert_eq!(choose(&[shared, single], &settings), Ok(vec![true, false]));
+        let mut sizes = vec![single; 20];
+        sizes.push(shared);
+        let chosen = choose(&sizes, &settings).unwrap();
+        assert!(chosen[20] && chosen[..20].iter().all(|d| !d));
     }
 
     #[test]

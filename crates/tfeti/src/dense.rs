@@ -28,29 +28,6 @@ pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize
     );
 }
 
-/// `out += factor a^T b` for `a` of shape `k x m` and `b` of shape `k x n`.
-pub(crate) fn add_transposed_product(
-    out: &mut [f64],
-    factor: f64,
-    a: &[f64],
-    b: &[f64],
-    m: usize,
-    k: usize,
-    n: usize,
-) {
-    if m == 0 || n == 0 || k == 0 {
-        return;
-    }
-    matmul(
-        MatMut::from_column_major_slice_mut(&mut out[..m * n], m, n),
-        Accum::Add,
-        MatRef::from_column_major_slice(&a[..m * k], k, m).transpose(),
-        MatRef::from_column_major_slice(&b[..k * n], k, n),
-        factor,
-        Par::Seq,
-    );
-}
-
 /// `out += factor a b^T` for `a` of shape `m x k` and `b` of shape `n x k`.
 pub(crate) fn add_product_transposed(
     out: &mut [f64],
@@ -121,17 +98,6 @@ pub(crate) fn inverse(mut a: Vec<f64>, n: usize, threshold: f64) -> Result<Vec<f
     );
     mirror_lower(&mut out, n);
     Ok(out)
-}
-
-/// Solves `L L^T X = B` in place for `columns` right-hand sides, `factor` from [`cholesky`].
-pub(crate) fn cholesky_solve(factor: &[f64], n: usize, rhs: &mut [f64], columns: usize) {
-    if n == 0 || columns == 0 {
-        return;
-    }
-    let l = MatRef::from_column_major_slice(factor, n, n);
-    let mut x = MatMut::from_column_major_slice_mut(&mut rhs[..n * columns], n, columns);
-    faer::linalg::triangular_solve::solve_lower_triangular_in_place(l, x.as_mut(), Par::Seq);
-    faer::linalg::triangular_solve::solve_upper_triangular_in_place(l.transpose(), x, Par::Seq);
 }
 
 /// Copies the lower triangle to the upper one, in tiles that stay in cache.

@@ -2,8 +2,8 @@
 
 use crate::boundary::BoundaryMap;
 use crate::dense;
-use crate::inverse::{Inverse, InverseMemory};
 use crate::matrices::{ClassBase, ClassInverse};
+use crate::sparse::{MemoryNeed, SolveMemory};
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
@@ -30,12 +30,11 @@ pub struct DualScratch {
 struct LaneScratch {
     gathered: Vec<f64>,
     full: Vec<f64>,
-    solved: Vec<f64>,
-    memory: Option<InverseMemory>,
+    memory: Option<SolveMemory>,
 }
 
 /// Below this number of floating-point operations a product stays on one thread.
-const SMALL: usize = 1_500_000;
+const SMALL: u64 = 1_500_000;
 
 impl DualOperator {
     pub(crate) fn new(
@@ -43,14 +42,7 @@ impl DualOperator {
         bases: Arc<Vec<ClassBase>>,
         inverses: Arc<Vec<ClassInverse>>,
     ) -> Self {
-        let work = |k: usize| {
-            let per_member = match (&inverses[k].boundary, &inverses[k].full) {
-                (None, Inverse::Sparse { factor, .. }) => 4 * factor.stored(),
-                _ => 18 * map.classes[k].nodes.len() * map.classes[k].nodes.len(),
-            };
-            per_member * map.classes[k].members.len()
-        };
-        let parallel = (0..inverses.len()).map(work).sum::<usize>() > SMALL;
+        let parallel = product_flops(&map, &inverses) > SMALL;
         Self {
             map,
             bases,
@@ -62,34 +54,26 @@ impl DualOperator {
     /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
     #[must_use]
     pub fn flops(&self) -> u64 {
-        let class = |k: usize| {
-            let size = 3 * self.map.classes[k].nodes.len();
-            let per_member = match (&self.inverses[k].boundary, &self.inverses[k].full) {
-                (None, Inverse::Sparse { factor, .. }) => 4 * factor.stored(),
-                _ => 2 * size * size,
-            };
-            (per_member * self.map.classes[k].members.len()) as u64
-        };
-        (0..self.inverses.len()).map(class).sum()
+        product_flops(&self.map, &self.inverses)
     }
 
     fn lane_scratch(&self, lane: usize) -> LaneScratch {
         let panels = &self.map.panels[self.map.lanes[lane].panels.clone()];
         let (mut gathered, mut full) = (0, 0);
-        let mut sparse = Vec::new();
+        let mut need: Option<MemoryNeed> = None;
         for panel in panels {
             let columns = panel.columns.len();
             gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
             if self.inverses[panel.class].boundary.is_none() {
                 full = full.max(self.bases[panel.class].stiffness.dim * columns);
-                sparse.push((&self.inverses[panel.class].full, columns));
+                let own = self.inverses[panel.class].full.need(columns);
+                need = Some(need.map_or(own, |n| n.or(own)));
             }
         }
-        let memory = (!sparse.is_empty()).then(|| InverseMemory::for_all(&sparse));
+        let memory = need.map(SolveMemory::new);
         LaneScratch {
             gathered: vec![0.0; gathered],
             full: vec![0.0; full],
-            solved: vec![0.0; full],
             memory,
         }
     }
@@ -113,16 +97,11 @@ impl DualOperator {
                         let base = &self.bases[panel.class];
                         let nodes = &self.map.classes[panel.class].nodes;
                         let dim = base.stiffness.dim;
-                        let (full, solved) = (
-                            &mut scratch.full[..dim * columns],
-                            &mut scratch.solved[..dim * columns],
-                        );
+                        let full = &mut scratch.full[..dim * columns];
                         full.fill(0.0);
                         expand(nodes, gathered, full, dim);
-                        inverse
-                            .full
-                            .apply(&base.kernel, full, solved, columns, memory);
-                        restrict(nodes, solved, out, dim);
+                        inverse.full.apply(&base.kernel, full, columns, memory);
+                        restrict(nodes, full, out, dim);
                     }
                 }
             },
@@ -134,6 +113,21 @@ impl DualOperator {
         self.boundary_product(x, s);
         self.map.collect_contact(&s.boundary, y);
     }
+}
+
+/// Floating-point operations in the dense or sparse kernels.
+fn product_flops(map: &BoundaryMap, inverses: &[ClassInverse]) -> u64 {
+    let class = |k: usize| {
+        let size = 3 * map.classes[k].nodes.len();
+        let dense = inverses[k].boundary.is_some();
+        let per_member = if dense {
+            2 * size * size
+        } else {
+            4 * inverses[k].full.stored()
+        };
+        (per_member * map.classes[k].members.len()) as u64
+    };
+    (0..inverses.len()).map(class).sum()
 }
 
 /// Writes the boundary rows of all columns into full columns.

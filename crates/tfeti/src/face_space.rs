@@ -59,7 +59,12 @@ impl FaceSpace {
     fn deficiency(&self, factor: &CoarseFactor) -> Option<String> {
         let size = self.rhs.iter().map(|v| v * v).sum::<f64>().sqrt();
         factor.free_motions().iter().find_map(|motion| {
-            let work: f64 = motion.amplitudes.iter().zip(&self.rhs).map(|(a, e)| a * e).sum();
+            let work: f64 = motion
+                .amplitudes
+                .iter()
+                .zip(&self.rhs)
+                .map(|(a, e)| a * e)
+                .sum();
             let length = motion.amplitudes.iter().map(|v| v * v).sum::<f64>().sqrt();
             (work.abs() > WORK * size * length).then(|| motion.to_string())
         })
@@ -85,7 +90,9 @@ impl CoarseSpace for FaceSpace {
         let factor = self
             .coarse
             .factor_weighted(RowWeights::diagonal(w.to_vec()))
-            .map_err(|error| QpError::CoarseDeficient { motion: error.to_string() })?;
+            .map_err(|error| QpError::CoarseDeficient {
+                motion: error.to_string(),
+            })?;
         if let Some(motion) = self.deficiency(&factor) {
             return Err(QpError::CoarseDeficient { motion });
         }
@@ -99,7 +106,8 @@ impl CoarseSpace for FaceSpace {
     }
 
     fn project_transpose(&mut self, g: &mut [f64]) {
-        self.face.project_transpose(g, &mut self.alpha, &mut self.scratch);
+        self.face
+            .project_transpose(g, &mut self.alpha, &mut self.scratch);
     }
 
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {

@@ -1,9 +1,10 @@
 //! Generalised inverses of the stiffness matrix of one class.
 //!
-//! Dense: with `R` orthonormal and `a = trace(K)/dim`, the Moore-Penrose inverse is `(K + a R R^T)^-1 - R R^T / a`.
-//! Sparse: `K` plus six springs on three nodes (the 3-2-1 rule) is positive definite and its inverse a generalised
-//! inverse of `K`; between two projections `I - R R^T` it becomes the Moore-Penrose inverse.
+//! `K` plus six springs on three nodes (the 3-2-1 rule) is positive definite, and its inverse `K^-` is a generalised inverse
+//! of `K`: the springs stop the rigid motions and carry no force when the loads are in balance. Between two projections
+//! `I - R R^T` it becomes the Moore-Penrose inverse. Products with many columns use the dense block of it on the boundary.
 
+use crate::cost::PANEL;
 use crate::dense;
 use crate::error::TfetiError;
 use crate::kernel::Kernel;
@@ -11,71 +12,113 @@ use crate::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesk
 
 /// A generalised inverse of the whole matrix of one subdomain.
 #[derive(Debug, Clone)]
-pub(crate) enum Inverse {
-    /// Moore-Penrose inverse, column-major, `dim x dim`.
-    Dense(Vec<f64>),
+pub(crate) struct Inverse {
     /// Factor of the regularised matrix.
-    Sparse {
-        factor: SparseCholesky,
-        /// Whether products are projected to the Moore-Penrose inverse.
-        project: bool,
-    },
-}
-
-/// Work memory for [`Inverse::apply`].
-#[derive(Debug)]
-pub(crate) struct InverseMemory(Option<SolveMemory>);
-
-impl InverseMemory {
-    /// Memory that serves each of some inverses with its number of columns.
-    pub(crate) fn for_all(inverses: &[(&Inverse, usize)]) -> Self {
-        let needs = inverses
-            .iter()
-            .filter_map(|(inverse, columns)| match inverse {
-                Inverse::Dense(_) => None,
-                Inverse::Sparse { factor, .. } => Some(factor.need(*columns)),
-            });
-        Self(needs.reduce(MemoryNeed::or).map(SolveMemory::new))
-    }
+    factor: SparseCholesky,
+    /// Whether products are projected to the Moore-Penrose inverse.
+    project: bool,
 }
 
 impl Inverse {
-    pub(crate) fn memory(&self, columns: usize) -> InverseMemory {
-        InverseMemory::for_all(&[(self, columns)])
-    }
-
-    pub(crate) fn bytes(&self) -> u64 {
-        8 * match self {
-            Self::Dense(values) => values.len() as u64,
-            Self::Sparse { factor, .. } => factor.stored() as u64,
+    /// Factorises the regularised matrix. The symbolic factor is that of [`regularised`].
+    pub(crate) fn new(
+        stiffness: &Columns,
+        kernel: &Kernel,
+        symbolic: &Symbolic,
+        project: bool,
+        subdomain: usize,
+    ) -> Result<Self, TfetiError> {
+        let matrix = regularised(stiffness, kernel);
+        let factor = SparseCholesky::new(symbolic, &matrix)
+            .map_err(|error| pattern_error(error, subdomain))?;
+        let (smallest, pivot, largest) = factor.pivots();
+        if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
+            return Err(TfetiError::Singular { subdomain, pivot });
         }
+        Ok(Self { factor, project })
     }
 
-    /// `out = K+ x` for column-major blocks; `x` is overwritten.
+    /// Work memory that products with so many columns need.
+    pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
+        self.factor.need(columns)
+    }
+
+    /// Numbers stored.
+    pub(crate) fn stored(&self) -> usize {
+        self.factor.stored()
+    }
+
+    /// `X = K+ X` in place for column-major blocks.
     pub(crate) fn apply(
         &self,
         kernel: &Kernel,
         x: &mut [f64],
-        out: &mut [f64],
         columns: usize,
-        memory: &mut InverseMemory,
+        memory: &mut SolveMemory,
     ) {
-        let dim = 3 * kernel.nodes();
-        match self {
-            Self::Dense(values) => dense::multiply(out, values, x, dim, dim, columns),
-            Self::Sparse { factor, project } => {
-                if *project {
-                    remove_rigid(kernel, x);
-                }
-                if let Some(memory) = &mut memory.0 {
-                    factor.solve(x, columns, memory);
-                }
-                if *project {
-                    remove_rigid(kernel, x);
-                }
-                out[..dim * columns].copy_from_slice(x);
+        if self.project {
+            remove_rigid(kernel, x);
+        }
+        self.factor.solve(x, columns, memory);
+        if self.project {
+            remove_rigid(kernel, x);
+        }
+    }
+
+    /// Rows and columns of the Moore-Penrose inverse that belong to the boundary nodes, column-major.
+    ///
+    /// With `Z = K^- R` and `S = R^T Z`, `(I - R R^T) K^- (I - R R^T) = K^- - R W^T - W R^T`, `W = Z - R S / 2`.
+    pub(crate) fn boundary_block(&self, kernel: &Kernel, boundary: &[u32]) -> Vec<f64> {
+        let (dim, size) = (3 * kernel.nodes(), 3 * boundary.len());
+        let dof = |b: usize| 3 * boundary[b / 3] as usize + b % 3;
+        let columns = PANEL.max(6);
+        let mut memory = SolveMemory::new(self.factor.need(columns));
+        let mut out = vec![0.0; size * size];
+        let mut x = vec![0.0; dim * columns];
+        for start in (0..size).step_by(columns) {
+            let count = columns.min(size - start);
+            let x = &mut x[..dim * count];
+            x.fill(0.0);
+            (0..count).for_each(|j| x[j * dim + dof(start + j)] = 1.0);
+            self.factor.solve(x, count, &mut memory);
+            for (column, target) in x
+                .chunks_exact(dim)
+                .zip(out[start * size..].chunks_exact_mut(size))
+            {
+                target
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(i, v)| *v = column[dof(i)]);
             }
         }
+        // The rank-six correction by the rigid motions.
+        let modes = kernel.modes();
+        let z = &mut x[..6 * dim];
+        z.copy_from_slice(&modes);
+        self.factor.solve(z, 6, &mut memory);
+        let mut s = [[0.0; 6]; 6];
+        for (m, z) in z.chunks_exact(dim).enumerate() {
+            let products = kernel.transpose_times(z);
+            (0..6).for_each(|k| s[k][m] = products[k]);
+        }
+        let (mut r, mut w) = (vec![0.0; 6 * size], vec![0.0; 6 * size]);
+        for m in 0..6 {
+            for i in 0..size {
+                r[m * size + i] = modes[m * dim + dof(i)];
+                let half: f64 = (0..6).map(|k| modes[k * dim + dof(i)] * s[k][m]).sum();
+                w[m * size + i] = z[m * dim + dof(i)] - 0.5 * half;
+            }
+        }
+        dense::add_product_transposed(&mut out, -1.0, &r, &w, size, 6, size);
+        dense::add_product_transposed(&mut out, -1.0, &w, &r, size, 6, size);
+        // Rounding makes the solved columns unsymmetric in the last digits.
+        for j in 0..size {
+            for i in j + 1..size {
+                out[i + j * size] = 0.5 * (out[i + j * size] + out[j + i * size]);
+            }
+        }
+        dense::mirror_lower(&mut out, size);
+        out
     }
 }
 
@@ -99,30 +142,6 @@ fn scale(stiffness: &Columns) -> f64 {
 /// Pivots below this share of the scale mean a further motion without strain.
 fn threshold(dim: usize) -> f64 {
     dim as f64 * f64::EPSILON
-}
-
-/// The whole Moore-Penrose inverse as a dense matrix.
-pub(crate) fn dense_inverse(
-    stiffness: &Columns,
-    kernel: &Kernel,
-    subdomain: usize,
-) -> Result<Inverse, TfetiError> {
-    let dim = stiffness.dim;
-    let modes = kernel.modes();
-    let a = scale(stiffness);
-    let mut matrix = vec![0.0; dim * dim];
-    dense::add_product_transposed(&mut matrix, a, &modes, &modes, dim, 6, dim);
-    for j in 0..dim {
-        let (rows, values) = stiffness.column(j);
-        for (&i, &v) in rows.iter().zip(values) {
-            matrix[i + j * dim] += v;
-        }
-    }
-    let mut inverse = dense::inverse(matrix, dim, a * threshold(dim))
-        .map_err(|pivot| TfetiError::Singular { subdomain, pivot })?;
-    dense::add_product_transposed(&mut inverse, -1.0 / a, &modes, &modes, dim, 6, dim);
-    dense::mirror_lower(&mut inverse, dim);
-    Ok(Inverse::Dense(inverse))
 }
 
 /// Three nodes that span the subdomain, for the springs of the 3-2-1 rule.
@@ -190,25 +209,6 @@ pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
     matrix
 }
 
-/// Sparse factor of the regularised matrix.
-pub(crate) fn sparse_inverse(
-    stiffness: &Columns,
-    kernel: &Kernel,
-    symbolic: &Symbolic,
-    project: bool,
-    subdomain: usize,
-) -> Result<Inverse, TfetiError> {
-    let matrix = regularised(stiffness, kernel);
-    let singular = |pivot| TfetiError::Singular { subdomain, pivot };
-    let factor =
-        SparseCholesky::new(symbolic, &matrix).map_err(|error| pattern_error(error, subdomain))?;
-    let (smallest, pivot, largest) = factor.pivots();
-    if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
-        return Err(singular(pivot));
-    }
-    Ok(Inverse::Sparse { factor, project })
-}
-
 /// Turns a failure of the factorisation into an error that names the subdomain.
 pub(crate) fn pattern_error(error: FactorError, subdomain: usize) -> TfetiError {
     match error {
@@ -218,46 +218,4 @@ pub(crate) fn pattern_error(error: FactorError, subdomain: usize) -> TfetiError 
             count: subdomain,
         },
     }
-}
-
-/// The rows and columns of `K+` that belong to the boundary nodes, column-major.
-pub(crate) fn boundary_block(inverse: &Inverse, kernel: &Kernel, boundary: &[u32]) -> Vec<f64> {
-    let (dim, size) = (3 * kernel.nodes(), 3 * boundary.len());
-    let mut out = vec![0.0; size * size];
-    let dof = |b: usize| 3 * boundary[b / 3] as usize + b % 3;
-    if let Inverse::Dense(values) = inverse {
-        for j in 0..size {
-            let column = &values[dim * dof(j)..][..dim];
-            for i in 0..size {
-                out[i + j * size] = column[dof(i)];
-            }
-        }
-        return out;
-    }
-    const COLUMNS: usize = 64;
-    let mut memory = inverse.memory(COLUMNS);
-    let (mut x, mut y) = (vec![0.0; dim * COLUMNS], vec![0.0; dim * COLUMNS]);
-    for start in (0..size).step_by(COLUMNS) {
-        let count = COLUMNS.min(size - start);
-        let (x, y) = (&mut x[..dim * count], &mut y[..dim * count]);
-        x.fill(0.0);
-        for j in 0..count {
-            x[j * dim + dof(start + j)] = 1.0;
-        }
-        inverse.apply(kernel, x, y, count, &mut memory);
-        for j in 0..count {
-            for i in 0..size {
-                out[i + (start + j) * size] = y[j * dim + dof(i)];
-            }
-        }
-    }
-    // Rounding makes the solved columns unsymmetric in the last digits.
-    for j in 0..size {
-        for i in j + 1..size {
-            let mean = 0.5 * (out[i + j * size] + out[j + i * size]);
-            out[i + j * size] = mean;
-            out[j + i * size] = mean;
-        }
-    }
-    out
 }

@@ -17,6 +17,7 @@ mod mobility;
 mod preconditioner;
 mod recovery;
 mod report;
+mod row_stiffness;
 mod rows;
 mod scaling;
 mod sparse;

@@ -4,9 +4,7 @@ use crate::boundary::BoundaryMap;
 use crate::class::Classes;
 use crate::cost::{InverseSettings, Size, choose};
 use crate::error::TfetiError;
-use crate::inverse::{
-    Inverse, boundary_block, dense_inverse, pattern_error, regularised, sparse_inverse,
-};
+use crate::inverse::{Inverse, pattern_error, regularised};
 use crate::kernel::Kernel;
 use crate::sparse::{Columns, Symbolic};
 use rayon::prelude::*;
@@ -30,7 +28,7 @@ pub(crate) struct ClassInverse {
 
 impl ClassInverse {
     pub(crate) fn bytes(&self) -> u64 {
-        self.full.bytes() + 8 * self.boundary.as_ref().map_or(0, Vec::len) as u64
+        8 * (self.full.stored() + self.boundary.as_ref().map_or(0, Vec::len)) as u64
     }
 }
 
@@ -85,7 +83,7 @@ pub(crate) fn invert(
         .into_par_iter()
         .map(|k| {
             let subdomain = classes.classes()[k].members[0] as usize;
-            Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel))
+            Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel), 3)
                 .map_err(|e| pattern_error(e, subdomain))
         })
         .collect::<Result<_, _>>()?;
@@ -103,20 +101,16 @@ pub(crate) fn invert(
         .map(|k| {
             let base = &bases[k];
             let subdomain = classes.classes()[k].members[0] as usize;
-            let full = if dense[k] && sizes[k].keeps_full() {
-                dense_inverse(&base.stiffness, &base.kernel, subdomain)?
-            } else {
-                let project = settings.moore_penrose || dense[k];
-                sparse_inverse(
-                    &base.stiffness,
-                    &base.kernel,
-                    &symbolic[k],
-                    project,
-                    subdomain,
-                )?
-            };
+            let project = settings.moore_penrose || dense[k];
+            let full = Inverse::new(
+                &base.stiffness,
+                &base.kernel,
+                &symbolic[k],
+                project,
+                subdomain,
+            )?;
             let boundary =
-                dense[k].then(|| boundary_block(&full, &base.kernel, &map.classes[k].nodes));
+                dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
             Ok(ClassInverse { full, boundary })
         })
         .collect()

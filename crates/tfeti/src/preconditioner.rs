@@ -36,7 +36,11 @@ pub struct Preconditioner {
 enum BoundaryStiffness {
     Dense(Vec<f64>),
     Lumped(Columns),
-    Schur { boundary: Columns, coupling: Coupling, factor: SparseCholesky },
+    Schur {
+        boundary: Columns,
+        coupling: Coupling,
+        factor: SparseCholesky,
+    },
 }
 
 /// `K_ib` by columns.
@@ -90,11 +94,21 @@ impl Preconditioner {
             .collect::<Result<_, _>>()?;
         let needs_scaling = !system.gluing().is_orthonormal() || system.heterogeneous;
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
-        Ok(Self { map, classes, scaling })
+        Ok(Self {
+            map,
+            classes,
+            scaling,
+        })
     }
 
     /// `y = W M W x` with `W` one on the free rows and zero on the others.
-    pub fn apply_masked(&self, x: &[f64], free: &[bool], y: &mut [f64], s: &mut PreconditionerScratch) {
+    pub fn apply_masked(
+        &self,
+        x: &[f64],
+        free: &[bool],
+        y: &mut [f64],
+        s: &mut PreconditionerScratch,
+    ) {
         let mut masked = std::mem::take(&mut s.masked);
         for ((m, x), free) in masked.iter_mut().zip(x).zip(free) {
             *m = if *free { *x } else { 0.0 };
@@ -111,23 +125,38 @@ impl Preconditioner {
     fn stiffness_product(&self, x: &[f64], s: &mut PreconditionerScratch) {
         let parallel = self.map.is_large();
         let divide = self.scaling.as_ref().map(Scaling::weights);
-        self.map.for_lanes(&mut s.lanes, &mut s.boundary, parallel, &|lane, scratch, part| {
-            for (panel, out) in self.map.panels_of(lane, part) {
-                let columns = panel.columns.len();
-                let gathered = &mut scratch.gathered[..out.len()];
-                self.map.spread(x, panel, gathered);
-                let weights = divide.map(|w| &w[self.map.copies_of(panel)]);
-                scale_nodes(weights, gathered);
-                let class = &self.classes[panel.class];
-                class.apply(gathered, out, columns, &mut scratch.interior, &mut scratch.memory);
-                scale_nodes(weights, out);
-            }
-        });
+        self.map.for_lanes(
+            &mut s.lanes,
+            &mut s.boundary,
+            parallel,
+            &|lane, scratch, part| {
+                for (panel, out) in self.map.panels_of(lane, part) {
+                    let columns = panel.columns.len();
+                    let gathered = &mut scratch.gathered[..out.len()];
+                    self.map.spread(x, panel, gathered);
+                    let weights = divide.map(|w| &w[self.map.copies_of(panel)]);
+                    scale_nodes(weights, gathered);
+                    let class = &self.classes[panel.class];
+                    class.apply(
+                        gathered,
+                        out,
+                        columns,
+                        &mut scratch.interior,
+                        &mut scratch.memory,
+                    );
+                    scale_nodes(weights, out);
+                }
+            },
+        );
     }
 }
 
 fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64]) {
-    for (w, value) in weights.unwrap_or_default().iter().zip(values.chunks_exact_mut(3)) {
+    for (w, value) in weights
+        .unwrap_or_default()
+        .iter()
+        .zip(values.chunks_exact_mut(3))
+    {
         value.iter_mut().for_each(|v| *v *= w);
     }
 }
@@ -145,14 +174,21 @@ impl SymmetricOperator for Preconditioner {
             for panel in &self.map.panels[self.map.lanes[k].panels.clone()] {
                 let columns = panel.columns.len();
                 gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
-                if let BoundaryStiffness::Schur { coupling, factor, .. } = &self.classes[panel.class] {
+                if let BoundaryStiffness::Schur {
+                    coupling, factor, ..
+                } = &self.classes[panel.class]
+                {
                     interior = interior.max(coupling.interior * columns);
                     let own = factor.need(columns);
                     need = Some(need.map_or(own, |n: crate::sparse::MemoryNeed| n.or(own)));
                 }
             }
             let memory = need.map(SolveMemory::new);
-            LaneScratch { gathered: vec![0.0; gathered], interior: vec![0.0; interior], memory }
+            LaneScratch {
+                gathered: vec![0.0; gathered],
+                interior: vec![0.0; interior],
+                memory,
+            }
         };
         let rows = self.map.rows();
         PreconditionerScratch {
@@ -179,15 +215,26 @@ impl SymmetricOperator for Preconditioner {
 }
 
 impl BoundaryStiffness {
-    fn new(base: &ClassBase, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
+    fn new(
+        base: &ClassBase,
+        map: &BoundaryMap,
+        class: usize,
+        kind: Kind,
+    ) -> Result<Self, TfetiError> {
         let layout = &map.classes[class];
         let split = Split::new(&base.stiffness, &layout.nodes);
         let shared = layout.members.len() >= SHARED;
         if kind == Kind::Lumped || split.coupling.interior == 0 {
-            return Ok(if shared { Self::Dense(to_dense(&split.boundary)) } else { Self::Lumped(split.boundary) });
+            return Ok(if shared {
+                Self::Dense(to_dense(&split.boundary))
+            } else {
+                Self::Lumped(split.boundary)
+            });
         }
         let subdomain = layout.members.first().map_or(0, |&s| s as usize);
-        let factor = match Symbolic::new(&split.interior).and_then(|s| SparseCholesky::new(&s, &split.interior)) {
+        let factor = match Symbolic::new(&split.interior, 3)
+            .and_then(|s| SparseCholesky::new(&s, &split.interior))
+        {
             Ok(factor) => factor,
             Err(FactorError::Pivot(_)) => return Ok(Self::Lumped(split.boundary)),
             Err(error) => return Err(pattern_error(error, subdomain)),
@@ -196,14 +243,25 @@ impl BoundaryStiffness {
         if smallest <= 1e-13 * largest {
             return Ok(Self::Lumped(split.boundary));
         }
-        let sparse = Self::Schur { boundary: split.boundary, coupling: split.coupling, factor };
-        Ok(if shared { Self::Dense(sparse.dense()) } else { sparse })
+        let sparse = Self::Schur {
+            boundary: split.boundary,
+            coupling: split.coupling,
+            factor,
+        };
+        Ok(if shared {
+            Self::Dense(sparse.dense())
+        } else {
+            sparse
+        })
     }
 
     fn dim(&self) -> usize {
         match self {
             Self::Dense(values) => values.len().isqrt(),
-            Self::Lumped(matrix) | Self::Schur { boundary: matrix, .. } => matrix.dim,
+            Self::Lumped(matrix)
+            | Self::Schur {
+                boundary: matrix, ..
+            } => matrix.dim,
         }
     }
 
@@ -212,7 +270,12 @@ impl BoundaryStiffness {
         let dim = self.dim();
         let (mut out, mut x) = (vec![0.0; dim * dim], vec![0.0; dim * PANEL]);
         let (mut interior, mut memory) = match self {
-            Self::Schur { coupling, factor, .. } => (vec![0.0; coupling.interior * PANEL], Some(factor.memory(PANEL))),
+            Self::Schur {
+                coupling, factor, ..
+            } => (
+                vec![0.0; coupling.interior * PANEL],
+                Some(factor.memory(PANEL)),
+            ),
             _ => (Vec::new(), None),
         };
         for start in (0..dim).step_by(PANEL) {
@@ -220,36 +283,65 @@ impl BoundaryStiffness {
             let x = &mut x[..dim * columns];
             x.fill(0.0);
             (0..columns).for_each(|j| x[j * dim + start + j] = 1.0);
-            self.apply(x, &mut out[start * dim..(start + columns) * dim], columns, &mut interior, &mut memory);
+            self.apply(
+                x,
+                &mut out[start * dim..(start + columns) * dim],
+                columns,
+                &mut interior,
+                &mut memory,
+            );
         }
         dense::mirror_lower(&mut out, dim);
         out
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64], columns: usize, interior: &mut [f64], memory: &mut Option<SolveMemory>) {
+    fn apply(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        columns: usize,
+        interior: &mut [f64],
+        memory: &mut Option<SolveMemory>,
+    ) {
         match self {
             Self::Dense(values) => {
                 let dim = y.len() / columns;
                 dense::multiply(y, values, x, dim, dim, columns);
             }
             Self::Lumped(matrix) => symmetric_product(matrix, x, y),
-            Self::Schur { boundary, coupling, factor } => {
+            Self::Schur {
+                boundary,
+                coupling,
+                factor,
+            } => {
                 symmetric_product(boundary, x, y);
                 let interior = &mut interior[..coupling.interior * columns];
                 interior.fill(0.0);
-                for (x, target) in x.chunks_exact(boundary.dim).zip(interior.chunks_exact_mut(coupling.interior)) {
+                for (x, target) in x
+                    .chunks_exact(boundary.dim)
+                    .zip(interior.chunks_exact_mut(coupling.interior))
+                {
                     for (j, value) in x.iter().enumerate().filter(|(_, v)| **v != 0.0) {
                         let (rows, values) = coupling.columns.column(j);
-                        rows.iter().zip(values).for_each(|(&i, v)| target[i] += v * value);
+                        rows.iter()
+                            .zip(values)
+                            .for_each(|(&i, v)| target[i] += v * value);
                     }
                 }
                 if let Some(memory) = memory {
                     factor.solve(interior, columns, memory);
                 }
-                for (y, source) in y.chunks_exact_mut(boundary.dim).zip(interior.chunks_exact(coupling.interior)) {
+                for (y, source) in y
+                    .chunks_exact_mut(boundary.dim)
+                    .zip(interior.chunks_exact(coupling.interior))
+                {
                     for (j, target) in y.iter_mut().enumerate() {
                         let (rows, values) = coupling.columns.column(j);
-                        *target -= rows.iter().zip(values).map(|(&i, v)| v * source[i]).sum::<f64>();
+                        *target -= rows
+                            .iter()
+                            .zip(values)
+                            .map(|(&i, v)| v * source[i])
+                            .sum::<f64>();
                     }
                 }
             }
@@ -259,7 +351,10 @@ impl BoundaryStiffness {
 
 /// `Y = A X` for a symmetric sparse matrix.
 fn symmetric_product(matrix: &Columns, x: &[f64], y: &mut [f64]) {
-    for (x, y) in x.chunks_exact(matrix.dim).zip(y.chunks_exact_mut(matrix.dim)) {
+    for (x, y) in x
+        .chunks_exact(matrix.dim)
+        .zip(y.chunks_exact_mut(matrix.dim))
+    {
         for (j, target) in y.iter_mut().enumerate() {
             let (rows, values) = matrix.column(j);
             *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
@@ -271,7 +366,9 @@ fn to_dense(matrix: &Columns) -> Vec<f64> {
     let mut out = vec![0.0; matrix.dim * matrix.dim];
     for j in 0..matrix.dim {
         let (rows, values) = matrix.column(j);
-        rows.iter().zip(values).for_each(|(&i, v)| out[i + j * matrix.dim] = *v);
+        rows.iter()
+            .zip(values)
+            .for_each(|(&i, v)| out[i + j * matrix.dim] = *v);
     }
     out
 }
@@ -294,11 +391,20 @@ impl Split {
         let mut place = vec![0; dim];
         let (mut boundary, mut interior) = (0, 0);
         for i in 0..dim {
-            let counter = if on_boundary[i] { &mut boundary } else { &mut interior };
+            let counter = if on_boundary[i] {
+                &mut boundary
+            } else {
+                &mut interior
+            };
             place[i] = *counter;
             *counter += 1;
         }
-        let empty = |dim| Columns { dim, pointers: vec![0], rows: Vec::new(), values: Vec::new() };
+        let empty = |dim| Columns {
+            dim,
+            pointers: vec![0],
+            rows: Vec::new(),
+            values: Vec::new(),
+        };
         let (mut bb, mut ii, mut ib) = (empty(boundary), empty(interior), empty(boundary));
         for j in 0..dim {
             let (rows, values) = stiffness.column(j);
@@ -319,6 +425,13 @@ impl Split {
                 ii.pointers.push(ii.rows.len());
             }
         }
-        Self { boundary: bb, interior: ii, coupling: Coupling { interior, columns: ib } }
+        Self {
+            boundary: bb,
+            interior: ii,
+            coupling: Coupling {
+                interior,
+                columns: ib,
+            },
+        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::coarse::CoarseScratch;
 use crate::dual::DualScratch;
 use crate::error::TfetiError;
-use crate::inverse::InverseMemory;
+use crate::sparse::SolveMemory;
 use crate::system::Tfeti;
 use rayon::prelude::*;
 use signorini_qp::SymmetricOperator;
@@ -123,13 +123,13 @@ impl Tfeti {
             .for_each(|(class, subdomains, columns)| {
                 let (base, inverse) = (&parts.bases[class], &parts.inverses[class].full);
                 let (dim, count) = (base.stiffness.dim, subdomains.len());
-                let mut memory = InverseMemory::for_all(&[(inverse, count)]);
-                let (mut x, mut y) = (vec![0.0; dim * count], vec![0.0; dim * count]);
+                let mut memory = SolveMemory::new(inverse.need(count));
+                let mut x = vec![0.0; dim * count];
                 for (s, column) in subdomains.iter().zip(x.chunks_exact_mut(dim)) {
                     column.copy_from_slice(&f[self.torn_range(*s)]);
                 }
-                inverse.apply(&base.kernel, &mut x, &mut y, count, &mut memory);
-                for (column, target) in y.chunks_exact(dim).zip(columns) {
+                inverse.apply(&base.kernel, &mut x, count, &mut memory);
+                for (column, target) in x.chunks_exact(dim).zip(columns) {
                     target.copy_from_slice(column);
                 }
             });

@@ -2,7 +2,6 @@
 
 use crate::boundary::BoundaryMap;
 use crate::class::Classes;
-use crate::inverse::Inverse;
 use crate::matrices::ClassInverse;
 use crate::rows::{RowKind, RowRanges};
 use std::fmt;
@@ -57,8 +56,6 @@ pub struct ClassReport {
     pub boundary: usize,
     /// Whether products use a dense matrix on the boundary (otherwise a sparse factor).
     pub dense: bool,
-    /// Whether loads and recovery use a dense matrix.
-    pub dense_recovery: bool,
     /// Bytes of the inverses.
     pub bytes: u64,
 }
@@ -85,7 +82,6 @@ pub(crate) fn class_reports(
         unknowns: 3 * classes.classes()[k].nodes,
         boundary: 3 * map.classes[k].nodes.len(),
         dense: inverses[k].boundary.is_some(),
-        dense_recovery: matches!(inverses[k].full, Inverse::Dense(_)),
         bytes: inverses[k].bytes(),
     };
     (0..inverses.len()).map(report).collect()

@@ -27,7 +27,10 @@ impl Scaling {
             for s in 0..system.subdomains() {
                 let stiffness = &system.parts.bases[system.parts.classes.place(s).0].stiffness;
                 let first = system.torn_range(s).start / 3;
-                for (node, value) in compliance[first..first + stiffness.dim / 3].iter_mut().enumerate() {
+                for (node, value) in compliance[first..first + stiffness.dim / 3]
+                    .iter_mut()
+                    .enumerate()
+                {
                     let diagonal = (3 * node..3 * node + 3).filter_map(|i| stiffness.find(i, i));
                     let sum: f64 = diagonal.map(|k| stiffness.values[k]).sum();
                     *value = if sum > 0.0 { 3.0 / sum } else { 1.0 };
@@ -44,7 +47,11 @@ impl Scaling {
             }
         }
         let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
-            .filter_map(|row| gluing.node(row).map(|node| (group[node as usize], row as u32)))
+            .filter_map(|row| {
+                gluing
+                    .node(row)
+                    .map(|node| (group[node as usize], row as u32))
+            })
             .collect();
         members.sort_unstable();
         let mut out = Self {
@@ -59,7 +66,8 @@ impl Scaling {
             let entries: Vec<Vec<(usize, f64)>> = rows
                 .iter()
                 .map(|&(_, row)| {
-                    let entry = |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
+                    let entry =
+                        |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
                     gluing.row(row as usize).into_iter().map(entry).collect()
                 })
                 .collect();
@@ -73,7 +81,8 @@ impl Scaling {
                     matrix[i + j * count] = entries[i].iter().map(weight).sum();
                 }
             }
-            let inverse = dense::inverse(matrix, count, 0.0).map_err(|pivot| TfetiError::CoarseSingular { pivot })?;
+            let inverse = dense::inverse(matrix, count, 0.0)
+                .map_err(|pivot| TfetiError::CoarseSingular { pivot })?;
             out.rows.extend(rows.iter().map(|r| r.1));
             out.pointers.push(out.rows.len());
             out.inverses.extend(inverse);
@@ -96,7 +105,11 @@ impl Scaling {
             let rows = &self.rows[pair[0]..pair[1]];
             let inverse = &self.inverses[self.inverse_pointers[k]..self.inverse_pointers[k + 1]];
             for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
-                y[target as usize] = column.iter().zip(rows).map(|(v, &row)| v * x[row as usize]).sum();
+                y[target as usize] = column
+                    .iter()
+                    .zip(rows)
+                    .map(|(v, &row)| v * x[row as usize])
+                    .sum();
             }
         }
     }
