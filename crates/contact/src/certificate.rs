@@ -32,7 +32,11 @@ impl Violation {
     /// `value / reference`; 0 if nothing is violated.
     #[must_use]
     pub fn relative(&self) -> f64 {
-        if self.value == 0.0 { 0.0 } else { self.value / self.reference }
+        if self.value == 0.0 {
+            0.0
+        } else {
+            self.value / self.reference
+        }
     }
 }
 
@@ -60,7 +64,10 @@ impl Certificate {
     /// The largest relative violation.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        self.parts().iter().map(|(_, v)| v.relative()).fold(0.0, f64::max)
+        self.parts()
+            .iter()
+            .map(|(_, v)| v.relative())
+            .fold(0.0, f64::max)
     }
 
     /// Name and violation of every condition.
@@ -90,7 +97,12 @@ pub(crate) struct Measured<'a> {
     pub(crate) residual: &'a [f64],
 }
 
-pub(crate) fn certify(model: &Model, level: &Level, lambda: &[f64], m: &Measured<'_>) -> Certificate {
+pub(crate) fn certify(
+    model: &Model,
+    level: &Level,
+    lambda: &[f64],
+    m: &Measured<'_>,
+) -> Certificate {
     let ranges = model.tfeti.gluing().ranges();
     let displacement = vector::max_abs(m.u);
     let mut contact_force = 0.0_f64;
@@ -98,18 +110,31 @@ pub(crate) fn certify(model: &Model, level: &Level, lambda: &[f64], m: &Measured
     for point in &model.points {
         let mut sum = (point.scale * lambda[point.row]).powi(2);
         if let Some((row, count, scale)) = point.tangential.rows() {
-            sum += lambda[row..row + count].iter().map(|v| (scale * v).powi(2)).sum::<f64>();
+            sum += lambda[row..row + count]
+                .iter()
+                .map(|v| (scale * v).powi(2))
+                .sum::<f64>();
         }
         contact_force = contact_force.max(sum.sqrt());
         total += sum;
     }
     let mut c = Certificate {
-        equilibrium: Violation { value: vector::norm(m.residual), reference: total.sqrt() },
+        equilibrium: Violation {
+            value: vector::norm(m.residual),
+            reference: total.sqrt(),
+        },
         ..Certificate::default()
     };
     let jumps = ranges.interface.start..ranges.total();
-    let jump = m.rows[jumps.clone()].iter().zip(&level.offset[jumps]).map(|(u, c)| (u - c).abs()).fold(0.0, f64::max);
-    c.continuity = Violation { value: jump, reference: displacement };
+    let jump = m.rows[jumps.clone()]
+        .iter()
+        .zip(&level.offset[jumps])
+        .map(|(u, c)| (u - c).abs())
+        .fold(0.0, f64::max);
+    c.continuity = Violation {
+        value: jump,
+        reference: displacement,
+    };
     let worst = |v: &mut Violation, value: f64| v.value = v.value.max(value);
     for v in [&mut c.sign, &mut c.cone] {
         v.reference = contact_force;
@@ -124,8 +149,12 @@ pub(crate) fn certify(model: &Model, level: &Level, lambda: &[f64], m: &Measured
         worst(&mut c.gap, -open);
         worst(&mut c.sign, force);
         worst(&mut c.complementarity, (force * open.max(0.0)).abs());
-        let Some((row, count, scale)) = point.tangential.rows() else { continue };
-        let Some(bound) = slip_bound(model, level, k, lambda) else { continue };
+        let Some((row, count, scale)) = point.tangential.rows() else {
+            continue;
+        };
+        let Some(bound) = slip_bound(model, level, k, lambda) else {
+            continue;
+        };
         let mut slip = [0.0; 2];
         let mut friction = [0.0; 2];
         for j in 0..count {
@@ -134,7 +163,10 @@ pub(crate) fn certify(model: &Model, level: &Level, lambda: &[f64], m: &Measured
         }
         let (length, size) = (slip[0].hypot(slip[1]), friction[0].hypot(friction[1]));
         worst(&mut c.cone, size - bound);
-        let off = [bound * slip[0] + length * friction[0], bound * slip[1] + length * friction[1]];
+        let off = [
+            bound * slip[0] + length * friction[0],
+            bound * slip[1] + length * friction[1],
+        ];
         worst(&mut c.direction, off[0].hypot(off[1]));
     }
     c
@@ -148,7 +180,10 @@ pub(crate) fn slip_bound(model: &Model, level: &Level, k: usize, lambda: &[f64])
     }
     match model.friction() {
         Friction::None => None,
-        Friction::Given(bound) => bound.stress(point.node, point.position).ok().map(|s| s * point.area),
+        Friction::Given(bound) => bound
+            .stress(point.node, point.position)
+            .ok()
+            .map(|s| s * point.area),
         Friction::Coulomb(_) => Some(level.coefficients.get(k)? * normal_force(point, lambda)),
     }
 }

@@ -18,9 +18,17 @@ pub struct DifferenceFormula {
 
 impl DifferenceFormula {
     /// The paper's `3/2, -2, 1/2`.
-    pub const THREE_STEP: Self = Self { alpha: 1.5, beta: -2.0, gamma: 0.5 };
+    pub const THREE_STEP: Self = Self {
+        alpha: 1.5,
+        beta: -2.0,
+        gamma: 0.5,
+    };
     /// `1, -1, 0`.
-    pub const BACKWARD_EULER: Self = Self { alpha: 1.0, beta: -1.0, gamma: 0.0 };
+    pub const BACKWARD_EULER: Self = Self {
+        alpha: 1.0,
+        beta: -1.0,
+        gamma: 0.0,
+    };
 
     /// Any consistent formula.
     ///
@@ -28,7 +36,14 @@ impl DifferenceFormula {
     /// [`ContactError::Formula`] unless `alpha > 0`, `alpha + beta + gamma = 0` (a body at rest has rate 0) and
     /// `-beta - 2 gamma = 1` (uniform motion has its rate).
     pub fn new(alpha: f64, beta: f64, gamma: f64) -> Result<Self, ContactError> {
-        let error = |rule| Err(ContactError::Formula { alpha, beta, gamma, rule });
+        let error = |rule| {
+            Err(ContactError::Formula {
+                alpha,
+                beta,
+                gamma,
+                rule,
+            })
+        };
         if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
             return error("alpha must be positive and all three finite");
         }
@@ -109,7 +124,10 @@ impl Analysis {
     #[must_use]
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         let times = (1..=steps).map(|i| end * i as f64 / steps as f64).collect();
-        Self::Quasistatic { times, formula: DifferenceFormula::default() }
+        Self::Quasistatic {
+            times,
+            formula: DifferenceFormula::default(),
+        }
     }
 
     /// The same with another difference formula (static scenes have none).
@@ -146,7 +164,11 @@ impl Analysis {
             Self::Static { .. } => None,
             Self::Quasistatic { times, .. } => {
                 let end = times.get(level)?;
-                let start = if level == 0 { 0.0 } else { *times.get(level - 1)? };
+                let start = if level == 0 {
+                    0.0
+                } else {
+                    *times.get(level - 1)?
+                };
                 Some(end - start)
             }
         }
@@ -164,7 +186,10 @@ impl Analysis {
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         match self {
             Self::Static { time } if time.is_finite() => Ok(()),
-            Self::Static { time } => Err(ContactError::Time { level: 0, time: *time }),
+            Self::Static { time } => Err(ContactError::Time {
+                level: 0,
+                time: *time,
+            }),
             Self::Quasistatic { times, formula } => {
                 if times.is_empty() {
                     return Err(ContactError::NoLevels);
@@ -197,8 +222,14 @@ mod tests {
 
     #[test]
     fn the_two_formulas_are_consistent() {
-        for f in [DifferenceFormula::THREE_STEP, DifferenceFormula::BACKWARD_EULER] {
-            assert_eq!(DifferenceFormula::new(f.alpha(), f.beta(), f.gamma()).unwrap(), f);
+        for f in [
+            DifferenceFormula::THREE_STEP,
+            DifferenceFormula::BACKWARD_EULER,
+        ] {
+            assert_eq!(
+                DifferenceFormula::new(f.alpha(), f.beta(), f.gamma()).unwrap(),
+                f
+            );
         }
         assert!(DifferenceFormula::new(1.0, -1.0, 0.5).is_err());
         assert!(DifferenceFormula::new(-1.0, 1.0, 0.0).is_err());
@@ -220,12 +251,29 @@ mod tests {
 
     #[test]
     fn wrong_times_are_refused() {
-        let q = |times: Vec<f64>| Analysis::Quasistatic { times, formula: DifferenceFormula::default() };
+        let q = |times: Vec<f64>| Analysis::Quasistatic {
+            times,
+            formula: DifferenceFormula::default(),
+        };
         assert!(matches!(q(vec![]).validate(), Err(ContactError::NoLevels)));
-        assert!(matches!(q(vec![0.0]).validate(), Err(ContactError::Time { level: 0, .. })));
-        assert!(matches!(q(vec![1.0, 1.0]).validate(), Err(ContactError::Time { level: 1, .. })));
-        assert!(matches!(q(vec![1.0, 3.0]).validate(), Err(ContactError::UnequalSteps { level: 1, .. })));
-        assert!(q(vec![1.0, 3.0]).with_formula(DifferenceFormula::BACKWARD_EULER).validate().is_ok());
+        assert!(matches!(
+            q(vec![0.0]).validate(),
+            Err(ContactError::Time { level: 0, .. })
+        ));
+        assert!(matches!(
+            q(vec![1.0, 1.0]).validate(),
+            Err(ContactError::Time { level: 1, .. })
+        ));
+        assert!(matches!(
+            q(vec![1.0, 3.0]).validate(),
+            Err(ContactError::UnequalSteps { level: 1, .. })
+        ));
+        assert!(
+            q(vec![1.0, 3.0])
+                .with_formula(DifferenceFormula::BACKWARD_EULER)
+                .validate()
+                .is_ok()
+        );
         assert!(Analysis::Static { time: f64::NAN }.validate().is_err());
     }
 }

@@ -10,7 +10,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ContactError {
     /// A coefficient of friction or a datum of its law.
-    #[error("friction: the {what} is {value}; it must be finite and not negative (a decay rate positive)")]
+    #[error(
+        "friction: the {what} is {value}; it must be finite and not negative (a decay rate positive)"
+    )]
     Coefficient {
         /// The datum.
         what: &'static str,
@@ -18,7 +20,9 @@ pub enum ContactError {
         value: f64,
     },
     /// A law gave an inadmissible coefficient.
-    #[error("friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite and not negative")]
+    #[error(
+        "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite and not negative"
+    )]
     CoefficientAt {
         /// Mesh node.
         node: u32,
@@ -36,7 +40,9 @@ pub enum ContactError {
         value: f64,
     },
     /// A difference formula is not consistent.
-    #[error("difference formula {alpha}, {beta}, {gamma}: {rule}; use THREE_STEP or BACKWARD_EULER")]
+    #[error(
+        "difference formula {alpha}, {beta}, {gamma}: {rule}; use THREE_STEP or BACKWARD_EULER"
+    )]
     Formula {
         /// Weight of the new level.
         alpha: f64,
@@ -51,7 +57,9 @@ pub enum ContactError {
     #[error("the analysis has no time level; ask for at least one step")]
     NoLevels,
     /// A time level out of order or not finite.
-    #[error("time level {level}: {time} s is not finite or not above the level before (the first must be above 0)")]
+    #[error(
+        "time level {level}: {time} s is not finite or not above the level before (the first must be above 0)"
+    )]
     Time {
         /// The level, from 0.
         level: usize,
@@ -59,7 +67,9 @@ pub enum ContactError {
         time: f64,
     },
     /// Unequal steps with a formula that needs equal ones.
-    #[error("time level {level}: step {step} s, but the first is {first} s; the three-step formula needs equal steps, backward Euler does not")]
+    #[error(
+        "time level {level}: step {step} s, but the first is {first} s; the three-step formula needs equal steps, backward Euler does not"
+    )]
     UnequalSteps {
         /// The level, from 0.
         level: usize,
@@ -125,7 +135,9 @@ pub enum ContactError {
         value: f64,
     },
     /// Loads that nothing can balance.
-    #[error("level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push it with {force:e} (N or N m); add a support, contact or friction, or balance the loads")]
+    #[error(
+        "level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push it with {force:e} (N or N m); add a support, contact or friction, or balance the loads"
+    )]
     NotHeld {
         /// Time level, from 0.
         level: usize,

@@ -29,11 +29,15 @@ pub(crate) struct FaceSolver {
 }
 
 impl FaceSolver {
-    pub(crate) fn new(model: &Model, settings: &Settings, face: &FaceSettings) -> Result<Self, ContactError> {
+    pub(crate) fn new(
+        model: &Model,
+        settings: &Settings,
+        face: &FaceSettings,
+    ) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let preconditioner = make_preconditioner(model, settings.preconditioner)?;
         let mut scale = vec![0.0; model.tfeti.dual_dim()];
-        model.tfeti.lumped_diagonal(0..contact, &mut scale[..contact]);
+        model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         Ok(Self {
             space: FaceSpace::new(model.tfeti.coarse(), contact)?,
             work: FaceWorkspace::new(model.tfeti.dual(), &preconditioner),
@@ -96,9 +100,10 @@ impl FaceSolver {
                 outcome.status
             }
             // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
-            Err(signorini_qp::QpError::CoarseDeficient { .. } | signorini_qp::QpError::NotFinite { .. }) => {
-                Status::Stagnated
-            }
+            Err(
+                signorini_qp::QpError::CoarseDeficient { .. }
+                | signorini_qp::QpError::NotFinite { .. },
+            ) => Status::Stagnated,
             Err(error) => return Err(error.into()),
         };
         report.status = level_status(status);
@@ -122,7 +127,8 @@ impl FaceSolver {
         start: Vec<f64>,
         mut report: LevelReport,
     ) -> Result<LevelReport, ContactError> {
-        if !iterate.lambda.iter().all(|v| v.is_finite()) || report.status == LevelStatus::Stagnated {
+        if !iterate.lambda.iter().all(|v| v.is_finite()) || report.status == LevelStatus::Stagnated
+        {
             iterate.lambda = start;
         }
         let mut paper = match self.paper.take() {
@@ -144,7 +150,10 @@ impl FaceSolver {
     }
 }
 
-pub(crate) fn make_preconditioner(model: &Model, choice: Choice) -> Result<Preconditioner, ContactError> {
+pub(crate) fn make_preconditioner(
+    model: &Model,
+    choice: Choice,
+) -> Result<Preconditioner, ContactError> {
     Ok(match choice {
         Choice::Lumped => model.tfeti.lumped()?,
         Choice::Dirichlet => model.tfeti.dirichlet()?,
@@ -153,8 +162,15 @@ pub(crate) fn make_preconditioner(model: &Model, choice: Choice) -> Result<Preco
 
 /// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a
 /// little inside, where they would be taken for sticking.
-pub(crate) fn restore_sliding(model: &Model, set: &ProductSet, sliding: &[bool], lambda: &mut [f64]) {
-    let Some(signorini_qp::Segment::Discs { radii }) = set.segments().get(DISCS) else { return };
+pub(crate) fn restore_sliding(
+    model: &Model,
+    set: &ProductSet,
+    sliding: &[bool],
+    lambda: &mut [f64],
+) {
+    let Some(signorini_qp::Segment::Discs { radii }) = set.segments().get(DISCS) else {
+        return;
+    };
     let start = model.tfeti.gluing().ranges().discs.start;
     for (point, _) in model.points.iter().zip(sliding).filter(|(_, s)| **s) {
         if let Tangential::Plane { row, .. } = point.tangential {

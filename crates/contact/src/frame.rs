@@ -144,7 +144,11 @@ impl Frame<'_> {
     /// [`ContactError::Field`] never for a displacement of this simulation.
     pub fn stress(&self) -> Result<Vec<[f64; 6]>, ContactError> {
         let scene = &self.model.scene;
-        Ok(fields::stresses(&scene.mesh, &scene.materials, &self.displacement())?)
+        Ok(fields::stresses(
+            &scene.mesh,
+            &scene.materials,
+            &self.displacement(),
+        )?)
     }
 
     /// Elastic energy, J.
@@ -153,7 +157,11 @@ impl Frame<'_> {
     /// As [`stress`](Self::stress).
     pub fn strain_energy(&self) -> Result<f64, ContactError> {
         let scene = &self.model.scene;
-        Ok(fields::strain_energy(&scene.mesh, &scene.materials, &self.displacement())?)
+        Ok(fields::strain_energy(
+            &scene.mesh,
+            &scene.materials,
+            &self.displacement(),
+        )?)
     }
 
     /// Sum of all loads at this level, N.
@@ -172,7 +180,12 @@ impl Frame<'_> {
 }
 
 /// Evaluates the touch points: `rows` is `B u` in row units, `trace` the tangential displacements before.
-pub(crate) fn point_states(model: &Model, level: &Level, lambda: &[f64], rows: &[f64]) -> Vec<PointState> {
+pub(crate) fn point_states(
+    model: &Model,
+    level: &Level,
+    lambda: &[f64],
+    rows: &[f64],
+) -> Vec<PointState> {
     let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
     let mut out = Vec::with_capacity(model.points.len());
     for (k, point) in model.points.iter().enumerate() {
@@ -219,7 +232,13 @@ pub(crate) fn point_states(model: &Model, level: &Level, lambda: &[f64], rows: &
 }
 
 /// Sums over the points; `before` are the tangential displacements at the level before.
-pub(crate) fn summarise(model: &Model, points: &[PointState], lambda: &[f64], rows: &[f64], before: &[f64]) -> ContactSummary {
+pub(crate) fn summarise(
+    model: &Model,
+    points: &[PointState],
+    lambda: &[f64],
+    rows: &[f64],
+    before: &[f64],
+) -> ContactSummary {
     let mut s = ContactSummary::default();
     let start = model.tangential_start();
     for (point, touch) in points.iter().zip(&model.points) {

@@ -125,16 +125,24 @@ impl Coefficient {
     /// Whether the slip rate matters; if not, none is computed.
     #[must_use]
     pub fn depends_on_rate(&self) -> bool {
-        matches!(self, Self::Exponential { .. } | Self::Table(_) | Self::RateField(_))
+        matches!(
+            self,
+            Self::Exponential { .. } | Self::Table(_) | Self::RateField(_)
+        )
     }
 
     /// Checks what can be checked without a place.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
-        let bad = |name: &'static str, value: f64| Err(ContactError::Coefficient { what: name, value });
+        let bad =
+            |name: &'static str, value: f64| Err(ContactError::Coefficient { what: name, value });
         let good = |value: f64| value.is_finite() && value >= 0.0;
         match self {
             Self::Constant(value) if !good(*value) => bad("coefficient", *value),
-            Self::Exponential { fixed, kinetic, decay } => {
+            Self::Exponential {
+                fixed,
+                kinetic,
+                decay,
+            } => {
                 if !good(*fixed) {
                     bad("coefficient at rest", *fixed)
                 } else if !good(*kinetic) {
@@ -168,7 +176,11 @@ impl Coefficient {
         let value = match self {
             Self::Constant(value) => *value,
             Self::Field(field) => field(point),
-            Self::Exponential { fixed, kinetic, decay } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
+            Self::Exponential {
+                fixed,
+                kinetic,
+                decay,
+            } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
             Self::Table(points) => interpolate(points, rate),
             Self::RateField(field) => field(point, rate),
         };
@@ -185,7 +197,11 @@ impl fmt::Debug for Coefficient {
         match self {
             Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
             Self::Field(_) => f.write_str("Field(..)"),
-            Self::Exponential { fixed, kinetic, decay } => f
+            Self::Exponential {
+                fixed,
+                kinetic,
+                decay,
+            } => f
                 .debug_struct("Exponential")
                 .field("fixed", fixed)
                 .field("kinetic", kinetic)
@@ -199,7 +215,10 @@ impl fmt::Debug for Coefficient {
 
 fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
     let after = points.partition_point(|p| p.0 <= x);
-    match (after.checked_sub(1).and_then(|i| points.get(i)), points.get(after)) {
+    match (
+        after.checked_sub(1).and_then(|i| points.get(i)),
+        points.get(after),
+    ) {
         (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)),
         (Some(p), None) | (None, Some(p)) => p.1,
         (None, None) => f64::NAN,
@@ -212,16 +231,28 @@ mod tests {
 
     #[test]
     fn the_exponential_law_of_the_benchmark() {
-        let law = Coefficient::Exponential { fixed: 0.3, kinetic: 0.1, decay: 0.05 };
+        let law = Coefficient::Exponential {
+            fixed: 0.3,
+            kinetic: 0.1,
+            decay: 0.05,
+        };
         law.validate().unwrap();
         assert!((law.value(0, [0.0; 3], 0.0).unwrap() - 0.3).abs() < 1e-15);
-        assert!((law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15);
+        assert!(
+            (law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15
+        );
     }
 
     #[test]
     fn tables_interpolate_and_are_constant_outside() {
         let law = Coefficient::Table(vec![(0.0, 0.4), (1.0, 0.2)]);
-        for (rate, expected) in [(-1.0, 0.4), (0.0, 0.4), (0.25, 0.35), (1.0, 0.2), (7.0, 0.2)] {
+        for (rate, expected) in [
+            (-1.0, 0.4),
+            (0.0, 0.4),
+            (0.25, 0.35),
+            (1.0, 0.2),
+            (7.0, 0.2),
+        ] {
             assert!((law.value(0, [0.0; 3], rate).unwrap() - expected).abs() < 1e-15);
         }
     }
@@ -231,8 +262,16 @@ mod tests {
         for law in [
             Coefficient::Constant(-0.1),
             Coefficient::Constant(f64::NAN),
-            Coefficient::Exponential { fixed: 0.3, kinetic: -0.1, decay: 0.05 },
-            Coefficient::Exponential { fixed: 0.3, kinetic: 0.1, decay: 0.0 },
+            Coefficient::Exponential {
+                fixed: 0.3,
+                kinetic: -0.1,
+                decay: 0.05,
+            },
+            Coefficient::Exponential {
+                fixed: 0.3,
+                kinetic: 0.1,
+                decay: 0.0,
+            },
             Coefficient::Table(vec![]),
             Coefficient::Table(vec![(1.0, 0.1), (1.0, 0.2)]),
             Coefficient::Table(vec![(0.0, f64::INFINITY)]),
@@ -240,6 +279,9 @@ mod tests {
             assert!(law.validate().is_err(), "{law:?}");
         }
         let field = Coefficient::field(|x| -x[0]);
-        assert!(matches!(field.value(7, [1.0; 3], 0.0), Err(ContactError::CoefficientAt { node: 7, .. })));
+        assert!(matches!(
+            field.value(7, [1.0; 3], 0.0),
+            Err(ContactError::CoefficientAt { node: 7, .. })
+        ));
     }
 }

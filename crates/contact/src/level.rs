@@ -31,15 +31,28 @@ pub(crate) struct Level {
 
 impl Level {
     /// Computes the data of level `index` from the model and the state before it.
-    pub(crate) fn prepare(&mut self, model: &Model, state: &State, index: usize) -> Result<(), ContactError> {
+    pub(crate) fn prepare(
+        &mut self,
+        model: &Model,
+        state: &State,
+        index: usize,
+    ) -> Result<(), ContactError> {
         let analysis = &model.scene.analysis;
         let levels = analysis.levels();
-        let time = analysis.time(index).ok_or(ContactError::Finished { levels })?;
+        let time = analysis
+            .time(index)
+            .ok_or(ContactError::Finished { levels })?;
         self.index = index;
         self.time = time;
         self.step = analysis.step(index);
         self.factors.clear();
-        self.factors.extend(model.scene.loads.iter().map(|load| load.history.value(time)));
+        self.factors.extend(
+            model
+                .scene
+                .loads
+                .iter()
+                .map(|load| load.history.value(time)),
+        );
         let rows = model.tfeti.dual_dim();
         self.load.resize(rows, 0.0);
         self.load.fill(0.0);
@@ -49,7 +62,12 @@ impl Level {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        let cases: Vec<(usize, f64)> = model.motions.iter().map(|h| h.value(time)).enumerate().collect();
+        let cases: Vec<(usize, f64)> = model
+            .motions
+            .iter()
+            .map(|h| h.value(time))
+            .enumerate()
+            .collect();
         self.offset = model.tfeti.prescribed_offsets(&cases);
         if model.plan.effects.gap {
             for point in &model.points {
@@ -59,7 +77,9 @@ impl Level {
         if let (true, Some(formula)) = (model.plan.effects.history, analysis.formula()) {
             let start = model.tangential_start();
             for point in &model.points {
-                let Some((row, count, scale)) = point.tangential.rows() else { continue };
+                let Some((row, count, scale)) = point.tangential.rows() else {
+                    continue;
+                };
                 for k in row..row + count {
                     let (last, before) = state.traces(k - start);
                     self.offset[k] += scale * formula.offset(last, before);
@@ -84,13 +104,19 @@ impl Level {
         self.coefficients.clear();
         for (k, point) in model.points.iter().enumerate() {
             let rate = state.rates().get(k).copied().unwrap_or(0.0);
-            self.coefficients.push(law.value(point.node, point.position, rate)?);
+            self.coefficients
+                .push(law.value(point.node, point.position, rate)?);
         }
         Ok(())
     }
 
     /// Writes the slip bounds into the set: given ones, or the coefficients times the normal forces in `lambda`.
-    pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) -> Result<(), ContactError> {
+    pub(crate) fn slip_bounds(
+        &self,
+        model: &Model,
+        lambda: &[f64],
+        set: &mut ProductSet,
+    ) -> Result<(), ContactError> {
         match model.friction() {
             Friction::None => {}
             Friction::Given(bound) => {
@@ -107,7 +133,8 @@ impl Level {
 
     /// Coulomb slip bounds `-F_i lambda_nu,i` in newtons.
     pub(crate) fn coulomb_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
-        let force = |k: usize, point: &TouchPoint| self.coefficients[k] * normal_force(point, lambda);
+        let force =
+            |k: usize, point: &TouchPoint| self.coefficients[k] * normal_force(point, lambda);
         model.set_slip_bounds(set, force);
     }
 }

@@ -31,8 +31,18 @@ impl LinearSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let factor = model.tfeti.coarse_factor();
         let coarse = factor.orthonormal().ok_or_else(|| {
-            let mode = factor.free_motions().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
-            ContactError::NotHeld { level: 0, body: 0, mode, force: 0.0 }
+            let mode = factor
+                .free_motions()
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("; ");
+            ContactError::NotHeld {
+                level: 0,
+                body: 0,
+                mode,
+                force: 0.0,
+            }
         })?;
         let preconditioner = make_preconditioner(model, settings.preconditioner)?;
         Ok(Self {
@@ -51,7 +61,8 @@ impl LinearSolver {
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<LevelReport, ContactError> {
-        self.coarse.rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
+        self.coarse
+            .rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
         let outcome = projected_cg(
             model.tfeti.dual(),
             &level.linear,
@@ -70,7 +81,11 @@ impl LinearSolver {
         report.counters.preconditionings = outcome.preconditionings;
         iterate.known = false;
         iterate.alpha.resize(level.rhs.len(), 0.0);
-        self.coarse.amplitudes(self.work.equality_multiplier(), &mut iterate.alpha, &mut self.coarse_scratch);
+        self.coarse.amplitudes(
+            self.work.equality_multiplier(),
+            &mut iterate.alpha,
+            &mut self.coarse_scratch,
+        );
         Ok(report)
     }
 }

@@ -8,7 +8,9 @@ use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, Frame, History, Surface, assemble_load};
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti as tfeti;
-use signorini_tfeti::{ContactNodes, ContactPoint, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
+use signorini_tfeti::{
+    ContactNodes, ContactPoint, LoadResponse, TangentialRows, Tfeti, TfetiBuilder,
+};
 
 /// A node that can touch the obstacle.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,9 +38,16 @@ pub struct TouchPoint {
 pub(crate) enum Tangential {
     None,
     /// One row along a direction.
-    Line { row: usize, direction: [f64; 3], scale: f64 },
+    Line {
+        row: usize,
+        direction: [f64; 3],
+        scale: f64,
+    },
     /// Rows `row` and `row + 1` along the tangents of the frame.
-    Plane { row: usize, scale: f64 },
+    Plane {
+        row: usize,
+        scale: f64,
+    },
 }
 
 impl Tangential {
@@ -112,16 +121,32 @@ impl Model {
         let set = ProductSet::new(vec![
             Segment::upper(vec![0.0; ranges.normal.len()]),
             Segment::discs(vec![0.0; ranges.discs.len() / 2]),
-            Segment::bounds(vec![0.0; ranges.intervals.len()], vec![0.0; ranges.intervals.len()]),
+            Segment::bounds(
+                vec![0.0; ranges.intervals.len()],
+                vec![0.0; ranges.intervals.len()],
+            ),
             Segment::Free(ranges.interface.len() + ranges.dirichlet.len()),
         ])
         .map_err(signorini_qp::QpError::from)?;
-        Ok(Self { scene, plan, decomposition, tfeti, loads, motions, points, surface, set })
+        Ok(Self {
+            scene,
+            plan,
+            decomposition,
+            tfeti,
+            loads,
+            motions,
+            points,
+            surface,
+            set,
+        })
     }
 
     /// Friction of the contact surface; none without one.
     pub(crate) fn friction(&self) -> &Friction {
-        self.scene.contact.as_ref().map_or(&Friction::None, Contact::friction)
+        self.scene
+            .contact
+            .as_ref()
+            .map_or(&Friction::None, Contact::friction)
     }
 
     /// Tangential rows.
@@ -135,7 +160,11 @@ impl Model {
     }
 
     /// Writes slip bounds (forces in N, one a point) into the set.
-    pub(crate) fn set_slip_bounds(&self, set: &mut ProductSet, bound: impl Fn(usize, &TouchPoint) -> f64) {
+    pub(crate) fn set_slip_bounds(
+        &self,
+        set: &mut ProductSet,
+        bound: impl Fn(usize, &TouchPoint) -> f64,
+    ) {
         let ranges = self.tfeti.gluing().ranges();
         for (k, point) in self.points.iter().enumerate() {
             match point.tangential {
@@ -166,7 +195,10 @@ fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), Contac
         let nodes = scene.nodes("support", &support.place)?;
         let mut one = tfeti::Support::partial(nodes, support.directions.clone());
         if let Some((values, history)) = &support.motion {
-            one = one.with_motion(tfeti::Motion { case: motions.len() as u32, values: values.clone() });
+            one = one.with_motion(tfeti::Motion {
+                case: motions.len() as u32,
+                values: values.clone(),
+            });
             motions.push(history.clone());
         }
         out.push(one);
@@ -181,9 +213,21 @@ fn contact_nodes(contact: &Contact, surface: &Surface) -> Result<ContactNodes, C
             Some(Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal { normal })?)
         }
     };
-    let point = |(&node, &frame): (&u32, &Frame)| ContactPoint { node, opponent: None, frame: fixed.unwrap_or(frame) };
-    let points = surface.nodes().iter().zip(surface.frames()).map(point).collect();
-    Ok(ContactNodes { points, friction: contact.friction().is_some() })
+    let point = |(&node, &frame): (&u32, &Frame)| ContactPoint {
+        node,
+        opponent: None,
+        frame: fixed.unwrap_or(frame),
+    };
+    let points = surface
+        .nodes()
+        .iter()
+        .zip(surface.frames())
+        .map(point)
+        .collect();
+    Ok(ContactNodes {
+        points,
+        friction: contact.friction().is_some(),
+    })
 }
 
 fn touch_points(
@@ -201,14 +245,27 @@ fn touch_points(
             Gap::Field(field) => field(position),
         };
         if !gap.is_finite() {
-            return Err(ContactError::Gap { node: info.node, value: gap });
+            return Err(ContactError::Gap {
+                node: info.node,
+                value: gap,
+            });
         }
         let tangential = match info.tangential {
             TangentialRows::Disc { row, scale } => Tangential::Plane { row, scale },
-            TangentialRows::Interval { row, direction, scale } => Tangential::Line { row, direction, scale },
+            TangentialRows::Interval {
+                row,
+                direction,
+                scale,
+            } => Tangential::Line {
+                row,
+                direction,
+                scale,
+            },
             _ => Tangential::None,
         };
-        let area = surface.local(info.node).map_or(0.0, |local| surface.areas()[local]);
+        let area = surface
+            .local(info.node)
+            .map_or(0.0, |local| surface.areas()[local]);
         points.push(TouchPoint {
             node: info.node,
             position,

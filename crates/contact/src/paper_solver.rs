@@ -4,13 +4,13 @@
 use crate::error::ContactError;
 use crate::fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
 use crate::level::Level;
-use crate::model::{INTERVALS, DISCS, Model};
+use crate::model::{DISCS, INTERVALS, Model};
 use crate::report::{LevelReport, LevelStatus};
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::solver::{Iterate, is_coulomb, level_status};
 use signorini_qp::{
-    HookAction, NormSettings, OuterStep, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
-    Status, Tolerance, norm_estimate, smalse, vector,
+    HookAction, NormSettings, OuterStep, ProductSet, Projected, Segment, SmalseReport,
+    SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
 
@@ -32,7 +32,10 @@ pub(crate) struct PaperSolver {
 
 impl std::fmt::Debug for PaperSolver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("PaperSolver").field("norm", &self.norm).field("one_loop", &self.one_loop).finish_non_exhaustive()
+        f.debug_struct("PaperSolver")
+            .field("norm", &self.norm)
+            .field("one_loop", &self.one_loop)
+            .finish_non_exhaustive()
     }
 }
 
@@ -48,8 +51,18 @@ impl PaperSolver {
         };
         let factor = model.tfeti.coarse_factor();
         let coarse = factor.orthonormal().ok_or_else(|| {
-            let mode = factor.free_motions().iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
-            ContactError::NotHeld { level: 0, body: 0, mode, force: 0.0 }
+            let mode = factor
+                .free_motions()
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("; ");
+            ContactError::NotHeld {
+                level: 0,
+                body: 0,
+                mode,
+                force: 0.0,
+            }
         })?;
         let operator = model.tfeti.dual();
         let estimate = norm_estimate(&Projected::new(operator, &coarse), &NormSettings::default())?;
@@ -74,7 +87,8 @@ impl PaperSolver {
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<LevelReport, ContactError> {
-        self.coarse.rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
+        self.coarse
+            .rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
         iterate.multiplier.resize(self.rhs.len(), 0.0);
         let mut report = LevelReport::new();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
@@ -93,7 +107,11 @@ impl PaperSolver {
         }
         iterate.known = false;
         iterate.alpha.resize(level.rhs.len(), 0.0);
-        self.coarse.amplitudes(self.work.equality_multiplier(), &mut iterate.alpha, &mut self.coarse_scratch);
+        self.coarse.amplitudes(
+            self.work.equality_multiplier(),
+            &mut iterate.alpha,
+            &mut self.coarse_scratch,
+        );
         Ok(report)
     }
 
@@ -105,7 +123,10 @@ impl PaperSolver {
         tolerance: f64,
         iterate: &mut Iterate,
     ) -> Result<SmalseReport, ContactError> {
-        let settings = self.settings.with_tolerance(Tolerance::Relative(tolerance)).with_equality(tolerance);
+        let settings = self
+            .settings
+            .with_tolerance(Tolerance::Relative(tolerance))
+            .with_equality(tolerance);
         let operator = model.tfeti.dual();
         Ok(smalse(
             operator,
@@ -132,23 +153,33 @@ impl PaperSolver {
         report: &mut LevelReport,
     ) -> Result<(), ContactError> {
         let normal = model.tfeti.gluing().ranges().normal.clone();
-        let mut x: Vec<f64> = iterate.lambda[normal.clone()].iter().map(|v| v.min(0.0)).collect();
+        let mut x: Vec<f64> = iterate.lambda[normal.clone()]
+            .iter()
+            .map(|v| v.min(0.0))
+            .collect();
         let mut inner = Status::Converged;
-        let outcome = successive_approximations(&mut x, settings.tolerance, settings.max_fixed_point, |x, change| {
-            let target = settings.tolerance * SAFETY;
-            let tolerance = match self.accuracy {
-                InnerAccuracy::Adaptive { factor, loosest } => (factor * change).min(loosest).max(target),
-                InnerAccuracy::Fixed => target,
-            };
-            iterate.lambda[normal.clone()].copy_from_slice(x);
-            level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
-            report.counters.slip_bound_updates += 1;
-            let qp = self.given_friction(model, level, tolerance, iterate)?;
-            inner = qp.status;
-            add(report, &qp);
-            x.copy_from_slice(&iterate.lambda[normal.clone()]);
-            Ok::<(), ContactError>(())
-        })?;
+        let outcome = successive_approximations(
+            &mut x,
+            settings.tolerance,
+            settings.max_fixed_point,
+            |x, change| {
+                let target = settings.tolerance * SAFETY;
+                let tolerance = match self.accuracy {
+                    InnerAccuracy::Adaptive { factor, loosest } => {
+                        (factor * change).min(loosest).max(target)
+                    }
+                    InnerAccuracy::Fixed => target,
+                };
+                iterate.lambda[normal.clone()].copy_from_slice(x);
+                level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
+                report.counters.slip_bound_updates += 1;
+                let qp = self.given_friction(model, level, tolerance, iterate)?;
+                inner = qp.status;
+                add(report, &qp);
+                x.copy_from_slice(&iterate.lambda[normal.clone()]);
+                Ok::<bool, ContactError>(tolerance <= target)
+            },
+        )?;
         report.iterations = outcome.evaluations;
         report.status = match outcome.verdict {
             Verdict::Converged => level_status(inner),
@@ -173,16 +204,27 @@ impl PaperSolver {
         let mut contraction = Contraction::new();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;
-        let smalse_settings = self.settings.with_tolerance(Tolerance::Relative(tolerance)).with_equality(tolerance);
+        let smalse_settings = self
+            .settings
+            .with_tolerance(Tolerance::Relative(tolerance))
+            .with_equality(tolerance);
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
             level.coulomb_bounds(model, step.x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
-            last_change = if difference == 0.0 { 0.0 } else { difference / vector::norm(&new) };
+            last_change = if difference == 0.0 {
+                0.0
+            } else {
+                difference / vector::norm(&new)
+            };
             contraction.record(difference);
-            if last_change < tolerance { HookAction::Continue } else { HookAction::SetChanged }
+            if last_change < tolerance {
+                HookAction::Continue
+            } else {
+                HookAction::SetChanged
+            }
         };
         let operator = model.tfeti.dual();
         let qp = smalse(
@@ -202,9 +244,17 @@ impl PaperSolver {
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;
         report.status = level_status(qp.status);
-        let verdict = if report.status.converged() { Verdict::Converged } else { Verdict::Unknown };
-        report.fixed_point =
-            Some(FixedPointReport { verdict, evaluations: updates, change: last_change, rate: contraction.rate() });
+        let verdict = if report.status.converged() {
+            Verdict::Converged
+        } else {
+            Verdict::Unknown
+        };
+        report.fixed_point = Some(FixedPointReport {
+            verdict,
+            evaluations: updates,
+            change: last_change,
+            rate: contraction.rate(),
+        });
         Ok(())
     }
 }

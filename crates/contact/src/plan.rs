@@ -105,10 +105,17 @@ impl Plan {
     ) -> Result<Self, ContactError> {
         let fixed = fixed_directions(scene)?;
         let nodes = scene.mesh.points().len();
-        let torn_nodes: usize = decomposition.subdomains().iter().map(|s| s.nodes.len()).sum();
+        let torn_nodes: usize = decomposition
+            .subdomains()
+            .iter()
+            .map(|s| s.nodes.len())
+            .sum();
         let interface_rows = 3 * (torn_nodes - nodes);
         let dirichlet_rows: usize = fixed.values().copied().sum();
-        let friction = scene.contact.as_ref().map_or(&Friction::None, |c| c.friction());
+        let friction = scene
+            .contact
+            .as_ref()
+            .map_or(&Friction::None, |c| c.friction());
         let mut touching = BTreeSet::new();
         if let Some(contact) = &scene.contact {
             for &tag in &contact.tags {
@@ -119,8 +126,11 @@ impl Plan {
         let free = |node: &u32| 3 - fixed.get(node).copied().unwrap_or(0).min(3);
         touching.retain(|node| free(node) > 0);
         let normal_rows = touching.len();
-        let tangential_rows =
-            if friction.is_some() { touching.iter().map(|node| free(node) - 1).sum() } else { 0 };
+        let tangential_rows = if friction.is_some() {
+            touching.iter().map(|node| free(node) - 1).sum()
+        } else {
+            0
+        };
         let kind = match friction {
             Friction::None => FrictionKind::None,
             Friction::Given(_) => FrictionKind::Given,
@@ -129,14 +139,22 @@ impl Plan {
         };
         let effects = Effects {
             contact: scene.contact.is_some(),
-            gap: scene.contact.as_ref().is_some_and(|c| !matches!(c.gap, Gap::None)),
+            gap: scene
+                .contact
+                .as_ref()
+                .is_some_and(|c| !matches!(c.gap, Gap::None)),
             friction: kind,
-            history: kind != FrictionKind::None && matches!(scene.analysis, Analysis::Quasistatic { .. }),
+            history: kind != FrictionKind::None
+                && matches!(scene.analysis, Analysis::Quasistatic { .. }),
             gluing: decomposition.subdomains().len() > 1,
             supports: !scene.supports.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
         };
-        let method = if effects.contact { settings.method.name() } else { "linear" };
+        let method = if effects.contact {
+            settings.method.name()
+        } else {
+            "linear"
+        };
         let primal = decomposition.torn_dofs();
         let dual = normal_rows + tangential_rows + interface_rows + dirichlet_rows;
         let vectors = match settings.method {
@@ -177,33 +195,79 @@ fn fixed_directions(scene: &Scene) -> Result<BTreeMap<u32, usize>, ContactError>
         }
     }
     let count = |(on, more): ([bool; 3], usize)| (on.iter().filter(|&&b| b).count() + more).min(3);
-    Ok(axes.into_iter().map(|(node, entry)| (node, count(entry))).collect())
+    Ok(axes
+        .into_iter()
+        .map(|(node, entry)| (node, count(entry)))
+        .collect())
 }
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let e = &self.effects;
-        let yes = |on: bool, text: String, absent: &str| if on { text } else { format!("none ({absent})") };
+        let yes = |on: bool, text: String, absent: &str| {
+            if on { text } else { format!("none ({absent})") }
+        };
         writeln!(f, "plan")?;
-        writeln!(f, "  mesh        {} tetrahedra, {} nodes", self.elements, self.nodes)?;
-        writeln!(f, "  subdomains  {} ({} torn unknowns)", self.subdomains, self.primal)?;
+        writeln!(
+            f,
+            "  mesh        {} tetrahedra, {} nodes",
+            self.elements, self.nodes
+        )?;
+        writeln!(
+            f,
+            "  subdomains  {} ({} torn unknowns)",
+            self.subdomains, self.primal
+        )?;
         let gluing = format!("{} rows", self.interface_rows);
-        writeln!(f, "  gluing      {}", yes(e.gluing, gluing, "one subdomain"))?;
+        writeln!(
+            f,
+            "  gluing      {}",
+            yes(e.gluing, gluing, "one subdomain")
+        )?;
         let moving = if e.motion { ", moving" } else { "" };
-        writeln!(f, "  supports    {}", yes(e.supports, format!("{} rows{moving}", self.dirichlet_rows), "free body"))?;
-        let gap = if e.gap { "with gap" } else { "no gap: zero offset" };
+        writeln!(
+            f,
+            "  supports    {}",
+            yes(
+                e.supports,
+                format!("{} rows{moving}", self.dirichlet_rows),
+                "free body"
+            )
+        )?;
+        let gap = if e.gap {
+            "with gap"
+        } else {
+            "no gap: zero offset"
+        };
         let contact = format!("{} nodes, {gap}", self.contact_nodes);
-        writeln!(f, "  contact     {}", yes(e.contact, contact, "no inequality solver"))?;
+        writeln!(
+            f,
+            "  contact     {}",
+            yes(e.contact, contact, "no inequality solver")
+        )?;
         let friction = match e.friction {
             FrictionKind::None => "none (no tangential rows)".to_owned(),
             FrictionKind::Given => format!("given, {} rows, no outer loop", self.tangential_rows),
-            FrictionKind::Coulomb => format!("Coulomb, {} rows, no slip rate", self.tangential_rows),
-            FrictionKind::RateDependent => format!("Coulomb, rate dependent, {} rows", self.tangential_rows),
+            FrictionKind::Coulomb => {
+                format!("Coulomb, {} rows, no slip rate", self.tangential_rows)
+            }
+            FrictionKind::RateDependent => {
+                format!("Coulomb, rate dependent, {} rows", self.tangential_rows)
+            }
         };
         writeln!(f, "  friction    {friction}")?;
         let history = format!("{} levels, old traces kept", self.levels);
-        writeln!(f, "  history     {}", yes(e.history, history, "each level stands alone"))?;
-        writeln!(f, "  dual        {} rows, coarse {}", self.dual(), self.coarse)?;
+        writeln!(
+            f,
+            "  history     {}",
+            yes(e.history, history, "each level stands alone")
+        )?;
+        writeln!(
+            f,
+            "  dual        {} rows, coarse {}",
+            self.dual(),
+            self.coarse
+        )?;
         writeln!(f, "  method      {}", self.method)?;
         write!(f, "  vectors     {:.1} MB", self.vector_bytes as f64 / 1e6)
     }

@@ -42,13 +42,21 @@ impl Support {
     /// All components are zero.
     #[must_use]
     pub fn fixed(place: impl Into<Place>) -> Self {
-        Self { place: place.into(), directions: Directions::All, motion: None }
+        Self {
+            place: place.into(),
+            directions: Directions::All,
+            motion: None,
+        }
     }
 
     /// Some directions are zero.
     #[must_use]
     pub fn partial(place: impl Into<Place>, directions: Directions) -> Self {
-        Self { place: place.into(), directions, motion: None }
+        Self {
+            place: place.into(),
+            directions,
+            motion: None,
+        }
     }
 
     /// Single components (x, y, z) are zero.
@@ -83,7 +91,10 @@ impl Load {
     /// A load that is constant in time.
     #[must_use]
     pub fn new(density: LoadDensity) -> Self {
-        Self { density, history: History::constant(1.0) }
+        Self {
+            density,
+            history: History::constant(1.0),
+        }
     }
 
     /// Force per area on a tag, Pa.
@@ -158,7 +169,12 @@ impl Contact {
     /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.
     #[must_use]
     pub fn rigid(tag: FacetTag) -> Self {
-        Self { tags: vec![tag], gap: Gap::None, normal: ContactNormal::Body, friction: Friction::None }
+        Self {
+            tags: vec![tag],
+            gap: Gap::None,
+            normal: ContactNormal::Body,
+            friction: Friction::None,
+        }
     }
 
     /// Contact with the half-space below a plane: gap and normal follow from the plane.
@@ -169,7 +185,9 @@ impl Contact {
         let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
         let unit = outward.map(|c| c / length);
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
-        Self::rigid(tag).with_normal(unit.map(|c| -c)).with_gap_field(gap)
+        Self::rigid(tag)
+            .with_normal(unit.map(|c| -c))
+            .with_gap_field(gap)
     }
 
     /// More facets of the same kind.
@@ -182,7 +200,11 @@ impl Contact {
     /// A constant gap in m.
     #[must_use]
     pub fn with_gap(mut self, gap: f64) -> Self {
-        self.gap = if gap == 0.0 { Gap::None } else { Gap::Constant(gap) };
+        self.gap = if gap == 0.0 {
+            Gap::None
+        } else {
+            Gap::Constant(gap)
+        };
         self
     }
 
@@ -346,7 +368,11 @@ impl Scene {
     }
 
     /// Nodes of a place, checked; `what` names who asks.
-    pub(crate) fn nodes(&self, what: &'static str, place: &Place) -> Result<Vec<u32>, ContactError> {
+    pub(crate) fn nodes(
+        &self,
+        what: &'static str,
+        place: &Place,
+    ) -> Result<Vec<u32>, ContactError> {
         match place {
             Place::Tag(tag) => {
                 let nodes = self.mesh.nodes_on(*tag);
@@ -358,7 +384,11 @@ impl Scene {
             Place::Nodes(nodes) => {
                 let count = self.mesh.points().len();
                 match nodes.iter().find(|&&n| n as usize >= count) {
-                    Some(&node) => Err(ContactError::UnknownNode { what, node, nodes: count }),
+                    Some(&node) => Err(ContactError::UnknownNode {
+                        what,
+                        node,
+                        nodes: count,
+                    }),
                     None => Ok(nodes.clone()),
                 }
             }
@@ -367,7 +397,11 @@ impl Scene {
 
     pub(crate) fn unknown_tag(&self, what: &'static str, tag: FacetTag) -> ContactError {
         let known: Vec<String> = self.mesh.tags().iter().map(|t| t.0.to_string()).collect();
-        ContactError::UnknownTag { what, tag: tag.0, known: known.join(", ") }
+        ContactError::UnknownTag {
+            what,
+            tag: tag.0,
+            known: known.join(", "),
+        }
     }
 
     /// Checks what needs no computation.
@@ -378,23 +412,42 @@ impl Scene {
             if let Some((values, _)) = &support.motion {
                 if values.len() != 1 && values.len() != nodes.len() {
                     let (values, nodes) = (values.len(), nodes.len());
-                    return Err(ContactError::ValueCount { what: "support", values, nodes });
+                    return Err(ContactError::ValueCount {
+                        what: "support",
+                        values,
+                        nodes,
+                    });
                 }
             }
         }
         for level in 0..self.analysis.levels() {
             let time = self.analysis.time(level).unwrap_or(0.0);
-            let histories = (self.loads.iter().enumerate().map(|(i, l)| ("load", i, &l.history))).chain(
-                self.supports.iter().enumerate().filter_map(|(i, s)| s.motion.as_ref().map(|m| ("support", i, &m.1))),
+            let histories = (self
+                .loads
+                .iter()
+                .enumerate()
+                .map(|(i, l)| ("load", i, &l.history)))
+            .chain(
+                self.supports
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(i, s)| s.motion.as_ref().map(|m| ("support", i, &m.1))),
             );
             for (what, index, history) in histories {
                 let value = history.value(time);
                 if !value.is_finite() {
-                    return Err(ContactError::HistoryValue { what, index, time, value });
+                    return Err(ContactError::HistoryValue {
+                        what,
+                        index,
+                        time,
+                        value,
+                    });
                 }
             }
         }
-        let Some(contact) = &self.contact else { return Ok(()) };
+        let Some(contact) = &self.contact else {
+            return Ok(());
+        };
         for &tag in &contact.tags {
             if self.mesh.nodes_on(tag).is_empty() {
                 return Err(self.unknown_tag("contact", tag));

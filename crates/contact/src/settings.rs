@@ -30,13 +30,18 @@ impl Method {
     /// The paper's method with the settings that served best on the brick.
     #[must_use]
     pub fn paper() -> Self {
-        Self::SuccessiveApproximations { smalse: paper_smalse(), accuracy: InnerAccuracy::default() }
+        Self::SuccessiveApproximations {
+            smalse: paper_smalse(),
+            accuracy: InnerAccuracy::default(),
+        }
     }
 
     /// The paper's one inexact loop with the same settings.
     #[must_use]
     pub fn one_loop() -> Self {
-        Self::OneLoop { smalse: paper_smalse() }
+        Self::OneLoop {
+            smalse: paper_smalse(),
+        }
     }
 
     /// A short name, as the examples print it.
@@ -78,7 +83,10 @@ pub enum InnerAccuracy {
 
 impl Default for InnerAccuracy {
     fn default() -> Self {
-        Self::Adaptive { factor: 0.1, loosest: 1e-3 }
+        Self::Adaptive {
+            factor: 0.1,
+            loosest: 1e-3,
+        }
     }
 }
 
@@ -200,19 +208,33 @@ impl Settings {
 
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         if !(1e-12..=0.1).contains(&self.tolerance) {
-            return Err(ContactError::Setting { name: "tolerance", value: self.tolerance, range: "[1e-12, 0.1]" });
+            return Err(ContactError::Setting {
+                name: "tolerance",
+                value: self.tolerance,
+                range: "[1e-12, 0.1]",
+            });
         }
         if self.max_fixed_point == 0 {
-            return Err(ContactError::Setting { name: "max_fixed_point", value: 0.0, range: "at least 1" });
+            return Err(ContactError::Setting {
+                name: "max_fixed_point",
+                value: 0.0,
+                range: "at least 1",
+            });
         }
         match &self.method {
             Method::Face(face) => face.validate()?,
             Method::SuccessiveApproximations { smalse, accuracy } => {
                 smalse.validate()?;
                 if let InnerAccuracy::Adaptive { factor, loosest } = accuracy {
-                    for (name, value) in [("accuracy.factor", *factor), ("accuracy.loosest", *loosest)] {
+                    for (name, value) in
+                        [("accuracy.factor", *factor), ("accuracy.loosest", *loosest)]
+                    {
                         if !(value > 0.0 && value < 1.0) {
-                            return Err(ContactError::Setting { name, value, range: "(0, 1)" });
+                            return Err(ContactError::Setting {
+                                name,
+                                value,
+                                range: "(0, 1)",
+                            });
                         }
                     }
                 }

@@ -144,9 +144,16 @@ impl Simulation {
     pub fn resume(&mut self, state: State) -> Result<(), ContactError> {
         let tfeti = &self.model.tfeti;
         let tangential = self.model.tangential_rows();
-        state.fits(tfeti.dual_dim(), tfeti.coarse().rows(), tangential, self.model.points.len())?;
+        state.fits(
+            tfeti.dual_dim(),
+            tfeti.coarse().rows(),
+            tangential,
+            self.model.points.len(),
+        )?;
         if state.level() > self.model.scene.analysis.levels() {
-            return Err(ContactError::Checkpoint { reason: "it has more levels than this scene".to_owned() });
+            return Err(ContactError::Checkpoint {
+                reason: "it has more levels than this scene".to_owned(),
+            });
         }
         self.state = state;
         Ok(())
@@ -166,7 +173,9 @@ impl Simulation {
         let index = self.state.level();
         self.level.prepare(&self.model, &self.state, index)?;
         self.start()?;
-        let mut report = self.solver.solve(&self.model, &self.level, &self.settings, &mut self.iterate)?;
+        let mut report =
+            self.solver
+                .solve(&self.model, &self.level, &self.settings, &mut self.iterate)?;
 
         // recovery: u, and from it everything that is reported
         let tfeti = &self.model.tfeti;
@@ -177,10 +186,17 @@ impl Simulation {
         let mut rows = vec![0.0; tfeti.dual_dim()];
         tfeti.rows_times(&self.torn, &mut rows);
         let residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
-        let measured = Measured { rows: &rows, u: &self.torn, force: &force, residual: &residual };
+        let measured = Measured {
+            rows: &rows,
+            u: &self.torn,
+            force: &force,
+            residual: &residual,
+        };
         self.certificate = certify(&self.model, &self.level, &lambda, &measured);
         self.points = point_states(&self.model, &self.level, &lambda, &rows);
-        let before: Vec<f64> = (0..self.model.tangential_rows()).map(|k| self.state.traces(k).0).collect();
+        let before: Vec<f64> = (0..self.model.tangential_rows())
+            .map(|k| self.state.traces(k).0)
+            .collect();
         self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
         self.remember(lambda, rows, &mut report);
         self.total += report.counters;
@@ -255,8 +271,14 @@ impl Simulation {
         if self.state.sliding().iter().any(|s| *s) {
             let old = self.iterate.lambda.clone();
             let mut set = self.model.set.clone();
-            self.level.slip_bounds(&self.model, &self.iterate.lambda, &mut set)?;
-            restore_sliding(&self.model, &set, self.state.sliding(), &mut self.iterate.lambda);
+            self.level
+                .slip_bounds(&self.model, &self.iterate.lambda, &mut set)?;
+            restore_sliding(
+                &self.model,
+                &set,
+                self.state.sliding(),
+                &mut self.iterate.lambda,
+            );
             self.iterate.known = old == self.iterate.lambda;
         }
         Ok(())
@@ -289,15 +311,31 @@ impl Simulation {
             let tfeti = &self.model.tfeti;
             let mut f_lambda = rows;
             let mut rigid = vec![0.0; f_lambda.len()];
-            tfeti.coarse().apply_transpose(&self.iterate.alpha, &mut rigid, &mut tfeti.coarse().scratch());
+            tfeti.coarse().apply_transpose(
+                &self.iterate.alpha,
+                &mut rigid,
+                &mut tfeti.coarse().scratch(),
+            );
             for ((f, load), rigid) in f_lambda.iter_mut().zip(&self.level.load).zip(&rigid) {
                 *f -= load + rigid;
             }
-            (lambda, f_lambda, std::mem::take(&mut self.iterate.multiplier))
+            (
+                lambda,
+                f_lambda,
+                std::mem::take(&mut self.iterate.multiplier),
+            )
         } else {
             (Vec::new(), Vec::new(), Vec::new())
         };
-        self.state.advance(self.settings.extrapolate, lambda, f_lambda, multiplier, trace, rate, sliding);
+        self.state.advance(
+            self.settings.extrapolate,
+            lambda,
+            f_lambda,
+            multiplier,
+            trace,
+            rate,
+            sliding,
+        );
     }
 }
 

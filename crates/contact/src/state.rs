@@ -38,7 +38,12 @@ impl State {
     #[must_use]
     pub fn bytes(&self) -> usize {
         let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        let numbers: usize = pairs.iter().flat_map(|p| p.iter()).map(Vec::len).sum::<usize>() + self.rate.len();
+        let numbers: usize = pairs
+            .iter()
+            .flat_map(|p| p.iter())
+            .map(Vec::len)
+            .sum::<usize>()
+            + self.rate.len();
         8 * numbers + self.sliding.len()
     }
 
@@ -47,7 +52,9 @@ impl State {
     /// # Errors
     /// [`ContactError::Checkpoint`] if the encoder fails.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ContactError> {
-        postcard::to_stdvec(&(MAGIC, self)).map_err(|e| ContactError::Checkpoint { reason: e.to_string() })
+        postcard::to_stdvec(&(MAGIC, self)).map_err(|e| ContactError::Checkpoint {
+            reason: e.to_string(),
+        })
     }
 
     /// Reads what [`to_bytes`](Self::to_bytes) wrote.
@@ -56,9 +63,13 @@ impl State {
     /// [`ContactError::Checkpoint`] if the bytes are damaged or of another format.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
         let error = |reason: String| ContactError::Checkpoint { reason };
-        let (magic, state): (u32, Self) =
-            postcard::from_bytes(bytes).map_err(|e| error(format!("the bytes are damaged ({e})")))?;
-        if magic == MAGIC { Ok(state) } else { Err(error("another format or version".to_owned())) }
+        let (magic, state): (u32, Self) = postcard::from_bytes(bytes)
+            .map_err(|e| error(format!("the bytes are damaged ({e})")))?;
+        if magic == MAGIC {
+            Ok(state)
+        } else {
+            Err(error("another format or version".to_owned()))
+        }
     }
 
     pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
@@ -117,20 +128,39 @@ impl State {
     }
 
     /// Checks that the state fits a model of these sizes.
-    pub(crate) fn fits(&self, rows: usize, coarse: usize, tangential: usize, points: usize) -> Result<(), ContactError> {
+    pub(crate) fn fits(
+        &self,
+        rows: usize,
+        coarse: usize,
+        tangential: usize,
+        points: usize,
+    ) -> Result<(), ContactError> {
         let fit = |v: &Vec<f64>, n: usize| v.is_empty() || v.len() == n;
-        let good = self.lambda.iter().chain(&self.f_lambda).all(|v| fit(v, rows))
+        let good = self
+            .lambda
+            .iter()
+            .chain(&self.f_lambda)
+            .all(|v| fit(v, rows))
             && self.multiplier.iter().all(|v| fit(v, coarse))
             && self.trace.iter().all(|v| fit(v, tangential))
             && fit(&self.rate, points)
             && (self.sliding.is_empty() || self.sliding.len() == points);
         let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        let finite = numbers.iter().flat_map(|p| p.iter()).chain([&self.rate]).flatten().all(|v| v.is_finite());
+        let finite = numbers
+            .iter()
+            .flat_map(|p| p.iter())
+            .chain([&self.rate])
+            .flatten()
+            .all(|v| v.is_finite());
         if !good {
-            return Err(ContactError::Checkpoint { reason: "it belongs to another scene: sizes differ".to_owned() });
+            return Err(ContactError::Checkpoint {
+                reason: "it belongs to another scene: sizes differ".to_owned(),
+            });
         }
         if !finite {
-            return Err(ContactError::Checkpoint { reason: "it contains NaN or infinity".to_owned() });
+            return Err(ContactError::Checkpoint {
+                reason: "it contains NaN or infinity".to_owned(),
+            });
         }
         Ok(())
     }
@@ -143,14 +173,33 @@ mod tests {
     #[test]
     fn bytes_round_trip_and_damage_is_noticed() {
         let mut state = State::default();
-        state.advance(true, vec![1.0 / 3.0, -2.0], vec![0.1, 0.2], vec![], vec![1e-300], vec![], vec![true]);
+        state.advance(
+            true,
+            vec![1.0 / 3.0, -2.0],
+            vec![0.1, 0.2],
+            vec![],
+            vec![1e-300],
+            vec![],
+            vec![true],
+        );
         let bytes = state.to_bytes().unwrap();
         assert_eq!(State::from_bytes(&bytes).unwrap(), state);
-        assert!(matches!(State::from_bytes(&bytes[..bytes.len() - 1]), Err(ContactError::Checkpoint { .. })));
+        assert!(matches!(
+            State::from_bytes(&bytes[..bytes.len() - 1]),
+            Err(ContactError::Checkpoint { .. })
+        ));
         assert!(State::from_bytes(&[0; 40]).is_err());
         assert!(state.fits(2, 6, 1, 1).is_ok());
         assert!(state.fits(3, 6, 1, 1).is_err());
-        state.advance(true, vec![f64::NAN, 0.0], vec![0.0; 2], vec![], vec![0.0], vec![], vec![false]);
+        state.advance(
+            true,
+            vec![f64::NAN, 0.0],
+            vec![0.0; 2],
+            vec![],
+            vec![0.0],
+            vec![],
+            vec![false],
+        );
         assert!(state.fits(2, 6, 1, 1).is_err());
     }
 }
