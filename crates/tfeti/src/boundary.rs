@@ -1,12 +1,15 @@
 //! Gather tables between dual vectors and the boundary unknowns of all subdomains.
 //!
-//! A *boundary vector* holds, class by class and member by member, the three components at each boundary node of the
-//! class: a column-major matrix for each class. `spread` is `B^T` restricted to it, `collect` is `B`. Both only gather
+//! A *boundary vector* holds the components at the boundary nodes of all members of all classes, in panels of up to
+//! [`PANEL`] members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at
+//! `(3 b + c) w + m` of the panel. With the members next to one another, products with a small matrix run at full speed and
+//! loops over nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather
 //! (each result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
-use crate::class::Classes;
+#[cfg(doc)]
 use crate::cost::PANEL;
-use crate::gluing::Gluing;
+mod build;
+
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -17,8 +20,6 @@ pub(crate) struct BoundaryClass {
     pub(crate) nodes: Vec<u32>,
     /// Subdomains, in the order of the columns.
     pub(crate) members: Vec<u32>,
-    /// First node copy of the first member.
-    start: usize,
     /// First column among the columns of all classes.
     pub(crate) column: usize,
 }
@@ -65,12 +66,27 @@ pub(crate) struct BoundaryMap {
     special_vectors: Vec<[f64; 3]>,
     /// Copies of each interface block.
     block_pointers: Vec<u32>,
-    block_copies: Vec<u32>,
+    block_places: Vec<Place>,
     block_weights: Vec<f64>,
     /// Copies of each other row.
     row_pointers: Vec<u32>,
-    row_copies: Vec<u32>,
+    row_places: Vec<Place>,
     row_vectors: Vec<[f64; 3]>,
+}
+
+/// Where the three components of a copy stand in a boundary vector.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    first: u32,
+    stride: u32,
+}
+
+impl Place {
+    #[inline]
+    fn read(self, y: &[f64]) -> [f64; 3] {
+        let (first, stride) = (self.first as usize, self.stride as usize);
+        [y[first], y[first + stride], y[first + 2 * stride]]
+    }
 }
 
 /// Largest number of lanes: bounds the work memory and the useful number of threads.
@@ -81,185 +97,6 @@ const BLOCKS: usize = 2048;
 const SMALL: usize = 8000;
 
 impl BoundaryMap {
-    pub(crate) fn new(classes: &Classes, gluing: &Gluing) -> Self {
-        let mut map = Self::layout(classes, gluing);
-        let position = map.positions(classes);
-        map.fill_collect(gluing, &position);
-        map.fill_spread(gluing);
-        map.fill_panels();
-        map
-    }
-
-    /// Boundary nodes of each class: those touched in any member.
-    fn layout(classes: &Classes, gluing: &Gluing) -> Self {
-        let mut touched: Vec<Vec<bool>> = classes
-            .classes()
-            .iter()
-            .map(|c| vec![false; c.nodes])
-            .collect();
-        let mut touch = |subdomain: u32, local: u32| {
-            touched[classes.place(subdomain as usize).0][local as usize] = true;
-        };
-        for block in 0..gluing.blocks() {
-            gluing
-                .block(block)
-                .iter()
-                .for_each(|e| touch(e.subdomain, e.local));
-        }
-        for special in 0..gluing.specials() {
-            gluing
-                .special(special)
-                .iter()
-                .for_each(|e| touch(e.subdomain, e.local));
-        }
-        let (mut copies, mut columns) = (0, 0);
-        let mut list = Vec::with_capacity(touched.len());
-        let mut column_of = vec![0; classes.subdomains()];
-        for (class, touched) in classes.classes().iter().zip(&touched) {
-            let nodes: Vec<u32> = (0..touched.len() as u32)
-                .filter(|&n| touched[n as usize])
-                .collect();
-            for (k, &member) in class.members.iter().enumerate() {
-                column_of[member as usize] = (columns + k) as u32;
-            }
-            let next = copies + nodes.len() * class.members.len();
-            list.push(BoundaryClass {
-                nodes,
-                members: class.members.clone(),
-                start: copies,
-                column: columns,
-            });
-            copies = next;
-            columns += class.members.len();
-        }
-        Self {
-            classes: list,
-            panels: Vec::new(),
-            lanes: Vec::new(),
-            column_of,
-            copies,
-            interface: gluing.ranges().interface.clone(),
-            rows: gluing.ranges().total(),
-            spread_pointers: Vec::new(),
-            spread_blocks: Vec::new(),
-            spread_weights: Vec::new(),
-            special_copies: Vec::new(),
-            special_pointers: vec![0],
-            special_rows: Vec::new(),
-            special_vectors: Vec::new(),
-            block_pointers: vec![0],
-            block_copies: Vec::new(),
-            block_weights: Vec::new(),
-            row_pointers: vec![0],
-            row_copies: Vec::new(),
-            row_vectors: Vec::new(),
-        }
-    }
-
-    /// A function from (subdomain, local node) to the number of the copy.
-    fn positions<'a>(&self, classes: &'a Classes) -> impl Fn(u32, u32) -> u32 + use<'a> {
-        let tables: Vec<(Vec<u32>, usize, usize)> = (self.classes.iter().zip(classes.classes()))
-            .map(|(boundary, class)| {
-                let mut place = vec![u32::MAX; class.nodes];
-                for (k, &node) in boundary.nodes.iter().enumerate() {
-                    place[node as usize] = k as u32;
-                }
-                (place, boundary.start, boundary.nodes.len())
-            })
-            .collect();
-        move |subdomain, local| {
-            let (class, member) = classes.place(subdomain as usize);
-            let (place, start, nodes) = &tables[class];
-            (start + member * nodes) as u32 + place[local as usize]
-        }
-    }
-
-    fn fill_collect(&mut self, gluing: &Gluing, position: &impl Fn(u32, u32) -> u32) {
-        for block in 0..gluing.blocks() {
-            for e in gluing.block(block) {
-                self.block_copies.push(position(e.subdomain, e.local));
-                self.block_weights.push(e.coefficient);
-            }
-            self.block_pointers.push(self.block_copies.len() as u32);
-        }
-        for special in 0..gluing.specials() {
-            for e in gluing.special(special) {
-                self.row_copies.push(position(e.subdomain, e.local));
-                self.row_vectors.push(e.vector);
-            }
-            self.row_pointers.push(self.row_copies.len() as u32);
-        }
-    }
-
-    /// Transposes the collecting tables.
-    fn fill_spread(&mut self, gluing: &Gluing) {
-        let (pointers, order) = transpose(&self.block_pointers, &self.block_copies, self.copies);
-        self.spread_pointers = pointers;
-        self.spread_blocks = order.iter().map(|&(block, _)| block).collect();
-        self.spread_weights = order
-            .iter()
-            .map(|&(_, entry)| self.block_weights[entry as usize])
-            .collect();
-        let (pointers, order) = transpose(&self.row_pointers, &self.row_copies, self.copies);
-        for copy in 0..self.copies {
-            let range = pointers[copy] as usize..pointers[copy + 1] as usize;
-            if range.is_empty() {
-                continue;
-            }
-            self.special_copies.push(copy as u32);
-            for &(special, entry) in &order[range] {
-                self.special_rows
-                    .push(gluing.special_row(special as usize) as u32);
-                self.special_vectors.push(self.row_vectors[entry as usize]);
-            }
-            self.special_pointers.push(self.special_rows.len() as u32);
-        }
-    }
-
-    fn fill_panels(&mut self) {
-        let mut work = Vec::new();
-        for (class, boundary) in self.classes.iter().enumerate() {
-            let members = boundary.members.len();
-            let count = members.div_ceil(PANEL);
-            for k in 0..count {
-                let columns = members * k / count..members * (k + 1) / count;
-                let nodes = boundary.nodes.len();
-                let copies =
-                    boundary.start + columns.start * nodes..boundary.start + columns.end * nodes;
-                let special = |copy: usize| {
-                    self.special_copies
-                        .partition_point(|&c| (c as usize) < copy)
-                };
-                let specials = special(copies.start)..special(copies.end);
-                work.push((columns.len() * nodes * (nodes + 64)) as u64);
-                self.panels.push(Panel {
-                    class,
-                    columns,
-                    copies,
-                    specials,
-                });
-            }
-        }
-        // Lanes of about equal work; the split depends on the problem only.
-        let total: u64 = work.iter().sum();
-        let lanes = LANES.min(self.panels.len()).max(1) as u64;
-        let (mut done, mut start) = (0, 0);
-        for k in 0..self.panels.len() {
-            done += work[k];
-            let full = done * lanes >= total * (self.lanes.len() as u64 + 1);
-            if full || k + 1 == self.panels.len() {
-                let first = &self.panels[start];
-                let column = self.classes[first.class].column + first.columns.start;
-                self.lanes.push(Lane {
-                    panels: start..k + 1,
-                    copy: first.copies.start,
-                    column,
-                });
-                start = k + 1;
-            }
-        }
-    }
-
     /// Length of dual vectors.
     pub(crate) fn rows(&self) -> usize {
         self.rows
@@ -274,9 +111,9 @@ impl BoundaryMap {
         let words = self.spread_pointers.len()
             + self.spread_blocks.len()
             + self.block_pointers.len()
-            + self.block_copies.len();
+            + 2 * self.block_places.len();
         let numbers = self.spread_weights.len() + self.block_weights.len();
-        (4 * words + 8 * numbers + 56 * self.row_copies.len()) as u64
+        (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
     }
 
     /// Where a panel stands in boundary vectors.
@@ -292,14 +129,11 @@ impl BoundaryMap {
     /// A number for each boundary copy, from its subdomain and local node.
     pub(crate) fn copy_values(&self, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.copies);
-        for class in &self.classes {
-            for &member in &class.members {
-                out.extend(
-                    class
-                        .nodes
-                        .iter()
-                        .map(|&n| value(member as usize, n as usize)),
-                );
+        for panel in &self.panels {
+            let class = &self.classes[panel.class];
+            for &node in &class.nodes {
+                let members = &class.members[panel.columns.clone()];
+                out.extend(members.iter().map(|&s| value(s as usize, node as usize)));
             }
         }
         out
@@ -319,33 +153,37 @@ impl BoundaryMap {
         })
     }
 
-    /// `B^T x` on the copies of a panel, column-major.
+    /// `B^T x` on the copies of a panel.
     pub(crate) fn spread(&self, x: &[f64], panel: &Panel, out: &mut [f64]) {
         let interface = &x[self.interface.clone()];
+        let width = panel.columns.len();
         let pointers = &self.spread_pointers[panel.copies.start..=panel.copies.end];
-        for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
-            let range = pair[0] as usize..pair[1] as usize;
-            let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            for (&block, &weight) in self.spread_blocks[range.clone()]
-                .iter()
-                .zip(&self.spread_weights[range])
-            {
-                let value = &interface[3 * block as usize..][..3];
-                a += weight * value[0];
-                b += weight * value[1];
-                c += weight * value[2];
+        for (target, node) in out.chunks_exact_mut(3 * width).zip(0..) {
+            let (first, rest) = target.split_at_mut(width);
+            let (second, third) = rest.split_at_mut(width);
+            let pointers = &pointers[node * width..=(node + 1) * width];
+            for m in 0..width {
+                let range = pointers[m] as usize..pointers[m + 1] as usize;
+                let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+                let blocks = self.spread_blocks[range.clone()].iter();
+                for (&block, &weight) in blocks.zip(&self.spread_weights[range]) {
+                    let value = &interface[3 * block as usize..][..3];
+                    a += weight * value[0];
+                    b += weight * value[1];
+                    c += weight * value[2];
+                }
+                first[m] = a;
+                second[m] = b;
+                third[m] = c;
             }
-            target[0] = a;
-            target[1] = b;
-            target[2] = c;
         }
         for k in panel.specials.clone() {
             let copy = self.special_copies[k] as usize - panel.copies.start;
-            let target = &mut out[3 * copy..3 * copy + 3];
+            let start = 2 * (copy / width) * width + copy;
             for e in self.special_pointers[k] as usize..self.special_pointers[k + 1] as usize {
                 let value = x[self.special_rows[e] as usize];
                 for c in 0..3 {
-                    target[c] += self.special_vectors[e][c] * value;
+                    out[start + c * width] += self.special_vectors[e][c] * value;
                 }
             }
         }
@@ -382,11 +220,11 @@ impl BoundaryMap {
         for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
             let range = pair[0] as usize..pair[1] as usize;
             let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            for (&copy, &weight) in self.block_copies[range.clone()]
+            for (place, &weight) in self.block_places[range.clone()]
                 .iter()
                 .zip(&self.block_weights[range])
             {
-                let value = &y[3 * copy as usize..][..3];
+                let value = place.read(y);
                 a += weight * value[0];
                 b += weight * value[1];
                 c += weight * value[2];
@@ -402,7 +240,7 @@ impl BoundaryMap {
             let range =
                 self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
             let entry = |e: usize| {
-                let value = &y[3 * self.row_copies[e] as usize..][..3];
+                let value = self.row_places[e].read(y);
                 let v = &self.row_vectors[e];
                 v[0] * value[0] + v[1] * value[1] + v[2] * value[2]
             };
@@ -489,25 +327,4 @@ fn over_lanes<W: Send>(
             }
         }
     }
-}
-
-/// Transposes a table of rows: pointers by column, and for each entry its row and its position.
-fn transpose(pointers: &[u32], columns: &[u32], count: usize) -> (Vec<u32>, Vec<(u32, u32)>) {
-    let mut starts = vec![0_u32; count + 1];
-    for &column in columns {
-        starts[column as usize + 1] += 1;
-    }
-    for k in 0..count {
-        starts[k + 1] += starts[k];
-    }
-    let mut next = starts.clone();
-    let mut order = vec![(0, 0); columns.len()];
-    for (row, pair) in pointers.windows(2).enumerate() {
-        for entry in pair[0]..pair[1] {
-            let at = &mut next[columns[entry as usize] as usize];
-            order[*at as usize] = (row as u32, entry);
-            *at += 1;
-        }
-    }
-    (starts, order)
 }

@@ -6,9 +6,8 @@ use crate::coarse_matrix::{CoarseMatrix, ModeTable, RowWeights};
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
 use crate::matrices::ClassBase;
-use crate::mobility::{
-    FreeMotion, Mobility, amplitudes_of_forces, motions_of_amplitudes, to_columns, to_subdomains,
-};
+use crate::mobility::{FreeMotion, Mobility};
+use crate::motions::{amplitudes_of_forces, motions_of_amplitudes, to_columns, to_subdomains};
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
 use signorini_qp::Equality;
 use std::sync::Arc;

@@ -135,8 +135,8 @@ impl Size {
     }
 }
 
-/// Columns worked on at once.
-pub(crate) const PANEL: usize = 48;
+/// Members worked on at once: the height of the fastest dense kernels.
+pub(crate) const PANEL: usize = 24;
 const FLOPS: f64 = 8e10;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 const CACHE: u64 = 16 << 20;

@@ -92,7 +92,7 @@ impl DualOperator {
                     let size = out.len() / columns;
                     let inverse = &self.inverses[panel.class];
                     if let Some(matrix) = &inverse.boundary {
-                        dense::multiply(out, matrix, gathered, size, size, columns);
+                        multiply_members(out, gathered, matrix, columns, size);
                     } else if let Some(memory) = &mut scratch.memory {
                         let base = &self.bases[panel.class];
                         let nodes = &self.map.classes[panel.class].nodes;
@@ -130,26 +130,31 @@ fn product_flops(map: &BoundaryMap, inverses: &[ClassInverse]) -> u64 {
     (0..inverses.len()).map(class).sum()
 }
 
-/// Writes the boundary rows of all columns into full columns.
-pub(crate) fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
-    for (source, target) in boundary
-        .chunks_exact(3 * nodes.len())
-        .zip(full.chunks_exact_mut(dim))
-    {
-        for (&node, value) in nodes.iter().zip(source.chunks_exact(3)) {
-            target[3 * node as usize..][..3].copy_from_slice(value);
+/// `out = a x` for each member of a panel: `a` is symmetric, members are rows.
+pub(crate) fn multiply_members(out: &mut [f64], x: &[f64], a: &[f64], members: usize, size: usize) {
+    if members == 1 {
+        dense::multiply(out, a, x, size, size, 1);
+    } else {
+        dense::multiply(out, x, a, members, size, size);
+    }
+}
+
+/// Writes the boundary rows of a panel into full columns.
+fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
+    let width = full.len() / dim;
+    for (&node, values) in nodes.iter().zip(boundary.chunks_exact(3 * width)) {
+        for (k, value) in values.iter().enumerate() {
+            full[(k % width) * dim + 3 * node as usize + k / width] = *value;
         }
     }
 }
 
 /// Reads the boundary rows of full columns.
-pub(crate) fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
-    for (target, source) in boundary
-        .chunks_exact_mut(3 * nodes.len())
-        .zip(full.chunks_exact(dim))
-    {
-        for (&node, value) in nodes.iter().zip(target.chunks_exact_mut(3)) {
-            value.copy_from_slice(&source[3 * node as usize..][..3]);
+fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
+    let width = full.len() / dim;
+    for (&node, values) in nodes.iter().zip(boundary.chunks_exact_mut(3 * width)) {
+        for (k, value) in values.iter_mut().enumerate() {
+            *value = full[(k % width) * dim + 3 * node as usize + k / width];
         }
     }
 }

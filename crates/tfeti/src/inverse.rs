@@ -4,7 +4,6 @@
 //! of `K`: the springs stop the rigid motions and carry no force when the loads are in balance. Between two projections
 //! `I - R R^T` it becomes the Moore-Penrose inverse. Products with many columns use the dense block of it on the boundary.
 
-use crate::cost::PANEL;
 use crate::dense;
 use crate::error::TfetiError;
 use crate::kernel::Kernel;
@@ -71,7 +70,7 @@ impl Inverse {
     pub(crate) fn boundary_block(&self, kernel: &Kernel, boundary: &[u32]) -> Vec<f64> {
         let (dim, size) = (3 * kernel.nodes(), 3 * boundary.len());
         let dof = |b: usize| 3 * boundary[b / 3] as usize + b % 3;
-        let columns = PANEL.max(6);
+        let columns = COLUMNS;
         let mut memory = SolveMemory::new(self.factor.need(columns));
         let mut out = vec![0.0; size * size];
         let mut x = vec![0.0; dim * columns];
@@ -121,6 +120,9 @@ impl Inverse {
         out
     }
 }
+
+/// Columns solved at once when a dense block is formed, at least six.
+const COLUMNS: usize = 48;
 
 /// `x = (I - R R^T) x` for every column.
 fn remove_rigid(kernel: &Kernel, x: &mut [f64]) {

@@ -14,6 +14,7 @@ mod inverse;
 mod kernel;
 mod matrices;
 mod mobility;
+mod motions;
 mod preconditioner;
 mod recovery;
 mod report;

@@ -4,7 +4,6 @@
 //! vector of its null space is a rigid motion of bodies that all other rows of positive weight leave alone. That is an
 //! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is.
 
-use crate::boundary::BoundaryMap;
 use crate::class::Classes;
 use crate::gluing::{CopyEntry, Gluing};
 use crate::kernel::{Kernel, displacement};
@@ -289,55 +288,4 @@ fn root(parent: &mut [u32], mut s: u32) -> u32 {
         s = parent[s as usize];
     }
     s
-}
-
-/// `R^T B^T` on the columns of a lane: the amplitudes of the boundary forces of each column.
-pub(crate) fn amplitudes_of_forces(
-    kernel: &Kernel,
-    nodes: &[u32],
-    forces: &[f64],
-    out: &mut [f64],
-) {
-    for (column, target) in forces
-        .chunks_exact(3 * nodes.len())
-        .zip(out.chunks_exact_mut(6))
-    {
-        let mut wrench = [0.0; 6];
-        for (&node, f) in nodes.iter().zip(column.chunks_exact(3)) {
-            crate::kernel::add_wrench(&mut wrench, kernel.arm(node as usize), [f[0], f[1], f[2]]);
-        }
-        target.copy_from_slice(&kernel.project_wrench(&wrench));
-    }
-}
-
-/// `R alpha` on the boundary nodes of the columns.
-pub(crate) fn motions_of_amplitudes(
-    kernel: &Kernel,
-    nodes: &[u32],
-    alpha: &[f64],
-    out: &mut [f64],
-) {
-    for (column, amplitudes) in out
-        .chunks_exact_mut(3 * nodes.len())
-        .zip(alpha.chunks_exact(6))
-    {
-        let motion = kernel.motion(amplitudes);
-        for (&node, u) in nodes.iter().zip(column.chunks_exact_mut(3)) {
-            u.copy_from_slice(&displacement(&motion, kernel.arm(node as usize)));
-        }
-    }
-}
-
-/// Copies amplitudes in the order of columns into the order of subdomains, or back.
-pub(crate) fn to_subdomains(map: &BoundaryMap, columns: &[f64], subdomains: &mut [f64]) {
-    for (&column, target) in map.column_of.iter().zip(subdomains.chunks_exact_mut(6)) {
-        target.copy_from_slice(&columns[6 * column as usize..][..6]);
-    }
-}
-
-/// The inverse of [`to_subdomains`].
-pub(crate) fn to_columns(map: &BoundaryMap, subdomains: &[f64], columns: &mut [f64]) {
-    for (&column, source) in map.column_of.iter().zip(subdomains.chunks_exact(6)) {
-        columns[6 * column as usize..][..6].copy_from_slice(source);
-    }
 }

@@ -7,6 +7,7 @@
 use crate::boundary::BoundaryMap;
 use crate::cost::{PANEL, SHARED};
 use crate::dense;
+use crate::dual::multiply_members;
 use crate::error::TfetiError;
 use crate::inverse::pattern_error;
 use crate::matrices::ClassBase;
@@ -135,7 +136,7 @@ impl Preconditioner {
                     let gathered = &mut scratch.gathered[..out.len()];
                     self.map.spread(x, panel, gathered);
                     let weights = divide.map(|w| &w[self.map.copies_of(panel)]);
-                    scale_nodes(weights, gathered);
+                    scale_nodes(weights, gathered, columns);
                     let class = &self.classes[panel.class];
                     class.apply(
                         gathered,
@@ -144,20 +145,22 @@ impl Preconditioner {
                         &mut scratch.interior,
                         &mut scratch.memory,
                     );
-                    scale_nodes(weights, out);
+                    scale_nodes(weights, out, columns);
                 }
             },
         );
     }
 }
 
-fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64]) {
-    for (w, value) in weights
-        .unwrap_or_default()
-        .iter()
-        .zip(values.chunks_exact_mut(3))
+fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64], width: usize) {
+    let Some(weights) = weights else { return };
+    for (weights, value) in weights
+        .chunks_exact(width)
+        .zip(values.chunks_exact_mut(3 * width))
     {
-        value.iter_mut().for_each(|v| *v *= w);
+        for component in value.chunks_exact_mut(width) {
+            component.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
+        }
     }
 }
 
@@ -265,10 +268,14 @@ impl BoundaryStiffness {
         }
     }
 
-    /// The matrix in full, column by column.
+    /// The matrix in full, some columns at a time.
     fn dense(&self) -> Vec<f64> {
         let dim = self.dim();
-        let (mut out, mut x) = (vec![0.0; dim * dim], vec![0.0; dim * PANEL]);
+        let (mut out, mut x, mut y) = (
+            vec![0.0; dim * dim],
+            vec![0.0; dim * PANEL],
+            vec![0.0; dim * PANEL],
+        );
         let (mut interior, mut memory) = match self {
             Self::Schur {
                 coupling, factor, ..
@@ -280,68 +287,58 @@ impl BoundaryStiffness {
         };
         for start in (0..dim).step_by(PANEL) {
             let columns = PANEL.min(dim - start);
-            let x = &mut x[..dim * columns];
+            let (x, y) = (&mut x[..dim * columns], &mut y[..dim * columns]);
             x.fill(0.0);
-            (0..columns).for_each(|j| x[j * dim + start + j] = 1.0);
-            self.apply(
-                x,
-                &mut out[start * dim..(start + columns) * dim],
-                columns,
-                &mut interior,
-                &mut memory,
-            );
+            (0..columns).for_each(|j| x[(start + j) * columns + j] = 1.0);
+            self.apply(x, y, columns, &mut interior, &mut memory);
+            for (i, row) in y.chunks_exact(columns).enumerate() {
+                row.iter()
+                    .enumerate()
+                    .for_each(|(j, v)| out[i + (start + j) * dim] = *v);
+            }
         }
         dense::mirror_lower(&mut out, dim);
         out
     }
 
+    /// `y = S x` for the members of a panel, which are next to one another.
     fn apply(
         &self,
         x: &[f64],
         y: &mut [f64],
-        columns: usize,
+        members: usize,
         interior: &mut [f64],
         memory: &mut Option<SolveMemory>,
     ) {
         match self {
-            Self::Dense(values) => {
-                let dim = y.len() / columns;
-                dense::multiply(y, values, x, dim, dim, columns);
-            }
-            Self::Lumped(matrix) => symmetric_product(matrix, x, y),
+            Self::Dense(values) => multiply_members(y, x, values, members, y.len() / members),
+            Self::Lumped(matrix) => symmetric_product(matrix, x, y, members),
             Self::Schur {
                 boundary,
                 coupling,
                 factor,
             } => {
-                symmetric_product(boundary, x, y);
-                let interior = &mut interior[..coupling.interior * columns];
+                symmetric_product(boundary, x, y, members);
+                let dim = coupling.interior;
+                let interior = &mut interior[..dim * members];
                 interior.fill(0.0);
-                for (x, target) in x
-                    .chunks_exact(boundary.dim)
-                    .zip(interior.chunks_exact_mut(coupling.interior))
-                {
-                    for (j, value) in x.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-                        let (rows, values) = coupling.columns.column(j);
-                        rows.iter()
-                            .zip(values)
-                            .for_each(|(&i, v)| target[i] += v * value);
+                for (j, x) in x.chunks_exact(members).enumerate() {
+                    let (rows, values) = coupling.columns.column(j);
+                    for (&i, v) in rows.iter().zip(values) {
+                        x.iter()
+                            .enumerate()
+                            .for_each(|(m, x)| interior[m * dim + i] += v * x);
                     }
                 }
                 if let Some(memory) = memory {
-                    factor.solve(interior, columns, memory);
+                    factor.solve(interior, members, memory);
                 }
-                for (y, source) in y
-                    .chunks_exact_mut(boundary.dim)
-                    .zip(interior.chunks_exact(coupling.interior))
-                {
-                    for (j, target) in y.iter_mut().enumerate() {
-                        let (rows, values) = coupling.columns.column(j);
-                        *target -= rows
-                            .iter()
-                            .zip(values)
-                            .map(|(&i, v)| v * source[i])
-                            .sum::<f64>();
+                for (j, y) in y.chunks_exact_mut(members).enumerate() {
+                    let (rows, values) = coupling.columns.column(j);
+                    for (&i, v) in rows.iter().zip(values) {
+                        y.iter_mut()
+                            .enumerate()
+                            .for_each(|(m, y)| *y -= v * interior[m * dim + i]);
                     }
                 }
             }
@@ -349,15 +346,14 @@ impl BoundaryStiffness {
     }
 }
 
-/// `Y = A X` for a symmetric sparse matrix.
-fn symmetric_product(matrix: &Columns, x: &[f64], y: &mut [f64]) {
-    for (x, y) in x
-        .chunks_exact(matrix.dim)
-        .zip(y.chunks_exact_mut(matrix.dim))
-    {
-        for (j, target) in y.iter_mut().enumerate() {
-            let (rows, values) = matrix.column(j);
-            *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
+/// `y = A x` for a symmetric sparse matrix and all members of a panel.
+fn symmetric_product(matrix: &Columns, x: &[f64], y: &mut [f64], members: usize) {
+    for (j, target) in y.chunks_exact_mut(members).enumerate() {
+        let (rows, values) = matrix.column(j);
+        target.fill(0.0);
+        for (&i, v) in rows.iter().zip(values) {
+            let source = &x[i * members..(i + 1) * members];
+            target.iter_mut().zip(source).for_each(|(t, s)| *t += v * s);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
 
 use crate::coarse::CoarseScratch;
+use crate::cost::PANEL;
 use crate::dual::DualScratch;
 use crate::error::TfetiError;
 use crate::sparse::SolveMemory;
@@ -108,31 +109,29 @@ impl Tfeti {
             targets.push(Some(own));
             rest = tail;
         }
-        let mut work: Vec<(usize, Vec<usize>, Vec<&mut [f64]>)> =
-            Vec::with_capacity(parts.map.panels.len());
-        for panel in &parts.map.panels {
-            let members = &parts.map.classes[panel.class].members[panel.columns.clone()];
-            let subdomains: Vec<usize> = members.iter().map(|&s| s as usize).collect();
-            let columns = subdomains
-                .iter()
-                .filter_map(|&s| targets[s].take())
-                .collect();
-            work.push((panel.class, subdomains, columns));
+        let mut work = Vec::new();
+        for (class, list) in parts.classes.classes().iter().enumerate() {
+            for members in list.members.chunks(PANEL) {
+                let columns: Vec<&mut [f64]> = members
+                    .iter()
+                    .filter_map(|&s| targets[s as usize].take())
+                    .collect();
+                work.push((class, members, columns));
+            }
         }
-        work.into_par_iter()
-            .for_each(|(class, subdomains, columns)| {
-                let (base, inverse) = (&parts.bases[class], &parts.inverses[class].full);
-                let (dim, count) = (base.stiffness.dim, subdomains.len());
-                let mut memory = SolveMemory::new(inverse.need(count));
-                let mut x = vec![0.0; dim * count];
-                for (s, column) in subdomains.iter().zip(x.chunks_exact_mut(dim)) {
-                    column.copy_from_slice(&f[self.torn_range(*s)]);
-                }
-                inverse.apply(&base.kernel, &mut x, count, &mut memory);
-                for (column, target) in x.chunks_exact(dim).zip(columns) {
-                    target.copy_from_slice(column);
-                }
-            });
+        work.into_par_iter().for_each(|(class, members, columns)| {
+            let (base, inverse) = (&parts.bases[class], &parts.inverses[class].full);
+            let (dim, count) = (base.stiffness.dim, members.len());
+            let mut memory = SolveMemory::new(inverse.need(count));
+            let mut x = vec![0.0; dim * count];
+            for (&s, column) in members.iter().zip(x.chunks_exact_mut(dim)) {
+                column.copy_from_slice(&f[self.torn_range(s as usize)]);
+            }
+            inverse.apply(&base.kernel, &mut x, count, &mut memory);
+            for (column, target) in x.chunks_exact(dim).zip(columns) {
+                target.copy_from_slice(column);
+            }
+        });
     }
 
     /// `out = B u` for a torn vector.

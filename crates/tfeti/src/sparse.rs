@@ -66,7 +66,7 @@ impl Symbolic {
     /// of the blocks. The supernodal form is forced: it is the faster one from about 600 unknowns on, and the only one
     /// with half solves.
     pub(crate) fn new(pattern: &Columns, block: usize) -> Result<Self, FactorError> {
-        debug_assert!(block > 0 && pattern.dim % block == 0);
+        debug_assert!(block > 0 && pattern.dim.is_multiple_of(block));
         let (forward, inverse) = order_blocks(pattern, block)?;
         let dim = pattern.dim;
         let symbolic =
