@@ -7,10 +7,9 @@
 
 use crate::contact::{ContactNodes, ContactRow, PointRows, contact_rows};
 use crate::error::TfetiError;
-use crate::rows::{RemovedRow, RowKind, RowRanges, RowRule};
+use crate::rows::{RemovedRow, RowRanges, RowRule};
 use crate::supports::{MergedSupports, Support};
 use signorini_fem_mesh::{Decomposition, Frame};
-use std::collections::HashMap;
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -482,26 +481,4 @@ impl Builder<'_> {
             }
         }
     }
-}
-
-/// Number of removed rows by kind and reason, for reports.
-#[must_use]
-pub fn count_removed(removed: &[RemovedRow]) -> Vec<(RowKind, &'static str, usize)> {
-    let mut counts: HashMap<(RowKind, &'static str), usize> = HashMap::new();
-    for row in removed {
-        use crate::rows::RemovalReason as Reason;
-        let reason = match row.reason {
-            Reason::DoubledSupport { .. } => "direction supported twice",
-            Reason::NormalFixed => "normal direction supported",
-            Reason::TangentFixed => "tangential direction supported",
-            Reason::NoNormalRow => "no normal row",
-        };
-        *counts.entry((row.kind, reason)).or_default() += 1;
-    }
-    let mut out: Vec<_> = counts
-        .into_iter()
-        .map(|((kind, reason), count)| (kind, reason, count))
-        .collect();
-    out.sort();
-    out
 }

@@ -221,3 +221,77 @@ pub(crate) fn pattern_error(error: FactorError, subdomain: usize) -> TfetiError 
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use signorini_fem_mesh::{Hooke, assemble_stiffness};
+
+    fn inverse(
+        points: &[[f64; 3]],
+        tets: &[[u32; 4]],
+    ) -> Result<(Columns, Kernel, Inverse), TfetiError> {
+        let hooke = Hooke::isotropic(2.0e11, 0.3).unwrap();
+        let stiffness =
+            Columns::from_symmetric(&assemble_stiffness(points, tets, |_| &hooke).unwrap());
+        let kernel = Kernel::new(points, 4).unwrap();
+        let symbolic = Symbolic::new(&regularised(&stiffness, &kernel), 3).unwrap();
+        let inverse = Inverse::new(&stiffness, &kernel, &symbolic, true, 4)?;
+        Ok((stiffness, kernel, inverse))
+    }
+
+    const TET: [[f64; 3]; 4] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ];
+
+    /// The four laws of Moore and Penrose, on the whole matrix.
+    #[test]
+    fn dense_block_of_all_nodes_is_the_moore_penrose_inverse() {
+        let points: Vec<[f64; 3]> = TET.into_iter().chain([[1.0, 1.0, 1.0]]).collect();
+        let (stiffness, kernel, inverse) = inverse(&points, &[[0, 1, 2, 3], [4, 2, 1, 3]]).unwrap();
+        let n = stiffness.dim;
+        let block = inverse.boundary_block(&kernel, &[0, 1, 2, 3, 4]);
+        let mut k = vec![0.0; n * n];
+        for j in 0..n {
+            let (rows, values) = stiffness.column(j);
+            rows.iter()
+                .zip(values)
+                .for_each(|(&i, v)| k[i + j * n] = *v);
+        }
+        let times = |a: &[f64], b: &[f64]| {
+            let mut out = vec![0.0; n * n];
+            dense::multiply(&mut out, a, b, n, n, n);
+            out
+        };
+        let close = |a: &[f64], b: &[f64]| {
+            let size = b.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-11 * size)
+        };
+        let (left, right) = (times(&k, &block), times(&block, &k));
+        assert!(close(&times(&left, &k), &k) && close(&times(&right, &block), &block));
+        assert!(close(&left, &right), "K K+ = K+ K is symmetric");
+        // The solver gives the same columns.
+        let mut memory = SolveMemory::new(inverse.need(1));
+        let mut x = vec![0.0; n];
+        x[7] = 1.0;
+        inverse.apply(&kernel, &mut x, 1, &mut memory);
+        assert!(close(&x, &block[7 * n..8 * n]));
+    }
+
+    #[test]
+    fn a_hinge_is_named() {
+        // Two tetrahedra that share one edge turn about it without strain.
+        let points: Vec<[f64; 3]> = TET
+            .into_iter()
+            .chain([[-1.0, -1.0, 0.2], [-1.0, 0.1, -1.0]])
+            .collect();
+        let error = inverse(&points, &[[0, 1, 2, 3], [0, 1, 4, 5]]).unwrap_err();
+        assert!(
+            matches!(error, TfetiError::Singular { subdomain: 4, .. }),
+            "{error}"
+        );
+    }
+}

@@ -1,5 +1,6 @@
 //! Names of the rows of `B` and of those that were left out.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// How the rows of `B` are built.
@@ -104,4 +105,25 @@ impl RowRanges {
             None
         }
     }
+}
+
+/// Number of removed rows by kind and reason, for reports.
+#[must_use]
+pub fn count_removed(removed: &[RemovedRow]) -> Vec<(RowKind, &'static str, usize)> {
+    let mut counts: HashMap<(RowKind, &'static str), usize> = HashMap::new();
+    for row in removed {
+        let reason = match row.reason {
+            RemovalReason::DoubledSupport { .. } => "direction supported twice",
+            RemovalReason::NormalFixed => "normal direction supported",
+            RemovalReason::TangentFixed => "tangential direction supported",
+            RemovalReason::NoNormalRow => "no normal row",
+        };
+        *counts.entry((row.kind, reason)).or_default() += 1;
+    }
+    let mut out: Vec<_> = counts
+        .into_iter()
+        .map(|((kind, reason), count)| (kind, reason, count))
+        .collect();
+    out.sort();
+    out
 }

@@ -153,7 +153,7 @@ impl<'a> TfetiBuilder<'a> {
             primal_unknowns: decomposition.torn_dofs(),
             rows: gluing.ranges().clone(),
             rows_as_paper: gluing.rows_as_paper(),
-            removed: crate::gluing::count_removed(gluing.removed()),
+            removed: crate::rows::count_removed(gluing.removed()),
             inverse_bytes: inverses.iter().map(ClassInverse::bytes).sum(),
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),

@@ -4,7 +4,10 @@
 use signorini_fem_mesh::{
     Decomposition, Frame, Hooke, LoadDensity, Materials, TetMesh, assemble_load, brick,
 };
-use signorini_tfeti::{ContactNodes, Support};
+use signorini_qp::SymmetricOperator;
+use signorini_tfeti::{
+    ContactNodes, InverseKind, InverseSettings, RowRule, Sharing, Support, Tfeti, TfetiBuilder,
+};
 
 pub(crate) struct Brick {
     pub(crate) mesh: TetMesh,
@@ -96,4 +99,25 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
         .map(|(x, y)| (x - y) * (x - y))
         .sum::<f64>()
         .sqrt()
+}
+
+/// The brick with its supports and frictional contact.
+pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowRule) -> Tfeti {
+    let (supports, contact) = (b.supports(), b.contact(true));
+    TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
+        .supports(&supports)
+        .contact(&contact)
+        .rule(rule)
+        .sharing(sharing)
+        .inverse(InverseSettings::default().with_kind(kind))
+        .build()
+        .unwrap()
+}
+
+/// `F x`.
+pub(crate) fn product(system: &Tfeti, x: &[f64]) -> Vec<f64> {
+    let f = system.dual();
+    let mut y = vec![0.0; f.dim()];
+    f.apply(x, &mut y, &mut f.scratch());
+    y
 }
