@@ -25,6 +25,8 @@ struct CoarseData {
     matrix: CoarseMatrix,
     symbolic: Symbolic,
     mobility: Mobility,
+    /// Whether the support rows alone hold all bodies.
+    held: bool,
 }
 
 /// Work memory of all operations with `G` and its factors.
@@ -56,7 +58,7 @@ impl Coarse {
         };
         let symbolic = Symbolic::new(matrix.pattern(), 6).map_err(too_large)?;
         let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
-        Ok(Self(Arc::new(CoarseData {
+        let mut data = CoarseData {
             map,
             bases,
             classes,
@@ -64,7 +66,12 @@ impl Coarse {
             matrix,
             symbolic,
             mobility,
-        })))
+            held: false,
+        };
+        let mut supports = RowWeights::diagonal(vec![1.0; data.map.rows()]);
+        supports.diagonal[data.gluing.ranges().contact()].fill(0.0);
+        data.held = data.free_motions(Some(&supports)).is_empty();
+        Ok(Self(Arc::new(data)))
     }
 
     /// Number of rows of `G`: six per subdomain.
@@ -265,6 +272,15 @@ impl CoarseData {
 
     fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {
         let gluing = &self.gluing;
+        // The usual case needs no look at the contact rows.
+        let supported = |w: &RowWeights| {
+            w.diagonal[gluing.ranges().dirichlet.clone()]
+                .iter()
+                .all(|w| *w >= 0.01)
+        };
+        if self.held && weights.is_none_or(supported) {
+            return Vec::new();
+        }
         let weight = |row: usize| weights.map_or(1.0, |w| w.diagonal[row]);
         let lines = weights.map_or(&[][..], |w| &w.lines);
         let plain = (0..gluing.specials()).filter_map(|special| {
