@@ -44,7 +44,7 @@ impl FaceSolver {
             preconditioner,
             scale,
             set: model.set.clone(),
-            settings: face.clone().with_tolerance(settings.tolerance * SAFETY),
+            settings: face.clone(),
             paper: None,
         })
     }
@@ -69,6 +69,7 @@ impl FaceSolver {
             linear: &level.linear,
             rhs: &level.rhs,
         };
+        let face_settings = self.settings.clone().with_tolerance(settings.tolerance * SAFETY);
         let coulomb = is_coulomb(model);
         let mut updates = 0;
         let mut hook = |x: &[f64], set: &mut ProductSet| {
@@ -84,7 +85,7 @@ impl FaceSolver {
             &mut iterate.lambda,
             &mut iterate.f_lambda,
             iterate.known,
-            &self.settings,
+            &face_settings,
             &mut self.work,
             &mut hook,
         );
