@@ -1,1 +1,35 @@
-//! Shared parts of the examples.
+//! What the examples share, and what they do: each binary under `examples/` reads its options and calls one function here,
+//! so that a test can call the same function.
+//!
+//! | example | what it shows | function |
+//! |---|---|---|
+//! | `brick` | the benchmark of the paper's section 6, its table beside the paper's, pictures and files | [`app::execute`] |
+//! | `frictionless` | the same brick, static and without friction, product by product | [`frictionless::execute`] |
+//! | `tresca` | given friction: one quadratic program a level | [`tresca::execute`] |
+//! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`brick`] | the scene of the benchmark |
+//! | [`paper`] | numbers of the paper's Table 6.1 |
+//! | [`run`], [`record`] | running a scene, results as JSON |
+//! | [`files`], [`pictures`] | VTU, CSV, SVG |
+
+pub mod app;
+pub mod brick;
+pub mod dependence;
+pub mod error;
+pub mod files;
+pub mod frictionless;
+pub mod options;
+pub mod paper;
+pub mod pictures;
+pub mod progress;
+pub mod qp_only;
+pub mod record;
+pub mod run;
+pub mod snapshot;
+pub mod table;
+pub mod tresca;
+
+pub use error::ExampleError;

@@ -1,0 +1,134 @@
+//! The last state of a run: surface, displacement, and what the contact surface carries.
+
+use signorini::contact::{ContactState, PointState};
+use signorini::fem_mesh::{Surface, brick};
+use signorini::prelude::Simulation;
+
+use crate::error::ExampleError;
+use crate::run::Header;
+
+/// Surface and contact of a brick at one time. Units SI.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// Name for files.
+    pub label: String,
+    /// Loading or scene.
+    pub loading: String,
+    /// Time.
+    pub time: f64,
+    /// Nodes of the mesh.
+    pub points: Vec<[f64; 3]>,
+    /// Their displacements.
+    pub displacement: Vec<[f64; 3]>,
+    /// Triangles of the whole surface, outward.
+    pub triangles: Vec<[u32; 3]>,
+    /// The contact surface.
+    pub contact: ContactPatch,
+}
+
+/// Values at the nodes of the contact surface. Nodes that are fixed carry zeros and no state.
+#[derive(Debug, Clone, Default)]
+pub struct ContactPatch {
+    /// Mesh nodes, ascending.
+    pub nodes: Vec<u32>,
+    /// Coordinates x1, x2.
+    pub points: Vec<[f64; 2]>,
+    /// Triangles by places in `nodes`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Pressing force, N.
+    pub normal_force: Vec<f64>,
+    /// Friction force in space, N.
+    pub friction_force: Vec<[f64; 3]>,
+    /// Area, m2.
+    pub area: Vec<f64>,
+    /// Slip rate of nodes in contact, m/s.
+    pub slip_rate: Vec<f64>,
+    /// Distance to the floor, m.
+    pub gap: Vec<f64>,
+    /// What the node does.
+    pub state: Vec<Option<ContactState>>,
+}
+
+impl ContactPatch {
+    /// Spreads the touch points over the nodes of a surface.
+    #[must_use]
+    pub fn new(surface: &Surface, mesh_points: &[[f64; 3]], points: &[PointState]) -> Self {
+        let n = surface.nodes().len();
+        let mut patch = Self {
+            nodes: surface.nodes().to_vec(),
+            points: vec![[0.0; 2]; n],
+            triangles: surface.triangles().to_vec(),
+            normal_force: vec![0.0; n],
+            friction_force: vec![[0.0; 3]; n],
+            area: surface.areas().to_vec(),
+            slip_rate: vec![0.0; n],
+            gap: vec![0.0; n],
+            state: vec![None; n],
+        };
+        for (at, &node) in patch.points.iter_mut().zip(surface.nodes()) {
+            if let Some(p) = mesh_points.get(node as usize) {
+                *at = [p[0], p[1]];
+            }
+        }
+        for point in points {
+            let Some(k) = surface.local(point.node) else {
+                continue;
+            };
+            patch.normal_force[k] = -point.normal_force;
+            patch.friction_force[k] = point.friction_force;
+            patch.gap[k] = point.gap;
+            patch.state[k] = Some(point.state);
+            if point.state != ContactState::Open {
+                patch.slip_rate[k] = point.slip_rate;
+            }
+        }
+        patch
+    }
+
+    /// Lengths of the friction forces, N.
+    #[must_use]
+    pub fn friction(&self) -> Vec<f64> {
+        let length = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>().sqrt();
+        self.friction_force.iter().map(length).collect()
+    }
+
+    /// Friction force over area, Pa.
+    #[must_use]
+    pub fn friction_stress(&self) -> Vec<f64> {
+        let forces = self.friction();
+        forces.iter().zip(&self.area).map(|(f, a)| f / a).collect()
+    }
+
+    /// Pressing force over area, Pa.
+    #[must_use]
+    pub fn pressure(&self) -> Vec<f64> {
+        let forces = self.normal_force.iter();
+        forces.zip(&self.area).map(|(f, a)| f / a).collect()
+    }
+}
+
+impl Snapshot {
+    /// The state after the last level solved.
+    ///
+    /// # Errors
+    /// [`ExampleError`] never for a brick.
+    pub fn new(
+        simulation: &Simulation,
+        label: &str,
+        header: &Header,
+    ) -> Result<Self, ExampleError> {
+        let mesh = simulation.scene().mesh();
+        let frame = simulation.frame();
+        let surface = Surface::new(mesh, &[brick::Z_MIN])?;
+        let displacement = frame.displacement();
+        Ok(Self {
+            label: label.to_owned(),
+            loading: header.loading.clone(),
+            time: frame.time(),
+            points: mesh.points().to_vec(),
+            displacement: displacement.as_chunks::<3>().0.to_vec(),
+            triangles: mesh.facets().iter().map(|f| f.nodes).collect(),
+            contact: ContactPatch::new(&surface, mesh.points(), frame.points()),
+        })
+    }
+}
