@@ -90,6 +90,7 @@
 mod block;
 mod coarse_space;
 pub mod dense;
+mod dense_coarse;
 mod error;
 pub mod face;
 mod face_settings;
@@ -113,6 +114,7 @@ pub mod vector;
 
 pub use coarse_space::{CoarseSpace, NoCoarseSpace};
 pub use dense::{DenseEquality, DenseOperator};
+pub use dense_coarse::DenseCoarseSpace;
 pub use error::{QpError, SetError};
 pub use face::{FaceHook, FaceProblem, face};
 pub use face_settings::{FaceReport, FaceSettings, FaceWorkspace};

@@ -1,0 +1,160 @@
+//! A small dense equality `G x = e` for the face method.
+
+use crate::coarse_space::CoarseSpace;
+use crate::error::{QpError, expect_length};
+
+/// A pivot of `G W Gᵀ` below this fraction of its largest diagonal entry counts as zero.
+const SINGULAR: f64 = 1e-12;
+
+/// [`CoarseSpace`] of a dense matrix with few rows: `G W Gᵀ` is factored by Cholesky at every change of weights.
+///
+/// ```
+/// use signorini_qp::{CoarseSpace, DenseCoarseSpace};
+///
+/// let mut space = DenseCoarseSpace::new(1, 3, vec![1.0, 1.0, 1.0])?;
+/// let mut x = vec![1.0, 2.0, 6.0];
+/// space.set_weights(&[1.0, 1.0, 0.0])?; // the last component is held
+/// space.project(&mut x);
+/// assert_eq!(x, [-3.5, -2.5, 6.0]);
+/// # Ok::<(), signorini_qp::QpError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct DenseCoarseSpace {
+    rows: usize,
+    dim: usize,
+    /// By rows.
+    g: Vec<f64>,
+    w: Vec<f64>,
+    /// Lower triangle of the factor of `G W Gᵀ`, by rows.
+    factor: Vec<f64>,
+    small: Vec<f64>,
+}
+
+impl DenseCoarseSpace {
+    /// From the rows of `G`, one after another; all weights are one.
+    ///
+    /// # Errors
+    /// [`QpError::Length`], [`QpError::Input`] for NaN, [`QpError::CoarseDeficient`] for dependent rows.
+    pub fn new(rows: usize, dim: usize, g: Vec<f64>) -> Result<Self, QpError> {
+        expect_length("the matrix G", g.len(), rows * dim)?;
+        crate::error::expect_finite("the matrix G", &g)?;
+        let mut space = Self {
+            rows,
+            dim,
+            g,
+            w: Vec::new(),
+            factor: vec![0.0; rows * rows],
+            small: vec![0.0; rows],
+        };
+        space.set_weights(&vec![1.0; dim])?;
+        Ok(space)
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        &self.g[i * self.dim..(i + 1) * self.dim]
+    }
+
+    fn solve(&self, y: &mut [f64]) {
+        let (n, l) = (self.rows, &self.factor);
+        for i in 0..n {
+            let sum: f64 = (0..i).map(|j| l[i * n + j] * y[j]).sum();
+            y[i] = (y[i] - sum) / l[i * n + i];
+        }
+        for i in (0..n).rev() {
+            let sum: f64 = (i + 1..n).map(|j| l[j * n + i] * y[j]).sum();
+            y[i] = (y[i] - sum) / l[i * n + i];
+        }
+    }
+
+    /// `out += s * W Gᵀ y` or without `W`.
+    fn add_transpose(&self, s: f64, y: &[f64], weighted: bool, out: &mut [f64]) {
+        for (i, yi) in y.iter().enumerate() {
+            for ((o, g), w) in out.iter_mut().zip(self.row(i)).zip(&self.w) {
+                *o += s * yi * g * if weighted { *w } else { 1.0 };
+            }
+        }
+    }
+
+    fn times(&self, x: &[f64], weighted: bool, out: &mut [f64]) {
+        for (i, o) in out.iter_mut().enumerate() {
+            let terms = self.row(i).iter().zip(x).zip(&self.w);
+            *o = terms
+                .map(|((g, x), w)| g * x * if weighted { *w } else { 1.0 })
+                .sum();
+        }
+    }
+}
+
+impl CoarseSpace for DenseCoarseSpace {
+    fn dim(&self) -> usize {
+        self.dim
+    }
+
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
+        expect_length("the weights", w.len(), self.dim)?;
+        if self.w == w {
+            return Ok(false);
+        }
+        self.w = w.to_vec();
+        let n = self.rows;
+        let mut largest = 0.0_f64;
+        for i in 0..n {
+            for j in 0..=i {
+                let products = self.row(i).iter().zip(self.row(j)).zip(w);
+                let value: f64 = products.map(|((a, b), w)| a * b * w).sum();
+                let known: f64 = (0..j)
+                    .map(|k| self.factor[i * n + k] * self.factor[j * n + k])
+                    .sum();
+                if i == j {
+                    largest = largest.max(value);
+                    let pivot = value - known;
+                    if pivot <= SINGULAR * largest {
+                        self.w.clear();
+                        return Err(QpError::CoarseDeficient {
+                            motion: format!("row {i} of G"),
+                        });
+                    }
+                    self.factor[i * n + i] = pivot.sqrt();
+                } else {
+                    self.factor[i * n + j] = (value - known) / self.factor[j * n + j];
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn project(&mut self, x: &mut [f64]) {
+        let mut small = std::mem::take(&mut self.small);
+        self.times(x, false, &mut small);
+        self.solve(&mut small);
+        self.add_transpose(-1.0, &small, true, x);
+        self.small = small;
+    }
+
+    fn project_transpose(&mut self, g: &mut [f64]) {
+        let mut small = std::mem::take(&mut self.small);
+        self.times(g, true, &mut small);
+        self.solve(&mut small);
+        self.add_transpose(-1.0, &small, false, g);
+        self.small = small;
+    }
+
+    fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
+        self.times(g, true, out);
+        self.solve(out);
+        out.iter_mut().for_each(|v| *v = -*v);
+    }
+
+    fn repair(&mut self, x: &mut [f64], e: &[f64]) {
+        let mut small = std::mem::take(&mut self.small);
+        self.times(x, false, &mut small);
+        small.iter_mut().zip(e).for_each(|(s, e)| *s -= e);
+        self.solve(&mut small);
+        self.add_transpose(-1.0, &small, true, x);
+        self.small = small;
+    }
+}
