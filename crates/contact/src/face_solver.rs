@@ -14,7 +14,7 @@ use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status,
 use signorini_tfeti::{DualOperator, FaceSpace, Preconditioner};
 
 /// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
-const SAFETY: f64 = 0.1;
+const SAFETY: f64 = 1.0;
 
 #[derive(Debug)]
 pub(crate) struct FaceSolver {
