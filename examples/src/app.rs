@@ -148,7 +148,10 @@ fn save(path: &Path, svg: &str) -> Result<(), ExampleError> {
 }
 
 /// With `on`, an error if any level did not reach the tolerance.
-pub(crate) fn strict<'a>(
+///
+/// # Errors
+/// [`ExampleError::NotConverged`] with the number of such levels.
+pub fn strict<'a>(
     on: bool,
     records: impl Iterator<Item = &'a RunRecord>,
 ) -> Result<(), ExampleError> {

@@ -56,7 +56,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 impl fmt::Display for Dependence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let percent = |pair: [f64; 2]| 100.0 * (pair[1] - pair[0]) / pair[0].abs();
+        let percent = |pair: [f64; 2]| 100.0 * (pair[1] - pair[0]) / pair[0];
         write!(
             f,
             "n = {}: friction force along x1 {:.4e} N (b), {:.4e} N (c): {:+.2} %; normal force {:.4e} N, {:+.2} %; \

@@ -58,11 +58,14 @@ pub fn table(runs: &[&RunRecord]) -> String {
             None => text.push_str("      -     -      -        -\n"),
         }
     }
-    let name = runs.first().map_or("", |r| r.it_name.as_str());
+    let name = match runs.first().map(|r| r.it_name.as_str()) {
+        Some("auxiliary problems") | None => "auxiliary problems, as in the paper".to_owned(),
+        Some(other) => format!("{other}; the paper's are auxiliary problems"),
+    };
     let _ = writeln!(
         text,
         "* as the paper counts (with the contact rows of fixed nodes); the next column has full rank and is what is solved.\n\
-         ** {name}; the paper's are auxiliary problems. n_m: products with F; norm: those spent on norms, apart. ms/prod.: solve time over n_m."
+         ** {name}. n_m: products with F; norm: those spent on norms, apart. ms/prod.: solve time over n_m."
     );
     text
 }

@@ -24,7 +24,7 @@ pub fn friction(snapshots: &[&Snapshot]) -> String {
         .map(|s| s.contact.friction_stress())
         .collect();
     let what = "friction stress: |lambda_T| of a node over its area; lines: direction of the friction on the body";
-    draw(snapshots, &values, "MPa", 1e-6, what, true)
+    draw(snapshots, &values, "GPa", 1e-9, what, true)
 }
 
 /// Slip rate of nodes in contact.
@@ -100,11 +100,13 @@ fn map(
             layers[band].push(polygon);
         }
     }
+    svg.open_tenths("stroke-width=\"4\"");
     for (band, polygons) in layers.iter().enumerate() {
         let colour = scale.colour(band, 1.0);
-        let style = format!("fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\".4\"");
-        svg.polygons(polygons, &style);
+        let style = format!("fill=\"{colour}\" stroke=\"{colour}\"");
+        svg.polygons(polygons, true, &style);
     }
+    svg.close();
 }
 
 /// A short line from each node that carries friction.
@@ -171,14 +173,7 @@ fn frame(svg: &mut Svg, place: impl Fn([f64; 2]) -> [f64; 2]) {
         Anchor::Middle,
         "x1 in m (fixed at 0)",
     );
-    svg.text(x0 - 44.0, (y0 + y1) / 2.0 - 8.0, 12.0, Anchor::Start, "x2");
-    svg.text(
-        x0 - 46.0,
-        (y0 + y1) / 2.0 + 8.0,
-        12.0,
-        Anchor::Start,
-        "in m",
-    );
+    svg.text_upward(x0 - 38.0, (y0 + y1) / 2.0, 12.0, "x2 in m");
 }
 
 fn legend(svg: &mut Svg, y: f64, directions: bool) {

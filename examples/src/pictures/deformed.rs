@@ -1,5 +1,7 @@
 //! The deformed brick over the floor, coloured by the displacement: the counterpart of figures 6.4 and 6.5.
 
+use std::collections::BTreeMap;
+
 use super::bands::bands;
 use super::caption;
 use super::colour::Scale;
@@ -8,12 +10,12 @@ use crate::brick::{GAP, LENGTHS};
 use crate::snapshot::Snapshot;
 
 const WIDTH: f64 = 860.0;
-const PANEL: f64 = 345.0;
+const PANEL: f64 = 440.0;
 /// Pixels a metre.
-const ZOOM: f64 = 222.0;
-const BANDS: usize = 20;
+const ZOOM: f64 = 205.0;
+const BANDS: usize = 16;
 /// Direction from the brick to the eye, not normalised.
-const EYE: [f64; 3] = [0.55, -1.0, 0.5];
+const EYE: [f64; 3] = [0.35, -1.0, 0.42];
 /// Direction to the lamp.
 const LAMP: [f64; 3] = [0.25, -0.45, 0.86];
 
@@ -26,9 +28,10 @@ pub fn deformed(snapshots: &[&Snapshot]) -> String {
         .map(|s| s.displacement.iter().map(|u| norm(*u)).collect())
         .collect();
     let scale = Scale::new(sizes.iter().flatten(), BANDS);
+    let mut colours = Vec::new();
     for (k, (snapshot, size)) in snapshots.iter().zip(&sizes).enumerate() {
         let top = PANEL * k as f64;
-        let view = View::new([58.0, top + 246.0]);
+        let view = View::new([58.0, top + 326.0]);
         svg.text(
             20.0,
             top + 26.0,
@@ -39,9 +42,9 @@ pub fn deformed(snapshots: &[&Snapshot]) -> String {
         let note = "deformed, true size; dashed: unloaded; grey: rigid floor";
         svg.text(20.0, top + 45.0, 12.0, Anchor::Start, note);
         floor(&mut svg, &view);
-        surface(&mut svg, &view, snapshot, size, &scale);
         outline(&mut svg, &view);
-        axes(&mut svg, top + PANEL - 28.0);
+        surface(&mut svg, &view, snapshot, size, &scale, &mut colours);
+        axes(&mut svg, [110.0, top + PANEL - 34.0]);
         let title = "|u| in mm";
         scale.bar(
             &mut svg,
@@ -51,6 +54,7 @@ pub fn deformed(snapshots: &[&Snapshot]) -> String {
             title,
         );
     }
+    svg.classes(&colours);
     svg.finish()
 }
 
@@ -93,58 +97,75 @@ fn floor(svg: &mut Svg, view: &View) {
         [-0.1, w + 0.12, z],
     ];
     let polygon: Vec<_> = corners.iter().map(|c| view.point(*c)).collect();
-    svg.polygons(
-        &[polygon],
-        "fill=\"#dcdcdc\" stroke=\"#999\" stroke-width=\"0.8\"",
-    );
+    svg.open_tenths("fill=\"#dcdcdc\" stroke=\"#999\" stroke-width=\"8\"");
+    svg.polygons(&[polygon], true, "");
+    svg.close();
 }
 
 /// Painter's algorithm: far triangles first; those that look away are left out.
-fn surface(svg: &mut Svg, view: &View, snapshot: &Snapshot, size: &[f64], scale: &Scale) {
+fn surface(
+    svg: &mut Svg,
+    view: &View,
+    snapshot: &Snapshot,
+    size: &[f64],
+    scale: &Scale,
+    colours: &mut Vec<String>,
+) {
     let lamp = unit(LAMP);
     let mut order = Vec::new();
+    let mut edges = BTreeMap::new();
     for (t, triangle) in snapshot.triangles.iter().enumerate() {
-        let x = triangle.map(|n| {
+        let node = |n: u32| {
             add(
                 snapshot.points[n as usize],
                 snapshot.displacement[n as usize],
             )
-        });
+        };
+        let x = triangle.map(node);
         let normal = unit(cross(subtract(x[1], x[0]), subtract(x[2], x[0])));
         if dot(normal, view.eye) > 0.0 {
             let depth = dot(add(add(x[0], x[1]), x[2]), view.eye);
-            // few shades, so that neighbours share a path
+            // few shades, so that neighbours share a colour
             let shade = 0.72 + 0.28 * (4.0 * dot(normal, lamp).max(0.0)).round() / 4.0;
-            order.push((depth, t, x.map(|p| view.point(p)), shade));
+            let corners = x.map(|p| view.point(p));
+            order.push((depth, t, corners, shade));
+            for k in 0..3 {
+                let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+                edges.insert((a.min(b), a.max(b)), [corners[k], corners[(k + 1) % 3]]);
+            }
         }
     }
     order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut run: (String, Vec<Vec<[f64; 2]>>) = Default::default();
+    svg.open_tenths("stroke-width=\"5\" stroke-linejoin=\"round\"");
+    let mut path: (usize, Vec<Vec<[f64; 2]>>) = Default::default();
     for (_, t, corners, shade) in &order {
         let values = snapshot.triangles[*t].map(|n| size[n as usize]);
         for (band, polygon) in bands(*corners, values, scale) {
-            let colour = scale.colour(band, *shade);
-            if colour != run.0 {
-                paint(svg, &mut run);
-                run.0 = colour;
+            let class = class(colours, scale.colour(band, *shade));
+            if class != path.0 {
+                svg.polygons(&path.1, true, &format!("class=\"k{}\"", path.0));
+                path = (class, Vec::new());
             }
-            run.1.push(polygon);
+            path.1.push(polygon);
         }
     }
-    paint(svg, &mut run);
-    let edges: Vec<Vec<[f64; 2]>> = order.iter().map(|o| o.2.to_vec()).collect();
-    let thin = 0.35;
-    svg.polygons(
-        &edges,
-        &format!("fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.3\" stroke-width=\"{thin}\""),
-    );
+    svg.polygons(&path.1, true, &format!("class=\"k{}\"", path.0));
+    svg.close();
+    svg.open_tenths("fill=\"none\" stroke=\"#000\" stroke-opacity=\".25\" stroke-width=\"4\"");
+    let edges: Vec<_> = edges.into_values().collect();
+    svg.polygons(&edges, false, "");
+    svg.close();
 }
 
-fn paint(svg: &mut Svg, run: &mut (String, Vec<Vec<[f64; 2]>>)) {
-    let colour = &run.0;
-    let style = format!("fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\".5\"");
-    svg.polygons(&run.1, &style);
-    run.1.clear();
+/// Number of a colour in the table, entered if it is new.
+fn class(colours: &mut Vec<String>, colour: String) -> usize {
+    match colours.iter().position(|c| *c == colour) {
+        Some(k) => k,
+        None => {
+            colours.push(colour);
+            colours.len() - 1
+        }
+    }
 }
 
 /// The edges of the unloaded brick.
@@ -164,24 +185,25 @@ fn outline(svg: &mut Svg, view: &View) {
 }
 
 /// Directions of the axes, and their length.
-fn axes(svg: &mut Svg, bottom: f64) {
-    let view = View::new([WIDTH - 225.0, bottom]);
-    let length = 0.25;
+fn axes(svg: &mut Svg, origin: [f64; 2]) {
+    let view = View::new(origin);
+    let length = 0.2;
     for (axis, name) in ["x1", "x2", "x3"].iter().enumerate() {
         let mut tip = [0.0; 3];
         tip[axis] = length;
-        let (a, b) = (view.point([0.0; 3]), view.point(tip));
-        svg.line(a, b, "stroke=\"#222\" stroke-width=\"1.4\"");
-        tip[axis] = length + 0.07;
+        let style = "stroke=\"#222\" stroke-width=\"1.4\"";
+        svg.line(view.point([0.0; 3]), view.point(tip), style);
+        tip[axis] = length + 0.06;
         let label = view.point(tip);
         svg.text(label[0], label[1] + 4.0, 12.0, Anchor::Middle, name);
     }
+    let note = "axes: 0.2 m";
     svg.text(
-        WIDTH - 225.0,
-        bottom + 20.0,
+        origin[0] + 75.0,
+        origin[1] + 16.0,
         11.0,
-        Anchor::Middle,
-        "axes: 0.25 m",
+        Anchor::Start,
+        note,
     );
 }
 

@@ -99,8 +99,9 @@ fn linear(area: &Area<'_>, title: &str, unit: &str, curves: &[Curve<'_>]) -> Res
     let values = || curves.iter().flat_map(|c| c.2.iter().map(|p| p.1));
     let high = values().fold(0.0, f64::max);
     let low = values().fold(0.0, f64::min);
-    let room = 0.06 * (high - low).max(1e-9);
-    let low = if low < 0.0 { low - room } else { 0.0 };
+    // room for the legend
+    let room = 0.45 * (high - low).max(1e-9);
+    let low = if low < 0.0 { low - 0.15 * room } else { 0.0 };
     chart(area, title, unit, low..high + room, curves, &|v| {
         format!("{v}")
     })
@@ -118,7 +119,7 @@ fn logarithmic(
         .map(|(n, c, v)| (*n, *c, v.iter().copied().filter(|p| p.1 > 0.0).collect()))
         .collect();
     let values = || curves.iter().flat_map(|c| c.2.iter().map(|p| p.1));
-    let high = 3.0 * values().fold(1e-12, f64::max);
+    let high = 300.0 * values().fold(1e-12, f64::max);
     let low = values().fold(high, f64::min) / 3.0;
     chart(area, title, unit, (low..high).log_scale(), &curves, &|v| {
         format!("{v:.0e}")

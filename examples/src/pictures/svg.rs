@@ -73,20 +73,62 @@ impl Svg {
         );
     }
 
-    /// Many closed polygons in one style.
-    pub(super) fn polygons(&mut self, polygons: &[Vec<[f64; 2]>], style: &str) {
+    /// Text that runs upward, centred at its point.
+    pub(super) fn text_upward(&mut self, x: f64, y: f64, size: f64, text: &str) {
+        let _ = writeln!(
+            self.body,
+            "<text transform=\"translate({x:.1} {y:.1}) rotate(-90)\" font-size=\"{size}\" text-anchor=\"middle\">{text}</text>"
+        );
+    }
+
+    /// Opens a group in which [`polygons`](Self::polygons) may be drawn; lengths inside are tenths of a pixel, which
+    /// makes short files.
+    pub(super) fn open_tenths(&mut self, style: &str) {
+        let _ = writeln!(self.body, "<g transform=\"scale(.1)\" {style}>");
+    }
+
+    /// Closes the group.
+    pub(super) fn close(&mut self) {
+        self.body.push_str("</g>\n");
+    }
+
+    /// Many polygons as one path, closed or not. The points are in pixels.
+    pub(super) fn polygons<P: AsRef<[[f64; 2]]>>(
+        &mut self,
+        polygons: &[P],
+        close: bool,
+        style: &str,
+    ) {
         if polygons.is_empty() {
             return;
         }
         self.body.push_str("<path d=\"");
         for polygon in polygons {
-            for (k, p) in polygon.iter().enumerate() {
-                let letter = if k == 0 { "M" } else { "L" };
-                let _ = write!(self.body, "{letter}{} {}", short(p[0]), short(p[1]));
+            let mut at = [0; 2];
+            for (k, p) in polygon.as_ref().iter().enumerate() {
+                let to = p.map(|v| (10.0 * v).round() as i64);
+                // a relative step after the first; a minus sign separates as well as a blank does
+                let letter = ["M", "l", ""][k.min(2)];
+                let (x, y) = (to[0] - at[0], to[1] - at[1]);
+                let blank = if k > 1 && x >= 0 { " " } else { "" };
+                let between = if y >= 0 { " " } else { "" };
+                let _ = write!(self.body, "{letter}{blank}{x}{between}{y}");
+                at = to;
             }
-            self.body.push('z');
+            if close {
+                self.body.push('z');
+            }
         }
         let _ = writeln!(self.body, "\" {style}/>");
+    }
+
+    /// Classes for paths: fill and stroke in one colour, `k0`, `k1`, ...
+    pub(super) fn classes(&mut self, colours: &[String]) {
+        self.body.push_str("<style>");
+        for (k, c) in colours.iter().enumerate() {
+            let _ = write!(self.body, ".k{k}{{fill:{c};stroke:{c}}}");
+        }
+        self.body.push_str("</style>\n");
     }
 
     /// The text of the file.
@@ -94,10 +136,4 @@ impl Svg {
         self.body.push_str("</svg>\n");
         self.body
     }
-}
-
-/// A coordinate with one decimal, without a trailing zero.
-fn short(v: f64) -> String {
-    let text = format!("{v:.1}");
-    text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }

@@ -1,0 +1,264 @@
+//! The benchmark: its sizes, its results, its files, and what it says to bad options.
+
+use std::path::Path;
+
+use clap::Parser;
+use signorini::prelude::{Settings, Simulation};
+use signorini_examples::app::{execute, strict};
+use signorini_examples::brick::{Benchmark, Loading, scene, sizes};
+use signorini_examples::options::BrickOptions;
+use signorini_examples::record::RunRecord;
+use signorini_examples::run::Outcome;
+use signorini_examples::{ExampleError, paper};
+
+fn options(line: &str) -> BrickOptions {
+    BrickOptions::try_parse_from(line.split_whitespace()).expect("options")
+}
+
+fn run(line: &str) -> (Vec<Outcome>, String) {
+    let mut out = Vec::new();
+    let outcomes = execute(&options(line), &mut out).expect("run");
+    (outcomes, String::from_utf8(out).expect("text"))
+}
+
+#[test]
+fn table_6_1_has_exactly_the_papers_sizes() {
+    for row in &paper::TABLE {
+        let scene = scene(row.n, Loading::B, 1, 5).expect("scene");
+        let s = sizes(&scene, &Settings::default()).expect("sizes");
+        assert_eq!((s.n_s, s.n_p, s.n_d_paper), (row.n_s, row.n_p, row.n_d));
+        // contact rows of the 5n + 1 nodes on the fixed edge depend on the rows of the support
+        assert_eq!(s.n_d_paper - s.n_d, 3 * (5 * row.n + 1));
+        if row.n <= 3 {
+            let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+            let gluing = simulation.tfeti().gluing();
+            assert_eq!(gluing.rows_as_paper(), row.n_d);
+            assert_eq!(gluing.rows_full_rank(), s.n_d);
+            assert_eq!(gluing.removed().len(), 3 * (5 * row.n + 1));
+        }
+    }
+}
+
+#[test]
+fn five_steps_of_both_loadings_by_all_methods_agree() {
+    let (face, text) = run("brick --n 1 --steps 5 --quiet --threads 1 --tolerance 1e-8");
+    assert_eq!(face.len(), 2);
+    assert!(text.contains("Table 6.1") && text.contains("final state depends on the loading"));
+    assert!(text.contains("not the benchmark as it stands"));
+    for outcome in &face {
+        let r = &outcome.record;
+        assert!(
+            r.unconverged.is_empty() && r.largest_certificate < 1e-7,
+            "{r:?}"
+        );
+        assert_eq!(r.steps.len(), 5);
+        assert_eq!(r.n_m, r.steps.iter().map(|s| s.n_m).sum::<usize>());
+        for s in &r.steps {
+            assert_eq!(s.active, s.stick + s.slip);
+            assert!(s.max_penetration < 1e-7);
+        }
+    }
+    let last = |o: &Outcome| o.record.steps.last().expect("steps").clone();
+    let (b, c) = (last(&face[0]), last(&face[1]));
+    // the same loads at the end, but another state
+    assert_eq!(b.load, c.load);
+    approx::assert_relative_eq!(b.load[2], -1.05e10, max_relative = 1e-9);
+    approx::assert_relative_eq!(b.load[0], 9e8, max_relative = 1e-9);
+    assert!((b.tangential_force[0] - c.tangential_force[0]).abs() > 0.05 * b.tangential_norm);
+    for method in ["paper", "one-loop"] {
+        let line = format!("brick --n 1 --steps 5 --quiet --tolerance 1e-8 --method {method}");
+        let (other, _) = run(&line);
+        for (x, y) in [(&b, &last(&other[0])), (&c, &last(&other[1]))] {
+            approx::assert_relative_eq!(x.normal_force, y.normal_force, max_relative = 1e-5);
+            approx::assert_relative_eq!(x.tangential_norm, y.tangential_norm, max_relative = 1e-5);
+            assert_eq!((x.active, x.slip), (y.active, y.slip), "{method}");
+        }
+        assert!(
+            other
+                .iter()
+                .all(|o| o.record.n_m_setup > 0 && o.record.unconverged.is_empty())
+        );
+    }
+}
+
+#[test]
+fn the_whole_benchmark_of_the_smallest_brick_stays_below_the_papers_products() {
+    for method in ["face", "paper"] {
+        let (outcomes, text) = run(&format!("brick --n 1 --quiet --strict --method {method}"));
+        for outcome in &outcomes {
+            let r = &outcome.record;
+            assert!(r.largest_certificate <= 1e-6);
+            let loading = Loading::BOTH.into_iter().find(|l| l.name() == r.loading);
+            let (_, n_m, _) = paper::row(1).expect("row").costs(loading.expect("loading"));
+            assert!(r.n_m <= n_m, "{method} {}: {}", r.loading, r.n_m);
+        }
+        assert!(text.contains("above: none"), "{text}");
+    }
+}
+
+#[test]
+fn the_json_has_the_names_of_the_benchmark_and_reads_back() {
+    let folder = tempfile::tempdir().expect("folder");
+    let json = folder.path().join("runs.json");
+    let line = format!(
+        "brick --n 1 --steps 3 --cells 3 --quiet --json {}",
+        json.display()
+    );
+    let (outcomes, _) = run(&line);
+    let text = std::fs::read_to_string(&json).expect("file");
+    let back: Vec<RunRecord> = serde_json::from_str(&text).expect("records");
+    assert_eq!(back.len(), 2);
+    for (read, outcome) in back.iter().zip(&outcomes) {
+        assert_eq!(*read, outcome.record);
+    }
+    let value: serde_json::Value = serde_json::from_str(&text).expect("json");
+    let names = "n loading method threads n_s n_p n_d n_d_paper it n_m n_m_setup setup_seconds solve_seconds \
+                 peak_rss_bytes steps";
+    for name in names.split_whitespace() {
+        assert!(value[0].get(name).is_some(), "{name}");
+    }
+    let names = "step t it n_m active stick slip normal_force tangential_force normal_norm tangential_norm \
+                 max_slip_rate max_penetration dissipation dissipation_formula certificate";
+    for name in names.split_whitespace() {
+        assert!(value[0]["steps"][2].get(name).is_some(), "{name}");
+    }
+    assert_eq!(value[0]["steps"][2]["step"], 3);
+    assert_eq!(value[0]["steps"][2]["t"], 1.0);
+    assert_eq!(value[1]["loading"], "c");
+}
+
+#[test]
+fn files_and_pictures_are_written() {
+    let folder = tempfile::tempdir().expect("folder");
+    let out = folder.path().join("out");
+    let line = format!(
+        "brick --n 1 --steps 5 --cells 3 --quiet --vtu-every 2 --out {}",
+        out.display()
+    );
+    run(&line);
+    let read =
+        |p: &Path| std::fs::read_to_string(p).unwrap_or_else(|e| panic!("{}: {e}", p.display()));
+    for name in [
+        "brick-n1.svg",
+        "friction-n1.svg",
+        "slip-rate-n1.svg",
+        "n1-b/steps.svg",
+        "n1-c/steps.svg",
+    ] {
+        let text = read(&out.join(name));
+        assert!(
+            text.starts_with("<svg") && text.trim_end().ends_with("</svg>"),
+            "{name}"
+        );
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
+    }
+    for run in ["n1-b", "n1-c"] {
+        // steps 2, 4 and the last
+        for series in ["body", "contact"] {
+            let list = read(&out.join(run).join(format!("{series}.pvd")));
+            assert_eq!(list.matches("<DataSet").count(), 3, "{list}");
+            assert!(out.join(run).join(format!("{series}_0002.vtu")).is_file());
+        }
+        assert_eq!(read(&out.join(run).join("steps.csv")).lines().count(), 6);
+    }
+    let none = folder.path().join("none");
+    run(&format!(
+        "brick --n 1 --steps 1 --cells 2 --loading b --quiet --vtu-every 0 --out {}",
+        none.display()
+    ));
+    assert!(!none.join("n1-b/body_0000.vtu").exists() && none.join("n1-b/steps.csv").is_file());
+}
+
+#[test]
+fn a_perturbed_brick_shares_no_matrices() {
+    let count = |perturb: bool| {
+        let mut benchmark = Benchmark {
+            steps: 1,
+            cells: 4,
+            ..Benchmark::new(1, Loading::B)
+        };
+        if perturb {
+            benchmark.perturbation = 0.1;
+        }
+        let simulation = Simulation::new(benchmark.scene().expect("scene"), Settings::default())
+            .expect("set-up");
+        simulation.tfeti().classes().classes().len()
+    };
+    assert_eq!((count(false), count(true)), (1, 3));
+    let (outcomes, _) = run("brick --n 1 --steps 2 --cells 4 --perturb --quiet --loading c");
+    assert!(outcomes[0].record.largest_certificate < 1e-6);
+}
+
+#[test]
+fn the_plan_needs_no_run() {
+    let (outcomes, text) = run("brick --n 5 --plan");
+    assert!(outcomes.is_empty());
+    assert!(
+        text.contains("96828 as the paper counts") && text.contains("rate dependent"),
+        "{text}"
+    );
+}
+
+#[test]
+fn bad_options_are_errors() {
+    for line in [
+        "brick --n 0",
+        "brick --n 1,x",
+        "brick --n -1",
+        "brick --loading d",
+        "brick --method magic",
+        "brick --formula none",
+        "brick --steps 0",
+        "brick --cells 0",
+        "brick --threads many",
+        "brick --tolerance tight",
+        "brick --unknown",
+    ] {
+        assert!(
+            BrickOptions::try_parse_from(line.split_whitespace()).is_err(),
+            "{line}"
+        );
+    }
+    for (line, word) in [
+        ("brick --n 1 --tolerance 2 --quiet", "tolerance"),
+        ("brick --n 1 --tolerance nan --quiet", "tolerance"),
+        ("brick --n 1000000 --quiet", "tetrahedra"),
+        ("brick --n 18446744073709551615 --quiet", "tetrahedra"),
+        (
+            "brick --n 1 --cells 1 --steps 1 --quiet --json /nowhere/at/all.json",
+            "/nowhere",
+        ),
+        (
+            "brick --n 1 --cells 1 --steps 1 --quiet --out /proc/nowhere",
+            "/proc/nowhere",
+        ),
+    ] {
+        let error = execute(&options(line), &mut Vec::new())
+            .expect_err(line)
+            .to_string();
+        assert!(error.contains(word), "{line}: {error}");
+    }
+}
+
+#[test]
+fn levels_that_did_not_converge_are_loud() {
+    let (mut outcomes, _) = run("brick --n 1 --steps 2 --cells 2 --loading b --quiet");
+    let record = &mut outcomes[0].record;
+    assert!(strict(true, std::iter::once(&*record)).is_ok());
+    record.unconverged = vec![2];
+    assert!(strict(false, std::iter::once(&*record)).is_ok());
+    let verdict = strict(true, std::iter::once(&*record));
+    assert!(matches!(
+        verdict,
+        Err(ExampleError::NotConverged { levels: 1 })
+    ));
+    assert!(signorini_examples::table::warnings(&[record]).contains("DID NOT REACH"));
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let line = |t: usize| format!("brick --n 2 --steps 2 --loading c --quiet --threads {t}");
+    let (one, two) = (run(&line(1)).0, run(&line(2)).0);
+    assert_eq!(one[0].record.steps, two[0].record.steps);
+    assert_eq!(one[0].snapshot.displacement, two[0].snapshot.displacement);
+}
