@@ -7,11 +7,12 @@ use crate::error::ContactError;
 use crate::level::Level;
 use crate::model::{DISCS, Model, Tangential};
 use crate::paper_solver::PaperSolver;
+use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
-use crate::settings::{Preconditioner as Choice, Settings};
+use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
 use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face};
-use signorini_tfeti::{DualOperator, FaceSpace, Preconditioner};
+use signorini_tfeti::{DualOperator, FaceSpace};
 
 /// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
 const SAFETY: f64 = 1.0;
@@ -19,10 +20,10 @@ const SAFETY: f64 = 1.0;
 #[derive(Debug)]
 pub(crate) struct FaceSolver {
     space: FaceSpace,
-    preconditioner: Preconditioner,
+    preconditioner: DualPreconditioner,
     scale: Vec<f64>,
     set: ProductSet,
-    work: FaceWorkspace<DualOperator, Preconditioner>,
+    work: FaceWorkspace<DualOperator, DualPreconditioner>,
     settings: FaceSettings,
     /// Made when it is first needed.
     paper: Option<Box<PaperSolver>>,
@@ -35,7 +36,7 @@ impl FaceSolver {
         face: &FaceSettings,
     ) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
-        let preconditioner = make_preconditioner(model, settings.preconditioner)?;
+        let preconditioner = DualPreconditioner::new(model, settings.preconditioner)?;
         let mut scale = vec![0.0; model.tfeti.dual_dim()];
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         Ok(Self {
@@ -69,7 +70,10 @@ impl FaceSolver {
             linear: &level.linear,
             rhs: &level.rhs,
         };
-        let face_settings = self.settings.clone().with_tolerance(settings.tolerance * SAFETY);
+        let face_settings = self
+            .settings
+            .clone()
+            .with_tolerance(settings.tolerance * SAFETY);
         let coulomb = is_coulomb(model);
         let mut updates = 0;
         let mut hook = |x: &[f64], set: &mut ProductSet| {
@@ -149,16 +153,6 @@ impl FaceSolver {
         iterate.multiplier.clear();
         Ok(report)
     }
-}
-
-pub(crate) fn make_preconditioner(
-    model: &Model,
-    choice: Choice,
-) -> Result<Preconditioner, ContactError> {
-    Ok(match choice {
-        Choice::Lumped => model.tfeti.lumped()?,
-        Choice::Dirichlet => model.tfeti.dirichlet()?,
-    })
 }
 
 /// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a

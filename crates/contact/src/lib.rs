@@ -14,6 +14,7 @@ mod model;
 mod observer;
 mod paper_solver;
 mod plan;
+mod preconditioner;
 mod report;
 mod scene;
 mod settings;

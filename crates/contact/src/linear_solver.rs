@@ -1,14 +1,14 @@
 //! Scenes without contact: projected preconditioned conjugate gradients, no inequality anywhere.
 
 use crate::error::ContactError;
-use crate::face_solver::make_preconditioner;
 use crate::level::Level;
 use crate::model::Model;
+use crate::preconditioner::DualPreconditioner;
 use crate::report::LevelReport;
 use crate::settings::Settings;
 use crate::solver::{Iterate, level_status};
 use signorini_qp::{CgWorkspace, Tolerance, projected_cg};
-use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse, Preconditioner};
+use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
 
 /// Safety factor between the tolerance of a level and that of conjugate gradients.
 const SAFETY: f64 = 0.01;
@@ -16,9 +16,9 @@ const SAFETY: f64 = 0.01;
 pub(crate) struct LinearSolver {
     coarse: OrthonormalCoarse,
     coarse_scratch: CoarseScratch,
-    preconditioner: Preconditioner,
+    preconditioner: DualPreconditioner,
     rhs: Vec<f64>,
-    work: CgWorkspace<DualOperator, OrthonormalCoarse, Preconditioner>,
+    work: CgWorkspace<DualOperator, OrthonormalCoarse, DualPreconditioner>,
 }
 
 impl std::fmt::Debug for LinearSolver {
@@ -44,7 +44,7 @@ impl LinearSolver {
                 force: 0.0,
             }
         })?;
-        let preconditioner = make_preconditioner(model, settings.preconditioner)?;
+        let preconditioner = DualPreconditioner::new(model, settings.preconditioner)?;
         Ok(Self {
             coarse_scratch: factor.scratch(),
             rhs: vec![0.0; model.tfeti.coarse().rows()],

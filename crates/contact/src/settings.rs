@@ -94,6 +94,8 @@ impl Default for InnerAccuracy {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Preconditioner {
+    /// A multiple of the identity; only to measure what the others are worth.
+    None,
     /// Lumped: the stiffness of the glued unknowns. Cheapest in time for small subdomains.
     #[default]
     Lumped,

@@ -1,0 +1,68 @@
+//! The preconditioner of the default method, chosen by the settings.
+
+use crate::error::ContactError;
+use crate::model::Model;
+use crate::settings::Preconditioner as Choice;
+use signorini_qp::{SymmetricOperator, vector};
+use signorini_tfeti::{Preconditioner, PreconditionerScratch};
+
+/// A preconditioner of the dual problem.
+#[derive(Debug)]
+pub(crate) enum DualPreconditioner {
+    /// A multiple of the identity, for measuring what the others are worth.
+    Scalar { dim: usize, factor: f64 },
+    /// Lumped or Dirichlet.
+    Stiffness(Box<Preconditioner>),
+}
+
+impl DualPreconditioner {
+    pub(crate) fn new(model: &Model, choice: Choice) -> Result<Self, ContactError> {
+        let tfeti = &model.tfeti;
+        Ok(match choice {
+            Choice::None => {
+                // the mean stiffness of some rows turns displacements into forces
+                let dim = tfeti.dual_dim();
+                let mut sample = vec![0.0; dim.min(SAMPLE)];
+                let start = dim - sample.len();
+                tfeti.row_stiffness(start..dim, &mut sample);
+                let factor = sample.iter().sum::<f64>() / sample.len().max(1) as f64;
+                Self::Scalar { dim, factor }
+            }
+            Choice::Lumped => Self::Stiffness(Box::new(tfeti.lumped()?)),
+            Choice::Dirichlet => Self::Stiffness(Box::new(tfeti.dirichlet()?)),
+        })
+    }
+}
+
+/// Rows whose stiffness scales the identity.
+const SAMPLE: usize = 300;
+
+impl SymmetricOperator for DualPreconditioner {
+    type Scratch = Option<PreconditionerScratch>;
+
+    fn dim(&self) -> usize {
+        match self {
+            Self::Scalar { dim, .. } => *dim,
+            Self::Stiffness(p) => p.dim(),
+        }
+    }
+
+    fn scratch(&self) -> Self::Scratch {
+        match self {
+            Self::Scalar { .. } => None,
+            Self::Stiffness(p) => Some(p.scratch()),
+        }
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut Self::Scratch) {
+        match (self, s) {
+            (Self::Stiffness(p), Some(s)) => p.apply(x, y, s),
+            (Self::Scalar { factor, .. }, _) => {
+                vector::copy(x, y);
+                vector::scale(*factor, y);
+            }
+            // a scratch of another preconditioner
+            (Self::Stiffness(_), None) => y.fill(0.0),
+        }
+    }
+}
