@@ -13,7 +13,9 @@
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
 //! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`] |
 //! | a contact surface | [`Surface`] with a [`Frame`] and an area at each node |
-//! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`] |
+//! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`], [`energy_of_error`] |
+//! | an estimate of the discretisation error | [`discretisation_error`] |
+//! | two meshes compared | [`Locator`], [`energy_of_difference`] |
 //! | pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
 //!
 //! # Example
@@ -91,10 +93,12 @@ mod element;
 mod history;
 mod hooke;
 mod load;
+mod locate;
 mod materials;
 mod mesh;
 mod norms;
 mod quadrature;
+mod recovery;
 mod surface;
 mod vec3;
 
@@ -108,9 +112,11 @@ pub use fields::FieldError;
 pub use history::{History, HistoryError};
 pub use hooke::{Hooke, HookeError};
 pub use load::{LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
+pub use locate::{Locator, energy_of_difference};
 pub use materials::{MaterialError, Materials};
 pub use mesh::{
     BoundaryFacet, Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets,
 };
 pub use norms::{h1_seminorm_error, l2_error};
+pub use recovery::{DiscretisationError, discretisation_error, energy_of_error};
 pub use surface::{Frame, Surface, SurfaceError};
