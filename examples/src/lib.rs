@@ -23,6 +23,7 @@ pub mod files;
 pub mod frictionless;
 pub mod options;
 pub mod paper;
+pub mod performance;
 pub mod pictures;
 pub mod progress;
 pub mod qp_only;
