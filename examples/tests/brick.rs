@@ -219,19 +219,24 @@ fn bad_options_are_errors() {
             "{line}"
         );
     }
+    let folder = tempfile::tempdir().expect("folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "in the way").expect("file");
+    let blocked = format!(
+        "brick --n 1 --cells 1 --steps 1 --quiet --out {}/sub",
+        file.display()
+    );
+    let unwritable = format!(
+        "brick --n 1 --cells 1 --steps 1 --quiet --json {}/sub.json",
+        file.display()
+    );
     for (line, word) in [
         ("brick --n 1 --tolerance 2 --quiet", "tolerance"),
         ("brick --n 1 --tolerance nan --quiet", "tolerance"),
         ("brick --n 1000000 --quiet", "tetrahedra"),
         ("brick --n 18446744073709551615 --quiet", "tetrahedra"),
-        (
-            "brick --n 1 --cells 1 --steps 1 --quiet --json /nowhere/at/all.json",
-            "/nowhere",
-        ),
-        (
-            "brick --n 1 --cells 1 --steps 1 --quiet --out /proc/nowhere",
-            "/proc/nowhere",
-        ),
+        (unwritable.as_str(), "cannot write"),
+        (blocked.as_str(), "cannot write"),
     ] {
         let error = execute(&options(line), &mut Vec::new())
             .expect_err(line)
