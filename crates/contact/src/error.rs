@@ -158,6 +158,12 @@ pub enum ContactError {
         /// What is allowed.
         range: &'static str,
     },
+    /// Steps that cannot be doubled.
+    #[error("step doubling: {reason}")]
+    Doubling {
+        /// Why, and what to do.
+        reason: &'static str,
+    },
     /// All time levels are solved.
     #[error("the scene has {levels} time levels and all are solved")]
     Finished {

@@ -1,11 +1,12 @@
 //! The frame of a level: displacement, contact forces and states, and fields that are computed when asked for.
 
+use crate::algebraic::{AlgebraicError, Solved};
 use crate::certificate::{Certificate, slip_bound};
 use crate::error::ContactError;
 use crate::level::Level;
 use crate::model::{Model, Tangential};
 use crate::report::LevelReport;
-use signorini_fem_mesh::fields;
+use signorini_fem_mesh::{DiscretisationError, discretisation_error, fields};
 
 /// What a touch point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -158,6 +159,32 @@ impl Frame<'_> {
     pub fn strain_energy(&self) -> Result<f64, ContactError> {
         let scene = &self.model.scene;
         Ok(fields::strain_energy(
+            &scene.mesh,
+            &scene.materials,
+            &self.displacement(),
+        )?)
+    }
+
+    /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
+    #[must_use]
+    pub fn algebraic_error(&self) -> AlgebraicError {
+        let solved = Solved {
+            model: self.model,
+            level: self.level,
+            points: self.points,
+            certificate: self.certificate,
+            torn: self.torn,
+        };
+        solved.algebraic_error()
+    }
+
+    /// Estimated discretisation error, tetrahedron by tetrahedron (by recovered strains).
+    ///
+    /// # Errors
+    /// As [`stress`](Self::stress).
+    pub fn discretisation_error(&self) -> Result<DiscretisationError, ContactError> {
+        let scene = &self.model.scene;
+        Ok(discretisation_error(
             &scene.mesh,
             &scene.materials,
             &self.displacement(),

@@ -1,5 +1,7 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time levels, fixed-point loops and certificates.
 
+mod accuracy;
+mod algebraic;
 mod certificate;
 mod clock;
 mod error;
@@ -21,7 +23,10 @@ mod settings;
 mod simulation;
 mod solver;
 mod state;
+mod time_error;
 
+pub use accuracy::{Accuracy, AccuracyReport};
+pub use algebraic::AlgebraicError;
 pub use certificate::{Certificate, Violation};
 pub use clock::{Analysis, DifferenceFormula};
 pub use error::ContactError;
@@ -36,3 +41,4 @@ pub use settings::{InnerAccuracy, Method, Preconditioner, Settings};
 pub use signorini_tfeti::Directions;
 pub use simulation::Simulation;
 pub use state::State;
+pub use time_error::{Doubling, StepDoubling, TimeError};

@@ -81,6 +81,8 @@ pub(crate) struct Model {
     pub(crate) surface: Option<Surface>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
+    /// Weights of the estimate of the algebraic error; made when it is first asked for.
+    pub(crate) weights: std::sync::OnceLock<crate::algebraic::Weights>,
 }
 
 impl Model {
@@ -138,6 +140,7 @@ impl Model {
             points,
             surface,
             set,
+            weights: std::sync::OnceLock::new(),
         })
     }
 

@@ -1,5 +1,6 @@
 //! Reports of a level: how it ended, what it cost.
 
+use crate::accuracy::AccuracyReport;
 use crate::fixed_point::FixedPointReport;
 use signorini_qp::Steps;
 
@@ -86,6 +87,8 @@ pub struct LevelReport {
     pub fallback: bool,
     /// The solver's own estimate of the relative error of the multipliers, where it has one.
     pub estimated_error: Option<f64>,
+    /// Estimates of the level's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
+    pub accuracy: Option<AccuracyReport>,
 }
 
 impl LevelReport {
@@ -98,6 +101,16 @@ impl LevelReport {
             fixed_point: None,
             fallback: false,
             estimated_error: None,
+            accuracy: None,
         }
+    }
+
+    /// Takes over the outcome of a further solve of the same level, with the cost of both.
+    pub(crate) fn resumed(self, mut next: Self) -> Self {
+        next.counters += self.counters;
+        next.iterations += self.iterations;
+        next.steps += self.steps;
+        next.fallback |= self.fallback;
+        next
     }
 }

@@ -1,5 +1,6 @@
 //! Settings of a simulation: how, not what.
 
+use crate::accuracy::Accuracy;
 use crate::error::ContactError;
 use signorini_qp::{FaceSettings, SmalseSettings};
 use signorini_tfeti::{InverseSettings, RowRule, Sharing};
@@ -109,6 +110,7 @@ pub enum Preconditioner {
 /// |---|---|---|---|---|
 /// | `method` | solver of a time level | | [`Method::Face`] | |
 /// | `tolerance` | relative accuracy of the multipliers at every level, and of the fixed point | [1e-12, 0.1] | 1e-6 | `eps` |
+/// | `accuracy` | whether a level ends at that tolerance or by an estimate of its error | [`Accuracy`] | `Tolerance` | |
 /// | `max_fixed_point` | most evaluations of the Coulomb map a level | >= 1 | 200 | |
 /// | `extrapolate` | start a level from the line through the last two | | true | |
 /// | `row_rule` | scaling of the rows of B | | orthonormal | |
@@ -122,6 +124,8 @@ pub struct Settings {
     pub method: Method,
     /// Relative accuracy of a level.
     pub tolerance: f64,
+    /// When the solve of a level ends.
+    pub accuracy: Accuracy,
     /// Most evaluations of the Coulomb map a level.
     pub max_fixed_point: usize,
     /// Start from the line through the last two levels.
@@ -141,6 +145,7 @@ impl Default for Settings {
         Self {
             method: Method::default(),
             tolerance: 1e-6,
+            accuracy: Accuracy::default(),
             max_fixed_point: 200,
             extrapolate: true,
             row_rule: RowRule::default(),
@@ -163,6 +168,13 @@ impl Settings {
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
+        self
+    }
+
+    /// Sets when the solve of a level ends.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: Accuracy) -> Self {
+        self.accuracy = accuracy;
         self
     }
 
@@ -216,6 +228,7 @@ impl Settings {
                 range: "[1e-12, 0.1]",
             });
         }
+        self.accuracy.validate()?;
         if self.max_fixed_point == 0 {
             return Err(ContactError::Setting {
                 name: "max_fixed_point",

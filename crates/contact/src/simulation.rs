@@ -1,5 +1,6 @@
 //! The simulation: set-up, levels, recovery, certificate.
 
+use crate::accuracy::{Accuracy, AccuracyReport, Controller, ROUNDS};
 use crate::certificate::{Certificate, Measured, certify};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
@@ -8,7 +9,7 @@ use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
-use crate::report::{Counters, LevelReport};
+use crate::report::{Counters, LevelReport, LevelStatus};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::solver::{Iterate, Solver};
@@ -54,6 +55,7 @@ pub struct Simulation {
     torn: Vec<f64>,
     total: Counters,
     setup: Duration,
+    controller: Controller,
 }
 
 impl Simulation {
@@ -77,6 +79,7 @@ impl Simulation {
             torn: Vec::new(),
             total: Counters::default(),
             setup: start.elapsed(),
+            controller: Controller::default(),
             model,
             settings,
             solver,
@@ -173,27 +176,7 @@ impl Simulation {
         let index = self.state.level();
         self.level.prepare(&self.model, &self.state, index)?;
         self.start()?;
-        let mut report =
-            self.solver
-                .solve(&self.model, &self.level, &self.settings, &mut self.iterate)?;
-
-        // recovery: u, and from it everything that is reported
-        let tfeti = &self.model.tfeti;
-        let force = combine(&self.model, &self.level);
-        let lambda = std::mem::take(&mut self.iterate.lambda);
-        self.torn = tfeti.recover(&force, &lambda, &self.iterate.alpha)?;
-        report.counters.products += 1;
-        let mut rows = vec![0.0; tfeti.dual_dim()];
-        tfeti.rows_times(&self.torn, &mut rows);
-        let residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
-        let measured = Measured {
-            rows: &rows,
-            u: &self.torn,
-            force: &force,
-            residual: &residual,
-        };
-        self.certificate = certify(&self.model, &self.level, &lambda, &measured);
-        self.points = point_states(&self.model, &self.level, &lambda, &rows);
+        let (mut report, lambda, rows) = self.solve()?;
         let before: Vec<f64> = (0..self.model.tangential_rows())
             .map(|k| self.state.traces(k).0)
             .collect();
@@ -235,6 +218,95 @@ impl Simulation {
             points: &self.points,
             torn: &self.torn,
         }
+    }
+
+    /// Solves the level to the accuracy of the settings: once, or until the estimated error is small enough.
+    fn solve(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let accuracy = self.settings.accuracy;
+        if accuracy == Accuracy::Tolerance {
+            let tolerance = self.settings.tolerance;
+            return self.solve_once(tolerance);
+        }
+        let mut total: Option<LevelReport> = None;
+        let mut rounds = 0;
+        loop {
+            let tolerance = self.controller.tolerance();
+            let (mut report, lambda, rows) = self.solve_once(tolerance)?;
+            rounds += 1;
+            let frame = self.frame();
+            let algebraic = frame.algebraic_error();
+            let (discretisation, target) = match accuracy {
+                Accuracy::Balanced { fraction } => {
+                    let relative = frame.discretisation_error()?.relative();
+                    (Some(relative), fraction * relative)
+                }
+                Accuracy::Relative(x) => (None, x),
+                Accuracy::Tolerance => (None, f64::INFINITY),
+            };
+            let found = algebraic.relative();
+            let reached = found <= target;
+            report.accuracy = Some(AccuracyReport {
+                algebraic,
+                discretisation,
+                target,
+                reached,
+                rounds,
+                tolerance,
+            });
+            let converged = report.status.converged();
+            let mut report = match total.take() {
+                Some(before) => before.resumed(report),
+                None => report,
+            };
+            if reached && rounds == 1 {
+                self.controller.relax(found, target);
+            }
+            let again = !reached && converged && rounds < ROUNDS;
+            if !again || !self.controller.tighten(found, target) {
+                if converged && !reached {
+                    report.status = LevelStatus::Stagnated;
+                }
+                return Ok((report, lambda, rows));
+            }
+            total = Some(report);
+            self.iterate.lambda = lambda;
+        }
+    }
+
+    /// One run of the solver from the present iterate, and what is recovered from it: multipliers and `B u`.
+    fn solve_once(
+        &mut self,
+        tolerance: f64,
+    ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let model = &self.model;
+        let other;
+        let settings = if tolerance == self.settings.tolerance {
+            &self.settings
+        } else {
+            other = self.settings.clone().with_tolerance(tolerance);
+            &other
+        };
+        let mut report = self
+            .solver
+            .solve(model, &self.level, settings, &mut self.iterate)?;
+        // recovery: u, and from it everything that is reported
+        let tfeti = &model.tfeti;
+        let force = combine(model, &self.level);
+        let lambda = std::mem::take(&mut self.iterate.lambda);
+        self.torn = tfeti.recover(&force, &lambda, &self.iterate.alpha)?;
+        report.counters.products += 1;
+        let mut rows = vec![0.0; tfeti.dual_dim()];
+        tfeti.rows_times(&self.torn, &mut rows);
+        let residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
+        let measured = Measured {
+            rows: &rows,
+            u: &self.torn,
+            force: &force,
+            residual: &residual,
+        };
+        self.certificate = certify(model, &self.level, &lambda, &measured);
+        self.points = point_states(model, &self.level, &lambda, &rows);
+        Ok((report, lambda, rows))
     }
 
     /// Start vectors of a level: zero, the last level, or the line through the last two.

@@ -72,6 +72,21 @@ impl State {
         }
     }
 
+    /// The same state as the start of another sequence of levels, without what extrapolation needs: the distance
+    /// between levels is another one there.
+    pub(crate) fn rebased(&self, level: usize) -> Self {
+        let mut state = self.clone();
+        state.level = level;
+        for pair in [
+            &mut state.lambda,
+            &mut state.f_lambda,
+            &mut state.multiplier,
+        ] {
+            pair[1] = Vec::new();
+        }
+        state
+    }
+
     pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
         &self.lambda
     }

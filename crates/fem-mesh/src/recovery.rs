@@ -202,10 +202,10 @@ impl Patches {
             let (node, region) = self.keys[k];
             let centre = mesh.points()[node as usize];
             let own = &self.tets[k];
-            if own.len() >= SMALL_PATCH {
-                if let Some(value) = fit(mesh, strains, own, centre) {
-                    return value;
-                }
+            if own.len() >= SMALL_PATCH
+                && let Some(value) = fit(mesh, strains, own, centre)
+            {
+                return value;
             }
             let mut wide: Vec<u32> = own
                 .iter()

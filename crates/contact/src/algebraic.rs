@@ -1,0 +1,289 @@
+//! Estimate of the algebraic error of a level by the duality gap.
+//!
+//! Let `K` be the stiffness, `f` the load, `g` the gaps, `z` the tangential positions of rest, `r` the slip
+//! bounds, `u*` the solution of the discrete problem with given bounds `r`: the minimiser of
+//!
+//! ```text
+//! J(v) = 1/2 vᵀ K v - fᵀ v + sum r |v_T - z|      over continuous v that obey the supports and v_nu <= g.
+//! ```
+//!
+//! The recovered displacement `u` of the torn body is in equilibrium with the multipliers, `K u = f + Bᵀ lambda`
+//! (5.26), but only nearly continuous and only nearly admissible. Make from it a continuous, admissible `v`: the
+//! mean of the copies of each node weighted by their stiffness, moved at contact nodes (below), set to the supports.
+//! Then `fᵀ v = uᵀ K v - lambdaᵀ B v`, gluing and supports drop out of `lambdaᵀ (B v - c)`, and
+//!
+//! ```text
+//! J(v) = 1/2 |v - u|² - 1/2 |u|² + lambdaᵀ B v + sum r |v_T - z|,        |w|² = wᵀ K w, torn
+//! D    = inf over v of the Lagrangian = -1/2 |u|² + lambdaᵀ c            (dual value of lambda)
+//! gap  = J(v) - D
+//!      = 1/2 |v - u|² + sum lambda_nu (v_nu - g) + sum ( r |v_T - z| + lambda_T . (v_T - z) )  >= 0.
+//! ```
+//!
+//! All three terms are non-negative if `lambda_nu <= 0` and `|lambda_T| <= r`. `J` grows at least quadratically from
+//! its minimum, `J(v) - J(u*) >= 1/2 |v - u*|²`, and so does `-D`, `J(u*) - D >= 1/2 |u - u*|²`. Their sum is the gap:
+//!
+//! ```text
+//! 1/2 |v - u*|² + 1/2 |u - u*|² <= gap.
+//! ```
+//!
+//! This bounds the errors of the nodal mean and of the torn displacement at once, without any constant.
+//!
+//! **The move at contact nodes.** Every admissible `v` gives a bound; a good one costs little. At a node with
+//! stiffness `k` in the direction of the row, the move that minimises the gap with all other nodes held is
+//! `v_nu - g <- min(0, v_nu - g - lambda_nu / k)`, and `v_T - z` goes to `w = v_T - z - lambda_T / k` shortened by
+//! `r / k`. Pressed nodes come to lie on the obstacle, sticking ones at rest, sliding ones move against their friction.
+//!
+//! **What is not exact.**
+//! - *Multipliers that are slightly inadmissible* (`lambda_nu > 0`, `|lambda_T| > r`, by the tolerance): `|lambda_nu
+//!   (v_nu - g)|` and `max(r, |lambda_T|)` take the place of the terms, so that the gap stays non-negative; the bound
+//!   then belongs to the problem with those slightly larger slip bounds.
+//! - *Equilibrium of subdomains as rigid bodies* holds to rounding with the face method, to the tolerance with SMALSE. The
+//!   residual `q = K u - f - Bᵀ lambda` adds `qᵀ (v - u*)`, which is estimated by `|q|` times the norm of `v - u`.
+//! - *Coulomb friction.* `r = F |lambda_nu|` is taken from the level's own `lambda_nu`, so `u*` is the solution of
+//!   *its* given-friction problem, one evaluation of the map (3.15) away. With contraction rate `q` of the map the distance
+//!   to its fixed point is at most `1 / (1 - q)` times the estimate; `q` is about 0.06 on the benchmark. Where the
+//!   map is not contractive the estimate says nothing about the Coulomb problem.
+//! - *The level before* is taken as it is: errors of old tangential positions are not in the estimate.
+
+use crate::certificate::Certificate;
+use crate::frame::PointState;
+use crate::level::Level;
+use crate::model::{Model, Tangential, TouchPoint};
+use rayon::prelude::*;
+use signorini_fem_mesh::Element;
+
+/// Estimated algebraic error of a level; see the [module](self) for its derivation.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct AlgebraicError {
+    /// The duality gap: bounds half the squared energy norm of the error, J.
+    pub energy: f64,
+    /// Part of it that comes from the distance of the torn displacement to a continuous admissible one, J.
+    pub distance: f64,
+    /// Elastic energy of the torn displacement, J.
+    pub elastic: f64,
+}
+
+impl AlgebraicError {
+    /// Error relative to the displacement, both in the energy norm: `sqrt(energy / elastic)`; 0 for a body at rest.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        if self.energy == 0.0 {
+            0.0
+        } else {
+            (self.energy / self.elastic).sqrt()
+        }
+    }
+}
+
+/// Stiffnesses that weigh copies and contact nodes, computed once when first needed.
+#[derive(Debug)]
+pub(crate) struct Weights {
+    /// A measure of the stiffness of each node copy, torn order, N/m.
+    copies: Vec<f64>,
+    /// Stiffness in the direction of the contact rows, N/m, by row.
+    rows: Vec<f64>,
+}
+
+impl Weights {
+    pub(crate) fn new(model: &Model) -> Self {
+        let scene = &model.scene;
+        let part = |subdomain: &signorini_fem_mesh::Subdomain| {
+            let mut sum = vec![0.0; subdomain.nodes.len()];
+            for (nodes, &element) in subdomain.tets.iter().zip(&subdomain.elements) {
+                let element = element as usize;
+                let shape = Element::new(&scene.mesh.tet_points(element));
+                // regions were checked when the stiffness was assembled
+                let modulus = scene
+                    .materials
+                    .get(scene.mesh.regions()[element])
+                    .map_or(1.0, signorini_fem_mesh::Hooke::bound);
+                for (node, g) in nodes.iter().zip(shape.gradients) {
+                    let square: f64 = g.iter().map(|c| c * c).sum();
+                    sum[*node as usize] += modulus * shape.volume * square;
+                }
+            }
+            sum
+        };
+        let copies: Vec<Vec<f64>> = model
+            .decomposition
+            .subdomains()
+            .par_iter()
+            .map(part)
+            .collect();
+        let contact = model.tfeti.gluing().ranges().contact().end;
+        let mut rows = vec![0.0; contact];
+        model.tfeti.row_stiffness(0..contact, &mut rows);
+        Self {
+            copies: copies.concat(),
+            rows,
+        }
+    }
+}
+
+/// What the estimate needs of a solved level.
+pub(crate) struct Solved<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) level: &'a Level,
+    pub(crate) points: &'a [PointState],
+    pub(crate) certificate: &'a Certificate,
+    pub(crate) torn: &'a [f64],
+}
+
+impl Solved<'_> {
+    pub(crate) fn algebraic_error(&self) -> AlgebraicError {
+        let model = self.model;
+        let weights = model.weights.get_or_init(|| Weights::new(model));
+        let mut v = self.mean(&weights.copies);
+        for (point, touch) in self.points.iter().zip(&model.points) {
+            let value = &mut v[3 * touch.node as usize..][..3];
+            self.move_contact_node(point, touch, &weights.rows, value);
+        }
+        self.support(&mut v);
+        let (mut terms, mut worst) = (0.0, [0.0; 2]);
+        for (point, touch) in self.points.iter().zip(&model.points) {
+            let value = &v[3 * touch.node as usize..][..3];
+            let open = normal_offset(self.level, touch, value);
+            terms += (point.normal_force * open).abs();
+            let (mut length, mut size, mut work) = (0.0_f64, 0.0_f64, 0.0);
+            for (direction, row, scale) in directions(touch) {
+                let w = dot(&direction, value) - self.level.offset[row] / scale;
+                let force = dot(&direction, &point.friction_force);
+                length = length.hypot(w);
+                size = size.hypot(force);
+                work += force * w;
+            }
+            terms += (point.slip_bound.max(size) * length + work).max(0.0);
+        }
+        // torn difference, its energy, and the work of unbalanced rigid forces on it
+        let subdomains = model.decomposition.subdomains();
+        let part = |(s, subdomain): (usize, &signorini_fem_mesh::Subdomain)| {
+            let own = &self.torn[model.tfeti.torn_range(s)];
+            let mut product = vec![0.0; own.len()];
+            model.tfeti.stiffness_times(s, own, &mut product);
+            let elastic: f64 = own.iter().zip(&product).map(|(a, b)| a * b).sum();
+            let mut difference = own.to_vec();
+            for (k, &node) in subdomain.nodes.iter().enumerate() {
+                for c in 0..3 {
+                    difference[3 * k + c] -= v[3 * node as usize + c];
+                }
+            }
+            model.tfeti.stiffness_times(s, &difference, &mut product);
+            let energy: f64 = difference.iter().zip(&product).map(|(a, b)| a * b).sum();
+            let square: f64 = difference.iter().map(|d| d * d).sum();
+            [elastic, energy, square]
+        };
+        let parts: Vec<[f64; 3]> = subdomains.par_iter().enumerate().map(part).collect();
+        let sum = |i: usize| parts.iter().map(|p| p[i]).sum::<f64>();
+        worst[0] = self.certificate.equilibrium.value;
+        worst[1] = sum(2).sqrt();
+        let distance = 0.5 * sum(1).max(0.0);
+        AlgebraicError {
+            energy: distance + terms + worst[0] * worst[1],
+            distance,
+            elastic: 0.5 * sum(0),
+        }
+    }
+
+    fn mean(&self, weights: &[f64]) -> Vec<f64> {
+        let nodes = self.model.scene.mesh.points().len();
+        let (mut v, mut total) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
+        let copies = self
+            .model
+            .decomposition
+            .subdomains()
+            .iter()
+            .flat_map(|s| s.nodes.iter().copied());
+        for ((node, weight), u) in copies.zip(weights).zip(self.torn.chunks_exact(3)) {
+            let node = node as usize;
+            total[node] += weight;
+            (0..3).for_each(|c| v[3 * node + c] += weight * u[c]);
+        }
+        for (value, total) in v.chunks_exact_mut(3).zip(&total) {
+            value.iter_mut().for_each(|x| *x /= total);
+        }
+        v
+    }
+
+    /// The best move of one contact node with all others held.
+    fn move_contact_node(
+        &self,
+        point: &PointState,
+        touch: &TouchPoint,
+        stiffness: &[f64],
+        value: &mut [f64],
+    ) {
+        let k = touch.scale.powi(2) * stiffness[touch.row];
+        let open = normal_offset(self.level, touch, value);
+        let target = (open - point.normal_force / k).min(0.0);
+        for c in 0..3 {
+            value[c] += (target - open) * touch.frame.normal[c];
+        }
+        let parts: Vec<([f64; 3], f64, f64)> = directions(touch)
+            .map(|(direction, row, scale)| {
+                let w = dot(&direction, value) - self.level.offset[row] / scale;
+                let k = scale.powi(2) * stiffness[row];
+                (direction, w, w - dot(&direction, &point.friction_force) / k)
+            })
+            .collect();
+        let Some((_, row, scale)) = directions(touch).next() else {
+            return;
+        };
+        let k = scale.powi(2) * stiffness[row];
+        let length = parts.iter().map(|p| p.2).fold(0.0, f64::hypot);
+        let shrink = if length > 0.0 {
+            (1.0 - point.slip_bound / (k * length)).max(0.0)
+        } else {
+            0.0
+        };
+        for (direction, w, shifted) in parts {
+            for c in 0..3 {
+                value[c] += (shrink * shifted - w) * direction[c];
+            }
+        }
+    }
+
+    /// Sets supported directions to their prescribed values.
+    fn support(&self, v: &mut [f64]) {
+        let gluing = self.model.tfeti.gluing();
+        for row in gluing.ranges().dirichlet.clone() {
+            let Some(node) = gluing.node(row) else {
+                continue;
+            };
+            let mut direction = [0.0; 3];
+            for (_, dof, coefficient) in gluing.row(row) {
+                direction[dof % 3] += coefficient;
+            }
+            let value = &mut v[3 * node as usize..][..3];
+            let off =
+                (self.level.offset[row] - dot(&direction, value)) / dot(&direction, &direction);
+            for c in 0..3 {
+                value[c] += off * direction[c];
+            }
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// `v_nu - g`, m.
+fn normal_offset(level: &Level, touch: &TouchPoint, value: &[f64]) -> f64 {
+    dot(&touch.frame.normal, value) - level.offset[touch.row] / touch.scale
+}
+
+/// Tangential directions of a point with their rows and scales.
+fn directions(touch: &TouchPoint) -> impl Iterator<Item = ([f64; 3], usize, f64)> {
+    let [a, b] = touch.frame.tangents;
+    let list = match touch.tangential {
+        Tangential::None => [None, None],
+        Tangential::Line {
+            row,
+            direction,
+            scale,
+        } => [Some((direction, row, scale)), None],
+        Tangential::Plane { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
+    };
+    list.into_iter().flatten()
+}

@@ -1,0 +1,218 @@
+//! Estimate of the error of the time steps by step doubling.
+//!
+//! Every step is taken once, and again as two steps of half the length; the difference estimates the error. Both
+//! difference formulas are of first order on sliding that begins, ends and turns, so that the error of the *two half
+//! steps* is about the difference, and that of the whole step twice as large.
+//!
+//! | [`Doubling`] | the half steps start from | tells | formulas |
+//! |---|---|---|---|
+//! | `Local` | the same [`State`](crate::State) as the whole step | what this step adds | one-step ones (backward Euler), unequal steps too |
+//! | `Global` | their own last state | what all steps so far have added | all |
+//!
+//! The three-step formula has no local version: half a step needs the displacement half a step before the start, which is
+//! no level of the run, and equal steps. From rest both start alike: the body is at rest before time 0, so the missing
+//! old displacements are zero.
+//!
+//! The cost is three times that of the run, and the memory twice.
+
+use crate::clock::Analysis;
+use crate::error::ContactError;
+use crate::frame::Frame;
+use crate::report::Counters;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::simulation::Simulation;
+use signorini_fem_mesh::fields;
+
+/// Where the half steps start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Doubling {
+    /// From the state of the whole step: the error of one step.
+    Local,
+    /// From the last half step: the error of all steps so far.
+    Global,
+}
+
+/// Difference between a step and two half steps, at the end of the step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct TimeError {
+    /// Position of the level, from 0.
+    pub level: usize,
+    /// Time, s.
+    pub time: f64,
+    /// Energy of the difference of the displacements, `1/2 |u - u'|²`, J.
+    pub energy: f64,
+    /// Elastic energy of the half steps' displacement, J.
+    pub elastic: f64,
+    /// Euclidean norm of the differences of the nodal contact forces, N.
+    pub contact_force: f64,
+    /// Euclidean norm of the nodal contact forces, N.
+    pub contact_force_size: f64,
+    /// Difference of the work of friction in this step (`Local`) or since the start (`Global`), J.
+    pub dissipated_work: f64,
+    /// That work, J.
+    pub dissipated_work_size: f64,
+}
+
+impl TimeError {
+    /// Difference of the displacements relative to the displacement, in the energy norm.
+    #[must_use]
+    pub fn displacement(&self) -> f64 {
+        ratio(self.energy, self.elastic).sqrt()
+    }
+
+    /// Relative difference of the contact forces.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        ratio(self.contact_force, self.contact_force_size)
+    }
+
+    /// Relative difference of the work of friction.
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        ratio(self.dissipated_work.abs(), self.dissipated_work_size.abs())
+    }
+}
+
+fn ratio(value: f64, size: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / size }
+}
+
+/// A run beside the same run with steps of half the length.
+///
+/// ```
+/// use signorini_contact::{
+///     Analysis, Contact, DifferenceFormula, Doubling, Friction, Load, Scene, Settings, StepDoubling, Support,
+/// };
+/// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
+///
+/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+/// let ramp = History::ramp(1.0, 1.0)?;
+/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
+///     .with_support(Support::fixed(brick::X_MIN))
+///     .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp.clone()))
+///     .with_load(Load::traction(brick::X_MAX, [1e6, 0.0, 0.0]).with_history(ramp))
+///     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
+///     .with_analysis(Analysis::quasistatic(1.0, 4).with_formula(DifferenceFormula::BACKWARD_EULER));
+/// let mut doubling = StepDoubling::new(&scene, &Settings::default(), Doubling::Local)?;
+/// while !doubling.is_finished() {
+///     let error = doubling.step()?;
+///     assert!(error.displacement() < 0.1);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct StepDoubling {
+    whole: Simulation,
+    half: Simulation,
+    mode: Doubling,
+    /// Work of friction so far, of the whole and the half steps.
+    work: [f64; 2],
+}
+
+impl StepDoubling {
+    /// Sets both runs up.
+    ///
+    /// # Errors
+    /// [`ContactError::Doubling`] for static scenes, and for `Local` with a formula of more than one step; and those
+    /// of [`Simulation::new`].
+    pub fn new(scene: &Scene, settings: &Settings, mode: Doubling) -> Result<Self, ContactError> {
+        let Analysis::Quasistatic { times, formula } = scene.analysis() else {
+            return Err(ContactError::Doubling {
+                reason: "a static scene has no time steps",
+            });
+        };
+        if mode == Doubling::Local && !formula.is_one_step() {
+            return Err(ContactError::Doubling {
+                reason: "a formula of three steps cannot start half a step from one state; use Doubling::Global or backward Euler",
+            });
+        }
+        let mut halves = Vec::with_capacity(2 * times.len());
+        let mut before = 0.0;
+        for &time in times {
+            halves.extend([0.5 * (before + time), time]);
+            before = time;
+        }
+        let analysis = Analysis::Quasistatic {
+            times: halves,
+            formula: *formula,
+        };
+        Ok(Self {
+            whole: Simulation::new(scene.clone(), settings.clone())?,
+            half: Simulation::new(scene.clone().with_analysis(analysis), settings.clone())?,
+            mode,
+            work: [0.0; 2],
+        })
+    }
+
+    /// Whether all levels are solved.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.whole.is_finished()
+    }
+
+    /// The run with whole steps.
+    #[must_use]
+    pub fn whole(&self) -> &Simulation {
+        &self.whole
+    }
+
+    /// The run with half steps.
+    #[must_use]
+    pub fn half(&self) -> &Simulation {
+        &self.half
+    }
+
+    /// What both runs have cost.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        let mut sum = *self.whole.counters();
+        sum += *self.half.counters();
+        sum
+    }
+
+    /// Takes the next step both ways.
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    pub fn step(&mut self) -> Result<TimeError, ContactError> {
+        if self.mode == Doubling::Local {
+            self.work = [0.0; 2];
+            let level = self.whole.state().level();
+            self.half.resume(self.whole.state().rebased(2 * level))?;
+        }
+        for _ in 0..2 {
+            self.work[1] += self.half.step()?.summary().friction_work;
+        }
+        self.work[0] += self.whole.step()?.summary().friction_work;
+        compare(&self.whole.frame(), &self.half.frame(), self.work)
+    }
+}
+
+fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeError, ContactError> {
+    let scene = &whole.model.scene;
+    let mut difference = whole.displacement();
+    let other = half.displacement();
+    difference.iter_mut().zip(&other).for_each(|(a, b)| *a -= b);
+    let (mut force, mut size) = (0.0, 0.0);
+    for (a, b) in whole.points().iter().zip(half.points()) {
+        force += (a.normal_force - b.normal_force).powi(2);
+        size += b.normal_force.powi(2);
+        for c in 0..3 {
+            force += (a.friction_force[c] - b.friction_force[c]).powi(2);
+            size += b.friction_force[c].powi(2);
+        }
+    }
+    Ok(TimeError {
+        level: whole.level(),
+        time: whole.time(),
+        energy: fields::strain_energy(&scene.mesh, &scene.materials, &difference)?,
+        elastic: fields::strain_energy(&scene.mesh, &scene.materials, &other)?,
+        contact_force: force.sqrt(),
+        contact_force_size: size.sqrt(),
+        dissipated_work: work[0] - work[1],
+        dissipated_work_size: work[1],
+    })
+}
