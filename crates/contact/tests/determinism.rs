@@ -1,0 +1,127 @@
+//! The same bits for any number of threads, in every run, and after a restart.
+
+mod common;
+
+use common::{
+    benchmark, bits, methods, rest, small_benchmark, state_bytes, step, up_down_up, weakening,
+};
+use signorini_contact::{
+    Analysis, DifferenceFormula, Friction, Method, Scene, Settings, Simulation, State,
+};
+
+/// Bits of all levels and of the state at the end.
+fn fingerprint(scene: Scene, settings: Settings) -> (Vec<Vec<u64>>, Vec<u8>) {
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    let levels = rest(&mut simulation).iter().map(bits).collect();
+    (levels, state_bytes(simulation.state()))
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("pool")
+        .install(work)
+}
+
+fn settings(method: Method) -> Settings {
+    Settings::default().with_method(method)
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    for method in methods() {
+        let run = |threads| {
+            with_threads(threads, || {
+                fingerprint(benchmark(up_down_up(), 5), settings(method.clone()))
+            })
+        };
+        let one = run(1);
+        assert!(one.0.iter().all(|level| !level.is_empty()) && !one.1.is_empty());
+        for threads in [2, 3] {
+            assert!(one == run(threads), "{}, {threads} threads", method.name());
+        }
+    }
+}
+
+/// Subdomains that share nothing go through other code than translates.
+#[test]
+fn threads_change_no_bit_where_every_subdomain_is_different() {
+    let mesh = signorini_fem_mesh::Brick::new([3.0, 1.0, 1.0], [12, 4, 4])
+        .perturbed(0.1, 2)
+        .build()
+        .expect("brick");
+    let scene = common::loaded_brick(mesh, up_down_up())
+        .with_contact(common::foundation(weakening()))
+        .with_boxes([6, 2, 2])
+        .with_analysis(Analysis::quasistatic(1.0, 3));
+    let run = |threads| with_threads(threads, || fingerprint(scene.clone(), Settings::default()));
+    assert!(run(1) == run(2));
+}
+
+#[test]
+fn every_run_gives_the_same_bits() {
+    for method in methods() {
+        let run = || fingerprint(small_benchmark(weakening(), 6), settings(method.clone()));
+        assert!(run() == run(), "{}", method.name());
+    }
+}
+
+#[test]
+fn a_restart_equals_the_uninterrupted_run_bit_by_bit() {
+    let laws = [
+        Friction::None,
+        Friction::given(3e8),
+        Friction::coulomb(0.3),
+        weakening(),
+    ];
+    for method in methods() {
+        for law in &laws {
+            let scene = || small_benchmark(law.clone(), 8);
+            let (whole, end) = fingerprint(scene(), settings(method.clone()));
+            for cut in [0, 1, 2, 5, 7] {
+                let mut first = Simulation::new(scene(), settings(method.clone())).expect("set-up");
+                for _ in 0..cut {
+                    step(&mut first);
+                }
+                let bytes = state_bytes(first.state());
+                drop(first);
+                let mut second =
+                    Simulation::new(scene(), settings(method.clone())).expect("set-up");
+                second
+                    .resume(State::from_bytes(&bytes).expect("decode"))
+                    .expect("resume");
+                let tail: Vec<_> = rest(&mut second).iter().map(bits).collect();
+                let what = format!("{}, {law:?}, cut after {cut}", method.name());
+                assert!(tail == whole[cut..], "{what}");
+                assert!(state_bytes(second.state()) == end, "{what}: state");
+            }
+        }
+    }
+}
+
+/// A step that is cut in two after it was tried equals one that was small from the beginning.
+#[test]
+fn a_cut_step_retried_equals_the_small_steps() {
+    for method in methods() {
+        let at = |times: &[f64]| {
+            small_benchmark(Friction::coulomb(0.3), 1).with_analysis(Analysis::Quasistatic {
+                times: times.to_vec(),
+                formula: DifferenceFormula::BACKWARD_EULER,
+            })
+        };
+        let (coarse, fine) = (at(&[0.2, 0.4, 0.8, 1.0]), at(&[0.2, 0.4, 0.6, 0.8, 1.0]));
+        let (expected, _) = fingerprint(fine.clone(), settings(method.clone()));
+        let mut tried = Simulation::new(coarse, settings(method.clone())).expect("set-up");
+        step(&mut tried);
+        step(&mut tried);
+        let before = tried.state().clone();
+        let rejected = step(&mut tried);
+        let mut retry = Simulation::new(fine, settings(method.clone())).expect("set-up");
+        retry.resume(before).expect("resume");
+        let tail: Vec<_> = rest(&mut retry).iter().map(bits).collect();
+        assert!(tail == expected[2..], "{}", method.name());
+        // and the large step was indeed another one
+        assert!(bits(&rejected) != expected[3], "{}", method.name());
+    }
+}
