@@ -116,6 +116,15 @@ pub fn warnings(runs: &[&RunRecord]) -> String {
             run.n, run.loading, run.unconverged, run.tolerance
         );
     }
+    for run in runs.iter().filter(|r| r.largest_certificate > r.tolerance) {
+        let above = run.steps.iter().filter(|s| s.certificate > run.tolerance);
+        let steps: Vec<usize> = above.map(|s| s.step).collect();
+        let _ = writeln!(
+            text,
+            "note: n = {}, {}: certificate {:.1e} above the tolerance {:e}; steps {steps:?}",
+            run.n, run.loading, run.largest_certificate, run.tolerance
+        );
+    }
     for run in runs {
         let steps: Vec<usize> = run
             .steps
