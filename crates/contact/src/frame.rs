@@ -6,7 +6,10 @@ use crate::error::ContactError;
 use crate::level::Level;
 use crate::model::{Model, Tangential};
 use crate::report::LevelReport;
-use signorini_fem_mesh::{DiscretisationError, discretisation_error, fields};
+use crate::scene::Scene;
+use signorini_fem_mesh::{
+    Decomposition, DiscretisationError, Surface, discretisation_error, fields,
+};
 
 /// What a touch point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -101,6 +104,24 @@ impl Frame<'_> {
     #[must_use]
     pub fn time(&self) -> f64 {
         self.level.time
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.model.scene
+    }
+
+    /// The decomposition.
+    #[must_use]
+    pub fn decomposition(&self) -> &Decomposition {
+        &self.model.decomposition
+    }
+
+    /// The contact surface with all its nodes, fixed ones included; `None` without contact.
+    #[must_use]
+    pub fn surface(&self) -> Option<&Surface> {
+        self.model.surface.as_ref()
     }
 
     /// How the level was solved.

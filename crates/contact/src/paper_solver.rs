@@ -15,7 +15,7 @@ use signorini_qp::{
 use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
 
 /// Safety factor between the tolerance of a level and those of SMALSE.
-const SAFETY: f64 = 0.1;
+const SAFETY: f64 = 0.05;
 
 /// Relative changes below this one that do not halve are put down to the inner solve.
 const STALL: f64 = 1e-4;
