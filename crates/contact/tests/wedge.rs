@@ -36,7 +36,7 @@ fn mesh() -> TetMesh {
 
 fn on_the_wedge(friction: Friction) -> Scene {
     let slope = Contact::half_space(brick::Z_MIN, [0.0; 3], uphill([0.0, 0.0, 1.0]));
-    Scene::new(mesh(), uniform(1e7, 0.3))
+    Scene::new(mesh(), uniform(1e4, 0.3))
         .with_load(Load::body([0.0, 0.0, -WEIGHT / VOLUME]))
         .with_contact(slope.with_friction(friction))
 }
@@ -56,15 +56,15 @@ fn the_force_that_moves_the_block() {
         assert!((threshold(coefficient) - published).abs() < 5e-8);
         for method in methods() {
             for boxes in [[1, 1, 1], [2, 1, 1]] {
-                // on rollers sideways at one edge only, so that nothing else is held
-                let corner = vec![0, 5 * 2 * 2 - 5];
+                // upper nodes only, so that every contact node is free: the grid has 5 x 2 x 2 nodes
+                let (back, side) = (vec![10, 15], vec![10, 14]);
                 let scene = on_the_wedge(law(coefficient))
                     .with_boxes(boxes)
                     .with_support(
-                        Support::components(brick::X_MIN, [true, false, false])
+                        Support::components(back, [true, false, false])
                             .moved([0.1, 0.0, 0.0], History::constant(1.0)),
                     )
-                    .with_support(Support::components(corner, [false, true, false]));
+                    .with_support(Support::components(side, [false, true, false]));
                 let settings = Settings::default()
                     .with_tolerance(1e-8)
                     .with_method(method.clone());

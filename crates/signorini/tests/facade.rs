@@ -1,0 +1,110 @@
+//! A program that knows the facade only.
+
+use signorini::prelude::*;
+
+fn scene(levels: usize) -> Result<Scene, Error> {
+    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
+    let steel = Hooke::isotropic(211.9e9, 0.277)?;
+    Ok(Scene::new(mesh, Materials::uniform(steel))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(
+            Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?),
+        )
+        .with_contact(
+            Contact::rigid(brick::Z_MIN)
+                .with_gap(0.1)
+                .with_friction(Friction::coulomb(0.3)),
+        )
+        .with_boxes([3, 1, 1])
+        .with_analysis(Analysis::quasistatic(1.0, levels)))
+}
+
+#[derive(Default)]
+struct Diary {
+    started: Option<usize>,
+    times: Vec<f64>,
+    finished: Option<usize>,
+    stop_after: Option<usize>,
+}
+
+impl Observer for Diary {
+    fn started(&mut self, _plan: &Plan, levels: usize) {
+        self.started = Some(levels);
+    }
+
+    fn level(&mut self, frame: &Frame<'_>) -> Flow {
+        assert!(frame.certificate().largest() <= 1e-6);
+        self.times.push(frame.time());
+        if self.stop_after == Some(self.times.len()) {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        }
+    }
+
+    fn finished(&mut self, levels: usize) {
+        self.finished = Some(levels);
+    }
+}
+
+#[test]
+fn an_observer_sees_every_level_and_may_stop_the_run() -> Result<(), Error> {
+    let mut simulation = Simulation::new(scene(4)?, Settings::default())?;
+    let mut diary = Diary {
+        stop_after: Some(2),
+        ..Diary::default()
+    };
+    simulation.run(&mut diary)?;
+    assert_eq!((diary.started, diary.finished), (Some(4), Some(2)));
+    assert!(!simulation.is_finished());
+    let mut rest = Diary::default();
+    simulation.run(&mut rest)?;
+    assert_eq!((rest.started, rest.finished), (Some(2), Some(2)));
+    diary.times.extend(rest.times);
+    assert_eq!(diary.times, [0.25, 0.5, 0.75, 1.0]);
+    assert!(simulation.is_finished());
+    Ok(())
+}
+
+#[test]
+fn a_closure_is_an_observer() -> Result<(), Error> {
+    let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
+    let mut touching = Vec::new();
+    simulation.run(&mut |frame: &Frame<'_>| {
+        touching.push(frame.summary().active);
+        Flow::Continue
+    })?;
+    assert_eq!(touching.len(), 3);
+    assert!(touching.last() > Some(&0));
+    Ok(())
+}
+
+#[test]
+fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
+    let mut simulation = Simulation::new(scene(1)?, Settings::default())?;
+    let nodes = simulation.scene().mesh().points().len();
+    let elements = simulation.scene().mesh().tets().len();
+    let frame = simulation.step()?;
+    assert_eq!(frame.displacement().len(), 3 * nodes);
+    assert_eq!(frame.stress()?.len(), elements);
+    // a linear body without gap work: twice the energy is the work of all forces on the displacements
+    let energy = frame.strain_energy()?;
+    let points = frame.points();
+    let pressing = points
+        .iter()
+        .filter(|p| p.state != ContactState::Open)
+        .count();
+    assert_eq!(pressing, frame.summary().active);
+    assert!(energy > 0.0 && pressing > 0);
+    Ok(())
+}
+
+#[test]
+fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
+    let plan = Plan::new(&scene(4)?, &Settings::default())?;
+    let text = plan.to_string();
+    for part in ["Coulomb", "with gap", "4 levels", "face"] {
+        assert!(text.contains(part), "'{part}' is not in\n{text}");
+    }
+    Ok(())
+}
