@@ -104,21 +104,34 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     work.face.guess(set, x);
     if let Err(QpError::CoarseDeficient { .. }) = set_face(problem, coarse, set, work, &mut report)
     {
-        // held by its constraints only: begin with all of them at work
-        work.face.free_all(set);
+        // held by its constraints only: forces that balance with all of them at work tell the first face
+        work.face.free_all();
         set_face(problem, coarse, set, work, &mut report)?;
+        coarse.repair(x, problem.rhs);
+        hook(x, set);
+        set.validate()?;
+        report.hook_calls += 1;
+        set.project(x);
+        work.face.guess(set, x);
+        if let Err(QpError::CoarseDeficient { .. }) =
+            set_face(problem, coarse, set, work, &mut report)
+        {
+            work.face.free_all();
+            set_face(problem, coarse, set, work, &mut report)?;
+        }
     }
     coarse.repair(x, problem.rhs);
     correct(problem, x, ax, ax_known, work, &mut report);
 
     let mut last_jump = f64::INFINITY;
+    let mut peak = vector::norm(x);
     let mut best = f64::INFINITY;
     let mut waited = 0;
     loop {
         residual(problem, coarse, ax, work);
         work.face
             .classify(set, x, &work.residual, problem.scale, settings.natural_step);
-        match set_face(problem, coarse, set, work, &mut report) {
+        match hold(problem, coarse, set, work, &mut report) {
             Ok(true) => residual(problem, coarse, ax, work),
             Ok(false) => {}
             Err(QpError::CoarseDeficient { .. }) => {
@@ -145,6 +158,14 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         }
         // the jump is what the last move to the predicted face changed
         let settled = report.faces == 0 || last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
+        if peak > SHRUNK * x_norm {
+            // A x still carries the rounding errors of a much larger x
+            peak = x_norm;
+            correct(problem, x, ax, false, work, &mut report);
+            residual(problem, coarse, ax, work);
+            continue;
+        }
+        peak = peak.max(x_norm);
         if errors.0 <= limits.all && errors.1 <= limits.constrained && settled {
             report.status = Status::Converged;
             return Ok(report);
@@ -190,6 +211,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             hook(x, set);
             set.validate()?;
             report.hook_calls += 1;
+            // held components go with bounds that moved
+            work.face
+                .settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
         }
         work.face
             .settle_discs(set, x, &work.residual, problem.scale, settings.natural_step);
@@ -200,6 +224,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         }
     }
 }
+
+/// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
+const SHRUNK: f64 = 1e5;
 
 /// Components up to the last constrained one.
 fn constrained_length(set: &ProductSet) -> usize {
@@ -263,6 +290,27 @@ fn set_face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     let factored = coarse.set_weights(&work.w)?;
     report.factorisations += usize::from(factored);
     Ok(factored)
+}
+
+/// As [`set_face`]; where the free components of the predicted face do not hold every rigid mode, the points that slide
+/// least are taken for sticking, as many as it needs, and in the end every component for free.
+fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &ProductSet,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) -> Result<bool, QpError> {
+    let mut count = 2;
+    loop {
+        match set_face(problem, coarse, set, work, report) {
+            Err(QpError::CoarseDeficient { .. }) if work.face.release(count) => count *= 2,
+            Err(QpError::CoarseDeficient { .. }) => break,
+            other => return other,
+        }
+    }
+    work.face.free_all();
+    set_face(problem, coarse, set, work, report)
 }
 
 /// `ax += A (x - t)`, or `ax = A x`.

@@ -22,6 +22,8 @@ pub(crate) enum Disc {
         tau: [f64; 2],
         kappa: f64,
         damp: f64,
+        /// `-g·n`.
+        slip: f64,
     },
 }
 
@@ -101,21 +103,26 @@ impl Face {
         self.free_bounds = free_bounds;
     }
 
-    /// Every bounded component free, every disc with a positive radius free.
-    pub(crate) fn free_all(&mut self, set: &ProductSet) {
-        let Self { free, discs, .. } = self;
-        visit(
-            set,
-            |_, k, lo, hi| free[k] = lo < hi,
-            |_, k, radius| {
-                discs[k] = if radius > 0.0 {
-                    Disc::Free
-                } else {
-                    Disc::Fixed
-                }
-            },
-        );
-        self.free_bounds = self.free.iter().filter(|f| **f).count();
+    /// Every bounded component and every disc free, whatever its bounds are now.
+    pub(crate) fn free_all(&mut self) {
+        self.free.fill(true);
+        self.discs.fill(Disc::Free);
+        self.free_bounds = self.free.len();
+    }
+
+    /// Frees the `count` discs that slide least; false if none slides.
+    pub(crate) fn release(&mut self, count: usize) -> bool {
+        let mut sliding: Vec<(f64, usize)> = Vec::new();
+        for (k, disc) in self.discs.iter().enumerate() {
+            if let Disc::Sliding { slip, .. } = disc {
+                sliding.push((*slip, k));
+            }
+        }
+        sliding.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for &(_, k) in sliding.iter().take(count) {
+            self.discs[k] = Disc::Free;
+        }
+        !sliding.is_empty()
     }
 
     /// Classifies every block at the feasible point `x` with gradient `g`.
@@ -320,6 +327,7 @@ fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
         tau: [-n[1], n[0]],
         kappa,
         damp: (1.0 / (1.0 + kappa * scale)).sqrt(),
+        slip: -outward,
     }
 }
 
