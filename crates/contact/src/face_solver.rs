@@ -40,7 +40,7 @@ impl FaceSolver {
         let mut scale = vec![0.0; model.tfeti.dual_dim()];
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         Ok(Self {
-            space: FaceSpace::new(model.tfeti.coarse(), contact)?,
+            space: FaceSpace::new(model.tfeti.coarse(), contact, model.tfeti.row_weights())?,
             work: FaceWorkspace::new(model.tfeti.dual(), &preconditioner),
             preconditioner,
             scale,

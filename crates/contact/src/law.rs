@@ -131,6 +131,18 @@ impl Coefficient {
         )
     }
 
+    /// The largest value at any slip rate; `None` if that is not known.
+    pub(crate) fn largest(&self, point: [f64; 3]) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Field(field) => Some(field(point)),
+            Self::Exponential { fixed, kinetic, .. } => Some(fixed.max(*kinetic)),
+            Self::Table(points) => Some(points.iter().fold(0.0_f64, |m, p| m.max(p.1))),
+            Self::RateField(_) => None,
+        }
+        .filter(|v| v.is_finite() && *v >= 0.0)
+    }
+
     /// Checks what can be checked without a place.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         let bad =

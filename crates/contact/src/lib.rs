@@ -4,6 +4,7 @@ mod accuracy;
 mod algebraic;
 mod certificate;
 mod clock;
+mod cone;
 mod error;
 mod face_solver;
 pub mod fixed_point;

@@ -15,7 +15,7 @@ use crate::settings::Settings;
 use crate::solver::{Iterate, Solver};
 use crate::state::State;
 use signorini_fem_mesh::Decomposition;
-use signorini_qp::vector;
+use signorini_qp::{SymmetricOperator, vector};
 use signorini_tfeti::Tfeti;
 use std::time::{Duration, Instant};
 
@@ -159,7 +159,25 @@ impl Simulation {
             });
         }
         self.state = state;
+        self.check_products();
         Ok(())
+    }
+
+    /// Recomputes `F lambda` of a state that another scene left: solvers take it at its word.
+    fn check_products(&mut self) {
+        let dual = self.model.tfeti.dual();
+        let mut scratch = dual.scratch();
+        let mut product = vec![0.0; dual.dim()];
+        for (lambda, f_lambda) in self.state.products_mut() {
+            if lambda.len() != product.len() {
+                continue;
+            }
+            dual.apply(lambda, &mut product, &mut scratch);
+            let off = vector::distance(&product, f_lambda);
+            if !(off <= FOREIGN * vector::norm(&product)) {
+                f_lambda.clone_from(&product);
+            }
+        }
     }
 
     /// Whether all levels are solved.
@@ -224,8 +242,7 @@ impl Simulation {
     fn solve(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
         let accuracy = self.settings.accuracy;
         if accuracy == Accuracy::Tolerance {
-            let tolerance = self.settings.tolerance;
-            return self.solve_once(tolerance);
+            return self.solve_certified();
         }
         let mut total: Option<LevelReport> = None;
         let mut rounds = 0;
@@ -268,6 +285,32 @@ impl Simulation {
                 }
                 return Ok((report, lambda, rows));
             }
+            total = Some(report);
+            self.iterate.lambda = lambda;
+        }
+    }
+
+    /// Solves with the tolerance of the settings. The certificate has the last word: where it is far above the tolerance
+    /// (thin bodies, whose displacement magnifies errors of the forces), the solver continues with a smaller one.
+    fn solve_certified(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let limit = (CERTIFIED * self.settings.tolerance).max(LEAST);
+        let mut tolerance = self.settings.tolerance;
+        let mut total: Option<LevelReport> = None;
+        loop {
+            let (report, lambda, rows) = self.solve_once(tolerance)?;
+            let certified = self.certificate.largest() <= limit;
+            let converged = report.status.converged();
+            let mut report = match total.take() {
+                Some(before) => before.resumed(report),
+                None => report,
+            };
+            if certified || !converged || tolerance <= LEAST {
+                if converged && !certified {
+                    report.status = LevelStatus::NotCertified;
+                }
+                return Ok((report, lambda, rows));
+            }
+            tolerance = (0.01 * tolerance).max(LEAST);
             total = Some(report);
             self.iterate.lambda = lambda;
         }
@@ -410,6 +453,15 @@ impl Simulation {
         );
     }
 }
+
+/// Largest certificate of a converged level over the tolerance.
+const CERTIFIED: f64 = 30.0;
+
+/// Smallest tolerance that is tried, and the certificate that rounding leaves.
+const LEAST: f64 = 1e-10;
+
+/// Relative error of a stored `F lambda` above which it belongs to another scene.
+const FOREIGN: f64 = 1e-6;
 
 fn combine(model: &Model, level: &Level) -> Vec<f64> {
     let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();

@@ -95,6 +95,11 @@ impl State {
         &self.f_lambda
     }
 
+    /// Multipliers and their products, to be checked.
+    pub(crate) fn products_mut(&mut self) -> impl Iterator<Item = (&Vec<f64>, &mut Vec<f64>)> {
+        self.lambda.iter().zip(&mut self.f_lambda)
+    }
+
     pub(crate) fn multiplier(&self) -> &[Vec<f64>; 2] {
         &self.multiplier
     }

@@ -16,6 +16,8 @@ pub struct FaceSpace {
     always: Option<CoarseFactor>,
     face: CoarseFactor,
     weights: Vec<f64>,
+    /// Weight of each row where it is free; `None` means 1.
+    metric: Option<Vec<f64>>,
     rhs: Vec<f64>,
     alpha: Vec<f64>,
     scratch: CoarseScratch,
@@ -27,12 +29,19 @@ const WORK: f64 = 1e-9;
 impl FaceSpace {
     /// For the coarse space of a system; `contact_rows` is the number of leading rows with constraints.
     ///
+    /// `metric` gives free rows another weight than 1, see [`Tfeti::row_weights`](crate::Tfeti::row_weights).
+    ///
     /// # Errors
     /// [`TfetiError`] if a factorisation fails.
-    pub fn new(coarse: &Coarse, contact_rows: usize) -> Result<Self, TfetiError> {
+    pub fn new(
+        coarse: &Coarse,
+        contact_rows: usize,
+        metric: Option<Vec<f64>>,
+    ) -> Result<Self, TfetiError> {
         let mut weights = vec![1.0; coarse.dim()];
         weights[..contact_rows].fill(0.0);
-        let factor = coarse.factor_weighted(RowWeights::diagonal(weights.clone()))?;
+        let factor =
+            coarse.factor_weighted(RowWeights::diagonal(weighted(&weights, metric.as_deref())))?;
         let always = factor.free_motions().is_empty().then(|| factor.clone());
         Ok(Self {
             scratch: coarse.scratch(),
@@ -40,6 +49,7 @@ impl FaceSpace {
             always,
             face: factor,
             weights,
+            metric,
             rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
         })
@@ -71,6 +81,13 @@ impl FaceSpace {
     }
 }
 
+fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
+    match metric {
+        Some(metric) => free.iter().zip(metric).map(|(w, m)| w * m).collect(),
+        None => free.to_vec(),
+    }
+}
+
 impl CoarseSpace for FaceSpace {
     fn dim(&self) -> usize {
         self.coarse.dim()
@@ -89,7 +106,7 @@ impl CoarseSpace for FaceSpace {
         }
         let factor = self
             .coarse
-            .factor_weighted(RowWeights::diagonal(w.to_vec()))
+            .factor_weighted(RowWeights::diagonal(weighted(w, self.metric.as_deref())))
             .map_err(|error| QpError::CoarseDeficient {
                 motion: error.to_string(),
             })?;

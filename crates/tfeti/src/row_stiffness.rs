@@ -30,4 +30,41 @@ impl Tfeti {
             }
         }
     }
+
+    /// Weights of the rows for projectors that suit a body of several materials: `1 / sum_d b_d² / K_dd`, relative to the
+    /// largest. A row between a stiff and a soft subdomain carries forces in proportion to the soft one. `None` where
+    /// there is one material, as all weights are alike then.
+    #[must_use]
+    pub fn row_weights(&self) -> Option<Vec<f64>> {
+        if !self.heterogeneous {
+            return None;
+        }
+        let parts = &self.parts;
+        let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
+            let stiffness = &parts.bases[parts.classes.place(subdomain).0].stiffness;
+            let diagonal = stiffness
+                .find(dof, dof)
+                .map_or(0.0, |k| stiffness.values[k]);
+            if diagonal > 0.0 {
+                value * value / diagonal
+            } else {
+                0.0
+            }
+        };
+        let mut weights: Vec<f64> = (0..self.dual_dim())
+            .map(|row| {
+                self.gluing()
+                    .row(row)
+                    .into_iter()
+                    .map(compliance)
+                    .sum::<f64>()
+            })
+            .map(|c| if c > 0.0 { 1.0 / c } else { 0.0 })
+            .collect();
+        let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
+        for w in &mut weights {
+            *w = if *w > 0.0 { *w / largest } else { 1.0 };
+        }
+        Some(weights)
+    }
 }

@@ -1,0 +1,243 @@
+//! The cone of the wrenches that contact forces can exert on rigid motions, and the closest point in it.
+//!
+//! Least squares with non-negative coefficients (Lawson and Hanson) over the generators `n + F (t1 cos + t2 sin)` of all
+//! points and angles: in each round the generator that helps most joins those in use, which are never more than there
+//! are motions, up to rounding.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Force directions of one touch point, as work on the motions.
+#[derive(Debug, Clone)]
+pub(crate) struct Generators {
+    /// Of a pressing force of 1 N.
+    pub(crate) normal: Vec<f64>,
+    /// Of friction forces of 1 N along each tangent.
+    pub(crate) tangents: Vec<Vec<f64>>,
+    /// Largest friction over pressure; `None` if friction has no bound that follows the pressure.
+    pub(crate) coefficient: Option<f64>,
+}
+
+#[derive(Debug)]
+pub(crate) struct Cone {
+    dim: usize,
+    generators: Vec<Generators>,
+    /// Norm of the largest generator.
+    largest: f64,
+}
+
+/// A residual below this fraction of the loads is rounding.
+const RESIDUAL: f64 = 1e-8;
+
+/// Loads that would need contact forces that many times their own size count as not held.
+const LEVERAGE: f64 = 1e5;
+
+/// Rounds before the question is left open.
+const ROUNDS: usize = 500;
+
+impl Cone {
+    pub(crate) fn new(dim: usize, generators: Vec<Generators>) -> Self {
+        let mut largest = 0.0_f64;
+        for g in &generators {
+            for v in std::iter::once(&g.normal).chain(&g.tangents) {
+                largest = largest.max(norm(v));
+            }
+        }
+        Self {
+            dim,
+            generators,
+            largest,
+        }
+    }
+
+    /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies in the
+    /// cone, or if that remains open.
+    pub(crate) fn separates(&mut self, b: &[f64]) -> Option<Vec<f64>> {
+        let mut used: Vec<Vec<f64>> = Vec::new();
+        let mut factors: Vec<f64> = Vec::new();
+        for _ in 0..ROUNDS {
+            let mut r = b.to_vec();
+            for (column, x) in used.iter().zip(&factors) {
+                for (r, c) in r.iter_mut().zip(column) {
+                    *r -= x * c;
+                }
+            }
+            let length = norm(&r);
+            if length <= RESIDUAL {
+                return None;
+            }
+            let (gain, column) = self.best(&r)?;
+            // no force needed: the residual separates, unless enormous forces could still close it
+            if LEVERAGE * gain.max(0.0) <= length * length * self.largest {
+                r.iter_mut().for_each(|v| *v /= length);
+                return Some(r);
+            }
+            used.push(column);
+            factors.push(0.0);
+            if !improve(self.dim, &mut used, &mut factors, b) {
+                return None;
+            }
+        }
+        None
+    }
+
+    /// The generator with the largest product with `r`.
+    fn best(&self, r: &[f64]) -> Option<(f64, Vec<f64>)> {
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        let mut offer = |gain: f64, column: &dyn Fn() -> Vec<f64>| {
+            if best.as_ref().is_none_or(|b| gain > b.0) {
+                best = Some((gain, column()));
+            }
+        };
+        for g in &self.generators {
+            let along: Vec<f64> = g.tangents.iter().map(|t| dot(t, r)).collect();
+            let friction = norm(&along);
+            let direction = |bound: f64| -> Vec<f64> {
+                let mut out = vec![0.0; r.len()];
+                if friction > 0.0 {
+                    for (t, a) in g.tangents.iter().zip(&along) {
+                        for (o, t) in out.iter_mut().zip(t) {
+                            *o += bound * a / friction * t;
+                        }
+                    }
+                }
+                out
+            };
+            let bound = g.coefficient.unwrap_or(0.0);
+            offer(dot(&g.normal, r) + bound * friction, &|| {
+                let mut out = direction(bound);
+                for (o, n) in out.iter_mut().zip(&g.normal) {
+                    *o += n;
+                }
+                out
+            });
+            if g.coefficient.is_none() {
+                offer(friction, &|| direction(1.0));
+            }
+        }
+        best
+    }
+}
+
+/// Least squares over the columns in use with positive factors; columns that would get negative ones leave.
+fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f64]) -> bool {
+    loop {
+        let count = used.len();
+        if count == 0 {
+            return false;
+        }
+        let a = DMatrix::from_fn(dim, count, |i, j| used[j][i]);
+        let svd = a.svd(true, true);
+        let cut = 1e-13 * svd.singular_values.max();
+        let Ok(solution) = svd.solve(&DVector::from_column_slice(b), cut) else {
+            return false;
+        };
+        let mut step = 1.0_f64;
+        for (new, old) in solution.iter().zip(factors.iter()) {
+            if *new < 0.0 {
+                step = step.min(old / (old - new));
+            }
+        }
+        for (new, old) in solution.iter().zip(factors.iter_mut()) {
+            *old += step * (new - *old);
+        }
+        if step >= 1.0 {
+            return true;
+        }
+        let size = factors.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let keep: Vec<bool> = factors
+            .iter()
+            .zip(solution.iter())
+            .map(|(f, new)| *new >= 0.0 || *f > 1e-14 * size)
+            .collect();
+        if keep.iter().all(|k| *k) {
+            return true;
+        }
+        let mut k = 0..;
+        used.retain(|_| k.next().is_some_and(|k| keep[k]));
+        let mut k = 0..;
+        factors.retain(|_| k.next().is_some_and(|k| keep[k]));
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two points at x = -1 and 1 on a floor; motions: up, along the floor, rotation in the plane.
+    fn two_points(coefficient: f64) -> Cone {
+        let point = |x: f64| Generators {
+            normal: vec![1.0, 0.0, x],
+            tangents: vec![vec![0.0, 1.0, 0.0]],
+            coefficient: Some(coefficient),
+        };
+        Cone::new(3, vec![point(-1.0), point(1.0)])
+    }
+
+    fn held(cone: &mut Cone, b: [f64; 3]) -> bool {
+        let length = norm(&b);
+        cone.separates(&b.map(|v| v / length)).is_none()
+    }
+
+    #[test]
+    fn weight_between_the_points_is_held_and_beyond_it_tips() {
+        let mut cone = two_points(0.0);
+        for x in [-1.0, -0.3, 0.999_999, 1.0] {
+            assert!(held(&mut cone, [1.0, 0.0, x]), "{x}");
+        }
+        for x in [-1.001, 1.000_1, 5.0] {
+            assert!(!held(&mut cone, [1.0, 0.0, x]), "{x}");
+        }
+        assert!(!held(&mut cone, [-1.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn friction_holds_up_to_its_cone() {
+        let mut cone = two_points(0.3);
+        assert!(held(&mut cone, [1.0, 0.299_999, 0.0]));
+        assert!(held(&mut cone, [1.0, -0.3, 0.5]));
+        assert!(!held(&mut cone, [1.0, 0.300_1, 0.0]));
+    }
+
+    #[test]
+    fn unbounded_friction_is_not_judged() {
+        let mut cone = two_points(0.0);
+        for g in &mut cone.generators {
+            g.coefficient = None;
+        }
+        assert!(held(&mut cone, [1.0, 100.0, 0.0]));
+        assert!(!held(&mut cone, [-1.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn round_cones_of_many_points() {
+        let points = (0..40)
+            .map(|k| {
+                let angle = f64::from(k) * 0.157;
+                let (x, y) = (angle.cos(), angle.sin());
+                Generators {
+                    normal: vec![0.0, 0.0, 1.0, y, -x, 0.0],
+                    tangents: vec![
+                        vec![1.0, 0.0, 0.0, 0.0, 0.0, -y],
+                        vec![0.0, 1.0, 0.0, 0.0, 0.0, x],
+                    ],
+                    coefficient: Some(0.5),
+                }
+            })
+            .collect();
+        let mut cone = Cone::new(6, points);
+        for (along, expected) in [(0.49, true), (0.499_99, true), (0.500_1, false)] {
+            let b = [0.6 * along, 0.8 * along, 1.0, 0.0, 0.0, 0.0];
+            let length = norm(&b);
+            let b = b.map(|v| v / length);
+            assert_eq!(cone.separates(&b).is_none(), expected, "{along}");
+        }
+    }
+}
