@@ -229,9 +229,7 @@ fn all_methods_agree_with_clarabel() {
         let case = case(seed);
         for method in methods() {
             let what = format!("seed {seed}, {}", method.name());
-            let settings = Settings::default()
-                .with_tolerance(1e-10)
-                .with_method(method);
+            let settings = Settings::default().with_tolerance(1e-8).with_method(method);
             let mut simulation = Simulation::new(scene(&case), settings).expect("set-up");
             let level = step(&mut simulation);
             common::assert_certified(&level, &what);

@@ -331,12 +331,13 @@ fn flipped_bits_of_a_checkpoint_do_not_panic() {
             continue;
         };
         let mut other = Simulation::new(scene.clone(), Settings::default()).expect("set-up");
-        if other.resume(state).is_ok() && !other.is_finished() {
-            if let Ok(frame) = other.step() {
-                let honest =
-                    !frame.report().status.converged() || frame.certificate().largest() <= 1e-6;
-                assert!(honest, "byte {at}");
-            }
+        if other.resume(state).is_ok()
+            && !other.is_finished()
+            && let Ok(frame) = other.step()
+        {
+            let honest =
+                !frame.report().status.converged() || frame.certificate().largest() <= 1e-6;
+            assert!(honest, "byte {at}");
         }
     }
 }
