@@ -7,9 +7,7 @@ use crate::level::Level;
 use crate::model::{Model, Tangential};
 use crate::report::LevelReport;
 use crate::scene::Scene;
-use signorini_fem_mesh::{
-    Decomposition, DiscretisationError, Surface, discretisation_error, fields,
-};
+use signorini_fem_mesh::{Decomposition, DiscretisationError, StrainRecovery, Surface, fields};
 
 /// What a touch point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -91,6 +89,7 @@ pub struct Frame<'a> {
     pub(crate) summary: &'a ContactSummary,
     pub(crate) points: &'a [PointState],
     pub(crate) torn: &'a [f64],
+    pub(crate) residual: &'a [f64],
 }
 
 impl Frame<'_> {
@@ -195,6 +194,7 @@ impl Frame<'_> {
             points: self.points,
             certificate: self.certificate,
             torn: self.torn,
+            residual: self.residual,
         };
         solved.algebraic_error()
     }
@@ -205,11 +205,11 @@ impl Frame<'_> {
     /// As [`stress`](Self::stress).
     pub fn discretisation_error(&self) -> Result<DiscretisationError, ContactError> {
         let scene = &self.model.scene;
-        Ok(discretisation_error(
-            &scene.mesh,
-            &scene.materials,
-            &self.displacement(),
-        )?)
+        let recovery = self
+            .model
+            .recovery
+            .get_or_init(|| StrainRecovery::new(&scene.mesh));
+        Ok(recovery.error(&scene.mesh, &scene.materials, &self.displacement())?)
     }
 
     /// Sum of all loads at this level, N.

@@ -5,7 +5,7 @@ use crate::law::Friction;
 use crate::plan::Plan;
 use crate::scene::{Contact, ContactNormal, Gap, Scene};
 use crate::settings::Settings;
-use signorini_fem_mesh::{Decomposition, Frame, History, Surface, assemble_load};
+use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface, assemble_load};
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti as tfeti;
 use signorini_tfeti::{
@@ -83,6 +83,8 @@ pub(crate) struct Model {
     pub(crate) set: ProductSet,
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
     pub(crate) weights: std::sync::OnceLock<crate::algebraic::Weights>,
+    /// Patches of the estimate of the discretisation error; made when it is first asked for.
+    pub(crate) recovery: std::sync::OnceLock<StrainRecovery>,
 }
 
 impl Model {
@@ -141,6 +143,7 @@ impl Model {
             surface,
             set,
             weights: std::sync::OnceLock::new(),
+            recovery: std::sync::OnceLock::new(),
         })
     }
 

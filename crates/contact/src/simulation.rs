@@ -53,6 +53,7 @@ pub struct Simulation {
     points: Vec<PointState>,
     summary: ContactSummary,
     torn: Vec<f64>,
+    residual: Vec<f64>,
     total: Counters,
     setup: Duration,
     controller: Controller,
@@ -77,6 +78,7 @@ impl Simulation {
             points: Vec::new(),
             summary: ContactSummary::default(),
             torn: Vec::new(),
+            residual: Vec::new(),
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
@@ -235,6 +237,7 @@ impl Simulation {
             summary: &self.summary,
             points: &self.points,
             torn: &self.torn,
+            residual: &self.residual,
         }
     }
 
@@ -340,12 +343,12 @@ impl Simulation {
         report.counters.products += 1;
         let mut rows = vec![0.0; tfeti.dual_dim()];
         tfeti.rows_times(&self.torn, &mut rows);
-        let residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
+        self.residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
         let measured = Measured {
             rows: &rows,
             u: &self.torn,
             force: &force,
-            residual: &residual,
+            residual: &self.residual,
         };
         self.certificate = certify(model, &self.level, &lambda, &measured);
         self.points = point_states(model, &self.level, &lambda, &rows);

@@ -14,7 +14,7 @@
 //! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`] |
 //! | a contact surface | [`Surface`] with a [`Frame`] and an area at each node |
 //! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`], [`energy_of_error`] |
-//! | an estimate of the discretisation error | [`discretisation_error`] |
+//! | an estimate of the discretisation error | [`discretisation_error`], [`StrainRecovery`] |
 //! | two meshes compared | [`Locator`], [`energy_of_difference`] |
 //! | pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
 //!
@@ -118,5 +118,7 @@ pub use mesh::{
     BoundaryFacet, Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets,
 };
 pub use norms::{h1_seminorm_error, l2_error};
-pub use recovery::{DiscretisationError, discretisation_error, energy_of_error};
+pub use recovery::{
+    DiscretisationError, StrainRecovery, discretisation_error, energy_of_error,
+};
 pub use surface::{Frame, Surface, SurfaceError};

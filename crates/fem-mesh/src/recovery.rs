@@ -18,7 +18,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{Matrix4, SMatrix};
+use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
 use crate::fields::{FieldError, strains};
@@ -110,30 +110,7 @@ pub fn discretisation_error(
     materials: &Materials,
     u: &[f64],
 ) -> Result<DiscretisationError, FieldError> {
-    let laws = materials.of_tets(mesh.regions())?;
-    let strains = strains(mesh, u)?;
-    let patches = Patches::new(mesh);
-    let nodal = patches.recover(mesh, &strains);
-    let energy = |tet: usize| {
-        let corners: [[f64; 6]; 4] = std::array::from_fn(|a| {
-            let key = (mesh.tets()[tet][a], mesh.regions()[tet]);
-            let recovered = nodal[patches.place(key)];
-            std::array::from_fn(|i| recovered[i] - strains[tet][i])
-        });
-        // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
-        let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
-        let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
-        mesh.volume(tet) * (squares + laws[tet].energy_density(&sum)) / 20.0
-    };
-    let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
-    let elastic = (0..strains.len())
-        .map(|tet| mesh.volume(tet) * laws[tet].energy_density(&strains[tet]))
-        .sum();
-    Ok(DiscretisationError {
-        total: energies.iter().sum(),
-        energies,
-        elastic,
-    })
+    StrainRecovery::new(mesh).error(mesh, materials, u)
 }
 
 /// Energy of the difference between a displacement of the mesh and a given one, half of error
@@ -171,67 +148,135 @@ pub fn energy_of_error(
     Ok(parts.iter().sum())
 }
 
-/// The tetrahedra around each node, region by region.
-struct Patches {
-    /// (node, region) in ascending order.
-    keys: Vec<(u32, u32)>,
-    tets: Vec<Vec<u32>>,
+/// The recovery of strains at the nodes of a mesh, to be used for many displacements: the fits
+/// depend on the mesh only, so that each recovered strain is a fixed combination of strains.
+#[derive(Debug, Clone)]
+pub struct StrainRecovery {
+    /// Where the patch of each (node, region) starts in `tets` and `weights`.
+    pointers: Vec<usize>,
+    tets: Vec<u32>,
+    weights: Vec<f64>,
+    /// Patches of the corners of each tetrahedron.
+    corners: Vec<[u32; 4]>,
 }
 
-impl Patches {
-    fn new(mesh: &TetMesh) -> Self {
-        let mut map: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
+impl StrainRecovery {
+    /// Fits all patches of a mesh.
+    #[must_use]
+    pub fn new(mesh: &TetMesh) -> Self {
+        let mut owners: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
         for (tet, nodes) in mesh.tets().iter().enumerate() {
             for &node in nodes {
-                map.entry((node, mesh.regions()[tet]))
-                    .or_default()
-                    .push(tet as u32);
+                let key = (node, mesh.regions()[tet]);
+                owners.entry(key).or_default().push(tet as u32);
             }
         }
-        let (keys, tets) = map.into_iter().unzip();
-        Self { keys, tets }
-    }
-
-    /// Every corner of a tetrahedron has a key, so the search cannot fail.
-    fn place(&self, key: (u32, u32)) -> usize {
-        self.keys.binary_search(&key).unwrap_or(0)
-    }
-
-    fn recover(&self, mesh: &TetMesh, strains: &[[f64; 6]]) -> Vec<[f64; 6]> {
-        let at = |k: usize| {
-            let (node, region) = self.keys[k];
+        let (keys, own): (Vec<(u32, u32)>, Vec<Vec<u32>>) = owners.into_iter().unzip();
+        // every corner of a tetrahedron has a key, so the search cannot fail
+        let place = |key: (u32, u32)| keys.binary_search(&key).unwrap_or(0);
+        let patch = |k: usize| -> (Vec<u32>, Vec<f64>) {
+            let (node, region) = keys[k];
             let centre = mesh.points()[node as usize];
-            let own = &self.tets[k];
-            if own.len() >= SMALL_PATCH
-                && let Some(value) = fit(mesh, strains, own, centre)
+            if own[k].len() >= SMALL_PATCH
+                && let Some(weights) = fit(mesh, &own[k], centre)
             {
-                return value;
+                return (own[k].clone(), weights);
             }
-            let mut wide: Vec<u32> = own
+            let mut wide: Vec<u32> = own[k]
                 .iter()
                 .flat_map(|&tet| mesh.tets()[tet as usize])
-                .flat_map(|n| &self.tets[self.place((n, region))])
+                .flat_map(|n| &own[place((n, region))])
                 .copied()
                 .collect();
             wide.sort_unstable();
             wide.dedup();
-            fit(mesh, strains, &wide, centre).unwrap_or_else(|| mean(mesh, strains, own))
+            match fit(mesh, &wide, centre) {
+                Some(weights) => (wide, weights),
+                None => (own[k].clone(), mean(mesh, &own[k])),
+            }
         };
-        (0..self.keys.len()).into_par_iter().map(at).collect()
+        let patches: Vec<(Vec<u32>, Vec<f64>)> =
+            (0..keys.len()).into_par_iter().map(patch).collect();
+        let mut pointers = vec![0];
+        let (mut tets, mut weights) = (Vec::new(), Vec::new());
+        for (t, w) in patches {
+            tets.extend(t);
+            weights.extend(w);
+            pointers.push(tets.len());
+        }
+        let corner = |(tet, nodes): (usize, &[u32; 4])| {
+            nodes.map(|node| place((node, mesh.regions()[tet])) as u32)
+        };
+        Self {
+            pointers,
+            tets,
+            weights,
+            corners: mesh.tets().iter().enumerate().map(corner).collect(),
+        }
+    }
+
+    /// Estimates the discretisation error of a displacement of the mesh for which this was made.
+    ///
+    /// # Errors
+    /// As [`discretisation_error`]; [`FieldError::Length`] also for another mesh.
+    pub fn error(
+        &self,
+        mesh: &TetMesh,
+        materials: &Materials,
+        u: &[f64],
+    ) -> Result<DiscretisationError, FieldError> {
+        let (given, expected) = (self.corners.len(), mesh.tets().len());
+        if given != expected {
+            return Err(FieldError::Length {
+                what: "table of tetrahedra",
+                given,
+                expected,
+            });
+        }
+        let laws = materials.of_tets(mesh.regions())?;
+        let strains = strains(mesh, u)?;
+        let at = |k: usize| {
+            let mut sum = [0.0; 6];
+            for place in self.pointers[k]..self.pointers[k + 1] {
+                let strain = &strains[self.tets[place] as usize];
+                (0..6).for_each(|i| sum[i] += self.weights[place] * strain[i]);
+            }
+            sum
+        };
+        let patches = self.pointers.len() - 1;
+        let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
+        let energy = |tet: usize| {
+            let corners = self.corners[tet].map(|k| {
+                let recovered = &nodal[k as usize];
+                std::array::from_fn(|i| recovered[i] - strains[tet][i])
+            });
+            // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
+            let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
+            let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
+            mesh.volume(tet) * (squares + laws[tet].energy_density(&sum)) / 20.0
+        };
+        let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
+        let elastic = (0..strains.len())
+            .map(|tet| mesh.volume(tet) * laws[tet].energy_density(&strains[tet]))
+            .sum();
+        Ok(DiscretisationError {
+            total: energies.iter().sum(),
+            energies,
+            elastic,
+        })
     }
 }
 
-fn mean(mesh: &TetMesh, strains: &[[f64; 6]], tets: &[u32]) -> [f64; 6] {
-    let volume: f64 = tets.iter().map(|&t| mesh.volume(t as usize)).sum();
-    std::array::from_fn(|i| {
-        let part = |&t: &u32| mesh.volume(t as usize) * strains[t as usize][i];
-        tets.iter().map(part).sum::<f64>() / volume
-    })
+/// Weights of the mean by volume.
+fn mean(mesh: &TetMesh, tets: &[u32]) -> Vec<f64> {
+    let volumes = || tets.iter().map(|&t| mesh.volume(t as usize));
+    let total: f64 = volumes().sum();
+    volumes().map(|v| v / total).collect()
 }
 
-/// Value at `centre` of the linear polynomials that fit the strains at the centroids best, weighted
-/// by volume; `None` if the centroids do not determine them.
-fn fit(mesh: &TetMesh, strains: &[[f64; 6]], tets: &[u32], centre: [f64; 3]) -> Option<[f64; 6]> {
+/// Weights of the value at `centre` of the linear polynomial that fits values at the centroids best
+/// (least squares, weighted by volume); `None` if the centroids do not determine it.
+fn fit(mesh: &TetMesh, tets: &[u32], centre: [f64; 3]) -> Option<Vec<f64>> {
     let offsets: Vec<[f64; 3]> = tets
         .iter()
         .map(|&t| sub(centroid(&mesh.tet_points(t as usize)), centre))
@@ -243,24 +288,25 @@ fn fit(mesh: &TetMesh, strains: &[[f64; 6]], tets: &[u32], centre: [f64; 3]) -> 
     if size.contains(&0.0) {
         return None;
     }
-    let (mut normal, mut right) = (Matrix4::<f64>::zeros(), SMatrix::<f64, 4, 6>::zeros());
+    let polynomial =
+        |x: &[f64; 3]| Vector4::new(1.0, x[0] / size[0], x[1] / size[1], x[2] / size[2]);
+    let scale: f64 = tets.iter().map(|&t| mesh.volume(t as usize)).sum();
+    let weight = |tet: u32| mesh.volume(tet as usize) / scale;
+    let mut normal = Matrix4::<f64>::zeros();
     for (x, &tet) in offsets.iter().zip(tets) {
-        let weight = mesh.volume(tet as usize);
-        let p = [1.0, x[0] / size[0], x[1] / size[1], x[2] / size[2]];
-        for i in 0..4 {
-            for j in 0..4 {
-                normal[(i, j)] += weight * p[i] * p[j];
-            }
-            for j in 0..6 {
-                right[(i, j)] += weight * p[i] * strains[tet as usize][j];
-            }
-        }
+        let p = polynomial(x);
+        normal += weight(tet) * p * p.transpose();
     }
     let factor = normal.cholesky()?;
     let pivots = factor.l_dirty().diagonal();
     if pivots.min().powi(2) < PIVOT * pivots.max().powi(2) {
         return None;
     }
-    let solution = factor.solve(&right);
-    Some(std::array::from_fn(|i| solution[(0, i)]))
+    let first = factor.solve(&Vector4::new(1.0, 0.0, 0.0, 0.0));
+    let values = offsets.iter().zip(tets);
+    Some(
+        values
+            .map(|(x, &tet)| weight(tet) * polynomial(x).dot(&first))
+            .collect(),
+    )
 }
