@@ -28,6 +28,12 @@ pub trait CoarseSpace {
     /// rigid mode. The previous factorisation is then lost.
     fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError>;
 
+    /// Whether the components of weight zero, at their values in `x`, leave a balance that the others can complete: rigid
+    /// modes that no component of positive weight holds must see no work of `e - G x`.
+    fn balances(&mut self, _x: &[f64], _e: &[f64]) -> bool {
+        true
+    }
+
     /// `x <- P_W x`.
     fn project(&mut self, x: &mut [f64]);
 

@@ -125,13 +125,14 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 
     let mut last_jump = f64::INFINITY;
     let mut peak = vector::norm(x);
+    let mut forcing = settings.forcing;
     let mut best = f64::INFINITY;
     let mut waited = 0;
     loop {
         residual(problem, coarse, ax, work);
         work.face
             .classify(set, x, &work.residual, problem.scale, settings.natural_step);
-        match hold(problem, coarse, set, work, &mut report) {
+        match hold(problem, coarse, set, x, work, &mut report) {
             Ok(true) => residual(problem, coarse, ax, work),
             Ok(false) => {}
             Err(QpError::CoarseDeficient { .. }) => {
@@ -178,6 +179,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         } else if report.faces > 0 {
             waited += 1;
         }
+        if waited >= settings.patience && forcing > FINEST {
+            // predictions from a badly conditioned face need a better solution on it
+            forcing *= FINER;
+            best = measure;
+            waited = 0;
+        }
         if waited >= settings.patience {
             report.status = Status::Stagnated;
             return Ok(report);
@@ -194,6 +201,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             x,
             ax,
             settings,
+            forcing,
             &limits,
             constrained,
             work,
@@ -224,6 +232,10 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         }
     }
 }
+
+/// Factor on the forcing after faces without progress, and the forcing below which there is nothing to gain.
+const FINER: f64 = 0.05;
+const FINEST: f64 = 1e-3;
 
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
@@ -298,19 +310,30 @@ fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
     set: &ProductSet,
+    x: &[f64],
     work: &mut FaceWorkspace<A, M>,
     report: &mut FaceReport,
 ) -> Result<bool, QpError> {
     let mut count = 2;
+    let mut factored = false;
     loop {
         match set_face(problem, coarse, set, work, report) {
-            Err(QpError::CoarseDeficient { .. }) if work.face.release(count) => count *= 2,
-            Err(QpError::CoarseDeficient { .. }) => break,
-            other => return other,
+            Ok(anew) => {
+                factored |= anew;
+                if coarse.balances(x, problem.rhs) {
+                    return Ok(factored);
+                }
+            }
+            Err(QpError::CoarseDeficient { .. }) => {}
+            Err(error) => return Err(error),
         }
+        if !work.face.release(count) {
+            break;
+        }
+        count *= 2;
     }
     work.face.free_all();
-    set_face(problem, coarse, set, work, report)
+    Ok(set_face(problem, coarse, set, work, report)? || factored)
 }
 
 /// `ax += A (x - t)`, or `ax = A x`.
@@ -366,6 +389,7 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
     x: &mut [f64],
     ax: &mut [f64],
     settings: &FaceSettings,
+    forcing: f64,
     limits: &Limits,
     constrained: usize,
     work: &mut FaceWorkspace<A, M>,
@@ -376,8 +400,8 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
     let start = estimate(&work.z, constrained);
     // below a third of the limits further steps buy nothing
     let goal = |all: f64, part: f64| {
-        all <= (settings.forcing * start.0).max(0.3 * limits.all)
-            && part <= (settings.forcing * start.1).max(0.3 * limits.constrained)
+        all <= (forcing * start.0).max(0.3 * limits.all)
+            && part <= (forcing * start.1).max(0.3 * limits.constrained)
     };
     loop {
         if report.products() >= settings.max_products || rho <= 0.0 {
