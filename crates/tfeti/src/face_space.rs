@@ -118,6 +118,23 @@ impl CoarseSpace for FaceSpace {
         Ok(true)
     }
 
+    fn balances(&mut self, x: &[f64], e: &[f64]) -> bool {
+        if self.face.free_motions().is_empty() {
+            return true;
+        }
+        self.coarse.apply(x, &mut self.alpha, &mut self.scratch);
+        let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let size = norm(e).max(norm(x));
+        let off = |a: &[f64]| -> f64 {
+            let both = self.alpha.iter().zip(e);
+            a.iter().zip(both).map(|(a, (g, e))| a * (g - e)).sum()
+        };
+        let motions = self.face.free_motions().iter();
+        motions
+            .map(|m| (off(&m.amplitudes), norm(&m.amplitudes)))
+            .all(|(work, length)| work.abs() <= WORK * size * length)
+    }
+
     fn project(&mut self, x: &mut [f64]) {
         self.face.project(x, None, &mut self.scratch);
     }
