@@ -11,6 +11,9 @@
 //! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
 //! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force times largest displacement |
 //!
+//! The largest displacement is that of the body or, if it is larger, that of the torn subdomains under the loads alone
+//! (`B K+ f`), so that a body that does not move has a scale too.
+//!
 //! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
 
@@ -104,7 +107,8 @@ pub(crate) fn certify(
     m: &Measured<'_>,
 ) -> Certificate {
     let ranges = model.tfeti.gluing().ranges();
-    let displacement = vector::max_abs(m.u);
+    // where nothing moves, what the loads would do to the torn subdomains is the scale
+    let displacement = vector::max_abs(m.u).max(vector::max_abs(&level.load));
     let mut contact_force = 0.0_f64;
     let mut total = vector::dot(m.force, m.force);
     for point in &model.points {

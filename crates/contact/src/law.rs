@@ -42,6 +42,18 @@ impl Friction {
         !matches!(self, Self::None)
     }
 
+    /// Whether the bound or coefficient is a constant zero.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::None => true,
+            Self::Given(SlipBound::Stress(value)) | Self::Coulomb(Coefficient::Constant(value)) => {
+                *value == 0.0
+            }
+            _ => false,
+        }
+    }
+
     /// Whether the coefficient depends on the slip rate.
     #[must_use]
     pub fn depends_on_rate(&self) -> bool {

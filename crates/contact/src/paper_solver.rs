@@ -206,6 +206,11 @@ impl PaperSolver {
             Verdict::NotContractive => LevelStatus::NotContractive,
             _ => LevelStatus::IterationLimit,
         };
+        let mut outcome = outcome;
+        if !inner.converged() && outcome.verdict == Verdict::Converged {
+            // the iterates agree, but the last given-friction problem is not solved
+            outcome.verdict = Verdict::Unknown;
+        }
         report.fixed_point = Some(outcome);
         Ok(())
     }

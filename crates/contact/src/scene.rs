@@ -222,10 +222,14 @@ impl Contact {
         self
     }
 
-    /// The friction law.
+    /// The friction law. A bound or coefficient that is zero everywhere is no friction.
     #[must_use]
     pub fn with_friction(mut self, friction: Friction) -> Self {
-        self.friction = friction;
+        self.friction = if friction.is_zero() {
+            Friction::None
+        } else {
+            friction
+        };
         self
     }
 

@@ -18,6 +18,12 @@ use crate::operator::{Equality, SymmetricOperator};
 use crate::report::{Status, Tolerance};
 use crate::vector;
 
+/// Iterations without a smaller residual after which the solve ends.
+const PATIENCE: usize = 300;
+
+/// Residual, relative to the first, below which a curvature that is not positive is put down to rounding.
+const ROUNDING: f64 = 1e-8;
+
 /// The identity as operator: no preconditioner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Identity(
@@ -183,6 +189,8 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
         tolerance,
     };
     let mut wy_before = f64::NAN;
+    let start = report.projected_gradient;
+    let (mut best, mut waited) = (start, 0);
     loop {
         let products = report.products;
         if !report.projected_gradient.is_finite() {
@@ -219,6 +227,11 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
                     products: report.products,
                 });
             }
+            if pap > 0.0 || report.projected_gradient <= ROUNDING * start {
+                // rounding errors have taken over: the preconditioned residual is no longer one
+                report.status = Status::Stagnated;
+                break;
+            }
             let curvature = pap / vector::dot(p, p);
             return Err(QpError::Indefinite {
                 curvature,
@@ -230,6 +243,16 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
         vector::axpy(-t, ap, g);
         project(c, g, w, coarse, c_scratch);
         report.projected_gradient = vector::norm(w);
+        if report.projected_gradient < 0.9 * best {
+            best = report.projected_gradient;
+            waited = 0;
+        } else {
+            waited += 1;
+        }
+        if waited >= PATIENCE {
+            report.status = Status::Stagnated;
+            break;
+        }
     }
     // the multiplier -C (A x - b)
     c.apply(g, coarse, c_scratch);
