@@ -9,6 +9,9 @@
 #[cfg(doc)]
 use crate::cost::PANEL;
 mod build;
+mod rigid;
+
+pub(crate) use rigid::RigidTables;
 
 use rayon::prelude::*;
 use std::ops::Range;
@@ -114,11 +117,6 @@ impl BoundaryMap {
             + 2 * self.block_places.len();
         let numbers = self.spread_weights.len() + self.block_weights.len();
         (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
-    }
-
-    /// Where a panel stands in boundary vectors.
-    pub(crate) fn range_of(&self, panel: &Panel) -> Range<usize> {
-        3 * panel.copies.start..3 * panel.copies.end
     }
 
     /// Node copies of a panel.
@@ -288,11 +286,6 @@ impl BoundaryMap {
     /// Whether loops over all copies are worth several threads.
     pub(crate) fn is_large(&self) -> bool {
         self.copies >= SMALL
-    }
-
-    /// A work memory without content for [`BoundaryMap::for_lanes`].
-    pub(crate) fn no_work(&self) -> [(); LANES] {
-        [(); LANES]
     }
 }
 

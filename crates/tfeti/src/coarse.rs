@@ -1,27 +1,29 @@
 //! The natural coarse space: `G = R^T B^T`, its products and factors of `G W G^T`.
 
-use crate::boundary::BoundaryMap;
+use crate::boundary::{BoundaryMap, RigidTables};
 use crate::class::Classes;
+use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::{CoarseMatrix, ModeTable, RowWeights};
+use crate::coarse_order::CoarseOrder;
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
 use crate::matrices::ClassBase;
 use crate::mobility::{FreeMotion, Mobility};
-use crate::motions::{amplitudes_of_forces, motions_of_amplitudes, to_columns, to_subdomains};
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
-use signorini_qp::Equality;
+use crate::split_factor::SplitBase;
 use std::sync::Arc;
 
 /// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.
 #[derive(Debug, Clone)]
-pub struct Coarse(Arc<CoarseData>);
+pub struct Coarse(pub(crate) Arc<CoarseData>);
 
 #[derive(Debug)]
-struct CoarseData {
+pub(crate) struct CoarseData {
     map: Arc<BoundaryMap>,
+    tables: RigidTables,
     bases: Arc<Vec<ClassBase>>,
     classes: Arc<Classes>,
-    gluing: Arc<Gluing>,
+    pub(crate) gluing: Arc<Gluing>,
     matrix: CoarseMatrix,
     symbolic: Symbolic,
     mobility: Mobility,
@@ -32,12 +34,16 @@ struct CoarseData {
 /// Work memory of all operations with `G` and its factors.
 #[derive(Debug)]
 pub struct CoarseScratch {
-    boundary: Vec<f64>,
-    columns: Vec<f64>,
-    first: Vec<f64>,
-    second: Vec<f64>,
-    dual: Vec<f64>,
-    memory: SolveMemory,
+    /// Wrenches by column.
+    pub(crate) columns: Vec<f64>,
+    /// Motions by column.
+    pub(crate) motions: Vec<[f64; 6]>,
+    pub(crate) first: Vec<f64>,
+    pub(crate) second: Vec<f64>,
+    pub(crate) dual: Vec<f64>,
+    pub(crate) memory: SolveMemory,
+    /// For split factors.
+    pub(crate) split: Vec<f64>,
 }
 
 impl Coarse {
@@ -59,6 +65,7 @@ impl Coarse {
         let symbolic = Symbolic::new(matrix.pattern(), 6).map_err(too_large)?;
         let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
         let mut data = CoarseData {
+            tables: RigidTables::new(&map, &bases, &gluing),
             map,
             bases,
             classes,
@@ -103,30 +110,31 @@ impl Coarse {
     pub fn scratch(&self) -> CoarseScratch {
         let rows = self.rows();
         CoarseScratch {
-            boundary: vec![0.0; self.0.map.len()],
             columns: vec![0.0; rows],
+            motions: vec![[0.0; 6]; rows / 6],
             first: vec![0.0; rows],
             second: vec![0.0; rows],
             dual: vec![0.0; self.dim()],
             memory: SolveMemory::new(SparseCholesky::need_of(&self.0.symbolic, 1)),
+            split: Vec::new(),
         }
     }
 
     /// `out = G x`: the wrenches of the multipliers on the subdomains.
     pub fn apply(&self, x: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0.product(x, out, &mut s.boundary, &mut s.columns);
+        self.0.product(x, None, out, &mut s.columns);
     }
 
     /// `out = G^T y`.
     pub fn apply_transpose(&self, y: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0
-            .product_transpose(y, out, &mut s.boundary, &mut s.columns);
+        self.0.product_transpose(y, out, &mut s.motions);
     }
 
     /// `out = G^T y` on the contact rows only (the leading part of `out`).
     pub fn apply_transpose_contact(&self, y: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0.motions(y, &mut s.boundary, &mut s.columns);
-        self.0.map.collect_contact(&s.boundary, out);
+        let data = &self.0;
+        data.motions(y, &mut s.motions);
+        data.map.contact_motions(&data.tables, &s.motions, out);
     }
 
     /// Row `row` of `G^T`, for inspection: `(subdomain, six coefficients)`.
@@ -193,84 +201,86 @@ impl Coarse {
                 count: matrix.dim,
             },
         })?;
-        Ok(CoarseFactor(Arc::new(FactorData {
-            coarse: self.clone(),
-            factor,
+        Ok(CoarseFactor::new(
+            self.clone(),
+            Factor::Sparse(factor),
             weights,
             free,
-        })))
+        ))
+    }
+
+    /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
+    /// factor can be split. `metric` is the weight of each row where it counts, one if `None`.
+    pub(crate) fn split(&self, rows: usize, metric: Option<&[f64]>) -> Option<SplitBase> {
+        let data = &self.0;
+        let gluing = &data.gluing;
+        let weights = metric.map(|m| RowWeights::diagonal(m.to_vec()));
+        if rows > gluing.ranges().interface.start || !data.free_motions(weights.as_ref()).is_empty()
+        {
+            return None;
+        }
+        let mut changing = vec![false; data.classes.subdomains()];
+        for e in (0..rows).flat_map(|row| gluing.special(row)) {
+            changing[e.subdomain as usize] = true;
+        }
+        let graph = data.matrix.graph();
+        let order = CoarseOrder::new(&graph, data.mobility.centres(), &changing).ok()?;
+        let modes = ModeTable::new(&data.bases, &data.classes);
+        let matrix = data.matrix.assemble(gluing, &modes, weights.as_ref());
+        let own = match metric {
+            Some(metric) => metric[..rows].to_vec(),
+            None => vec![1.0; rows],
+        };
+        SplitBase::new(&data.matrix, &matrix, &order, gluing, &modes, &own).ok()
     }
 }
 
 impl CoarseData {
-    fn product(&self, x: &[f64], out: &mut [f64], boundary: &mut [f64], columns: &mut [f64]) {
-        let map = &self.map;
-        let (work, large) = (&mut map.no_work(), map.is_large());
-        map.for_lanes(
-            &mut work[..map.lanes.len()],
-            boundary,
-            large,
-            &|lane, (), part| {
-                for (panel, forces) in map.panels_of(lane, part) {
-                    map.spread(x, panel, forces);
-                }
-            },
-        );
-        let boundary = &*boundary;
-        map.for_columns(columns, &|lane, part| {
-            let mut rest = part;
-            for panel in &map.panels[lane.panels.clone()] {
-                let (own, tail) = std::mem::take(&mut rest).split_at_mut(6 * panel.columns.len());
-                rest = tail;
-                let forces = &boundary[map.range_of(panel)];
-                amplitudes_of_forces(
-                    &self.bases[panel.class].kernel,
-                    &map.classes[panel.class].nodes,
-                    forces,
-                    own,
-                );
-            }
-        });
-        to_subdomains(map, columns, out);
-    }
-
-    fn motions(&self, y: &[f64], boundary: &mut [f64], columns: &mut [f64]) {
-        let map = &self.map;
-        to_columns(map, y, columns);
-        let (work, large) = (&mut map.no_work(), map.is_large());
-        let columns = &*columns;
-        map.for_lanes(
-            &mut work[..map.lanes.len()],
-            boundary,
-            large,
-            &|lane, (), part| {
-                for (panel, motion) in map.panels_of(lane, part) {
-                    let class = &map.classes[panel.class];
-                    let alpha = &columns[6 * (class.column + panel.columns.start)
-                        ..6 * (class.column + panel.columns.end)];
-                    motions_of_amplitudes(
-                        &self.bases[panel.class].kernel,
-                        &class.nodes,
-                        alpha,
-                        motion,
-                    );
-                }
-            },
-        );
-    }
-
-    fn product_transpose(
+    /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
+    pub(crate) fn product(
         &self,
-        y: &[f64],
+        x: &[f64],
+        weights: Option<&[f64]>,
         out: &mut [f64],
-        boundary: &mut [f64],
         columns: &mut [f64],
     ) {
-        self.motions(y, boundary, columns);
-        self.map.collect(boundary, out);
+        let map = &self.map;
+        map.wrenches(&self.tables, &self.bases, x, weights, columns);
+        for (&column, target) in map.column_of.iter().zip(out.chunks_exact_mut(6)) {
+            target.copy_from_slice(&columns[6 * column as usize..][..6]);
+        }
     }
 
-    fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {
+    /// Motions of the subdomains, by column, from amplitudes by subdomain.
+    fn motions(&self, y: &[f64], motions: &mut [[f64; 6]]) {
+        for (s, (&column, amplitudes)) in
+            self.map.column_of.iter().zip(y.chunks_exact(6)).enumerate()
+        {
+            let kernel = &self.bases[self.classes.place(s).0].kernel;
+            motions[column as usize] = kernel.motion(amplitudes);
+        }
+    }
+
+    /// `out = G^T y`.
+    pub(crate) fn product_transpose(&self, y: &[f64], out: &mut [f64], motions: &mut [[f64; 6]]) {
+        self.with_transpose(y, out, motions, |x, v| *x = v, |_, x, v| *x = v);
+    }
+
+    /// Hands `G^T y` to `interface(x, value)` and, on other rows, `other(row, x, value)`.
+    pub(crate) fn with_transpose(
+        &self,
+        y: &[f64],
+        x: &mut [f64],
+        motions: &mut [[f64; 6]],
+        interface: impl Fn(&mut f64, f64) + Sync,
+        other: impl Fn(usize, &mut f64, f64) + Sync,
+    ) {
+        self.motions(y, motions);
+        self.map
+            .for_motions(&self.tables, motions, x, interface, other);
+    }
+
+    pub(crate) fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {
         let gluing = &self.gluing;
         // The usual case needs no look at the contact rows.
         let supported = |w: &RowWeights| {
@@ -305,169 +315,5 @@ impl CoarseData {
             out
         });
         self.mobility.free(plain.chain(combined))
-    }
-}
-
-/// A Cholesky factor of `G W G^T` and the projectors that belong to it.
-///
-/// With `W = I` (no weights): `P = I - G^T (G G^T)^-1 G` and `Q = I - P` are the paper's orthogonal projectors. With
-/// weights the projector `I - W G^T (G W G^T)^-1 G` maps to the kernel of `G` by changing only rows of positive weight.
-#[derive(Debug, Clone)]
-pub struct CoarseFactor(Arc<FactorData>);
-
-#[derive(Debug)]
-struct FactorData {
-    coarse: Coarse,
-    factor: SparseCholesky,
-    weights: Option<RowWeights>,
-    free: Vec<FreeMotion>,
-}
-
-impl CoarseFactor {
-    /// The coarse space.
-    #[must_use]
-    pub fn coarse(&self) -> &Coarse {
-        &self.0.coarse
-    }
-
-    /// Rigid motions that the rows of positive weight do not stop. Empty if `G W G^T` is regular.
-    #[must_use]
-    pub fn free_motions(&self) -> &[FreeMotion] {
-        &self.0.free
-    }
-
-    /// The weights; `None` for `W = I`.
-    #[must_use]
-    pub fn weights(&self) -> Option<&RowWeights> {
-        self.0.weights.as_ref()
-    }
-
-    /// Creates the work memory.
-    #[must_use]
-    pub fn scratch(&self) -> CoarseScratch {
-        self.0.coarse.scratch()
-    }
-
-    /// `y = (G W G^T)^-1 y`.
-    pub fn solve(&self, y: &mut [f64], s: &mut CoarseScratch) {
-        self.0.factor.solve(y, 1, &mut s.memory);
-    }
-
-    fn weigh(&self, x: &mut [f64]) {
-        if let Some(weights) = &self.0.weights {
-            weights.apply(x);
-        }
-    }
-
-    /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
-    pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
-        let data = &self.0.coarse.0;
-        data.product(x, &mut s.first, &mut s.boundary, &mut s.columns);
-        if let Some(e) = e {
-            s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
-        }
-        self.0.factor.solve(&mut s.first, 1, &mut s.memory);
-        data.product_transpose(&s.first, &mut s.dual, &mut s.boundary, &mut s.columns);
-        self.weigh(&mut s.dual);
-        signorini_qp::vector::subtract(&s.dual, x);
-    }
-
-    /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
-    /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
-    pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        self.amplitudes(r, alpha, s);
-        let data = &self.0.coarse.0;
-        data.product_transpose(alpha, &mut s.dual, &mut s.boundary, &mut s.columns);
-        for (r, g) in r.iter_mut().zip(&s.dual) {
-            *r += g;
-        }
-    }
-
-    /// Rigid amplitudes that make the rows residual `r + G^T alpha` smallest in the metric of `W`:
-    /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
-    /// equality (open contact, sliding).
-    pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse.0;
-        s.dual.copy_from_slice(r);
-        self.weigh(&mut s.dual);
-        data.product(&s.dual, alpha, &mut s.boundary, &mut s.columns);
-        self.0.factor.solve(alpha, 1, &mut s.memory);
-        alpha.iter_mut().for_each(|a| *a = -*a);
-    }
-
-    /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
-    pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse.0;
-        s.first.copy_from_slice(e);
-        self.0.factor.solve(&mut s.first, 1, &mut s.memory);
-        data.product_transpose(&s.first, x, &mut s.boundary, &mut s.columns);
-        self.weigh(x);
-    }
-
-    /// The orthonormal basis `C = L^-1 P G` of the row space of `G`, where `P G G^T P^T = L L^T`. `None` if there are
-    /// weights or free motions.
-    #[must_use]
-    pub fn orthonormal(&self) -> Option<OrthonormalCoarse> {
-        (self.0.weights.is_none() && self.0.free.is_empty())
-            .then(|| OrthonormalCoarse(self.clone()))
-    }
-}
-
-/// The constraint `G x = e` with orthonormal rows: `C x = L^-1 P e` with `C = L^-1 P G`, `C C^T = I`.
-#[derive(Debug, Clone)]
-pub struct OrthonormalCoarse(CoarseFactor);
-
-impl OrthonormalCoarse {
-    /// Right-hand side of the orthonormal rows: `out = L^-1 P e`.
-    pub fn rhs(&self, e: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0.0.factor.half_solve(e, out, &mut s.memory);
-    }
-
-    /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
-    /// `G^T alpha = C^T beta`.
-    pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        s.first.copy_from_slice(beta);
-        self.0
-            .0
-            .factor
-            .half_solve_transpose(&mut s.first, alpha, &mut s.memory);
-    }
-
-    /// The factor.
-    #[must_use]
-    pub fn factor(&self) -> &CoarseFactor {
-        &self.0
-    }
-}
-
-impl Equality for OrthonormalCoarse {
-    type Scratch = CoarseScratch;
-
-    fn dim(&self) -> usize {
-        self.0.coarse().dim()
-    }
-
-    fn rows(&self) -> usize {
-        self.0.coarse().rows()
-    }
-
-    fn scratch(&self) -> CoarseScratch {
-        self.0.scratch()
-    }
-
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse().0;
-        data.product(x, &mut s.first, &mut s.boundary, &mut s.columns);
-        self.0.0.factor.half_solve(&s.first, y, &mut s.memory);
-    }
-
-    fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse().0;
-        s.first.copy_from_slice(y);
-        self.0
-            .0
-            .factor
-            .half_solve_transpose(&mut s.first, &mut s.second, &mut s.memory);
-        data.product_transpose(&s.second, x, &mut s.boundary, &mut s.columns);
     }
 }

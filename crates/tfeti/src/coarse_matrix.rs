@@ -37,6 +37,12 @@ impl RowWeights {
         }
     }
 
+    /// Whether all interface rows have weight one and no row stands in a line.
+    pub(crate) fn is_plain(&self, ranges: &RowRanges) -> bool {
+        let interface = &self.diagonal[ranges.interface.clone()];
+        self.lines.is_empty() && interface.iter().all(|w| *w == 1.0)
+    }
+
     pub(crate) fn in_line(&self, row: usize) -> bool {
         let next = self.lines.partition_point(|l| l.row <= row);
         next > 0 && row - self.lines[next - 1].row < 2
@@ -86,6 +92,10 @@ impl RowWeights {
         let along = |line: &LineWeight, x: &[f64]| {
             line.weight * (line.direction[0] * x[line.row] + line.direction[1] * x[line.row + 1])
         };
+        if self.lines.is_empty() {
+            x.iter_mut().zip(&self.diagonal).for_each(|(x, w)| *x *= w);
+            return;
+        }
         // Lines first: the diagonal pass would overwrite what they need.
         for line in &self.lines {
             let value = along(line, x);
@@ -217,6 +227,12 @@ impl CoarseMatrix {
         }
         matrix.interface.values = values;
         matrix
+    }
+
+    /// Neighbours of each subdomain with numbers not below its own, itself first.
+    pub(crate) fn graph(&self) -> Vec<Vec<u32>> {
+        let list = |pair: &[usize]| self.neighbours[pair[0]..pair[1]].to_vec();
+        self.pointers.windows(2).map(list).collect()
     }
 
     pub(crate) fn pattern(&self) -> &Columns {

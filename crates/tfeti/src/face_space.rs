@@ -1,9 +1,25 @@
 //! The coarse space as the face method of `signorini-qp` sees it.
 
-use crate::coarse::{Coarse, CoarseFactor, CoarseScratch};
+use crate::coarse::{Coarse, CoarseScratch};
+use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::RowWeights;
 use crate::error::TfetiError;
+use crate::split_factor::{SplitBase, SplitFactor};
 use signorini_qp::{CoarseSpace, QpError};
+use std::sync::Arc;
+
+/// How `G W G^T` is factored when the face changes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum FaceFactor {
+    /// The cheaper of the others by size.
+    #[default]
+    Auto,
+    /// A sparse factor of the whole matrix each time.
+    Sparse,
+    /// The subdomains without contact rows are eliminated once; a dense matrix of the others is factored each time.
+    Split,
+}
 
 /// `G x = e` with projectors weighted by the free rows of the current face, see [`CoarseSpace`].
 ///
@@ -16,6 +32,10 @@ pub struct FaceSpace {
     always: Option<CoarseFactor>,
     face: CoarseFactor,
     weights: Vec<f64>,
+    contact_rows: usize,
+    split: Option<Arc<SplitBase>>,
+    /// Memory of the last but one factor.
+    spare: Option<SplitFactor>,
     /// Weight of each row where it is free; `None` means 1.
     metric: Option<Vec<f64>>,
     rhs: Vec<f64>,
@@ -38,17 +58,44 @@ impl FaceSpace {
         contact_rows: usize,
         metric: Option<Vec<f64>>,
     ) -> Result<Self, TfetiError> {
+        Self::with_factor(coarse, contact_rows, metric, FaceFactor::Auto)
+    }
+
+    /// The same with a given kind of factor.
+    ///
+    /// # Errors
+    /// [`TfetiError`] if a factorisation fails.
+    pub fn with_factor(
+        coarse: &Coarse,
+        contact_rows: usize,
+        metric: Option<Vec<f64>>,
+        kind: FaceFactor,
+    ) -> Result<Self, TfetiError> {
         let mut weights = vec![1.0; coarse.dim()];
         weights[..contact_rows].fill(0.0);
-        let factor =
-            coarse.factor_weighted(RowWeights::diagonal(weighted(&weights, metric.as_deref())))?;
+        let split = match kind {
+            FaceFactor::Sparse => None,
+            FaceFactor::Split => coarse.split(contact_rows, metric.as_deref()),
+            FaceFactor::Auto => coarse
+                .split(contact_rows, metric.as_deref())
+                .filter(|split| split.pays(coarse.rows(), coarse.factor_size())),
+        };
+        let split = split.map(Arc::new);
+        let row_weights = RowWeights::diagonal(weighted(&weights, metric.as_deref()));
+        let factor = match split_factor(coarse, split.as_ref(), &row_weights, contact_rows, None) {
+            Some(factor) => factor,
+            None => coarse.factor_weighted(row_weights)?,
+        };
         let always = factor.free_motions().is_empty().then(|| factor.clone());
         Ok(Self {
-            scratch: coarse.scratch(),
+            scratch: factor.scratch(),
             coarse: coarse.clone(),
             always,
             face: factor,
             weights,
+            contact_rows,
+            split,
+            spare: None,
             metric,
             rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
@@ -81,6 +128,30 @@ impl FaceSpace {
     }
 }
 
+/// The factor for `weights` on the basis of `split`; `None` if there is no such basis, if free motions ask for a
+/// generalised inverse, or if the matrix is singular to working precision.
+fn split_factor(
+    coarse: &Coarse,
+    split: Option<&Arc<SplitBase>>,
+    weights: &RowWeights,
+    contact_rows: usize,
+    spare: Option<SplitFactor>,
+) -> Option<CoarseFactor> {
+    let split = split?;
+    if !coarse.0.free_motions(Some(weights)).is_empty() {
+        return None;
+    }
+    let factor = split
+        .factor(&weights.diagonal[..contact_rows], spare)
+        .ok()?;
+    Some(CoarseFactor::new(
+        coarse.clone(),
+        Factor::Split(split.clone(), factor),
+        Some(weights.clone()),
+        Vec::new(),
+    ))
+}
+
 fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
     match metric {
         Some(metric) => free.iter().zip(metric).map(|(w, m)| w * m).collect(),
@@ -104,17 +175,24 @@ impl CoarseSpace for FaceSpace {
                 None => Ok(false),
             };
         }
-        let factor = self
-            .coarse
-            .factor_weighted(RowWeights::diagonal(weighted(w, self.metric.as_deref())))
-            .map_err(|error| QpError::CoarseDeficient {
-                motion: error.to_string(),
-            })?;
+        let weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
+        let fixed = w[self.contact_rows..].iter().all(|w| *w == 1.0);
+        let split = self.split.as_ref().filter(|_| fixed);
+        let spare = self.spare.take();
+        let factor =
+            match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
+                Some(factor) => factor,
+                None => self.coarse.factor_weighted(weights).map_err(|error| {
+                    QpError::CoarseDeficient {
+                        motion: error.to_string(),
+                    }
+                })?,
+            };
         if let Some(motion) = self.deficiency(&factor) {
             return Err(QpError::CoarseDeficient { motion });
         }
         self.weights.copy_from_slice(w);
-        self.face = factor;
+        self.spare = std::mem::replace(&mut self.face, factor).into_split();
         Ok(true)
     }
 

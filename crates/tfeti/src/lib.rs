@@ -46,10 +46,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod block_rows;
 mod boundary;
 mod class;
 mod coarse;
+mod coarse_factor;
 mod coarse_matrix;
+mod coarse_order;
 mod contact;
 mod cost;
 mod dense;
@@ -61,7 +64,6 @@ mod inverse;
 mod kernel;
 mod matrices;
 mod mobility;
-mod motions;
 mod preconditioner;
 mod recovery;
 mod report;
@@ -69,17 +71,20 @@ mod row_stiffness;
 mod rows;
 mod scaling;
 mod sparse;
+mod split_factor;
+mod supernodes;
 mod supports;
 mod system;
 
 pub use class::{Class, Classes, Sharing};
-pub use coarse::{Coarse, CoarseFactor, CoarseScratch, OrthonormalCoarse};
+pub use coarse::{Coarse, CoarseScratch};
+pub use coarse_factor::{CoarseFactor, OrthonormalCoarse};
 pub use coarse_matrix::{LineWeight, RowWeights};
 pub use contact::{ContactNodes, ContactPoint};
 pub use cost::{InverseKind, InverseSettings};
 pub use dual::{DualOperator, DualScratch};
 pub use error::TfetiError;
-pub use face_space::FaceSpace;
+pub use face_space::{FaceFactor, FaceSpace};
 pub use gluing::{ContactInfo, Gluing, TangentialRows};
 pub use kernel::Kernel;
 pub use mobility::{BodyMotion, FreeMotion};

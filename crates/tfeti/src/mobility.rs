@@ -134,6 +134,11 @@ impl Mobility {
         }
     }
 
+    /// Means of the nodes of the subdomains.
+    pub(crate) fn centres(&self) -> &[[f64; 3]] {
+        &self.centres
+    }
+
     pub(crate) fn bodies(&self) -> usize {
         self.bodies.len()
     }

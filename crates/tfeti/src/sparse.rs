@@ -11,6 +11,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Par, Side};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Compressed columns of a symmetric matrix: both triangles or the lower one, rows ascending.
@@ -67,7 +68,27 @@ impl Symbolic {
     /// with half solves.
     pub(crate) fn new(pattern: &Columns, block: usize) -> Result<Self, FactorError> {
         debug_assert!(block > 0 && pattern.dim.is_multiple_of(block));
-        let (forward, inverse) = order_blocks(pattern, block)?;
+        let (pointers, rows) = quotient(pattern, block);
+        let order: Vec<u32> = minimum_degree(&pointers, &rows)?
+            .into_iter()
+            .map(|b| b as u32)
+            .collect();
+        Self::ordered(pattern, &order, block)
+    }
+
+    /// The same with a given order of the blocks, new to old.
+    pub(crate) fn ordered(
+        pattern: &Columns,
+        order: &[u32],
+        block: usize,
+    ) -> Result<Self, FactorError> {
+        let forward: Vec<usize> = (order.iter())
+            .flat_map(|&b| block * b as usize..block * (b as usize + 1))
+            .collect();
+        let mut inverse = vec![0; forward.len()];
+        for (new, &old) in forward.iter().enumerate() {
+            inverse[old] = new;
+        }
         let dim = pattern.dim;
         let symbolic =
             SymbolicSparseColMatRef::new_checked(dim, dim, &pattern.pointers, None, &pattern.rows);
@@ -87,11 +108,10 @@ impl Symbolic {
     }
 }
 
-/// Order of the unknowns (new to old, and old to new) that keeps blocks together.
-fn order_blocks(pattern: &Columns, block: usize) -> Result<(Vec<usize>, Vec<usize>), FactorError> {
-    let count = pattern.dim / block;
+/// Graph of the blocks of a pattern of full blocks: pointers and neighbours.
+fn quotient(pattern: &Columns, block: usize) -> (Vec<usize>, Vec<usize>) {
     let (mut pointers, mut rows) = (vec![0], Vec::new());
-    for j in 0..count {
+    for j in 0..pattern.dim / block {
         // Blocks are full: the first column of each shows all of its neighbours.
         let start = rows.len();
         let (entries, _) = pattern.column(block * j);
@@ -102,7 +122,16 @@ fn order_blocks(pattern: &Columns, block: usize) -> Result<(Vec<usize>, Vec<usiz
         }
         pointers.push(rows.len());
     }
-    let quotient = SymbolicSparseColMatRef::new_checked(count, count, &pointers, None, &rows);
+    (pointers, rows)
+}
+
+/// Order (new to old) of approximate minimum degree for a pattern given by pointers and rows.
+pub(crate) fn minimum_degree(
+    pointers: &[usize],
+    rows: &[usize],
+) -> Result<Vec<usize>, FactorError> {
+    let count = pointers.len() - 1;
+    let pattern = SymbolicSparseColMatRef::new_checked(count, count, pointers, None, rows);
     let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(
         count,
         rows.len(),
@@ -111,19 +140,15 @@ fn order_blocks(pattern: &Columns, block: usize) -> Result<(Vec<usize>, Vec<usiz
     amd::order_maybe_unsorted(
         &mut forward,
         &mut inverse,
-        quotient,
+        pattern,
         Default::default(),
         MemStack::new(&mut memory),
     )
     .map_err(|_| FactorError::Pattern)?;
-    let expand = |order: &[usize]| {
-        order
-            .iter()
-            .flat_map(|&b| block * b..block * (b + 1))
-            .collect()
-    };
-    Ok((expand(&forward), expand(&inverse)))
+    Ok(forward)
 }
+
+type EachSupernode<'a> = dyn FnMut(Range<usize>, &[usize], &dyn Fn(usize, usize) -> f64) + 'a;
 
 /// A factor `P A P^T = L L^T`.
 #[derive(Debug, Clone)]
@@ -223,6 +248,20 @@ impl SparseCholesky {
             }
         }
         (smallest.0, smallest.1, largest)
+    }
+
+    /// Calls `each(columns, rows below them, value)` for every group of columns with one pattern; `value(i, j)` is an
+    /// entry of the factor, both counted within the group, rows below the columns after them.
+    pub(crate) fn for_supernodes(&self, each: &mut EachSupernode<'_>) {
+        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
+            let factor = SupernodalLltRef::new(symbolic, &self.values);
+            for s in 0..symbolic.n_supernodes() {
+                let node = factor.supernode(s);
+                let block = node.val();
+                let columns = node.start()..node.start() + block.ncols();
+                each(columns, node.pattern(), &|i, j| block[(i, j)]);
+            }
+        }
     }
 
     /// Work memory that solves with so many columns need.

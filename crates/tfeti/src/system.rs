@@ -2,7 +2,8 @@
 
 use crate::boundary::BoundaryMap;
 use crate::class::{Classes, Sharing};
-use crate::coarse::{Coarse, CoarseFactor};
+use crate::coarse::Coarse;
+use crate::coarse_factor::CoarseFactor;
 use crate::contact::ContactNodes;
 use crate::cost::InverseSettings;
 use crate::dual::DualOperator;

@@ -1,0 +1,261 @@
+//! Factors of `G W G^T`, projectors and orthonormal rows.
+
+use crate::coarse::{Coarse, CoarseScratch};
+use crate::coarse_matrix::RowWeights;
+use crate::mobility::FreeMotion;
+use crate::sparse::{SolveMemory, SparseCholesky};
+use crate::split_factor::{SplitBase, SplitFactor};
+use signorini_qp::Equality;
+use std::sync::Arc;
+
+/// A Cholesky factor of `G W G^T` and the projectors that belong to it.
+///
+/// With `W = I` (no weights): `P = I - G^T (G G^T)^-1 G` and `Q = I - P` are the paper's orthogonal projectors. With
+/// weights the projector `I - W G^T (G W G^T)^-1 G` maps to the kernel of `G` by changing only rows of positive weight.
+#[derive(Debug, Clone)]
+pub struct CoarseFactor(Arc<FactorData>);
+
+#[derive(Debug)]
+struct FactorData {
+    coarse: Coarse,
+    factor: Factor,
+    weights: Option<RowWeights>,
+    /// Whether interface rows have weight one and no row stands in a line.
+    plain: bool,
+    free: Vec<FreeMotion>,
+}
+
+#[derive(Debug)]
+pub(crate) enum Factor {
+    Sparse(SparseCholesky),
+    Split(Arc<SplitBase>, SplitFactor),
+}
+
+impl CoarseFactor {
+    pub(crate) fn new(
+        coarse: Coarse,
+        factor: Factor,
+        weights: Option<RowWeights>,
+        free: Vec<FreeMotion>,
+    ) -> Self {
+        let ranges = coarse.0.gluing.ranges();
+        let plain = weights.as_ref().is_none_or(|w| w.is_plain(ranges));
+        Self(Arc::new(FactorData {
+            coarse,
+            factor,
+            weights,
+            plain,
+            free,
+        }))
+    }
+
+    /// The memory of a split factor that nobody else uses.
+    pub(crate) fn into_split(self) -> Option<SplitFactor> {
+        match Arc::into_inner(self.0)?.factor {
+            Factor::Split(_, factor) => Some(factor),
+            Factor::Sparse(_) => None,
+        }
+    }
+
+    /// Numbers stored.
+    #[must_use]
+    pub fn stored(&self) -> usize {
+        match &self.0.factor {
+            Factor::Sparse(factor) => factor.stored(),
+            Factor::Split(base, _) => base.stored(),
+        }
+    }
+
+    /// The coarse space.
+    #[must_use]
+    pub fn coarse(&self) -> &Coarse {
+        &self.0.coarse
+    }
+
+    /// Rigid motions that the rows of positive weight do not stop. Empty if `G W G^T` is regular.
+    #[must_use]
+    pub fn free_motions(&self) -> &[FreeMotion] {
+        &self.0.free
+    }
+
+    /// The weights; `None` for `W = I`.
+    #[must_use]
+    pub fn weights(&self) -> Option<&RowWeights> {
+        self.0.weights.as_ref()
+    }
+
+    /// Creates the work memory.
+    #[must_use]
+    pub fn scratch(&self) -> CoarseScratch {
+        let mut scratch = self.0.coarse.scratch();
+        if let Factor::Split(base, _) = &self.0.factor {
+            scratch.split.resize(base.work(), 0.0);
+        }
+        scratch
+    }
+
+    /// `y = (G W G^T)^-1 y`.
+    pub fn solve(&self, y: &mut [f64], s: &mut CoarseScratch) {
+        self.solve_with(y, &mut s.memory, &mut s.split);
+    }
+
+    fn solve_with(&self, y: &mut [f64], memory: &mut SolveMemory, split: &mut Vec<f64>) {
+        match &self.0.factor {
+            Factor::Sparse(factor) => factor.solve(y, 1, memory),
+            Factor::Split(base, factor) => {
+                if split.len() < base.work() {
+                    split.resize(base.work(), 0.0);
+                }
+                base.solve(factor, y, split);
+            }
+        }
+    }
+
+    /// Weights of the rows that are no interface rows, if the interface rows have weight one.
+    fn diagonal(&self) -> Option<&[f64]> {
+        self.0.weights.as_ref().map(|w| &w.diagonal[..])
+    }
+
+    fn weigh(&self, x: &mut [f64]) {
+        if let Some(weights) = &self.0.weights {
+            weights.apply(x);
+        }
+    }
+
+    /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
+    pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        data.product(x, None, &mut s.first, &mut s.columns);
+        if let Some(e) = e {
+            s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
+        }
+        self.solve_with(&mut s.first, &mut s.memory, &mut s.split);
+        if self.0.plain {
+            let weight = |row: usize| self.diagonal().map_or(1.0, |w| w[row]);
+            data.with_transpose(
+                &s.first,
+                x,
+                &mut s.motions,
+                |x, v| *x -= v,
+                |row, x, v| *x -= weight(row) * v,
+            );
+        } else {
+            data.product_transpose(&s.first, &mut s.dual, &mut s.motions);
+            self.weigh(&mut s.dual);
+            signorini_qp::vector::subtract(&s.dual, x);
+        }
+    }
+
+    /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
+    /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
+    pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        self.amplitudes(r, alpha, s);
+        let data = &self.0.coarse.0;
+        data.with_transpose(alpha, r, &mut s.motions, |r, v| *r += v, |_, r, v| *r += v);
+    }
+
+    /// Rigid amplitudes that make the rows residual `r + G^T alpha` smallest in the metric of `W`:
+    /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
+    /// equality (open contact, sliding).
+    pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        if self.0.plain {
+            data.product(r, self.diagonal(), alpha, &mut s.columns);
+        } else {
+            s.dual.copy_from_slice(r);
+            self.weigh(&mut s.dual);
+            data.product(&s.dual, None, alpha, &mut s.columns);
+        }
+        self.solve_with(alpha, &mut s.memory, &mut s.split);
+        alpha.iter_mut().for_each(|a| *a = -*a);
+    }
+
+    /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
+    pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        s.first.copy_from_slice(e);
+        self.solve_with(&mut s.first, &mut s.memory, &mut s.split);
+        data.product_transpose(&s.first, x, &mut s.motions);
+        self.weigh(x);
+    }
+
+    fn sparse(&self) -> Option<&SparseCholesky> {
+        match &self.0.factor {
+            Factor::Sparse(factor) => Some(factor),
+            Factor::Split(..) => None,
+        }
+    }
+
+    /// The orthonormal basis `C = L^-1 P G` of the row space of `G`, where `P G G^T P^T = L L^T`. `None` if there are
+    /// weights or free motions.
+    #[must_use]
+    pub fn orthonormal(&self) -> Option<OrthonormalCoarse> {
+        (self.0.weights.is_none() && self.0.free.is_empty() && self.sparse().is_some())
+            .then(|| OrthonormalCoarse(self.clone()))
+    }
+}
+
+/// The constraint `G x = e` with orthonormal rows: `C x = L^-1 P e` with `C = L^-1 P G`, `C C^T = I`.
+#[derive(Debug, Clone)]
+pub struct OrthonormalCoarse(CoarseFactor);
+
+impl OrthonormalCoarse {
+    fn half_solve(&self, x: &[f64], out: &mut [f64], memory: &mut SolveMemory) {
+        if let Some(factor) = self.0.sparse() {
+            factor.half_solve(x, out, memory);
+        }
+    }
+
+    fn half_solve_transpose(&self, y: &mut [f64], out: &mut [f64], memory: &mut SolveMemory) {
+        if let Some(factor) = self.0.sparse() {
+            factor.half_solve_transpose(y, out, memory);
+        }
+    }
+
+    /// Right-hand side of the orthonormal rows: `out = L^-1 P e`.
+    pub fn rhs(&self, e: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
+        self.half_solve(e, out, &mut s.memory);
+    }
+
+    /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
+    /// `G^T alpha = C^T beta`.
+    pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        s.first.copy_from_slice(beta);
+        self.half_solve_transpose(&mut s.first, alpha, &mut s.memory);
+    }
+
+    /// The factor.
+    #[must_use]
+    pub fn factor(&self) -> &CoarseFactor {
+        &self.0
+    }
+}
+
+impl Equality for OrthonormalCoarse {
+    type Scratch = CoarseScratch;
+
+    fn dim(&self) -> usize {
+        self.0.coarse().dim()
+    }
+
+    fn rows(&self) -> usize {
+        self.0.coarse().rows()
+    }
+
+    fn scratch(&self) -> CoarseScratch {
+        self.0.scratch()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse().0;
+        data.product(x, None, &mut s.first, &mut s.columns);
+        self.half_solve(&s.first, y, &mut s.memory);
+    }
+
+    fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse().0;
+        s.first.copy_from_slice(y);
+        self.half_solve_transpose(&mut s.first, &mut s.second, &mut s.memory);
+        data.product_transpose(&s.second, x, &mut s.motions);
+    }
+}

@@ -1,0 +1,162 @@
+//! The split coarse factor of the face space gives the projectors of the full one.
+
+mod common;
+
+use common::{Brick, build, distance, noise, norm};
+use signorini_qp::{CoarseSpace, QpError};
+use signorini_tfeti::{
+    FaceFactor, FaceSpace, InverseKind, RowRule, Sharing, Support, Tfeti, TfetiBuilder,
+};
+
+fn system(n: usize, cells: usize) -> Tfeti {
+    let b = Brick::new(n, cells);
+    build(
+        &b,
+        InverseKind::Auto,
+        Sharing::Translates,
+        RowRule::Orthonormal,
+    )
+}
+
+fn space(system: &Tfeti, kind: FaceFactor, metric: Option<Vec<f64>>) -> FaceSpace {
+    let contact = system.gluing().ranges().contact().end;
+    FaceSpace::with_factor(system.coarse(), contact, metric, kind).unwrap()
+}
+
+/// Weights of a face: a share of the contact rows is free.
+fn face(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
+    let contact = system.gluing().ranges().contact().end;
+    let mut w = vec![1.0; system.dual_dim()];
+    for (w, v) in w[..contact].iter_mut().zip(noise(contact, seed)) {
+        *w = f64::from(u8::from(0.5 * (v + 1.0) < share));
+    }
+    w
+}
+
+/// All that a face space does, as one list of vectors.
+fn results(system: &Tfeti, space: &mut FaceSpace) -> [Vec<f64>; 4] {
+    let (x, e) = (
+        noise(system.dual_dim(), 5),
+        noise(system.coarse().rows(), 6),
+    );
+    let (mut p, mut t, mut r) = (x.clone(), x.clone(), x.clone());
+    let mut alpha = e.clone();
+    space.project(&mut p);
+    space.project_transpose(&mut t);
+    space.multiplier(&x, &mut alpha);
+    space.repair(&mut r, &e);
+    [p, t, alpha, r]
+}
+
+fn compare(system: &Tfeti, a: &mut FaceSpace, b: &mut FaceSpace) {
+    for (x, y) in results(system, a).iter().zip(&results(system, b)) {
+        assert!(
+            distance(x, y) < 1e-12 * norm(y),
+            "{}",
+            distance(x, y) / norm(y)
+        );
+    }
+}
+
+#[test]
+fn projectors_agree_with_the_full_factor() {
+    // All subdomains carry contact rows (n = 1), some do, and enough do not that these are cut in two halves.
+    for (n, cells) in [(1, 3), (2, 3), (4, 1)] {
+        let system = system(n, cells);
+        let mut split = space(&system, FaceFactor::Split, None);
+        let mut sparse = space(&system, FaceFactor::Sparse, None);
+        compare(&system, &mut split, &mut sparse);
+        for (share, seed) in [(0.5, 1), (0.5, 2), (0.02, 3), (1.0, 4), (0.0, 5)] {
+            let w = face(&system, share, seed);
+            assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
+            assert_eq!(split.set_weights(&w), Ok(false), "the same face again");
+            compare(&system, &mut split, &mut sparse);
+        }
+        // Weights of rows that no face holds are served as well.
+        let mut w = face(&system, 0.3, 6);
+        let last = w.len() - 1;
+        w[last] = 0.5;
+        w[last / 2] = 0.25;
+        assert_eq!(split.set_weights(&w), Ok(true));
+        assert_eq!(sparse.set_weights(&w), Ok(true));
+        compare(&system, &mut split, &mut sparse);
+    }
+}
+
+#[test]
+fn a_metric_of_the_rows_is_kept() {
+    let system = system(2, 3);
+    let metric: Vec<f64> = noise(system.dual_dim(), 9)
+        .iter()
+        .map(|v| 0.6 + 0.4 * v)
+        .collect();
+    let mut split = space(&system, FaceFactor::Split, Some(metric.clone()));
+    let mut sparse = space(&system, FaceFactor::Sparse, Some(metric));
+    for (share, seed) in [(0.5, 1), (0.1, 2)] {
+        let w = face(&system, share, seed);
+        assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
+        compare(&system, &mut split, &mut sparse);
+    }
+}
+
+#[test]
+fn the_last_face_leaves_no_trace() {
+    let system = system(2, 3);
+    let w = face(&system, 0.4, 7);
+    let mut fresh = space(&system, FaceFactor::Split, None);
+    fresh.set_weights(&w).unwrap();
+    let mut used = space(&system, FaceFactor::Split, None);
+    for seed in 10..14 {
+        used.set_weights(&face(&system, 0.7, seed)).unwrap();
+    }
+    used.set_weights(&w).unwrap();
+    assert_eq!(results(&system, &mut fresh), results(&system, &mut used));
+}
+
+#[test]
+fn bits_do_not_depend_on_the_number_of_threads() {
+    // Large enough that all loops and both halves run in parallel.
+    let system = system(5, 3);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut space = space(&system, FaceFactor::Split, None);
+            space.set_weights(&face(&system, 0.5, 3)).unwrap();
+            results(&system, &mut space)
+        })
+    };
+    let one = run(1);
+    assert_eq!(one, run(2));
+    assert_eq!(one, run(3));
+}
+
+#[test]
+fn a_body_held_by_contact_only_is_deficient_on_open_faces() {
+    let b = Brick::new(2, 3);
+    for supports in [vec![], vec![Support::fixed(vec![b.fixed[0]])]] {
+        let contact = b.contact(true);
+        let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
+            .supports(&supports)
+            .contact(&contact)
+            .build()
+            .unwrap();
+        let mut split = space(&system, FaceFactor::Split, None);
+        let mut sparse = space(&system, FaceFactor::Sparse, None);
+        let e = noise(system.coarse().rows(), 3);
+        let closed = face(&system, 0.6, 1);
+        let open = face(&system, 0.0, 1);
+        for space in [&mut split, &mut sparse] {
+            space.set_rhs(&e);
+            assert_eq!(space.set_weights(&closed), Ok(true));
+            assert!(matches!(
+                space.set_weights(&open),
+                Err(QpError::CoarseDeficient { .. })
+            ));
+            assert_eq!(space.set_weights(&face(&system, 0.5, 2)), Ok(true));
+        }
+        compare(&system, &mut split, &mut sparse);
+    }
+}
