@@ -34,15 +34,16 @@
 //! `r / k`. Pressed nodes come to lie on the obstacle, sticking ones at rest, sliding ones move against their friction.
 //!
 //! **What is not exact.**
-//! - *Multipliers that are slightly inadmissible* (`lambda_nu > 0`, `|lambda_T| > r`, by the tolerance): `|lambda_nu
-//!   (v_nu - g)|` and `max(r, |lambda_T|)` take the place of the terms, so that the gap stays non-negative; the bound
-//!   then belongs to the problem with those slightly larger slip bounds.
+//! - *Pulling forces* (`lambda_nu > 0`, by the tolerance) enter as `|lambda_nu (v_nu - g)|`.
+//! - *Friction off its bound.* Solvers stop with `|lambda_T|` a little above or below the `r` of a sliding node: slip
+//!   bounds still move. First order in `r - |lambda_T|`, the gap would overrate this. At such nodes the bound belongs
+//!   to the problem with `r' = |lambda_T|`, and the way from `r'` to `r` adds, as an error norm, that of the force
+//!   `r - r'` on the node with its own stiffness `k`: `sqrt(sum (r - r')² / (2 k))`. The body is softer than one node;
+//!   this part is an estimate.
 //! - *Equilibrium of subdomains as rigid bodies* holds to rounding with the face method, to the tolerance with SMALSE. The
 //!   unbalanced rest is then carried by gluing and support forces, `lambda' = lambda + W Gᵀ (G W Gᵀ)⁻¹ (e - G lambda)` with
 //!   weights `W` that leave contact forces alone, and `u' = u + K+ Bᵀ (lambda' - lambda)` takes the place of `u`: one
 //!   more product. If contact alone holds the body, the rest `q = K u - f - Bᵀ lambda` adds its norm times that of `v - u`.
-//! - *Rounding.* `r |v_T - z|` and `lambda_T . (v_T - z)` cancel where nodes slide: estimates below 1e-9, relative, are
-//!   rounding.
 //! - *Coulomb friction.* `r = F |lambda_nu|` is taken from the level's own `lambda_nu`, so `u*` is the solution of
 //!   *its* given-friction problem, one evaluation of the map (3.15) away. With contraction rate `q` of the map the distance
 //!   to its fixed point is at most `1 / (1 - q)` times the estimate; `q` is about 0.06 on the benchmark. Where the
@@ -50,9 +51,10 @@
 //! - *The level before* is taken as it is: errors of old tangential positions are not in the estimate.
 
 use crate::certificate::Certificate;
+use crate::contact_move::{Moved, dot};
 use crate::frame::PointState;
 use crate::level::Level;
-use crate::model::{Model, Tangential, TouchPoint};
+use crate::model::Model;
 use rayon::prelude::*;
 use signorini_fem_mesh::Element;
 use signorini_qp::vector::norm;
@@ -157,25 +159,19 @@ impl Solved<'_> {
         let model = self.model;
         let weights = model.weights.get_or_init(|| Weights::new(model));
         let mut v = self.mean(&weights.copies);
-        for (point, touch) in self.points.iter().zip(&model.points) {
-            let value = &mut v[3 * touch.node as usize..][..3];
-            self.move_contact_node(point, touch, &weights.rows, value);
-        }
+        let pairs = || self.points.iter().zip(&model.points);
+        let moved: Vec<Moved> = pairs()
+            .map(|(point, touch)| {
+                let value = &mut v[3 * touch.node as usize..][..3];
+                Moved::new(self.level, touch, point, &weights.rows, value)
+            })
+            .collect();
         self.support(&mut v);
-        let mut terms = 0.0;
-        for (point, touch) in self.points.iter().zip(&model.points) {
+        let (mut terms, mut change) = (0.0, 0.0);
+        for ((point, touch), moved) in pairs().zip(&moved) {
             let value = &v[3 * touch.node as usize..][..3];
-            let open = normal_offset(self.level, touch, value);
-            terms += (point.normal_force * open).abs();
-            let (mut length, mut size, mut work) = (0.0_f64, 0.0_f64, 0.0);
-            for (direction, row, scale) in directions(touch) {
-                let w = dot(&direction, value) - self.level.offset[row] / scale;
-                let force = dot(&direction, &point.friction_force);
-                length = length.hypot(w);
-                size = size.hypot(force);
-                work += force * w;
-            }
-            terms += (point.slip_bound.max(size) * length + work).max(0.0);
+            terms += moved.gap(self.level, touch, point, value);
+            change += moved.change;
         }
         // torn difference and its energy
         let balanced = weights.interior.as_ref().and_then(|c| self.balanced(c));
@@ -204,7 +200,7 @@ impl Solved<'_> {
         }
         let distance = 0.5 * sum(1).max(0.0);
         AlgebraicError {
-            energy: distance + terms,
+            energy: ((distance + terms).sqrt() + change.sqrt()).powi(2),
             distance,
             elastic: 0.5 * sum(0),
         }
@@ -258,44 +254,6 @@ impl Solved<'_> {
         v
     }
 
-    /// The best move of one contact node with all others held.
-    fn move_contact_node(
-        &self,
-        point: &PointState,
-        touch: &TouchPoint,
-        stiffness: &[f64],
-        value: &mut [f64],
-    ) {
-        let k = touch.scale.powi(2) * stiffness[touch.row];
-        let open = normal_offset(self.level, touch, value);
-        let target = (open - point.normal_force / k).min(0.0);
-        for c in 0..3 {
-            value[c] += (target - open) * touch.frame.normal[c];
-        }
-        let parts: Vec<([f64; 3], f64, f64)> = directions(touch)
-            .map(|(direction, row, scale)| {
-                let w = dot(&direction, value) - self.level.offset[row] / scale;
-                let k = scale.powi(2) * stiffness[row];
-                (direction, w, w - dot(&direction, &point.friction_force) / k)
-            })
-            .collect();
-        let Some((_, row, scale)) = directions(touch).next() else {
-            return;
-        };
-        let k = scale.powi(2) * stiffness[row];
-        let length = parts.iter().map(|p| p.2).fold(0.0, f64::hypot);
-        let shrink = if length > 0.0 {
-            (1.0 - point.slip_bound / (k * length)).max(0.0)
-        } else {
-            0.0
-        };
-        for (direction, w, shifted) in parts {
-            for c in 0..3 {
-                value[c] += (shrink * shifted - w) * direction[c];
-            }
-        }
-    }
-
     /// Sets supported directions to their prescribed values.
     fn support(&self, v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
@@ -315,28 +273,4 @@ impl Solved<'_> {
             }
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// `v_nu - g`, m.
-fn normal_offset(level: &Level, touch: &TouchPoint, value: &[f64]) -> f64 {
-    dot(&touch.frame.normal, value) - level.offset[touch.row] / touch.scale
-}
-
-/// Tangential directions of a point with their rows and scales.
-fn directions(touch: &TouchPoint) -> impl Iterator<Item = ([f64; 3], usize, f64)> {
-    let [a, b] = touch.frame.tangents;
-    let list = match touch.tangential {
-        Tangential::None => [None, None],
-        Tangential::Line {
-            row,
-            direction,
-            scale,
-        } => [Some((direction, row, scale)), None],
-        Tangential::Plane { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
-    };
-    list.into_iter().flatten()
 }

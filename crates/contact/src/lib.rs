@@ -4,6 +4,7 @@ mod accuracy;
 mod algebraic;
 mod certificate;
 mod clock;
+mod contact_move;
 mod cone;
 mod error;
 mod face_solver;
