@@ -6,6 +6,7 @@
 //! | `brick` | the benchmark of the paper's section 6, its table beside the paper's, pictures and files | [`app::execute`] |
 //! | `frictionless` | the same brick, static and without friction, product by product | [`frictionless::execute`] |
 //! | `tresca` | given friction: one quadratic program a level | [`tresca::execute`] |
+//! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
 //! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
 //!
 //! | module | holds |
@@ -15,6 +16,7 @@
 //! | [`run`], [`record`] | running a scene, results as JSON |
 //! | [`files`], [`pictures`] | VTU, CSV, SVG |
 
+pub mod accuracy;
 pub mod app;
 pub mod brick;
 pub mod dependence;
