@@ -7,6 +7,7 @@
 //! | `frictionless` | the same brick, static and without friction, product by product | [`frictionless::execute`] |
 //! | `tresca` | given friction: one quadratic program a level | [`tresca::execute`] |
 //! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
+//! | `stability` | hard cases, what the library does with them, and what has to hold | [`stability::app::execute`] |
 //! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
 //!
 //! | module | holds |
@@ -32,6 +33,7 @@ pub mod qp_only;
 pub mod record;
 pub mod run;
 pub mod snapshot;
+pub mod stability;
 pub mod table;
 pub mod tresca;
 

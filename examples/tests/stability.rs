@@ -1,0 +1,167 @@
+//! The hard cases of the example `stability`, each judged by what is acceptable for it; and properties of them.
+
+use clap::Parser;
+use proptest::prelude::*;
+use signorini::prelude::*;
+use signorini_examples::stability::app::{StabilityOptions, chosen, run_all};
+use signorini_examples::stability::block::Block;
+use signorini_examples::stability::case::Case;
+use signorini_examples::stability::report::{outcome, plain};
+use signorini_examples::stability::runner::{Ended, difference, run};
+use signorini_examples::stability::{cases_restart::garble, locking};
+
+fn all_as_they_should_be(arguments: &[&str]) {
+    let options = StabilityOptions::parse_from(arguments);
+    let cases = chosen(&options);
+    let lines = run_all(&cases, |_| {});
+    let bad: Vec<String> = lines
+        .iter()
+        .filter(|l| l.complaint.is_some())
+        .map(plain)
+        .collect();
+    assert!(bad.is_empty(), "\n{}", bad.join("\n"));
+    assert!(!lines.is_empty());
+}
+
+#[test]
+fn short_cases() {
+    all_as_they_should_be(&["stability", "--short"]);
+}
+
+#[test]
+#[ignore = "a minute in release"]
+fn all_cases() {
+    all_as_they_should_be(&["stability"]);
+}
+
+#[test]
+fn names_are_unique_and_references_exist() {
+    let cases = signorini_examples::stability::cases();
+    for case in &cases {
+        assert_eq!(
+            cases.iter().filter(|c| c.name == case.name).count(),
+            1,
+            "{}",
+            case.name
+        );
+        if let Some((name, _)) = &case.same_as {
+            assert!(cases.iter().any(|c| c.name == *name), "{name}");
+        }
+    }
+}
+
+/// With more steps the surplus of backward Euler falls like the step, the friction loss stays.
+#[test]
+fn the_surplus_of_backward_euler_is_of_first_order() {
+    let balance = |steps: usize| {
+        let block = Block {
+            cells: [2; 3],
+            steps,
+            ..Block::default()
+        };
+        let m = run(&Case::new("", "", "", move || block.setup()));
+        assert!(
+            m.complaint(signorini_examples::stability::case::Expect::Certified(1e-5))
+                .is_none()
+        );
+        assert!(m.balance.surplus > 0.0 && m.balance.dissipation > 0.0);
+        m.balance
+    };
+    let (coarse, fine) = (balance(20), balance(40));
+    let ratio = coarse.surplus / fine.surplus;
+    assert!((1.6..2.4).contains(&ratio), "{ratio}");
+    let loss = coarse.dissipation / fine.dissipation;
+    assert!((0.7..1.4).contains(&loss), "{loss}");
+}
+
+/// Halving the cells divides the error by nearly four, but not where P1 locks.
+#[test]
+fn linear_tetrahedra_lock() {
+    let gain = |poisson: f64| {
+        let [coarse, fine] = [2, 4].map(|n| locking::deflection(poisson, n).expect("a solution"));
+        assert!(coarse < fine && fine < 1.0, "{poisson}: {coarse} {fine}");
+        (1.0 - coarse) / (1.0 - fine)
+    };
+    let (soft, locked) = (gain(0.0), gain(0.499));
+    assert!(soft > 2.5, "{soft}");
+    assert!(locked < 2.0, "{locked}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    /// Loads, gap and stiffness in any units: the same figures.
+    #[test]
+    fn units_change_nothing(metre in -6.0..6.0_f64, pascal in -12.0..12.0_f64) {
+        let reference = Block { cells: [2; 3], steps: 2, ..Block::default() };
+        let block = Block { metre: 10_f64.powf(metre), pascal: 10_f64.powf(pascal), ..reference.clone() };
+        let a = run(&Case::new("", "", "", move || reference.setup()));
+        let b = run(&Case::new("", "", "", move || block.setup()));
+        prop_assert!(difference(&a.figures, &b.figures) < 1e-6);
+        prop_assert_eq!(outcome(&a), outcome(&b));
+    }
+
+    /// Whatever the start values are, the result is the same or says that it is none.
+    #[test]
+    fn start_values_change_nothing(seed in any::<u64>(), exponent in -3.0..14.0_f64) {
+        let block = Block { cells: [2; 3], steps: 3, ..Block::default() };
+        let reference = block.clone();
+        let a = run(&Case::new("", "", "", move || reference.setup()));
+        let b = run(&Case::new("", "", "", move || {
+            let mut setup = block.setup()?;
+            let first = block.setup()?;
+            let mut simulation = Simulation::new(first.scene, first.settings)?;
+            simulation.step()?;
+            let mut bytes = simulation.state().to_bytes()?;
+            let mut s = seed;
+            garble(&mut bytes, 6, |_| {
+                s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                10_f64.powf(exponent) * ((s >> 11) as f64 / (1_u64 << 53) as f64 - 0.5)
+            });
+            setup.start = Some(State::from_bytes(&bytes)?);
+            Ok(setup)
+        }));
+        let solved = matches!(&b.ended, Ended::Solved(status, _) if status.converged());
+        prop_assert!(!matches!(b.ended, Ended::Panicked(_)));
+        if solved {
+            prop_assert!(b.certificate.0 < 1e-5);
+            prop_assert!(difference(&a.figures, &b.figures) < 1e-4, "{:?} {:?}", a.figures, b.figures);
+        }
+    }
+
+    /// Random loads on a loose block: refused, certified, or a status; never anything else.
+    #[test]
+    fn loose_blocks_are_refused_or_certified(
+        shear in -0.5..0.5_f64, across in -0.5..0.5_f64, lift in -1.0..0.3_f64, coefficient in 0.0..0.8_f64,
+    ) {
+        let block = Block {
+            lengths: [2.0, 2.0, 0.5],
+            boxes: [2, 1, 1],
+            cells: [1, 2, 1],
+            gap: 0.0,
+            top: [shear * 1e7, across * 1e7, lift * 1e7],
+            end: [0.0; 3],
+            clamped: false,
+            friction: Friction::coulomb(coefficient),
+            steps: 1,
+            ..Block::default()
+        };
+        let m = run(&Case::new("", "", "", move || block.setup()));
+        let along = shear.hypot(across);
+        match &m.ended {
+            Ended::Panicked(text) => prop_assert!(false, "{}", text),
+            Ended::Refused(text) => {
+                prop_assert!(text.contains("cannot be in equilibrium"), "{}", text);
+                // flat enough not to tip before it slides
+                prop_assert!(lift >= 0.0 || along > -coefficient * lift * 0.999);
+            }
+            Ended::Solved(status, _) => {
+                prop_assert!(along <= -coefficient * lift * 1.001, "{:?}", status);
+                if status.converged() {
+                    prop_assert!(m.certificate.0 < 1e-5);
+                    prop_assert!(m.balance.largest() < 1e-4);
+                }
+            }
+        }
+    }
+}
