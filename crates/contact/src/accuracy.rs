@@ -34,7 +34,7 @@ pub enum Accuracy {
         /// In (0, 1]; 0.1 adds half a per cent to the total error.
         fraction: f64,
     },
-    /// Where the estimated algebraic error is at most this, relative, in the energy norm; in [1e-9, 0.5].
+    /// Where the estimated algebraic error is at most this, relative, in the energy norm; in [1e-11, 0.5].
     /// The setting `tolerance` is not used.
     Relative(f64),
 }
@@ -55,8 +55,8 @@ impl Accuracy {
             Self::Relative(x) => (
                 "accuracy.relative",
                 x,
-                "[1e-9, 0.5]",
-                (1e-9..=0.5).contains(&x),
+                "[1e-11, 0.5]",
+                (1e-11..=0.5).contains(&x),
             ),
         };
         if good {

@@ -36,7 +36,8 @@
 //! **What is not exact.**
 //! - *Pulling forces* (`lambda_nu > 0`, by the tolerance) enter as `|lambda_nu (v_nu - g)|`.
 //! - *Friction off its bound.* Solvers stop with `|lambda_T|` a little above or below the `r` of a sliding node: slip
-//!   bounds still move. First order in `r - |lambda_T|`, the gap would overrate this. At such nodes the bound belongs
+//!   bounds still move. First order in `r - |lambda_T|`, the gap would overrate this. Where they differ by less than a
+//!   hundredth the bound belongs
 //!   to the problem with `r' = |lambda_T|`, and the way from `r'` to `r` adds, as an error norm, that of the force
 //!   `r - r'` on the node with its own stiffness `k`: `sqrt(sum (r - r')² / (2 k))`. The body is softer than one node;
 //!   this part is an estimate.
@@ -199,8 +200,10 @@ impl Solved<'_> {
             terms += norm(self.residual) * sum(2).sqrt();
         }
         let distance = 0.5 * sum(1).max(0.0);
+        let gap = distance + terms;
         AlgebraicError {
-            energy: ((distance + terms).sqrt() + change.sqrt()).powi(2),
+            // the square of the sum of two norms
+            energy: gap + change + 2.0 * (gap * change).sqrt(),
             distance,
             elastic: 0.5 * sum(0),
         }

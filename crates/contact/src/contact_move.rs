@@ -8,6 +8,10 @@ use crate::model::{Tangential, TouchPoint};
 /// Rounding of differences of positions, relative.
 const ROUNDING: f64 = 1e-12;
 
+/// Relative change of a slip bound that is judged by the stiffness of the node. Larger ones move the whole body, and the
+/// gap, which overrates small changes, is the safer measure.
+const NEAR: f64 = 0.01;
+
 /// A contact node after its move.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Moved {
@@ -66,7 +70,8 @@ impl Moved {
         let change = 0.5 * (moved.bound - size).powi(2) / k;
         moved.slip = nearest(moved.bound);
         let way = length([moved.slip[0] - start[0], moved.slip[1] - start[1]]);
-        if size > moved.bound || change < moved.friction_term() + 0.5 * k * way * way {
+        let near = (moved.bound - size).abs() <= NEAR * moved.bound;
+        if size > moved.bound || near && change < moved.friction_term() + 0.5 * k * way * way {
             moved.bound = size;
             moved.change = change;
             moved.slip = nearest(size);

@@ -1,7 +1,7 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time levels, fixed-point loops and certificates.
 
-mod accuracy;
-mod algebraic;
+pub mod accuracy;
+pub mod algebraic;
 mod certificate;
 mod clock;
 mod contact_move;
@@ -25,7 +25,7 @@ mod settings;
 mod simulation;
 mod solver;
 mod state;
-mod time_error;
+pub mod time_error;
 
 pub use accuracy::{Accuracy, AccuracyReport};
 pub use algebraic::AlgebraicError;

@@ -53,11 +53,11 @@ fn the_gap_bounds_the_error_and_is_not_far_above_it() {
                     gap.relative() / truth
                 );
                 assert!(gap.energy >= 0.0 && gap.distance <= gap.energy, "{name}");
-                // the index of given friction is at least 1; slip bounds that still move are not in it
-                assert!(gap.relative() >= 0.9 * truth, "{name}");
-                // SMALSE, solved loosely, ends with friction forces above the bounds of its own normal forces
+                // the bound is for the moved mean of copies, the truth here for the plain one
+                assert!(gap.relative() >= 0.95 * truth, "{name}");
+                // SMALSE, solved loosely, leaves slip bounds that move by per cents: the gap overrates them
                 let most = if method.name() == "face" { 4.0 } else { 30.0 };
-                assert!(gap.relative() <= most * truth + 1e-8, "{name}");
+                assert!(gap.relative() <= most * truth + 1e-10, "{name}");
             }
         }
     }
@@ -100,7 +100,7 @@ fn a_relative_accuracy_is_reached_and_reported() {
 
 #[test]
 fn a_target_out_of_reach_is_no_success() {
-    let settings = Settings::default().with_accuracy(Accuracy::Relative(1e-9));
+    let settings = Settings::default().with_accuracy(Accuracy::Relative(1e-11));
     let mut simulation =
         Simulation::new(pressed(3, Friction::coulomb(0.3)), settings).expect("set-up");
     let level = step(&mut simulation);

@@ -86,6 +86,7 @@ pub mod fields;
 pub mod gmsh;
 #[cfg(feature = "vtu")]
 pub mod output;
+pub mod recovery;
 
 mod assembly;
 mod decomposition;
@@ -98,7 +99,6 @@ mod materials;
 mod mesh;
 mod norms;
 mod quadrature;
-mod recovery;
 mod surface;
 mod vec3;
 
