@@ -64,13 +64,13 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The largest relative violation.
+    /// The largest relative violation; not a number if one is none.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.parts()
             .iter()
             .map(|(_, v)| v.relative())
-            .fold(0.0, f64::max)
+            .fold(0.0, worse)
     }
 
     /// Name and violation of every condition.
@@ -86,6 +86,11 @@ impl Certificate {
             ("direction", self.direction),
         ]
     }
+}
+
+/// The larger one; `f64::max` would hide what is not a number.
+fn worse(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
 }
 
 /// Displacements of rows, in metres, from the recovered torn displacement.
@@ -134,12 +139,12 @@ pub(crate) fn certify(
         .iter()
         .zip(&level.offset[jumps])
         .map(|(u, c)| (u - c).abs())
-        .fold(0.0, f64::max);
+        .fold(0.0, worse);
     c.continuity = Violation {
         value: jump,
         reference: displacement,
     };
-    let worst = |v: &mut Violation, value: f64| v.value = v.value.max(value);
+    let worst = |v: &mut Violation, value: f64| v.value = worse(v.value, value);
     for v in [&mut c.sign, &mut c.cone] {
         v.reference = contact_force;
     }

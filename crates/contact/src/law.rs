@@ -182,7 +182,7 @@ impl Coefficient {
                     return bad("length of the table", 0.0);
                 }
                 for pair in points.windows(2) {
-                    if !(pair[0].0 < pair[1].0) {
+                    if pair[0].0.partial_cmp(&pair[1].0) != Some(std::cmp::Ordering::Less) {
                         return bad("slip rate out of order in the table", pair[1].0);
                     }
                 }

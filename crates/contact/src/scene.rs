@@ -413,15 +413,16 @@ impl Scene {
         self.analysis.validate()?;
         for support in &self.supports {
             let nodes = self.nodes("support", &support.place)?;
-            if let Some((values, _)) = &support.motion {
-                if values.len() != 1 && values.len() != nodes.len() {
-                    let (values, nodes) = (values.len(), nodes.len());
-                    return Err(ContactError::ValueCount {
-                        what: "support",
-                        values,
-                        nodes,
-                    });
-                }
+            if let Some((values, _)) = &support.motion
+                && values.len() != 1
+                && values.len() != nodes.len()
+            {
+                let (values, nodes) = (values.len(), nodes.len());
+                return Err(ContactError::ValueCount {
+                    what: "support",
+                    values,
+                    nodes,
+                });
             }
         }
         for level in 0..self.analysis.levels() {

@@ -176,7 +176,7 @@ impl Simulation {
             }
             dual.apply(lambda, &mut product, &mut scratch);
             let off = vector::distance(&product, f_lambda);
-            if !(off <= FOREIGN * vector::norm(&product)) {
+            if off.is_nan() || off > FOREIGN * vector::norm(&product) {
                 f_lambda.clone_from(&product);
             }
         }
