@@ -38,10 +38,9 @@ impl Balance {
     /// The largest of the errors.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        self.force
-            .max(self.moment)
-            .max(self.energy)
-            .max(self.negative_dissipation)
+        [self.moment, self.energy, self.negative_dissipation]
+            .into_iter()
+            .fold(self.force, worse)
     }
 }
 
@@ -170,8 +169,8 @@ impl Ledger {
             size += length(f);
         }
         let b = &mut self.balance;
-        b.force = b.force.max(ratio(length(&sum), size));
-        b.moment = b.moment.max(ratio(length(&moment), size));
+        b.force = worse(b.force, ratio(length(&sum), size));
+        b.moment = worse(b.moment, ratio(length(&moment), size));
         let energy = 0.5 * dot(&u, &internal);
         let zero = Kept {
             u: vec![0.0; u.len()],
@@ -195,11 +194,12 @@ impl Ledger {
         if known {
             self.turnover += turned;
             let scale = self.turnover.max(energy);
-            b.energy = b
-                .energy
-                .max(ratio((energy - before.energy - work).abs(), scale));
+            b.energy = worse(
+                b.energy,
+                ratio((energy - before.energy - work).abs(), scale),
+            );
             let dissipation = frame.summary().dissipation;
-            b.negative_dissipation = b.negative_dissipation.max(ratio(-dissipation, scale));
+            b.negative_dissipation = worse(b.negative_dissipation, ratio(-dissipation, scale));
             b.dissipation += dissipation;
             b.surplus += surplus;
         }
@@ -217,6 +217,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 fn length(v: &[f64]) -> f64 {
     dot(v, v).sqrt()
+}
+
+/// The larger one; not a number if one is none.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }
 
 fn ratio(a: f64, b: f64) -> f64 {

@@ -30,7 +30,7 @@ pub fn compare(lines: &mut [Line<'_>]) {
             continue;
         };
         let off = difference(reference, &line.measured.figures);
-        if !(off <= *within) {
+        if off.is_nan() || off > *within {
             line.complaint = Some(format!("differs from '{name}' by {off:.1e}"));
         }
     }

@@ -80,19 +80,24 @@ impl Measured {
                 if !status.converged() && !allowed {
                     return Some(format!("level {level} ended as {status:?}"));
                 }
-                if !(self.certificate.0 <= limit) {
+                if above(self.certificate.0, limit) {
                     return Some(format!(
                         "certificate {:.1e} ({})",
                         self.certificate.0, self.certificate.1
                     ));
                 }
-                if !(self.balance.largest() <= 10.0 * limit) {
+                if above(self.balance.largest(), 10.0 * limit) {
                     return Some(format!("balances {:?}", self.balance));
                 }
                 (!self.figures.iter().all(|v| v.is_finite())).then(|| "NaN".to_owned())
             }
         }
     }
+}
+
+/// Whether `a` is above `b` or no number.
+pub(super) fn above(a: f64, b: f64) -> bool {
+    a.is_nan() || a > b
 }
 
 /// Runs a case.
@@ -163,7 +168,7 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
         if report.status.converged() {
             for (name, violation) in frame.certificate().parts() {
                 let relative = violation.relative();
-                if !(relative <= measured.certificate.0) {
+                if above(relative, measured.certificate.0) {
                     measured.certificate = (relative, name);
                 }
             }
