@@ -4,8 +4,11 @@
 
 use faer::{Accum, Mat, Par};
 use signorini_fem_mesh::{Decomposition, Frame, Hooke, Materials, brick};
-use signorini_qp::{Equality, SymmetricOperator};
-use signorini_tfeti::{ContactNodes, InverseKind, InverseSettings, Sharing, Support, TfetiBuilder};
+use signorini_qp::{CoarseSpace, Equality, SymmetricOperator};
+use signorini_tfeti::{
+    ContactNodes, FaceFactor, FaceSpace, InverseKind, InverseSettings, Sharing, Support, Tfeti,
+    TfetiBuilder,
+};
 use std::time::Instant;
 
 fn median(mut body: impl FnMut()) -> f64 {
@@ -19,6 +22,49 @@ fn median(mut body: impl FnMut()) -> f64 {
     }
     times.sort_by(f64::total_cmp);
     times[times.len() / 20]
+}
+
+/// The other parts of an iteration of the face method, on one thread.
+fn parts(system: &Tfeti) -> Result<(), Box<dyn std::error::Error>> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let n = system.dual_dim();
+    let contact = system.gluing().ranges().contact().end;
+    let mut x: Vec<f64> = (0..n).map(|i| (i as f64).sin()).collect();
+    let mut y = x.clone();
+    let lumped = system.lumped()?;
+    let mut s = lumped.scratch();
+    let time = pool.install(|| median(|| lumped.apply(&x, &mut y, &mut s)));
+    print!("lumped {:.3} ms", 1e3 * time);
+    for (name, kind) in [("split", FaceFactor::Split), ("sparse", FaceFactor::Sparse)] {
+        let started = Instant::now();
+        let mut space = FaceSpace::with_factor(system.coarse(), contact, None, kind)?;
+        let setup = started.elapsed().as_secs_f64();
+        let mut w = vec![1.0; n];
+        let mut k = 0;
+        let change = pool.install(|| {
+            median(|| {
+                k += 1;
+                w[k % contact] = 1.0 - w[k % contact];
+                drop(space.set_weights(&w));
+            })
+        });
+        let project = pool.install(|| median(|| space.project(&mut x)));
+        let transposed = pool.install(|| median(|| space.project_transpose(&mut y)));
+        let mut alpha = vec![1.0; system.coarse().rows()];
+        let mut s = space.factor().scratch();
+        let solve = pool.install(|| median(|| space.factor().solve(&mut alpha, &mut s)));
+        print!(
+            "; {name}: solve {:.3}, {} numbers, set-up {:.2}, change {:.3}, P {:.3}, P^T {:.3} ms",
+            1e3 * solve,
+            space.factor().stored(),
+            1e3 * setup,
+            1e3 * change,
+            1e3 * project,
+            1e3 * transposed
+        );
+    }
+    println!();
+    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -143,6 +189,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             line += &format!(" | {:.3} | {:.3}", 1e3 * ax, 1e3 * aty);
         }
         println!("{line} | {:.1}", 1e3 * setup);
+        parts(&system)?;
         println!("{}", system.report());
     }
     Ok(())

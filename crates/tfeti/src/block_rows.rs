@@ -1,7 +1,7 @@
 //! Products of a sparse symmetric matrix of 3x3 blocks with panels of members.
 
 use crate::sparse::Columns;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 /// A sparse symmetric matrix by rows of 3x3 blocks.
 ///
@@ -55,7 +55,12 @@ impl BlockRows {
 
     /// `y = A x` for all members of a panel.
     pub(crate) fn apply(&self, x: &[f64], y: &mut [f64], members: usize) {
-        Arch::new().dispatch(|| self.apply_panel(x, y, members));
+        Arch::new().dispatch(Product {
+            matrix: self,
+            x,
+            y,
+            members,
+        });
     }
 
     #[inline(always)]
@@ -103,6 +108,23 @@ impl BlockRows {
                 target[r * members + first..][..N].copy_from_slice(sum);
             }
         }
+    }
+}
+
+/// A product as the dispatcher wants it: compiled anew for each set of vector instructions.
+struct Product<'a> {
+    matrix: &'a BlockRows,
+    x: &'a [f64],
+    y: &'a mut [f64],
+    members: usize,
+}
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.matrix.apply_panel(self.x, self.y, self.members);
     }
 }
 

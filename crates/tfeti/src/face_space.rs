@@ -102,6 +102,12 @@ impl FaceSpace {
         })
     }
 
+    /// The factor of the last face.
+    #[must_use]
+    pub fn factor(&self) -> &CoarseFactor {
+        &self.face
+    }
+
     /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e` does
     /// no work on them.
     pub fn set_rhs(&mut self, e: &[f64]) {

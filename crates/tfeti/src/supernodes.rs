@@ -3,7 +3,7 @@
 //! One right-hand side at a time, so the time is that of reading the factor once: four columns are worked on together.
 
 use crate::sparse::SparseCholesky;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
 /// Some columns of a lower triangular factor. Their rows are numbered from the first of these columns on; rows beyond
@@ -104,12 +104,43 @@ impl Supernodes {
 /// `x = L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind. `buffer` is as long as
 /// the longest column.
 pub(crate) fn forward(factor: &Supernodes, x: &mut [f64], behind: &mut [f64], buffer: &mut [f64]) {
-    Arch::new().dispatch(|| {
+    Arch::new().dispatch(Forward {
+        factor,
+        x,
+        behind,
+        buffer,
+    });
+}
+
+/// `x = L^-T x` for the columns' unknowns, given those `behind`.
+pub(crate) fn backward(factor: &Supernodes, x: &mut [f64], behind: &[f64], buffer: &mut [f64]) {
+    Arch::new().dispatch(Backward {
+        factor,
+        x,
+        behind,
+        buffer,
+    });
+}
+
+/// The arguments of [`forward`], for the dispatcher to vector instructions.
+struct Forward<'a> {
+    factor: &'a Supernodes,
+    x: &'a mut [f64],
+    behind: &'a mut [f64],
+    buffer: &'a mut [f64],
+}
+
+impl WithSimd for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (factor, x) = (self.factor, self.x);
         for node in &factor.nodes {
             let rows = &factor.rows[node.rows.clone()];
             let (width, height) = (node.columns.len(), node.columns.len() + rows.len());
             let values = &factor.values[node.values..][..width * height];
-            let t = &mut buffer[..height];
+            let t = &mut self.buffer[..height];
             t[..width].copy_from_slice(&x[node.columns.clone()]);
             t[width..].fill(0.0);
             eliminate(values, width, height, t);
@@ -119,34 +150,45 @@ pub(crate) fn forward(factor: &Supernodes, x: &mut [f64], behind: &mut [f64], bu
                 if row < x.len() {
                     x[row] += sum;
                 } else {
-                    behind[row - x.len()] += sum;
+                    self.behind[row - x.len()] += sum;
                 }
             }
         }
-    });
+    }
 }
 
-/// `x = L^-T x` for the columns' unknowns, given those `behind`.
-pub(crate) fn backward(factor: &Supernodes, x: &mut [f64], behind: &[f64], buffer: &mut [f64]) {
-    Arch::new().dispatch(|| {
+/// The arguments of [`backward`].
+struct Backward<'a> {
+    factor: &'a Supernodes,
+    x: &'a mut [f64],
+    behind: &'a [f64],
+    buffer: &'a mut [f64],
+}
+
+impl WithSimd for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (factor, x) = (self.factor, self.x);
         for node in factor.nodes.iter().rev() {
             let rows = &factor.rows[node.rows.clone()];
             let (width, height) = (node.columns.len(), node.columns.len() + rows.len());
             let values = &factor.values[node.values..][..width * height];
-            let t = &mut buffer[..height];
+            let t = &mut self.buffer[..height];
             t[..width].copy_from_slice(&x[node.columns.clone()]);
             for (&row, v) in rows.iter().zip(&mut t[width..]) {
                 let row = row as usize;
                 *v = if row < x.len() {
                     x[row]
                 } else {
-                    behind[row - x.len()]
+                    self.behind[row - x.len()]
                 };
             }
             substitute(values, width, height, t);
             x[node.columns.clone()].copy_from_slice(&t[..width]);
         }
-    });
+    }
 }
 
 /// Forward elimination of one group; `t` holds its unknowns and zeros for the rows below.

@@ -8,7 +8,7 @@ use crate::cost::PANEL;
 use crate::gluing::Gluing;
 use crate::kernel::{Kernel, displacement};
 use crate::matrices::ClassBase;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Arms of the boundary nodes of all classes, and the copies of the entries of `B`.
@@ -54,6 +54,40 @@ impl RigidTables {
     }
 }
 
+/// The wrenches of one panel, for the dispatcher to vector instructions.
+struct PanelWrenches<'a> {
+    map: &'a BoundaryMap,
+    x: &'a [f64],
+    weights: Option<&'a [f64]>,
+    panel: &'a Panel,
+    arms: &'a [[f64; 3]],
+    kernel: &'a Kernel,
+    out: &'a mut [f64],
+}
+
+impl WithSimd for PanelWrenches<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let map = self.map;
+        let Self {
+            x,
+            weights,
+            panel,
+            arms,
+            kernel,
+            out,
+            ..
+        } = self;
+        match panel.columns.len() {
+            1 => map.panel_wrenches::<1>(x, weights, panel, arms, kernel, out),
+            2..=8 => map.panel_wrenches::<8>(x, weights, panel, arms, kernel, out),
+            _ => map.panel_wrenches::<PANEL>(x, weights, panel, arms, kernel, out),
+        }
+    }
+}
+
 impl BoundaryMap {
     /// `R^T B^T W x`, six numbers a column; `W` is one on interface rows and given by `weights` on the others.
     pub(crate) fn wrenches(
@@ -73,10 +107,14 @@ impl BoundaryMap {
                 let first = tables.first[panel.class] as usize;
                 let arms = &tables.arms[first..][..self.classes[panel.class].nodes.len()];
                 let kernel = &bases[panel.class].kernel;
-                Arch::new().dispatch(|| match width {
-                    1 => self.panel_wrenches::<1>(x, weights, panel, arms, kernel, own),
-                    2..=8 => self.panel_wrenches::<8>(x, weights, panel, arms, kernel, own),
-                    _ => self.panel_wrenches::<PANEL>(x, weights, panel, arms, kernel, own),
+                Arch::new().dispatch(PanelWrenches {
+                    map: self,
+                    x,
+                    weights,
+                    panel,
+                    arms,
+                    kernel,
+                    out: own,
                 });
             }
         });

@@ -1,0 +1,102 @@
+//! With work memory made before, products, preconditioners and projectors allocate nothing.
+//!
+//! The counter sees the calling thread only, and a parallel loop may make it wait on others: the systems are small enough
+//! that everything stays on the calling thread.
+
+mod common;
+
+use allocation_counter::measure;
+use common::{Brick, build, noise};
+use signorini_qp::{
+    CoarseSpace, Equality, FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Segment,
+    SymmetricOperator, face,
+};
+use signorini_tfeti::{FaceFactor, FaceSpace, InverseKind, RowRule, Sharing};
+
+#[test]
+fn products_and_projectors_allocate_nothing() {
+    let b = Brick::of(1, 3, 0.1);
+    for (kind, sharing) in [
+        (InverseKind::Dense, Sharing::Translates),
+        (InverseKind::Sparse, Sharing::Never),
+    ] {
+        let system = build(&b, kind, sharing, RowRule::Orthonormal);
+        let (f, x) = (system.dual(), noise(system.dual_dim(), 1));
+        let (mut y, mut s) = (x.clone(), f.scratch());
+        assert_eq!(measure(|| f.apply(&x, &mut y, &mut s)).count_total, 0);
+        for m in [system.lumped().unwrap(), system.dirichlet().unwrap()] {
+            let mut s = m.scratch();
+            assert_eq!(measure(|| m.apply(&x, &mut y, &mut s)).count_total, 0);
+        }
+        let c = system.coarse_factor().orthonormal().unwrap();
+        let (mut s, mut beta) = (c.scratch(), noise(c.rows(), 2));
+        let count = measure(|| {
+            c.apply(&x, &mut beta, &mut s);
+            c.apply_transpose(&beta, &mut y, &mut s);
+        });
+        assert_eq!(count.count_total, 0);
+        let contact = system.gluing().ranges().contact().end;
+        for kind in [FaceFactor::Split, FaceFactor::Sparse] {
+            let mut space = FaceSpace::with_factor(system.coarse(), contact, None, kind).unwrap();
+            let count = measure(|| {
+                space.project(&mut y);
+                space.project_transpose(&mut y);
+                space.multiplier(&x, &mut beta);
+                space.repair(&mut y, &beta);
+            });
+            assert_eq!(count.count_total, 0, "{kind:?}");
+        }
+    }
+}
+
+/// Conjugate gradients on one face: what a run allocates does not grow with its iterations.
+#[test]
+fn iterations_of_the_face_method_allocate_nothing() {
+    let b = Brick::new(1, 3);
+    let system = build(
+        &b,
+        InverseKind::Auto,
+        Sharing::Translates,
+        RowRule::Orthonormal,
+    );
+    let (n, contact) = (system.dual_dim(), system.gluing().ranges().contact().end);
+    let response = system.load_response(&b.loads()).unwrap();
+    let lumped = system.lumped().unwrap();
+    let (linear, scale) = (noise(n, 3), vec![1.0; n]);
+    let problem = FaceProblem {
+        operator: system.dual(),
+        preconditioner: &lumped,
+        scale: &scale,
+        linear: &linear,
+        rhs: &response.coarse,
+    };
+    let run = |products: usize| {
+        let mut space = FaceSpace::new(system.coarse(), contact, None).unwrap();
+        let mut work = FaceWorkspace::new(system.dual(), &lumped);
+        let mut set = ProductSet::new(vec![Segment::Free(n)]).unwrap();
+        let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
+        let settings = FaceSettings::default()
+            .with_tolerance(1e-12)
+            .with_forcing(1e-10)
+            .with_max_products(products);
+        let mut steps = 0;
+        let count = measure(|| {
+            let report = face(
+                &problem,
+                &mut space,
+                &mut set,
+                &mut x,
+                &mut ax,
+                false,
+                &settings,
+                &mut work,
+                &mut |_, _| {},
+            );
+            steps = report.unwrap().cg_steps;
+        });
+        (steps, count.count_total)
+    };
+    let (few, many) = (run(4), run(14));
+    assert!(many.0 >= few.0 + 8, "{few:?} {many:?}");
+    assert_eq!(few.1, many.1);
+}
