@@ -60,5 +60,7 @@ fn short_run_writes_all_files_and_errors_fall() {
     let csv = std::fs::read_to_string(folder.path().join("accuracy.csv")).expect("CSV");
     let samples: usize = curves.iter().map(|c| c.samples.len()).sum();
     assert_eq!(csv.lines().count(), samples + 1);
-    assert!(folder.path().join("accuracy.json").exists());
+    for file in ["accuracy.json", "discretisation-error.vtu"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
 }

@@ -12,6 +12,7 @@
 //! Forces are compared node by node on one mesh, by their resultant between meshes.
 
 mod chart;
+mod field;
 mod measure;
 mod scenes;
 mod studies;
@@ -70,7 +71,7 @@ pub struct AccuracyOptions {
     /// Studies to run; all if none is named.
     #[arg(long, value_enum, value_delimiter = ',')]
     pub study: Vec<Study>,
-    /// Write accuracy.csv, accuracy.json and one SVG a study into this folder.
+    /// Write accuracy.csv, accuracy.json, one SVG a study and discretisation-error.vtu into this folder.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Threads; 0 takes all cores.
@@ -148,6 +149,7 @@ pub fn execute(
         curves.extend(found);
     }
     if let Some(folder) = &options.out {
+        field::write(&folder.join("discretisation-error.vtu"), options.short)?;
         let path = folder.join("accuracy.csv");
         std::fs::write(&path, table::csv(&curves)).map_err(ExampleError::write(&path))?;
         let path = folder.join("accuracy.json");
