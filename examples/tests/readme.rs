@@ -4,7 +4,13 @@
 fn the_readme_shows_the_example() {
     let readme = include_str!("../../README.md");
     let example = include_str!("../examples/first.rs");
-    let program = example.split_once("\n\n").map_or(example, |(_, program)| program).trim();
-    assert!(readme.contains(program), "copy examples/examples/first.rs into the README");
+    let program = example
+        .split_once("\n\n")
+        .map_or(example, |(_, program)| program)
+        .trim();
+    assert!(
+        readme.contains(program),
+        "copy examples/examples/first.rs into the README"
+    );
     assert!(program.lines().count() <= 40);
 }

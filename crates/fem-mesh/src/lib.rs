@@ -118,7 +118,5 @@ pub use mesh::{
     BoundaryFacet, Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets,
 };
 pub use norms::{h1_seminorm_error, l2_error};
-pub use recovery::{
-    DiscretisationError, StrainRecovery, discretisation_error, energy_of_error,
-};
+pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error, energy_of_error};
 pub use surface::{Frame, Surface, SurfaceError};
