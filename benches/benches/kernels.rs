@@ -1,0 +1,136 @@
+//! Criterion benches of every kernel of an iteration and of the set-up.
+//!
+//! `cargo bench -p signorini-benches --bench kernels`; with `-- --test` everything runs once.
+#![allow(missing_docs)]
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use signorini::fem_mesh::{Hooke, assemble_stiffness};
+use signorini::qp::{CoarseSpace, Equality, SymmetricOperator};
+use signorini::tfeti::{FaceFactor, FaceSpace, InverseKind, Sharing};
+use signorini_benches::{Body, Failure, wave};
+use std::hint::black_box;
+
+const SIZES: [usize; 5] = [1, 2, 3, 4, 5];
+
+fn set_up(c: &mut Criterion) -> Result<(), Failure> {
+    let mut group = c.benchmark_group("set-up");
+    group.sample_size(10);
+    let hooke = Hooke::isotropic(211.9e9, 0.277)?;
+    for n in SIZES {
+        let body = Body::new(n)?;
+        group.bench_function(BenchmarkId::new("assembly of the whole body", n), |b| {
+            b.iter(|| {
+                let mesh = &body.mesh;
+                black_box(assemble_stiffness(mesh.points(), mesh.tets(), |_| &hooke))
+            });
+        });
+        group.bench_function(BenchmarkId::new("system", n), |b| {
+            b.iter(|| black_box(body.system(Sharing::Translates, InverseKind::Auto)));
+        });
+    }
+    for (name, kind) in [
+        ("sparse", InverseKind::Sparse),
+        ("dense", InverseKind::Dense),
+    ] {
+        let body = Body::new(2)?;
+        group.bench_function(BenchmarkId::new("24 different subdomains", name), |b| {
+            b.iter(|| black_box(body.system(Sharing::Never, kind)));
+        });
+    }
+    group.finish();
+    Ok(())
+}
+
+fn products(c: &mut Criterion) -> Result<(), Failure> {
+    let mut group = c.benchmark_group("products");
+    group.sample_size(20);
+    for n in SIZES {
+        let system = Body::new(n)?.system(Sharing::Translates, InverseKind::Auto)?;
+        let (f, x) = (system.dual(), wave(system.dual_dim()));
+        let mut y = x.clone();
+        let mut scratch = f.scratch();
+        group.bench_function(BenchmarkId::new("F x", n), |b| {
+            b.iter(|| f.apply(black_box(&x), &mut y, &mut scratch));
+        });
+        for (name, m) in [
+            ("lumped", system.lumped()?),
+            ("Dirichlet", system.dirichlet()?),
+        ] {
+            let mut scratch = m.scratch();
+            group.bench_function(BenchmarkId::new(name, n), |b| {
+                b.iter(|| m.apply(black_box(&x), &mut y, &mut scratch));
+            });
+        }
+    }
+    group.finish();
+    Ok(())
+}
+
+fn coarse(c: &mut Criterion) -> Result<(), Failure> {
+    let mut group = c.benchmark_group("coarse");
+    group.sample_size(20);
+    for n in SIZES {
+        let system = Body::new(n)?.system(Sharing::Translates, InverseKind::Auto)?;
+        let mut x = wave(system.dual_dim());
+        let mut alpha = wave(system.coarse().rows());
+        let factor = system.coarse_factor();
+        let mut scratch = factor.scratch();
+        group.bench_function(BenchmarkId::new("solve", n), |b| {
+            b.iter(|| factor.solve(black_box(&mut alpha), &mut scratch));
+        });
+        group.bench_function(BenchmarkId::new("G x", n), |b| {
+            b.iter(|| {
+                system
+                    .coarse()
+                    .apply(black_box(&x), &mut alpha, &mut scratch)
+            });
+        });
+        group.bench_function(BenchmarkId::new("G^T y", n), |b| {
+            b.iter(|| {
+                system
+                    .coarse()
+                    .apply_transpose(black_box(&alpha), &mut x, &mut scratch)
+            });
+        });
+        if let Some(rows) = factor.orthonormal() {
+            group.bench_function(BenchmarkId::new("P = I - C^T C", n), |b| {
+                b.iter(|| {
+                    rows.apply(black_box(&x), &mut alpha, &mut scratch);
+                    rows.apply_transpose(&alpha, &mut x, &mut scratch);
+                });
+            });
+        }
+        let contact = system.gluing().ranges().contact().end;
+        for (name, kind) in [("split", FaceFactor::Split), ("sparse", FaceFactor::Sparse)] {
+            let mut space = FaceSpace::with_factor(system.coarse(), contact, None, kind)?;
+            let mut w = vec![1.0; x.len()];
+            let mut k = 0;
+            group.bench_function(
+                BenchmarkId::new(format!("change of face, {name}"), n),
+                |b| {
+                    b.iter(|| {
+                        k += 1;
+                        w[k % contact] = 1.0 - w[k % contact];
+                        space.set_weights(black_box(&w))
+                    });
+                },
+            );
+            group.bench_function(BenchmarkId::new(format!("projector, {name}"), n), |b| {
+                b.iter(|| space.project(black_box(&mut x)));
+            });
+        }
+    }
+    group.finish();
+    Ok(())
+}
+
+fn all(c: &mut Criterion) {
+    for run in [set_up, products, coarse] {
+        if let Err(error) = run(c) {
+            panic!("{error}");
+        }
+    }
+}
+
+criterion_group!(benches, all);
+criterion_main!(benches);

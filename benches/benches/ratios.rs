@@ -1,0 +1,127 @@
+//! How close the kernels are to what the machine can do, measured in the same run.
+//!
+//! - one product with `F` over the best dense matrix product of the same number of operations,
+//! - projector and preconditioner over one product,
+//! - for subdomains that share nothing: one product over the time to stream their factors or blocks once.
+//!
+//! `cargo bench -p signorini-benches --bench ratios`; with `-- --test` everything runs once and the figures mean nothing.
+
+use signorini::qp::{CoarseSpace, SymmetricOperator};
+use signorini::tfeti::{FaceSpace, InverseKind, Sharing, Tfeti};
+use signorini_benches::{Body, Failure, gemm, seconds, triad, wave};
+
+fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> {
+    let f = system.dual();
+    let (x, mut y, mut scratch) = (wave(f.dim()), wave(f.dim()), f.scratch());
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
+    Ok(pool.install(|| seconds(quick, || f.apply(&x, &mut y, &mut scratch))))
+}
+
+/// Seconds of the lumped preconditioner, of both projectors of an iteration and of a change of the face.
+fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 3], Failure> {
+    let (mut x, mut y) = (wave(system.dual_dim()), wave(system.dual_dim()));
+    let contact = system.gluing().ranges().contact().end;
+    let mut space = FaceSpace::new(system.coarse(), contact, None)?;
+    let (lumped, mut w, mut k) = (system.lumped()?, vec![1.0; x.len()], 0);
+    let mut scratch = lumped.scratch();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
+    Ok(pool.install(|| {
+        let m = seconds(quick, || lumped.apply(&x, &mut y, &mut scratch));
+        let p = seconds(quick, || {
+            space.project(&mut x);
+            space.project_transpose(&mut y);
+        });
+        let change = seconds(quick, || {
+            k += 1;
+            w[k % contact] = 1.0 - w[k % contact];
+            drop(space.set_weights(&w));
+        });
+        [m, p, change]
+    }))
+}
+
+fn main() -> Result<(), Failure> {
+    let quick = std::env::args().any(|a| a == "--test");
+    let sizes = if quick { 1..=2 } else { 1..=5 };
+    println!(
+        "Shared subdomains. Times in ms; ratio = F over the better of both dense products A X and X A.\n"
+    );
+    println!(
+        "| n | threads | F | A X | X A | ratio | lumped | both projectors | change of face | (P + P^T) / F | set-up / F |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    for n in sizes.clone() {
+        let body = Body::new(n)?;
+        let system = body.system(Sharing::Translates, InverseKind::Auto)?;
+        let size = system.report().classes.iter().map(|c| c.boundary).max();
+        for threads in [1, 2] {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()?;
+            let time = product(quick, &system, threads)?;
+            let [left, right] = gemm(quick, system.dual().flops(), size.unwrap_or(1), threads)?;
+            let [m, p, change] = parts(quick, &system, threads)?;
+            let setup = pool.install(|| {
+                seconds(quick, || {
+                    drop(body.system(Sharing::Translates, InverseKind::Auto))
+                })
+            });
+            println!(
+                "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.1} |",
+                1e3 * time,
+                1e3 * left,
+                1e3 * right,
+                time / left.min(right),
+                1e3 * m,
+                1e3 * p,
+                1e3 * change,
+                p / time,
+                setup / time
+            );
+        }
+    }
+    println!(
+        "\nNo shared subdomains: F over the time to read factors or blocks once at the bandwidth of the triad.\n"
+    );
+    println!(
+        "| n | inverse | threads | GB/s | MB | F | read once | ratio |\n|---|---|---|---|---|---|---|---|"
+    );
+    for n in sizes.clone().take_while(|n| *n <= 4) {
+        let body = Body::new(n)?;
+        for (name, kind) in [
+            ("sparse", InverseKind::Sparse),
+            ("dense", InverseKind::Dense),
+        ] {
+            let system = body.system(Sharing::Never, kind)?;
+            let bytes: u64 = match kind {
+                InverseKind::Sparse => system.report().inverse_bytes,
+                _ => {
+                    let block = |size: usize| 8 * (size * size) as u64;
+                    system
+                        .report()
+                        .classes
+                        .iter()
+                        .map(|c| block(c.boundary))
+                        .sum()
+                }
+            };
+            for threads in [1, 2] {
+                let bandwidth = triad(quick, threads)?;
+                let (time, once) = (product(quick, &system, threads)?, bytes as f64 / bandwidth);
+                println!(
+                    "| {n} | {name} | {threads} | {:.1} | {:.1} | {:.3} | {:.3} | {:.2} |",
+                    1e-9 * bandwidth,
+                    1e-6 * bytes as f64,
+                    1e3 * time,
+                    1e3 * once,
+                    time / once
+                );
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! Criterion benches of solvers: KPRGP on the obstacle string, and one step of the brick.
+//!
+//! `cargo bench -p signorini-benches --bench solvers`; with `-- --test` everything runs once.
+#![allow(missing_docs)]
+
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use signorini::prelude::*;
+use signorini::qp::{
+    KprgpSettings, KprgpWorkspace, ProductSet, Segment, SymmetricOperator, Tolerance, kprgp,
+};
+use signorini_benches::Failure;
+use std::f64::consts::PI;
+use std::hint::black_box;
+
+/// Tridiagonal (-1, 2, -1) between fixed ends.
+struct FixedString(usize);
+
+impl SymmetricOperator for FixedString {
+    type Scratch = ();
+    fn dim(&self) -> usize {
+        self.0
+    }
+    fn scratch(&self) -> Self::Scratch {}
+    fn apply(&self, x: &[f64], y: &mut [f64], _: &mut ()) {
+        let n = self.0;
+        for i in 0..n {
+            let left = if i > 0 { x[i - 1] } else { 0.0 };
+            let right = if i + 1 < n { x[i + 1] } else { 0.0 };
+            y[i] = 2.0 * x[i] - left - right;
+        }
+    }
+}
+
+fn string(c: &mut Criterion) -> Result<(), Failure> {
+    let n = 98;
+    let h = 1.0 / (n as f64 + 1.0);
+    let obstacle = |i: usize| (4.0 * PI * i as f64 * h - PI / 6.0).sin() / 2.0 - 2.0;
+    let set = ProductSet::new(vec![Segment::lower((1..=n).map(obstacle).collect())])?;
+    let (operator, b) = (FixedString(n), vec![-30.0 * h * h; n]);
+    let mut work = KprgpWorkspace::new(&operator);
+    let (settings, limit) = (KprgpSettings::default(), Tolerance::Relative(1e-8));
+    c.bench_function("KPRGP, obstacle string of 98 nodes", |bench| {
+        bench.iter(|| {
+            let mut x = vec![0.0; n];
+            black_box(kprgp(
+                &operator, &b, &set, 4.0, limit, &settings, &mut x, &mut work,
+            ))
+        });
+    });
+    Ok(())
+}
+
+/// The benchmark with five steps.
+fn scene(n: usize) -> Result<Scene, Failure> {
+    let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build()?;
+    let steel = Hooke::isotropic(211.9e9, 0.277)?;
+    let friction = Friction::Coulomb(Coefficient::Exponential {
+        fixed: 0.3,
+        kinetic: 0.1,
+        decay: 0.05,
+    });
+    let ramp = History::ramp(1.0, 1.0)?;
+    Ok(Scene::new(mesh, Materials::uniform(steel))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_boxes([3 * n, n, n])
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3.0e9]).with_history(ramp.clone()))
+        .with_load(Load::traction(brick::X_MAX, [9.0e8, 0.0, -1.5e9]).with_history(ramp))
+        .with_contact(
+            Contact::rigid(brick::Z_MIN)
+                .with_gap(0.1)
+                .with_friction(friction),
+        )
+        .with_analysis(Analysis::quasistatic(1.0, 5)))
+}
+
+fn steps(c: &mut Criterion) -> Result<(), Failure> {
+    let mut group = c.benchmark_group("last of five steps of the brick");
+    group.sample_size(10);
+    let paper = Settings::default().with_method(Method::paper());
+    let cases = [
+        ("face", 1, Settings::default()),
+        ("face", 2, Settings::default()),
+        ("paper", 1, paper),
+    ];
+    for (name, n, settings) in cases {
+        let start = || {
+            let mut simulation = Simulation::new(scene(n)?, settings.clone())?;
+            for _ in 0..4 {
+                simulation.step()?;
+            }
+            Ok::<_, Failure>(simulation)
+        };
+        drop(start()?);
+        group.bench_function(format!("{name} method, n = {n}"), |b| {
+            b.iter_batched(
+                start,
+                |simulation| {
+                    let mut simulation = simulation.ok()?;
+                    simulation.step().ok().map(|frame| frame.time())
+                },
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+    Ok(())
+}
+
+fn all(c: &mut Criterion) {
+    for run in [string, steps] {
+        if let Err(error) = run(c) {
+            panic!("{error}");
+        }
+    }
+}
+
+criterion_group!(benches, all);
+criterion_main!(benches);
