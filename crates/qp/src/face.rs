@@ -13,8 +13,9 @@
 //! inverse of `A` on the face, so its length is the distance to the solution up to the quality of
 //! the preconditioner.
 //!
-//! The prediction is not monotone in general. [`Status::Stagnated`] tells that no progress was made for
-//! `patience` faces; [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
+//! A predicted face must hold every rigid mode; where it does not, the points that slide least are taken for
+//! sticking. The prediction is not monotone in general. After `patience` faces without progress the faces are
+//! solved more accurately, and [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
 //!
 //! | local | meaning |
 //! |---|---|
