@@ -4,7 +4,7 @@ use crate::algebraic::{AlgebraicError, Solved};
 use crate::certificate::{Certificate, slip_bound};
 use crate::error::ContactError;
 use crate::level::Level;
-use crate::model::{Model, Tangential};
+use crate::model::{Model, Tangential, TouchPoint};
 use crate::report::LevelReport;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, DiscretisationError, StrainRecovery, Surface, fields};
@@ -87,6 +87,9 @@ pub struct Frame<'a> {
     pub(crate) report: &'a LevelReport,
     pub(crate) certificate: &'a Certificate,
     pub(crate) summary: &'a ContactSummary,
+    /// States of the points in the dual problem.
+    pub(crate) solved: &'a [PointState],
+    /// States of all points.
     pub(crate) points: &'a [PointState],
     pub(crate) torn: &'a [f64],
     pub(crate) residual: &'a [f64],
@@ -191,7 +194,7 @@ impl Frame<'_> {
         let solved = Solved {
             model: self.model,
             level: self.level,
-            points: self.points,
+            points: self.solved,
             certificate: self.certificate,
             torn: self.torn,
             residual: self.residual,
@@ -227,56 +230,83 @@ impl Frame<'_> {
     }
 }
 
-/// Evaluates the touch points: `rows` is `B u` in row units, `trace` the tangential displacements before.
+/// Values by row at which points are evaluated.
+pub(crate) struct Rows<'a> {
+    /// Multipliers; `None` for open points.
+    pub(crate) lambda: Option<&'a [f64]>,
+    /// `B u`, in row units.
+    pub(crate) displacement: &'a [f64],
+    /// `c`.
+    pub(crate) offset: &'a [f64],
+}
+
+/// Evaluates the touch points: `rows` is `B u` in row units.
 pub(crate) fn point_states(
     model: &Model,
     level: &Level,
     lambda: &[f64],
     rows: &[f64],
 ) -> Vec<PointState> {
-    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
-    let mut out = Vec::with_capacity(model.points.len());
-    for (k, point) in model.points.iter().enumerate() {
-        let normal_force = point.scale * lambda[point.row];
-        let space = |values: [f64; 2]| match point.tangential {
-            Tangential::None => [0.0; 3],
-            Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
-            Tangential::Plane { .. } => point.frame.vector(0.0, values),
-        };
-        let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-        let mut on_bound = false;
+    let values = Rows {
+        lambda: Some(lambda),
+        displacement: rows,
+        offset: &level.offset,
+    };
+    let state = |(k, point): (usize, &TouchPoint)| {
         let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
-        if let Some((row, count, scale)) = point.tangential.rows() {
-            for j in 0..count {
-                friction[j] = scale * lambda[row + j];
-                displacement[j] = rows[row + j] / scale;
-                difference[j] = alpha * (rows[row + j] - level.offset[row + j]) / scale;
-            }
-            on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
+        point_state(model, level, point, &values, bound)
+    };
+    model.points.iter().enumerate().map(state).collect()
+}
+
+/// Evaluates one point with its slip bound.
+pub(crate) fn point_state(
+    model: &Model,
+    level: &Level,
+    point: &TouchPoint,
+    rows: &Rows<'_>,
+    bound: f64,
+) -> PointState {
+    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let lambda = |row: usize| rows.lambda.map_or(0.0, |l| l[row]);
+    let normal_force = point.scale * lambda(point.row);
+    let space = |values: [f64; 2]| match point.tangential {
+        Tangential::None => [0.0; 3],
+        Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
+        Tangential::Plane { .. } => point.frame.vector(0.0, values),
+    };
+    let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+    let mut on_bound = false;
+    if let Some((row, count, scale)) = point.tangential.rows() {
+        for j in 0..count {
+            let u = rows.displacement[row + j];
+            friction[j] = scale * lambda(row + j);
+            displacement[j] = u / scale;
+            difference[j] = alpha * (u - rows.offset[row + j]) / scale;
         }
-        let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
-        let state = if normal_force >= 0.0 {
-            ContactState::Open
-        } else if on_bound && opposed {
-            ContactState::Slip
-        } else {
-            ContactState::Stick
-        };
-        let slip = difference[0].hypot(difference[1]);
-        out.push(PointState {
-            node: point.node,
-            state,
-            normal_force,
-            friction_force: space(friction),
-            slip_bound: bound,
-            gap: (level.offset[point.row] - rows[point.row]) / point.scale,
-            tangential_displacement: space(displacement),
-            difference: space(difference),
-            slip_rate: level.step.map_or(0.0, |dt| slip / dt),
-            area: point.area,
-        });
+        on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
     }
-    out
+    let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
+    let state = if normal_force >= 0.0 {
+        ContactState::Open
+    } else if on_bound && opposed {
+        ContactState::Slip
+    } else {
+        ContactState::Stick
+    };
+    let slip = difference[0].hypot(difference[1]);
+    PointState {
+        node: point.node,
+        state,
+        normal_force,
+        friction_force: space(friction),
+        slip_bound: bound,
+        gap: (rows.offset[point.row] - rows.displacement[point.row]) / point.scale,
+        tangential_displacement: space(displacement),
+        difference: space(difference),
+        slip_rate: level.step.map_or(0.0, |dt| slip / dt),
+        area: point.area,
+    }
 }
 
 /// Sums over the points; `before` are the tangential displacements at the level before.

@@ -9,7 +9,7 @@ use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface,
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti as tfeti;
 use signorini_tfeti::{
-    ContactNodes, ContactPoint, LoadResponse, TangentialRows, Tfeti, TfetiBuilder,
+    ContactNodes, ContactPoint, Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder,
 };
 
 /// A node that can touch the obstacle.
@@ -89,6 +89,15 @@ pub(crate) struct Model {
 
 impl Model {
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
+        Self::with_contact_nodes(scene, settings, None)
+    }
+
+    /// The model with rows at some contact nodes only (ascending mesh numbers); the plan is that of the whole scene.
+    pub(crate) fn with_contact_nodes(
+        scene: Scene,
+        settings: &Settings,
+        kept: Option<&[u32]>,
+    ) -> Result<Self, ContactError> {
         scene.validate()?;
         settings.validate()?;
         let decomposition = scene.decompose()?;
@@ -98,10 +107,13 @@ impl Model {
             Some(contact) => Some(Surface::new(&scene.mesh, &contact.tags)?),
             None => None,
         };
-        let nodes = match (&scene.contact, &surface) {
+        let mut nodes = match (&scene.contact, &surface) {
             (Some(contact), Some(surface)) => Some(contact_nodes(contact, surface)?),
             _ => None,
         };
+        if let (Some(nodes), Some(kept)) = (&mut nodes, kept) {
+            nodes.points.retain(|p| kept.binary_search(&p.node).is_ok());
+        }
         let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
             .supports(&supports)
             .rule(settings.row_rule)
@@ -118,7 +130,9 @@ impl Model {
             loads.push(tfeti.load_response(&local)?);
         }
         let points = match (&scene.contact, &surface) {
-            (Some(contact), Some(surface)) => touch_points(&scene, contact, surface, &tfeti)?,
+            (Some(contact), Some(surface)) => {
+                touch_points(&scene, contact, surface, tfeti.gluing())?
+            }
             _ => Vec::new(),
         };
         let ranges = tfeti.gluing().ranges();
@@ -194,7 +208,7 @@ impl Model {
     }
 }
 
-fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), ContactError> {
+pub(crate) fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), ContactError> {
     let mut motions = Vec::new();
     let mut out = Vec::with_capacity(scene.supports.len());
     for support in &scene.supports {
@@ -212,7 +226,10 @@ fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), Contac
     Ok((out, motions))
 }
 
-fn contact_nodes(contact: &Contact, surface: &Surface) -> Result<ContactNodes, ContactError> {
+pub(crate) fn contact_nodes(
+    contact: &Contact,
+    surface: &Surface,
+) -> Result<ContactNodes, ContactError> {
     let fixed = match contact.normal {
         ContactNormal::Body => None,
         ContactNormal::Fixed(normal) => {
@@ -236,14 +253,14 @@ fn contact_nodes(contact: &Contact, surface: &Surface) -> Result<ContactNodes, C
     })
 }
 
-fn touch_points(
+pub(crate) fn touch_points(
     scene: &Scene,
     contact: &Contact,
     surface: &Surface,
-    tfeti: &Tfeti,
+    gluing: &Gluing,
 ) -> Result<Vec<TouchPoint>, ContactError> {
-    let mut points = Vec::with_capacity(tfeti.gluing().contact().len());
-    for info in tfeti.gluing().contact() {
+    let mut points = Vec::with_capacity(gluing.contact().len());
+    for info in gluing.contact() {
         let position = scene.mesh.points()[info.node as usize];
         let gap = match &contact.gap {
             Gap::None => 0.0,

@@ -2,11 +2,12 @@
 
 use crate::clock::Analysis;
 use crate::error::ContactError;
+use crate::estimate::{Estimate, Sizes};
 use crate::law::Friction;
 use crate::scene::{Gap, Scene};
 use crate::settings::{Method, Settings};
 use signorini_fem_mesh::Decomposition;
-use signorini_tfeti::Directions;
+use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -76,8 +77,10 @@ pub struct Plan {
     pub levels: usize,
     /// The method that will be used.
     pub method: &'static str,
-    /// Bytes of the vectors that stay allocated (multipliers, displacements, loads); factors are reported after the set-up.
+    /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
     pub vector_bytes: u64,
+    /// Estimated memory, products and time.
+    pub estimate: Estimate,
 }
 
 impl Plan {
@@ -90,6 +93,13 @@ impl Plan {
         settings.validate()?;
         let decomposition = scene.decompose()?;
         Self::with_decomposition(scene, settings, &decomposition)
+    }
+
+    /// The same plan with times for another machine; [`Rate::measure`] measures this one.
+    #[must_use]
+    pub fn with_machine(mut self, rate: Rate) -> Self {
+        self.estimate.rate = rate;
+        self
     }
 
     /// All rows, n_d of full rank.
@@ -161,6 +171,22 @@ impl Plan {
             Method::Face(_) => 16,
             _ => 18,
         };
+        let touched = |node: u32| fixed.contains_key(&node) || touching.contains(&node);
+        let forecast = Forecast::new(
+            &scene.mesh,
+            decomposition,
+            &scene.materials,
+            settings.sharing,
+            &settings.inverse,
+            touched,
+        )?;
+        let sizes = Sizes {
+            rows: dual,
+            primal,
+            elements: scene.mesh.tets().len(),
+            subdomains: decomposition.subdomains().len(),
+        };
+        let estimate = Estimate::new(&effects, settings, &scene.analysis, &forecast, sizes);
         Ok(Self {
             effects,
             elements: scene.mesh.tets().len(),
@@ -176,6 +202,7 @@ impl Plan {
             levels: scene.analysis.levels(),
             method,
             vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
+            estimate,
         })
     }
 }
@@ -269,6 +296,24 @@ impl fmt::Display for Plan {
             self.coarse
         )?;
         writeln!(f, "  method      {}", self.method)?;
-        write!(f, "  vectors     {:.1} MB", self.vector_bytes as f64 / 1e6)
+        let mb = |bytes: u64| bytes as f64 / 1e6;
+        let e = &self.estimate;
+        writeln!(
+            f,
+            "  memory      vectors {:.1} MB; estimated: inverses {:.1} MB ({} classes), coarse {:.1} MB, tables {:.1} MB",
+            mb(self.vector_bytes),
+            mb(e.inverse_bytes),
+            e.classes,
+            mb(e.coarse_bytes),
+            mb(e.table_bytes)
+        )?;
+        write!(
+            f,
+            "  estimate    {} products of {:.2} ms, set-up {:.2} s, all levels {:.2} s on one processor",
+            e.products,
+            1e3 * e.product_seconds(),
+            e.setup_seconds(),
+            e.solve_seconds()
+        )
     }
 }

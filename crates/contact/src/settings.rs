@@ -2,6 +2,7 @@
 
 use crate::accuracy::Accuracy;
 use crate::error::ContactError;
+use crate::screening::Screening;
 use signorini_qp::{FaceSettings, SmalseSettings};
 use signorini_tfeti::{InverseSettings, RowRule, Sharing};
 
@@ -117,6 +118,7 @@ pub enum Preconditioner {
 /// | `sharing` | whether equal subdomains share factors | | automatic | |
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
+/// | `screening` | whether contact points that stay open leave the dual problem | [`Screening`] | off | |
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Settings {
@@ -138,6 +140,8 @@ pub struct Settings {
     pub inverse: InverseSettings,
     /// Preconditioner of the default method.
     pub preconditioner: Preconditioner,
+    /// Whether contact points that stay open leave the dual problem.
+    pub screening: Screening,
 }
 
 impl Default for Settings {
@@ -152,6 +156,7 @@ impl Default for Settings {
             sharing: Sharing::default(),
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
+            screening: Screening::default(),
         }
     }
 }
@@ -220,6 +225,13 @@ impl Settings {
         self
     }
 
+    /// Sets whether contact points that stay open leave the dual problem.
+    #[must_use]
+    pub fn with_screening(mut self, screening: Screening) -> Self {
+        self.screening = screening;
+        self
+    }
+
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         if !(1e-12..=0.1).contains(&self.tolerance) {
             return Err(ContactError::Setting {
@@ -229,6 +241,7 @@ impl Settings {
             });
         }
         self.accuracy.validate()?;
+        self.screening.validate()?;
         if self.max_fixed_point == 0 {
             return Err(ContactError::Setting {
                 name: "max_fixed_point",

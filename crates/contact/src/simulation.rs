@@ -1,5 +1,8 @@
 //! The simulation: set-up, levels, recovery, certificate.
 
+mod resume;
+mod screened;
+
 use crate::accuracy::{Accuracy, AccuracyReport, Controller, ROUNDS};
 use crate::certificate::{Certificate, Measured, certify};
 use crate::error::ContactError;
@@ -11,11 +14,12 @@ use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
 use crate::report::{Counters, LevelReport, LevelStatus};
 use crate::scene::Scene;
+use crate::screening::Screen;
 use crate::settings::Settings;
 use crate::solver::{Iterate, Solver};
 use crate::state::State;
 use signorini_fem_mesh::Decomposition;
-use signorini_qp::{SymmetricOperator, vector};
+use signorini_qp::vector;
 use signorini_tfeti::Tfeti;
 use std::time::{Duration, Instant};
 
@@ -57,6 +61,10 @@ pub struct Simulation {
     total: Counters,
     setup: Duration,
     controller: Controller,
+    /// With screening: all points, and which of them are in the model.
+    screen: Option<Screen>,
+    /// With screening: states of all points.
+    all: Vec<PointState>,
 }
 
 impl Simulation {
@@ -66,7 +74,7 @@ impl Simulation {
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
-        let model = Model::new(scene, &settings)?;
+        let (model, screen) = screened::set_up(scene, &settings)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
         Ok(Self {
@@ -82,6 +90,8 @@ impl Simulation {
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
+            all: Vec::new(),
+            screen,
             model,
             settings,
             solver,
@@ -106,7 +116,7 @@ impl Simulation {
         &self.model.decomposition
     }
 
-    /// The T-FETI system, with its set-up report.
+    /// The T-FETI system, with its set-up report. With screening its rows are those of the last level.
     #[must_use]
     pub fn tfeti(&self) -> &Tfeti {
         &self.model.tfeti
@@ -115,7 +125,9 @@ impl Simulation {
     /// The touch points.
     #[must_use]
     pub fn touch_points(&self) -> &[TouchPoint] {
-        &self.model.points
+        self.screen
+            .as_ref()
+            .map_or(&self.model.points, Screen::points)
     }
 
     /// The settings.
@@ -142,46 +154,6 @@ impl Simulation {
         &self.state
     }
 
-    /// Continues from a stored state of the same scene.
-    ///
-    /// # Errors
-    /// [`ContactError::Checkpoint`] if the state does not fit.
-    pub fn resume(&mut self, state: State) -> Result<(), ContactError> {
-        let tfeti = &self.model.tfeti;
-        let tangential = self.model.tangential_rows();
-        state.fits(
-            tfeti.dual_dim(),
-            tfeti.coarse().rows(),
-            tangential,
-            self.model.points.len(),
-        )?;
-        if state.level() > self.model.scene.analysis.levels() {
-            return Err(ContactError::Checkpoint {
-                reason: "it has more levels than this scene".to_owned(),
-            });
-        }
-        self.state = state;
-        self.check_products();
-        Ok(())
-    }
-
-    /// Recomputes `F lambda` of a state that another scene left: solvers take it at its word.
-    fn check_products(&mut self) {
-        let dual = self.model.tfeti.dual();
-        let mut scratch = dual.scratch();
-        let mut product = vec![0.0; dual.dim()];
-        for (lambda, f_lambda) in self.state.products_mut() {
-            if lambda.len() != product.len() {
-                continue;
-            }
-            dual.apply(lambda, &mut product, &mut scratch);
-            let off = vector::distance(&product, f_lambda);
-            if off.is_nan() || off > FOREIGN * vector::norm(&product) {
-                f_lambda.clone_from(&product);
-            }
-        }
-    }
-
     /// Whether all levels are solved.
     #[must_use]
     pub fn is_finished(&self) -> bool {
@@ -194,13 +166,10 @@ impl Simulation {
     /// [`ContactError::Finished`] after the last level; a breakdown of a solver. The state is then unchanged.
     pub fn step(&mut self) -> Result<Frame<'_>, ContactError> {
         let index = self.state.level();
-        self.level.prepare(&self.model, &self.state, index)?;
-        self.start()?;
-        let (mut report, lambda, rows) = self.solve()?;
-        let before: Vec<f64> = (0..self.model.tangential_rows())
-            .map(|k| self.state.traces(k).0)
-            .collect();
-        self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
+        let state = std::mem::take(&mut self.state);
+        let outcome = self.solve_level(&state, index);
+        self.state = state;
+        let (mut report, lambda, rows) = outcome?;
         self.remember(lambda, rows, &mut report);
         self.total += report.counters;
         self.report = report;
@@ -235,10 +204,35 @@ impl Simulation {
             report: &self.report,
             certificate: &self.certificate,
             summary: &self.summary,
-            points: &self.points,
+            solved: &self.points,
+            points: self.states(),
             torn: &self.torn,
             residual: &self.residual,
         }
+    }
+
+    /// Solves a level that follows on a state; again with more rows as long as screened points come back.
+    fn solve_level(
+        &mut self,
+        state: &State,
+        index: usize,
+    ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let mut view = self.view(state);
+        self.level.prepare(&self.model, &view, index)?;
+        self.start(&view)?;
+        let (mut report, mut lambda, mut rows) = self.solve()?;
+        while self.widen(state, &lambda)? {
+            view = self.view(state);
+            self.level.prepare(&self.model, &view, index)?;
+            let again = self.solve()?;
+            report.counters.rebuilds += 1;
+            (report, lambda, rows) = (report.resumed(again.0), again.1, again.2);
+        }
+        let before: Vec<f64> = (0..self.model.tangential_rows())
+            .map(|k| view.traces(k).0)
+            .collect();
+        self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
+        Ok((report, lambda, rows))
     }
 
     /// Solves the level to the accuracy of the settings: once, or until the estimated error is small enough.
@@ -356,7 +350,7 @@ impl Simulation {
     }
 
     /// Start vectors of a level: zero, the last level, or the line through the last two.
-    fn start(&mut self) -> Result<(), ContactError> {
+    fn start(&mut self, state: &State) -> Result<(), ContactError> {
         let rows = self.model.tfeti.dual_dim();
         let extrapolate = |pair: &[Vec<f64>; 2], n: usize, on: bool| -> Vec<f64> {
             let [last, before] = pair;
@@ -371,8 +365,8 @@ impl Simulation {
         };
         let on = self.settings.extrapolate;
         // before the first level everything is at rest: zero is known, too
-        let before_known = self.state.level() != 1 || self.model.plan.levels == 1;
-        let pairs = (self.state.lambda(), self.state.f_lambda());
+        let before_known = state.level() != 1 || self.model.plan.levels == 1;
+        let pairs = (state.lambda(), state.f_lambda());
         let zero = vec![0.0; rows];
         if on && !before_known && pairs.0[1].is_empty() {
             let first = [pairs.0[0].clone(), zero.clone()];
@@ -383,21 +377,16 @@ impl Simulation {
             self.iterate.lambda = extrapolate(pairs.0, rows, on);
             self.iterate.f_lambda = extrapolate(pairs.1, rows, on);
         }
-        self.iterate.known = true;
+        self.iterate.known = (0..2).all(|k| pairs.0[k].len() == pairs.1[k].len());
         let coarse = self.model.tfeti.coarse().rows();
-        self.iterate.multiplier = extrapolate(self.state.multiplier(), coarse, on);
-        if self.state.sliding().iter().any(|s| *s) {
+        self.iterate.multiplier = extrapolate(state.multiplier(), coarse, on);
+        if state.sliding().iter().any(|s| *s) {
             let old = self.iterate.lambda.clone();
             let mut set = self.model.set.clone();
             self.level
                 .slip_bounds(&self.model, &self.iterate.lambda, &mut set)?;
-            restore_sliding(
-                &self.model,
-                &set,
-                self.state.sliding(),
-                &mut self.iterate.lambda,
-            );
-            self.iterate.known = old == self.iterate.lambda;
+            restore_sliding(&self.model, &set, state.sliding(), &mut self.iterate.lambda);
+            self.iterate.known &= old == self.iterate.lambda;
         }
         Ok(())
     }
@@ -418,13 +407,13 @@ impl Simulation {
                     }
                 }
             }
-            sliding.extend(self.points.iter().map(|p| p.state == ContactState::Slip));
+            sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));
         }
         if effects.history && self.model.friction().depends_on_rate() {
-            rate.extend(self.points.iter().map(|p| p.slip_rate));
+            rate.extend(self.states().iter().map(|p| p.slip_rate));
             report.counters.rate_updates += 1;
         }
-        let (lambda, f_lambda, multiplier) = if quasistatic {
+        let (mut lambda, mut f_lambda, multiplier) = if quasistatic {
             // F lambda afresh from the recovered displacement: B u = F lambda + B K+ f + G^T alpha
             let tfeti = &self.model.tfeti;
             let mut f_lambda = rows;
@@ -445,6 +434,14 @@ impl Simulation {
         } else {
             (Vec::new(), Vec::new(), Vec::new())
         };
+        if let Some(screen) = &self.screen {
+            report.counters.screened_points = screen.left_out();
+            (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
+            if effects.history {
+                trace = screen.expand_trace(&trace, self.model.tangential_start());
+                screen.fill_trace(&self.torn, &mut trace);
+            }
+        }
         self.state.advance(
             self.settings.extrapolate,
             lambda,
@@ -454,6 +451,9 @@ impl Simulation {
             rate,
             sliding,
         );
+        if let Some(screen) = &self.screen {
+            self.state.set_active(screen.active());
+        }
     }
 }
 
@@ -462,9 +462,6 @@ const CERTIFIED: f64 = 30.0;
 
 /// Smallest tolerance that is tried, and the certificate that rounding leaves.
 const LEAST: f64 = 1e-10;
-
-/// Relative error of a stored `F lambda` above which it belongs to another scene.
-const FOREIGN: f64 = 1e-6;
 
 fn combine(model: &Model, level: &Level) -> Vec<f64> {
     let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();

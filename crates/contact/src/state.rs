@@ -22,10 +22,12 @@ pub struct State {
     rate: Vec<f64>,
     /// Points that slid at the last level.
     sliding: Vec<bool>,
+    /// With screening: points whose rows were in the dual problem at the last level.
+    active: Vec<bool>,
 }
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_4701;
+const MAGIC: u32 = 0x5349_4702;
 
 impl State {
     /// Levels solved so far.
@@ -44,7 +46,7 @@ impl State {
             .map(Vec::len)
             .sum::<usize>()
             + self.rate.len();
-        8 * numbers + self.sliding.len()
+        8 * numbers + self.sliding.len() + self.active.len()
     }
 
     /// Writes the state as bytes (postcard).
@@ -85,6 +87,50 @@ impl State {
             pair[1] = Vec::new();
         }
         state
+    }
+
+    /// With screening, which points were in the dual problem at the last level; empty without.
+    pub(crate) fn active(&self) -> &[bool] {
+        &self.active
+    }
+
+    /// Notes which points were in the dual problem at the last level. Products of the level before belong to other rows
+    /// if others were.
+    pub(crate) fn set_active(&mut self, active: &[bool]) {
+        if self.active != active {
+            self.f_lambda[1] = Vec::new();
+            self.multiplier[1] = Vec::new();
+            self.active = active.to_vec();
+        }
+    }
+
+    /// Forgets what holds for one set of rows only: `F lambda` and the multiplier of the coarse equality.
+    pub(crate) fn forget_products(&mut self) {
+        self.f_lambda = Default::default();
+        self.multiplier = Default::default();
+    }
+
+    /// The state on a part of the rows, tangential rows and points.
+    pub(crate) fn part(
+        &self,
+        rows: impl Fn(&[f64]) -> Vec<f64>,
+        tangential: &[usize],
+        points: &[usize],
+    ) -> Self {
+        let pair = |v: &[Vec<f64>; 2]| [rows(&v[0]), rows(&v[1])];
+        Self {
+            level: self.level,
+            lambda: pair(&self.lambda),
+            f_lambda: pair(&self.f_lambda),
+            multiplier: self.multiplier.clone(),
+            trace: [
+                pick(&self.trace[0], tangential),
+                pick(&self.trace[1], tangential),
+            ],
+            rate: pick(&self.rate, points),
+            sliding: pick(&self.sliding, points),
+            active: Vec::new(),
+        }
     }
 
     pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
@@ -164,7 +210,8 @@ impl State {
             && self.multiplier.iter().all(|v| fit(v, coarse))
             && self.trace.iter().all(|v| fit(v, tangential))
             && fit(&self.rate, points)
-            && (self.sliding.is_empty() || self.sliding.len() == points);
+            && (self.sliding.is_empty() || self.sliding.len() == points)
+            && (self.active.is_empty() || self.active.len() == points);
         let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
         let finite = numbers
             .iter()
@@ -184,6 +231,13 @@ impl State {
         }
         Ok(())
     }
+}
+
+fn pick<T: Copy>(all: &[T], places: &[usize]) -> Vec<T> {
+    if all.is_empty() {
+        return Vec::new();
+    }
+    places.iter().map(|&k| all[k]).collect()
 }
 
 #[cfg(test)]
