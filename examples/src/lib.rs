@@ -8,6 +8,7 @@
 //! | `tresca` | given friction: one quadratic program a level | [`tresca::execute`] |
 //! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
 //! | `stability` | hard cases, what the library does with them, and what has to hold | [`stability::app::execute`] |
+//! | `effects` | one brick, its effects switched on one by one beside the plan's prediction; estimates, screening | [`effects::execute`] |
 //! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
 //!
 //! | module | holds |
@@ -21,6 +22,7 @@ pub mod accuracy;
 pub mod app;
 pub mod brick;
 pub mod dependence;
+pub mod effects;
 pub mod error;
 pub mod files;
 pub mod frictionless;

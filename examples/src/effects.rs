@@ -1,0 +1,257 @@
+//! Only what the scene calls for: one brick, its effects switched on one by one, each beside the plan's prediction; then
+//! the estimate against the truth and the saving by screening on the benchmark.
+
+mod cases;
+pub mod table;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Parser;
+use serde::Serialize;
+use signorini::contact::{Frame, Rate, Screening};
+use signorini::prelude::*;
+
+use crate::brick::{Benchmark, CELLS, Loading, STEPS};
+use crate::error::ExampleError;
+use crate::run::pool;
+pub use cases::{Case, Extra, cases};
+
+/// Options of the `effects` example.
+#[derive(Debug, Clone, Parser)]
+#[command(
+    name = "effects",
+    about = "What each effect costs, beside the plan's prediction"
+)]
+pub struct EffectsOptions {
+    /// Coarse mesh, few steps, benchmark with n = 1 only: seconds, for a first look.
+    #[arg(long)]
+    pub short: bool,
+    /// Sizes of the benchmark for which estimate and screening are compared with the truth.
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
+    pub n: Vec<usize>,
+    /// Threads; 0 takes all cores.
+    #[arg(long, default_value_t = 1)]
+    pub threads: usize,
+    /// Write the results to this file as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// What a plan promises, or what a run needed.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Cost {
+    /// Rows of N: one a contact node.
+    pub normal_rows: usize,
+    /// Rows of T.
+    pub tangential_rows: usize,
+    /// Rows that glue subdomains.
+    pub interface_rows: usize,
+    /// Rows of supports.
+    pub support_rows: usize,
+    /// Bytes of inverses, coarse factor and tables.
+    pub bytes: u64,
+    /// Numeric factorisations of a set-up.
+    pub factorisations: usize,
+    /// Products with F in all levels.
+    pub products: usize,
+    /// Seconds of the set-up.
+    pub setup_seconds: f64,
+    /// Seconds of all levels.
+    pub solve_seconds: f64,
+}
+
+impl Cost {
+    /// All rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.normal_rows + self.tangential_rows + self.interface_rows + self.support_rows
+    }
+}
+
+/// One run beside its plan.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// The effect that is new, or the benchmark's size.
+    pub name: String,
+    /// Time levels.
+    pub levels: usize,
+    /// The plan.
+    pub plan: Cost,
+    /// The truth.
+    pub truth: Cost,
+    /// Bytes of the state between levels.
+    pub state_bytes: usize,
+    /// Entries into an inequality solver.
+    pub inequality_solves: usize,
+    /// Times the slip bounds were rewritten.
+    pub slip_bound_updates: usize,
+    /// Times slip rates were computed.
+    pub rate_updates: usize,
+    /// Times rows of screened contact nodes came back.
+    pub rebuilds: usize,
+    /// Contact points left out of the dual problem, summed over the levels.
+    pub screened_points: usize,
+    /// Seconds of stresses or error estimates.
+    pub extra_seconds: f64,
+    /// Largest certificate.
+    pub certificate: f64,
+    /// Forces of all contact points at the last level, N; for comparisons.
+    #[serde(skip)]
+    pub forces: Vec<f64>,
+}
+
+/// Everything measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Results {
+    /// Effects switched on one by one.
+    pub effects: Vec<Line>,
+    /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface.
+    pub benchmark: Vec<Line>,
+    /// The same with screening.
+    pub screened: Vec<Line>,
+}
+
+/// Runs everything and prints the tables in Markdown.
+///
+/// # Errors
+/// [`ExampleError`] of the library or of a file.
+pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results, ExampleError> {
+    let pool = pool(options.threads)?;
+    let rate = Rate::measure();
+    let (cells, steps) = if options.short { (2, 4) } else { (CELLS, 10) };
+    let mut results = Results {
+        effects: Vec::new(),
+        benchmark: Vec::new(),
+        screened: Vec::new(),
+    };
+    for case in cases(cells, steps)? {
+        let line = pool.install(|| measure(&case, rate))?;
+        results.effects.push(line);
+    }
+    table::effects(&results.effects, out)?;
+    let sizes: &[usize] = if options.short { &[1] } else { &options.n };
+    let steps = if options.short { 8 } else { STEPS };
+    for &n in sizes {
+        let benchmark = Benchmark {
+            cells,
+            steps,
+            ..Benchmark::new(n, Loading::C)
+        };
+        for screening in [Screening::Off, Screening::on()] {
+            let case = Case {
+                name: format!("n = {n}"),
+                scene: benchmark.scene()?,
+                settings: Settings::default().with_screening(screening),
+                extra: Extra::None,
+            };
+            let line = pool.install(|| measure(&case, rate))?;
+            match screening {
+                Screening::Off => results.benchmark.push(line),
+                _ => results.screened.push(line),
+            }
+        }
+    }
+    table::estimates(&results.benchmark, rate, out)?;
+    for &n in sizes {
+        for screening in [Screening::Off, Screening::on()] {
+            let benchmark = Benchmark {
+                cells,
+                steps,
+                ..Benchmark::new(n, Loading::C)
+            };
+            let case = Case {
+                name: format!("n = {n}, four sides"),
+                scene: cases::four_sides(benchmark.scene()?),
+                settings: Settings::default().with_screening(screening),
+                extra: Extra::None,
+            };
+            let line = pool.install(|| measure(&case, rate))?;
+            match screening {
+                Screening::Off => results.benchmark.push(line),
+                _ => results.screened.push(line),
+            }
+        }
+    }
+    table::screening(&results.benchmark, &results.screened, out)?;
+    if let Some(path) = &options.json {
+        let mut text = serde_json::to_string_pretty(&results)?;
+        text.push('\n');
+        std::fs::write(path, text).map_err(ExampleError::write(path))?;
+    }
+    Ok(results)
+}
+
+/// Runs one scene beside its plan.
+///
+/// # Errors
+/// [`ExampleError`] of the library.
+pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
+    let plan = Plan::new(&case.scene, &case.settings)?.with_machine(rate);
+    let mut simulation = Simulation::new(case.scene.clone(), case.settings.clone())?;
+    let (mut solve, mut extra) = (0.0, 0.0);
+    let (mut certificate, mut forces) = (0.0_f64, Vec::new());
+    while !simulation.is_finished() {
+        let start = std::time::Instant::now();
+        let frame = simulation.step()?;
+        solve += start.elapsed().as_secs_f64();
+        let start = std::time::Instant::now();
+        compute(case.extra, &frame)?;
+        if case.extra != Extra::None {
+            extra += start.elapsed().as_secs_f64();
+        }
+        certificate = certificate.max(frame.certificate().largest());
+        let force = |p: &PointState| std::iter::once(p.normal_force).chain(p.friction_force);
+        forces = frame.points().iter().flat_map(force).collect();
+    }
+    let (counters, setup) = (simulation.counters(), simulation.tfeti().report());
+    Ok(Line {
+        name: case.name.clone(),
+        levels: plan.levels,
+        plan: Cost {
+            normal_rows: plan.normal_rows,
+            tangential_rows: plan.tangential_rows,
+            interface_rows: plan.interface_rows,
+            support_rows: plan.dirichlet_rows,
+            bytes: plan.estimate.setup_bytes(),
+            factorisations: plan.estimate.factorisations,
+            products: plan.estimate.products,
+            setup_seconds: plan.estimate.setup_seconds(),
+            solve_seconds: plan.estimate.solve_seconds(),
+        },
+        truth: Cost {
+            normal_rows: setup.rows.normal.len(),
+            tangential_rows: setup.rows.tangential().len(),
+            interface_rows: setup.rows.interface.len(),
+            support_rows: setup.rows.dirichlet.len(),
+            bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
+            factorisations: setup.factorisations,
+            products: counters.products,
+            setup_seconds: simulation.setup_time().as_secs_f64(),
+            solve_seconds: solve,
+        },
+        state_bytes: simulation.state().bytes(),
+        inequality_solves: counters.inequality_solves,
+        slip_bound_updates: counters.slip_bound_updates,
+        rate_updates: counters.rate_updates,
+        rebuilds: counters.rebuilds,
+        screened_points: counters.screened_points,
+        extra_seconds: extra,
+        certificate,
+        forces,
+    })
+}
+
+fn compute(extra: Extra, frame: &Frame<'_>) -> Result<(), ExampleError> {
+    match extra {
+        Extra::None => {}
+        Extra::Stress => {
+            frame.stress()?;
+        }
+        Extra::Errors => {
+            let _ = frame.algebraic_error().relative();
+            let _ = frame.discretisation_error()?.relative();
+        }
+    }
+    Ok(())
+}

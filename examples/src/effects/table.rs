@@ -1,0 +1,136 @@
+//! The tables, in Markdown. Two figures with a bar between them are prediction and truth.
+
+use std::io::Write;
+
+use signorini::contact::Rate;
+
+use super::Line;
+use crate::error::ExampleError;
+
+pub(super) fn effects(lines: &[Line], out: &mut impl Write) -> Result<(), ExampleError> {
+    writeln!(
+        out,
+        "Rows, factorisations, bytes, products and seconds: plan / truth.\n\n\
+         | effect | levels | rows N | rows T | glue | supports | factorisations | set-up KB | state KB | products \
+         | inequality solves | slip bounds | rates | set-up ms | levels ms | extra ms |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+    )?;
+    for l in lines {
+        let (p, t) = (&l.plan, &l.truth);
+        writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {} | {:.0} / {:.0} | {:.0} | {} | {} | {} | {} | {:.0} / {:.0} | {:.0} / {:.0} | {:.1} |",
+            l.name,
+            l.levels,
+            pair(p.normal_rows, t.normal_rows),
+            pair(p.tangential_rows, t.tangential_rows),
+            pair(p.interface_rows, t.interface_rows),
+            pair(p.support_rows, t.support_rows),
+            pair(p.factorisations, t.factorisations),
+            p.bytes as f64 / 1e3,
+            t.bytes as f64 / 1e3,
+            l.state_bytes as f64 / 1e3,
+            pair(p.products, t.products),
+            l.inequality_solves,
+            l.slip_bound_updates,
+            l.rate_updates,
+            1e3 * p.setup_seconds,
+            1e3 * t.setup_seconds,
+            1e3 * p.solve_seconds,
+            1e3 * t.solve_seconds,
+            1e3 * l.extra_seconds,
+        )?;
+    }
+    Ok(())
+}
+
+pub(super) fn estimates(
+    lines: &[Line],
+    rate: Rate,
+    out: &mut impl Write,
+) -> Result<(), ExampleError> {
+    writeln!(
+        out,
+        "\nThe benchmark, loading c: plan / truth. This machine: {:.0} GFLOPS, {:.1} numbers a nanosecond.\n\n\
+         | size | rows | factorisations | set-up MB | products | set-up s | levels s |\n|---|---|---|---|---|---|---|",
+        rate.flops / 1e9,
+        rate.numbers / 1e9
+    )?;
+    for l in lines {
+        let (p, t) = (&l.plan, &l.truth);
+        writeln!(
+            out,
+            "| {} | {} | {} | {:.2} / {:.2} | {} | {:.3} / {:.3} | {:.2} / {:.2} |",
+            l.name,
+            pair(p.rows(), t.rows()),
+            pair(p.factorisations, t.factorisations),
+            p.bytes as f64 / 1e6,
+            t.bytes as f64 / 1e6,
+            pair(p.products, t.products),
+            p.setup_seconds,
+            t.setup_seconds,
+            p.solve_seconds,
+            t.solve_seconds,
+        )?;
+    }
+    Ok(())
+}
+
+pub(super) fn screening(
+    off: &[Line],
+    on: &[Line],
+    out: &mut impl Write,
+) -> Result<(), ExampleError> {
+    writeln!(
+        out,
+        "\nThe benchmark, loading c: without / with screening. Rows at the end; nodes left out: mean over the levels.\n\n\
+         | size | contact rows | nodes left out | rebuilds | products | levels s | forces differ | certificate |\n\
+         |---|---|---|---|---|---|---|---|"
+    )?;
+    for (a, b) in off.iter().zip(on) {
+        let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
+        writeln!(
+            out,
+            "| {} | {} / {} | {:.1} of {} | {} | {} / {} | {:.2} / {:.2} | {:.1e} | {:.1e} / {:.1e} |",
+            a.name,
+            contact(a),
+            contact(b),
+            b.screened_points as f64 / b.levels as f64,
+            a.truth.normal_rows,
+            b.rebuilds,
+            a.truth.products,
+            b.truth.products,
+            a.truth.solve_seconds,
+            b.truth.solve_seconds,
+            distance(&a.forces, &b.forces),
+            a.certificate,
+            b.certificate,
+        )?;
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// `|a - b| / |a|`; infinite for lists of different lengths.
+#[must_use]
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    if a.len() != b.len() {
+        return f64::INFINITY;
+    }
+    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
+    let difference = norm(&mut a.iter().zip(b).map(|(a, b)| a - b));
+    if difference == 0.0 {
+        0.0
+    } else {
+        difference / norm(&mut a.iter().copied())
+    }
+}
+
+/// One figure if the plan is exact.
+fn pair(plan: usize, truth: usize) -> String {
+    if plan == truth {
+        truth.to_string()
+    } else {
+        format!("{plan} / {truth}")
+    }
+}

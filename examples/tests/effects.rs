@@ -1,0 +1,84 @@
+//! The effects example: what is off costs nothing, and the plan's figures are those of the run.
+
+use clap::Parser;
+use signorini_examples::effects::{EffectsOptions, Line, execute, table::distance};
+
+fn find<'a>(lines: &'a [Line], name: &str) -> &'a Line {
+    lines.iter().find(|l| l.name.ends_with(name)).expect("line")
+}
+
+#[test]
+fn effects_that_are_off_cost_nothing() {
+    let folder = tempfile::tempdir().expect("folder");
+    let json = folder.path().join("effects.json");
+    let line = format!("effects --short --json {}", json.display());
+    let options = EffectsOptions::try_parse_from(line.split_whitespace()).expect("options");
+    let mut out = Vec::new();
+    let results = execute(&options, &mut out).expect("run");
+    let lines = &results.effects;
+    assert!(lines.iter().all(|l| l.certificate < 1e-6));
+    // rows and factorisations are as planned; screening leaves contact rows out
+    for l in lines.iter().filter(|l| l.name != "+ screening") {
+        assert_eq!(l.plan.rows(), l.truth.rows(), "{}", l.name);
+        assert_eq!(l.plan.factorisations, l.truth.factorisations, "{}", l.name);
+        let ratio = l.plan.products as f64 / l.truth.products as f64;
+        assert!(ratio > 0.2 && ratio < 5.0, "{}: {ratio}", l.name);
+        assert_eq!((l.rebuilds, l.screened_points), (0, 0));
+    }
+    let elastic = find(lines, "elastic only");
+    assert_eq!(elastic.inequality_solves + elastic.slip_bound_updates, 0);
+    assert_eq!(elastic.truth.rows(), elastic.truth.support_rows);
+    for name in ["+ contact", "+ gap"] {
+        let l = find(lines, name);
+        assert!(l.truth.normal_rows > 0 && l.truth.tangential_rows == 0);
+        assert_eq!((l.inequality_solves, l.slip_bound_updates), (1, 0));
+    }
+    assert_eq!(find(lines, "given friction").slip_bound_updates, 1);
+    let coulomb = find(lines, "Coulomb instead");
+    assert!(coulomb.slip_bound_updates > 1);
+    assert_eq!(coulomb.truth.tangential_rows, 2 * coulomb.truth.normal_rows);
+    // no state without history, no rates without dependence on them
+    let history = lines
+        .iter()
+        .position(|l| l.name == "+ history")
+        .expect("line");
+    assert!(lines[..history].iter().all(|l| l.state_bytes == 0));
+    assert!(lines[history..].iter().all(|l| l.state_bytes > 0));
+    assert!(lines[..=history].iter().all(|l| l.rate_updates == 0));
+    assert!(
+        lines[history + 1..]
+            .iter()
+            .all(|l| l.rate_updates == l.levels)
+    );
+    let cut = find(lines, "several subdomains");
+    assert!(
+        lines[..lines.len() - 4]
+            .iter()
+            .all(|l| l.truth.interface_rows == 0)
+    );
+    assert!(cut.truth.interface_rows > 0);
+    // output and estimates change nothing in the solution
+    for name in ["stress output", "error estimates"] {
+        let l = find(lines, name);
+        assert_eq!(
+            (l.truth.products, &l.forces),
+            (cut.truth.products, &cut.forces)
+        );
+        assert!(l.extra_seconds > 0.0);
+    }
+    let screened = find(lines, "screening");
+    assert!(screened.screened_points > 0);
+    for (a, b) in [
+        (cut, screened),
+        (&results.benchmark[0], &results.screened[0]),
+    ] {
+        assert!(distance(&a.forces, &b.forces) < 1e-5);
+    }
+    let text = String::from_utf8(out).expect("text");
+    assert!(text.contains("| + given friction |") && text.contains("| n = 1 |"));
+    assert!(
+        std::fs::read_to_string(&json)
+            .expect("file")
+            .contains("rate_updates")
+    );
+}
