@@ -145,6 +145,8 @@ impl FaceSolver {
         self.paper = Some(paper);
         let second = outcome?;
         report.fallback = true;
+        // SMALSE has no such estimate
+        report.estimated_error = None;
         report.status = second.status;
         report.iterations += second.iterations;
         report.counters += second.counters;

@@ -10,7 +10,7 @@ use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::Model;
 use signorini_qp::vector;
-use signorini_tfeti::{FreeMotion, RowWeights};
+use signorini_tfeti::{FreeMotion, OrthonormalCoarse, RowWeights};
 
 /// Work on a free motion above this fraction of the size of the loads counts.
 const WORK: f64 = 1e-9;
@@ -150,4 +150,26 @@ fn describe(motions: &[FreeMotion], factors: &[f64]) -> (usize, String) {
         m[0], m[1], m[2], m[3], m[4], m[5]
     );
     (body, mode)
+}
+
+/// The orthonormal coarse rows that the linear solver and the paper's methods need.
+///
+/// # Errors
+/// [`ContactError::NotHeld`] if no row stops some rigid motion, even if the loads do not push along it.
+pub(crate) fn orthonormal_coarse(model: &Model) -> Result<OrthonormalCoarse, ContactError> {
+    let factor = model.tfeti.coarse_factor();
+    factor.orthonormal().ok_or_else(|| {
+        let motions = factor.free_motions();
+        let words: Vec<String> = motions.iter().map(ToString::to_string).collect();
+        let body = motions
+            .first()
+            .and_then(|m| m.bodies.first())
+            .map_or(0, |b| b.body);
+        ContactError::NotHeld {
+            level: 0,
+            body,
+            mode: words.join("; "),
+            force: 0.0,
+        }
+    })
 }

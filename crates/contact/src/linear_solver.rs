@@ -1,6 +1,7 @@
 //! Scenes without contact: projected preconditioned conjugate gradients, no inequality anywhere.
 
 use crate::error::ContactError;
+use crate::held::orthonormal_coarse;
 use crate::level::Level;
 use crate::model::Model;
 use crate::preconditioner::DualPreconditioner;
@@ -30,20 +31,7 @@ impl std::fmt::Debug for LinearSolver {
 impl LinearSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let factor = model.tfeti.coarse_factor();
-        let coarse = factor.orthonormal().ok_or_else(|| {
-            let mode = factor
-                .free_motions()
-                .iter()
-                .map(ToString::to_string)
-                .collect::<Vec<_>>()
-                .join("; ");
-            ContactError::NotHeld {
-                level: 0,
-                body: 0,
-                mode,
-                force: 0.0,
-            }
-        })?;
+        let coarse = orthonormal_coarse(model)?;
         let preconditioner = DualPreconditioner::new(model, settings.preconditioner)?;
         Ok(Self {
             coarse_scratch: factor.scratch(),

@@ -3,6 +3,7 @@
 
 use crate::error::ContactError;
 use crate::fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
+use crate::held::orthonormal_coarse;
 use crate::level::Level;
 use crate::model::{DISCS, INTERVALS, Model};
 use crate::report::{LevelReport, LevelStatus};
@@ -56,20 +57,7 @@ impl PaperSolver {
             },
         };
         let factor = model.tfeti.coarse_factor();
-        let coarse = factor.orthonormal().ok_or_else(|| {
-            let mode = factor
-                .free_motions()
-                .iter()
-                .map(ToString::to_string)
-                .collect::<Vec<_>>()
-                .join("; ");
-            ContactError::NotHeld {
-                level: 0,
-                body: 0,
-                mode,
-                force: 0.0,
-            }
-        })?;
+        let coarse = orthonormal_coarse(model)?;
         let operator = model.tfeti.dual();
         let estimate = norm_estimate(&Projected::new(operator, &coarse), &NormSettings::default())?;
         Ok(Self {

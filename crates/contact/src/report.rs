@@ -40,7 +40,7 @@ pub struct Counters {
     pub setup_products: usize,
     /// Applications of the preconditioner.
     pub preconditionings: usize,
-    /// Applications of projectors by SMALSE and projected conjugate gradients.
+    /// Applications of projectors by SMALSE.
     pub projections: usize,
     /// Factorisations of the coarse problem.
     pub coarse_factorisations: usize,

@@ -103,22 +103,19 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     set.project(x);
     work.face.resize(set);
     work.face.guess(set, x);
-    if let Err(QpError::CoarseDeficient { .. }) = set_face(problem, coarse, set, work, &mut report)
-    {
+    if let Err(QpError::CoarseDeficient { .. }) = set_face(coarse, set, work, &mut report) {
         // held by its constraints only: forces that balance with all of them at work tell the first face
         work.face.free_all();
-        set_face(problem, coarse, set, work, &mut report)?;
+        set_face(coarse, set, work, &mut report)?;
         coarse.repair(x, problem.rhs);
         hook(x, set);
         set.validate()?;
         report.hook_calls += 1;
         set.project(x);
         work.face.guess(set, x);
-        if let Err(QpError::CoarseDeficient { .. }) =
-            set_face(problem, coarse, set, work, &mut report)
-        {
+        if let Err(QpError::CoarseDeficient { .. }) = set_face(coarse, set, work, &mut report) {
             work.face.free_all();
-            set_face(problem, coarse, set, work, &mut report)?;
+            set_face(coarse, set, work, &mut report)?;
         }
     }
     coarse.repair(x, problem.rhs);
@@ -293,7 +290,6 @@ fn residual<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 
 /// Hands the weights of the current face to the coarse space; whether it factored anew.
 fn set_face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    _problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
     set: &ProductSet,
     work: &mut FaceWorkspace<A, M>,
@@ -318,7 +314,7 @@ fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     let mut count = 2;
     let mut factored = false;
     loop {
-        match set_face(problem, coarse, set, work, report) {
+        match set_face(coarse, set, work, report) {
             Ok(anew) => {
                 factored |= anew;
                 if coarse.balances(x, problem.rhs) {
@@ -334,7 +330,7 @@ fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         count *= 2;
     }
     work.face.free_all();
-    Ok(set_face(problem, coarse, set, work, report)? || factored)
+    Ok(set_face(coarse, set, work, report)? || factored)
 }
 
 /// `ax += A (x - t)`, or `ax = A x`.

@@ -18,6 +18,9 @@ use crate::operator::{Equality, SymmetricOperator};
 use crate::report::{Status, Tolerance};
 use crate::vector;
 
+/// `|P b|` below this fraction of `|P A x|` is no reference.
+const NEGLIGIBLE: f64 = 1e-10;
+
 /// Iterations without a smaller residual after which the solve ends.
 const PATIENCE: usize = 300;
 
@@ -114,7 +117,8 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> CgWorkspace<A, C, 
 /// Minimises `1/2 x·Ax - b·x` with `C x = e`, from the point of the equality nearest to `x`.
 ///
 /// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none).
-/// `Tolerance::Relative` refers to `|P b|`. A semidefinite `A` is allowed as long as the load does no work
+/// `Tolerance::Relative` refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that
+/// acts through the equality alone). A semidefinite `A` is allowed as long as the load does no work
 /// along its kernel within that of `C`.
 ///
 /// # Errors
@@ -164,13 +168,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
     let project = CgWorkspace::<A, C, M>::project;
 
     project(c, b, w, coarse, c_scratch);
-    let tolerance = tolerance.resolve(vector::norm(w));
-    expect_setting(
-        "tolerance",
-        tolerance,
-        ">= 0, finite",
-        tolerance >= 0.0 && tolerance.is_finite(),
-    )?;
+    let load = vector::norm(w);
 
     // x -= C'(C x - e)
     c.apply(x, coarse, c_scratch);
@@ -178,6 +176,21 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
     c.apply_transpose(coarse, y, c_scratch);
     vector::subtract(y, x);
     a.apply(x, g, a_scratch);
+    // the load may sit in the equality alone
+    project(c, g, w, coarse, c_scratch);
+    let start = vector::norm(w);
+    let reference = if load > NEGLIGIBLE * start {
+        load
+    } else {
+        start
+    };
+    let tolerance = tolerance.resolve(reference);
+    expect_setting(
+        "tolerance",
+        tolerance,
+        ">= 0, finite",
+        tolerance >= 0.0 && tolerance.is_finite(),
+    )?;
     vector::subtract(b, g);
     project(c, g, w, coarse, c_scratch);
     let mut report = CgReport {
