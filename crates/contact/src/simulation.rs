@@ -287,27 +287,42 @@ impl Simulation {
         }
     }
 
-    /// Solves with the tolerance of the settings. The certificate has the last word: where it is far above the tolerance
-    /// (thin bodies, whose displacement magnifies errors of the forces), the solver continues with a smaller one.
+    /// Solves with the tolerance of the settings. The certificate has the last word: where it is above the tolerance, the
+    /// solver continues once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies
+    /// errors of the forces), with ever smaller ones.
     fn solve_certified(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let aim = self.settings.tolerance.max(LEAST);
         let limit = (CERTIFIED * self.settings.tolerance).max(LEAST);
         let mut tolerance = self.settings.tolerance;
         let mut total: Option<LevelReport> = None;
         loop {
             let (report, lambda, rows) = self.solve_once(tolerance)?;
-            let certified = self.certificate.largest() <= limit;
-            let converged = report.status.converged();
+            let largest = self.certificate.largest();
+            let certified = largest <= limit;
+            let first = total.is_none();
+            let mut converged = report.status.converged();
             let mut report = match total.take() {
                 Some(before) => before.resumed(report),
                 None => report,
             };
-            if certified || !converged || tolerance <= LEAST {
+            if !first && !converged && certified {
+                // an earlier round converged, and what this one could not improve is certified
+                report.status = LevelStatus::Converged;
+                converged = true;
+            }
+            let enough = largest <= aim || certified && !first;
+            if enough || !converged || tolerance <= LEAST {
                 if converged && !certified {
                     report.status = LevelStatus::NotCertified;
                 }
                 return Ok((report, lambda, rows));
             }
-            tolerance = (0.01 * tolerance).max(LEAST);
+            let factor = if certified {
+                (MARGIN * aim / largest).max(0.01)
+            } else {
+                0.01
+            };
+            tolerance = (factor * tolerance).max(LEAST);
             total = Some(report);
             self.iterate.lambda = lambda;
         }
@@ -459,6 +474,9 @@ impl Simulation {
 
 /// Largest certificate of a converged level over the tolerance.
 const CERTIFIED: f64 = 30.0;
+
+/// Aim of a second round, as a fraction of the tolerance.
+const MARGIN: f64 = 0.3;
 
 /// Smallest tolerance that is tried, and the certificate that rounding leaves.
 const LEAST: f64 = 1e-10;
