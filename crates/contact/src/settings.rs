@@ -64,7 +64,8 @@ impl Default for Method {
 }
 
 fn paper_smalse() -> SmalseSettings {
-    SmalseSettings::default()
+    // a level that starts from nothing takes many short outer steps on large problems
+    SmalseSettings::default().with_max_outer(5000)
 }
 
 /// Accuracy of the given-friction problems inside the fixed-point loop.
