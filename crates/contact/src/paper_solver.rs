@@ -10,7 +10,7 @@ use crate::report::{LevelReport, LevelStatus};
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::solver::{Iterate, is_coulomb, level_status};
 use signorini_qp::{
-    HookAction, NormSettings, OuterStep, ProductSet, Projected, Segment, SmalseReport,
+    HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
     SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
@@ -90,7 +90,8 @@ impl PaperSolver {
         if !is_coulomb(model) {
             level.slip_bounds(model, &iterate.lambda, &mut self.set)?;
             report.counters.slip_bound_updates = usize::from(model.friction().is_some());
-            let qp = self.given_friction(model, level, settings.tolerance * SAFETY, iterate)?;
+            let qp =
+                self.given_friction(model, level, settings.tolerance * SAFETY, &mut (), iterate)?;
             add(&mut report, &qp);
             report.iterations = 1;
             report.status = level_status(qp.status);
@@ -115,6 +116,7 @@ impl PaperSolver {
         model: &Model,
         level: &Level,
         tolerance: f64,
+        hook: &mut impl OuterHook<ProductSet>,
         iterate: &mut Iterate,
     ) -> Result<SmalseReport, ContactError> {
         let settings = self
@@ -130,7 +132,7 @@ impl PaperSolver {
             &mut self.set,
             self.norm,
             &settings,
-            &mut (),
+            hook,
             &mut iterate.lambda,
             &mut iterate.multiplier,
             &mut self.work,
@@ -180,7 +182,7 @@ impl PaperSolver {
                 iterate.lambda[normal.clone()].copy_from_slice(x);
                 level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
-                let qp = self.given_friction(model, level, tolerance, iterate)?;
+                let qp = self.given_friction(model, level, tolerance, &mut (), iterate)?;
                 inner = qp.status;
                 add(report, &qp);
                 x.copy_from_slice(&iterate.lambda[normal.clone()]);
@@ -217,10 +219,6 @@ impl PaperSolver {
         let mut contraction = Contraction::new();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;
-        let smalse_settings = self
-            .settings
-            .with_tolerance(Tolerance::Relative(tolerance))
-            .with_equality(tolerance);
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
             level.coulomb_bounds(model, step.x, set);
@@ -239,20 +237,7 @@ impl PaperSolver {
                 HookAction::SetChanged
             }
         };
-        let operator = model.tfeti.dual();
-        let qp = smalse(
-            operator,
-            &level.linear,
-            &self.coarse,
-            &self.rhs,
-            &mut self.set,
-            self.norm,
-            &smalse_settings,
-            &mut hook,
-            &mut iterate.lambda,
-            &mut iterate.multiplier,
-            &mut self.work,
-        )?;
+        let qp = self.given_friction(model, level, tolerance, &mut hook, iterate)?;
         add(report, &qp);
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;

@@ -178,11 +178,11 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
     a.apply(x, g, a_scratch);
     // the load may sit in the equality alone
     project(c, g, w, coarse, c_scratch);
-    let start = vector::norm(w);
-    let reference = if load > NEGLIGIBLE * start {
+    let product = vector::norm(w);
+    let reference = if load > NEGLIGIBLE * product {
         load
     } else {
-        start
+        product
     };
     let tolerance = tolerance.resolve(reference);
     expect_setting(
