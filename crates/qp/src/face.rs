@@ -17,15 +17,19 @@
 //! sticking. The prediction is not monotone in general. After `patience` faces without progress the faces are
 //! solved more accurately, and [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
 //!
+//! The move to the next face and the next conjugate gradient step share one product: the step is taken with the length of
+//! the last one, and conjugate gradients start anew from the exact residual.
+//!
 //! | local | meaning |
 //! |---|---|
 //! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a face |
-//! | `res` | `P_Wᵀ (A x - b)` |
-//! | `r`, `z`, `p`, `ap` | residual on the face, preconditioned residual, direction, `A p` |
-//! | `rho` | `r·z` |
+//! | `residual` | `P_Wᵀ (A x - b)` |
+//! | `z` | preconditioned residual on the face |
+//! | `constrained` | components up to the last constrained one; only these differ between a vector and its part on the face |
 
 use crate::coarse_space::CoarseSpace;
 use crate::error::{QpError, expect_finite, expect_length};
+use crate::face_cg::{Limits, conjugate_gradients, estimate, precondition, start_residual};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
@@ -80,7 +84,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         ("the preconditioner", problem.preconditioner.dim()),
         ("the set", set.dim()),
         ("the coarse space", coarse.dim()),
-        ("the workspace", work.r.len()),
+        ("the workspace", work.z.len()),
     ] {
         expect_length(what, found, n)?;
     }
@@ -97,6 +101,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 
     let mut report = FaceReport::new();
     let constrained = constrained_length(set);
+    work.resize(constrained);
 
     // start: a feasible point that satisfies G x = e
     vector::copy(x, &mut work.t);
@@ -123,7 +128,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 
     let mut last_jump = f64::INFINITY;
     let mut peak = vector::norm(x);
-    let mut forcing = settings.forcing;
+    // without constraints there is one face
+    let mut forcing = if constrained > 0 {
+        settings.forcing
+    } else {
+        0.0
+    };
     let mut best = f64::INFINITY;
     let mut waited = 0;
     loop {
@@ -139,14 +149,11 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             }
             Err(error) => return Err(error),
         }
-        for (r, g) in work.r.iter_mut().zip(&work.residual) {
-            *r = -g;
-        }
-        work.face.restrict(set, &mut work.r);
-        precondition(problem, coarse, set, work, &mut report);
+        start_residual(set, work);
+        let rho = precondition(problem, coarse, set, work, &mut report);
         let (x_norm, c_norm) = (vector::norm(x), vector::norm(&x[..constrained]));
         let limits = Limits::new(settings.tolerance, x_norm, c_norm);
-        let errors = estimate(&work.z, constrained);
+        let errors = estimate(work);
         report.error = ratio(errors.0, x_norm);
         report.constrained_error = ratio(errors.1, limits.constrained / settings.tolerance);
         if !(errors.0.is_finite() && x_norm.is_finite()) {
@@ -192,26 +199,31 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             return Ok(report);
         }
 
-        conjugate_gradients(
+        let step = conjugate_gradients(
             problem,
             coarse,
             set,
             x,
             ax,
-            settings,
+            rho,
+            settings.max_products,
             forcing,
             &limits,
-            constrained,
             work,
             &mut report,
         )?;
         report.faces += 1;
 
-        // the natural map predicts the next face, and x moves there
-        residual(problem, coarse, ax, work);
+        // the natural map predicts the next face, and x moves there, with the next step on top
         vector::copy(x, &mut work.t);
+        let joint = settings.joint_step * step;
+        if joint > 0.0 {
+            vector::axpy(joint, &work.p, x);
+        }
+        work.before.copy_from_slice(&x[..constrained]);
+        let natural = settings.natural_step;
         work.face
-            .settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
+            .settle_bounds(set, x, &work.residual, problem.scale, natural);
         let few = (settings.settled * work.face.free_bounds as f64).max(2.0);
         if work.face.changed as f64 <= few {
             hook(x, set);
@@ -219,13 +231,15 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             report.hook_calls += 1;
             // held components go with bounds that moved
             work.face
-                .settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
+                .settle_bounds(set, x, &work.residual, problem.scale, natural);
         }
         work.face
-            .settle_discs(set, x, &work.residual, problem.scale, settings.natural_step);
-        last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+            .settle_discs(set, x, &work.residual, problem.scale, natural);
+        last_jump = vector::distance(&x[..constrained], &work.before);
         if last_jump > 0.0 {
             coarse.repair(x, problem.rhs);
+        }
+        if last_jump > 0.0 || joint > 0.0 {
             correct(problem, x, ax, true, work, &mut report);
         }
     }
@@ -251,32 +265,11 @@ fn constrained_length(set: &ProductSet) -> usize {
     constrained
 }
 
-/// Absolute limits of the two error estimates.
-struct Limits {
-    all: f64,
-    constrained: f64,
-}
-
-impl Limits {
-    fn new(tolerance: f64, x_norm: f64, c_norm: f64) -> Self {
-        // a vanishing contact force is measured against a millionth of all forces
-        let all = tolerance * x_norm;
-        Self {
-            all,
-            constrained: tolerance * c_norm.max(1e-6 * x_norm),
-        }
-    }
-}
-
 fn ratio(a: f64, b: f64) -> f64 {
     if a == 0.0 { 0.0 } else { a / b }
 }
 
-fn estimate(z: &[f64], constrained: usize) -> (f64, f64) {
-    (vector::norm(z), vector::norm(&z[..constrained]))
-}
-
-/// `res = P_Wᵀ (A x - b)`.
+/// `residual = P_Wᵀ (A x - b)`.
 fn residual<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
@@ -357,92 +350,4 @@ fn correct<A: SymmetricOperator, M: SymmetricOperator>(
         problem.operator.apply(x, ax, &mut work.operator);
     }
     report.corrections += 1;
-}
-
-/// `z = P_W R D M D R r` with `R` the restriction to the face and `D` the damping of sliding discs.
-fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    problem: &FaceProblem<'_, A, M>,
-    coarse: &mut C,
-    set: &ProductSet,
-    work: &mut FaceWorkspace<A, M>,
-    report: &mut FaceReport,
-) {
-    vector::copy(&work.r, &mut work.ap);
-    work.face.damp(set, &mut work.ap);
-    problem
-        .preconditioner
-        .apply(&work.ap, &mut work.z, &mut work.preconditioner);
-    work.face.restrict(set, &mut work.z);
-    work.face.damp(set, &mut work.z);
-    coarse.project(&mut work.z);
-    report.preconditionings += 1;
-}
-
-/// Projected preconditioned conjugate gradients on the face; `r` and `z` are ready.
-fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    problem: &FaceProblem<'_, A, M>,
-    coarse: &mut C,
-    set: &ProductSet,
-    x: &mut [f64],
-    ax: &mut [f64],
-    settings: &FaceSettings,
-    forcing: f64,
-    limits: &Limits,
-    constrained: usize,
-    work: &mut FaceWorkspace<A, M>,
-    report: &mut FaceReport,
-) -> Result<(), QpError> {
-    vector::copy(&work.z, &mut work.p);
-    let mut rho = vector::dot(&work.r, &work.z);
-    let start = estimate(&work.z, constrained);
-    // below a third of the limits further steps buy nothing
-    let goal = |all: f64, part: f64| {
-        all <= (forcing * start.0).max(0.3 * limits.all)
-            && part <= (forcing * start.1).max(0.3 * limits.constrained)
-    };
-    loop {
-        if report.products() >= settings.max_products || rho <= 0.0 {
-            return Ok(());
-        }
-        problem
-            .operator
-            .apply(&work.p, &mut work.ap, &mut work.operator);
-        report.cg_steps += 1;
-        // A p is added to A x with its full length, before curvature and projection
-        let curvature_free = vector::dot(&work.p, &work.ap);
-        vector::copy(&work.ap, &mut work.t);
-        work.face.add_curvature(set, &work.p, &mut work.ap);
-        let curvature = vector::dot(&work.p, &work.ap);
-        if !curvature.is_finite() {
-            return Err(QpError::NotFinite {
-                quantity: "the curvature",
-                products: report.products(),
-            });
-        }
-        if curvature <= 0.0 {
-            let pp = vector::dot(&work.p, &work.p);
-            let size = vector::norm(&work.t) * pp.sqrt();
-            if curvature_free < -1e-10 * size {
-                return Err(QpError::Indefinite {
-                    curvature: curvature / pp,
-                    products: report.products(),
-                });
-            }
-            return Ok(());
-        }
-        let step = rho / curvature;
-        vector::axpy(step, &work.p, x);
-        vector::axpy(step, &work.t, ax);
-        coarse.project_transpose(&mut work.ap);
-        work.face.restrict(set, &mut work.ap);
-        vector::axpy(-step, &work.ap, &mut work.r);
-        precondition(problem, coarse, set, work, report);
-        let errors = estimate(&work.z, constrained);
-        if goal(errors.0, errors.1) {
-            return Ok(());
-        }
-        let next = vector::dot(&work.r, &work.z);
-        vector::xpby(&work.z, next / rho, &mut work.p);
-        rho = next;
-    }
 }

@@ -9,9 +9,10 @@ use crate::report::Status;
 /// | setting | meaning | range | default |
 /// |---|---|---|---|
 /// | `tolerance` | estimated error of `x` relative to its norm, and of its constrained part relative to its own | (0, 1) | 1e-7 |
-/// | `forcing` | decrease of the error estimate on one face before the face is looked at again | (0, 1) | 0.2 |
+/// | `forcing` | decrease of the error estimate on one face before the face is looked at again | (0, 1) | 0.4 |
 /// | `natural_step` | step of the natural map that predicts the next face, in units of the preconditioner's diagonal | (0, 1] | 0.4 |
-/// | `settled` | share of the free bounded components that may change on a face for the hook to be called | [0, 1] | 0.05 |
+/// | `joint_step` | part of the next step that is taken together with the move to the next face | [0, 1] | 1 |
+/// | `settled` | share of the free bounded components that may change on a face for the hook to be called | [0, 1] | 0.3 |
 /// | `max_faces` | faces | >= 1 | 100 |
 /// | `max_products` | operator products | >= 1 | 10 000 |
 /// | `patience` | faces without a better error estimate before giving up | >= 1 | 12 |
@@ -24,6 +25,8 @@ pub struct FaceSettings {
     pub forcing: f64,
     /// Step of the natural map, times the preconditioner's diagonal.
     pub natural_step: f64,
+    /// Part of the next conjugate gradient step that shares the product of the move to the next face.
+    pub joint_step: f64,
     /// Share of changing bounds below which the hook is called.
     pub settled: f64,
     /// Most faces.
@@ -38,9 +41,10 @@ impl Default for FaceSettings {
     fn default() -> Self {
         Self {
             tolerance: 1e-7,
-            forcing: 0.2,
+            forcing: 0.4,
             natural_step: 0.4,
-            settled: 0.05,
+            joint_step: 1.0,
+            settled: 0.3,
             max_faces: 100,
             max_products: 10_000,
             patience: 12,
@@ -67,6 +71,13 @@ impl FaceSettings {
     #[must_use]
     pub fn with_natural_step(mut self, step: f64) -> Self {
         self.natural_step = step;
+        self
+    }
+
+    /// Sets the part of the next step taken together with the move to the next face.
+    #[must_use]
+    pub fn with_joint_step(mut self, part: f64) -> Self {
+        self.joint_step = part;
         self
     }
 
@@ -109,12 +120,14 @@ impl FaceSettings {
                 range: "(0, 1]",
             });
         }
-        if !(self.settled >= 0.0 && self.settled <= 1.0) {
-            return Err(QpError::Setting {
-                name: "settled",
-                value: self.settled,
-                range: "[0, 1]",
-            });
+        for (name, value) in [("joint_step", self.joint_step), ("settled", self.settled)] {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(QpError::Setting {
+                    name,
+                    value,
+                    range: "[0, 1]",
+                });
+            }
         }
         for (name, value) in [
             ("max_faces", self.max_faces),
@@ -179,14 +192,20 @@ impl FaceReport {
     }
 }
 
-/// Vectors of the face method: seven of the length of `x` and the classification of the blocks.
+/// Vectors of the face method: six of the length of `x`, three of its constrained part and the classification of the blocks.
 #[derive(Debug)]
 pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) operator: A::Scratch,
     pub(crate) preconditioner: M::Scratch,
     /// `A x - b` without its part in the image of `Gᵀ`.
     pub(crate) residual: Vec<f64>,
-    pub(crate) r: Vec<f64>,
+    /// Constrained part of the residual on the face.
+    pub(crate) face_residual: Vec<f64>,
+    /// Constrained part of `residual` while that of the face stands in its place.
+    pub(crate) saved: Vec<f64>,
+    /// Constrained part of `x` before it moves to the next face.
+    pub(crate) before: Vec<f64>,
+    pub(crate) z_norm: f64,
     pub(crate) z: Vec<f64>,
     pub(crate) p: Vec<f64>,
     pub(crate) ap: Vec<f64>,
@@ -204,7 +223,10 @@ impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
             operator: operator.scratch(),
             preconditioner: preconditioner.scratch(),
             residual: v(),
-            r: v(),
+            face_residual: Vec::new(),
+            saved: Vec::new(),
+            before: Vec::new(),
+            z_norm: 0.0,
             z: v(),
             p: v(),
             ap: v(),
@@ -212,6 +234,13 @@ impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
             t: v(),
             face: crate::face_state::Face::default(),
         }
+    }
+
+    /// Makes room for `constrained` leading components with constraints.
+    pub(crate) fn resize(&mut self, constrained: usize) {
+        self.face_residual.resize(constrained, 0.0);
+        self.saved.resize(constrained, 0.0);
+        self.before.resize(constrained, 0.0);
     }
 
     /// `P_Wᵀ (A x - b)` at the last iterate: the gradient without the part that the multiplier of

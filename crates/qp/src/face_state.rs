@@ -219,6 +219,15 @@ impl Face {
         }
     }
 
+    /// `sum kappa |p|^2` over sliding discs.
+    pub(crate) fn curvature(&self, set: &ProductSet, p: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.for_sliding(set, |i, kappa, _| {
+            sum += kappa * (p[i] * p[i] + p[i + 1] * p[i + 1]);
+        });
+        sum
+    }
+
     /// Adds the curvature of sliding discs: `y += kappa * p` on their components (`p` is restricted).
     pub(crate) fn add_curvature(&self, set: &ProductSet, p: &[f64], y: &mut [f64]) {
         self.for_sliding(set, |i, kappa, _| {

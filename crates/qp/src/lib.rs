@@ -93,6 +93,7 @@ pub mod dense;
 mod dense_coarse;
 mod error;
 pub mod face;
+mod face_cg;
 mod face_settings;
 mod face_state;
 pub mod kkt;

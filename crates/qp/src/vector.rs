@@ -25,6 +25,18 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     dot_with(x, y, n >= PARALLEL)
 }
 
+/// `x · y` and `y · y` in one pass.
+#[must_use]
+pub fn dot_and_square(x: &[f64], y: &[f64]) -> (f64, f64) {
+    let n = x.len().min(y.len());
+    let sums = reduce(0..n, n >= PARALLEL, &|r| {
+        let (x, y) = (&x[r.clone()], &y[r]);
+        let both = [leaf(x, y, |a, b| a * b), leaf(x, y, |_, b| b * b)];
+        Pair(both[0], both[1])
+    });
+    (sums.0, sums.1)
+}
+
 /// Euclidean norm `|x|`.
 #[must_use]
 pub fn norm(x: &[f64]) -> f64 {
@@ -161,8 +173,23 @@ fn cut(n: usize) -> usize {
     n.div_ceil(CHUNK).div_ceil(2) * CHUNK
 }
 
+/// Two sums.
+struct Pair(f64, f64);
+
+impl std::ops::Add for Pair {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
+    }
+}
+
 /// Sum over `range` along the fixed tree.
-fn reduce(range: Range<usize>, parallel: bool, f: &(impl Fn(Range<usize>) -> f64 + Sync)) -> f64 {
+fn reduce<T: Send + std::ops::Add<Output = T>>(
+    range: Range<usize>,
+    parallel: bool,
+    f: &(impl Fn(Range<usize>) -> T + Sync),
+) -> T {
     let n = range.len();
     if n <= CHUNK {
         return f(range);

@@ -1,0 +1,160 @@
+//! Projected preconditioned conjugate gradients on one face.
+//!
+//! The face restricts constrained components only. The residual on the face is therefore the vector `residual` with its
+//! leading part replaced by `face_residual`, which also carries the curvature of the discs; no second long vector is kept.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `residual` | `P_Wᵀ (A x - b)` |
+//! | `face_residual` | its constrained part, restricted to the face, with the curvature of the steps so far |
+//! | `z` | `P_W R D M D R` of the residual on the face; `R` restricts, `D` damps sliding discs |
+//! | `p`, `ap` | direction, and `A p`, then `P_Wᵀ A p` |
+//! | `rho` | residual on the face times `z` |
+
+use crate::coarse_space::CoarseSpace;
+use crate::error::QpError;
+use crate::face::FaceProblem;
+use crate::face_settings::{FaceReport, FaceWorkspace};
+use crate::operator::SymmetricOperator;
+use crate::product::ProductSet;
+use crate::vector;
+
+/// Absolute limits of the two error estimates.
+pub(crate) struct Limits {
+    pub(crate) all: f64,
+    pub(crate) constrained: f64,
+}
+
+impl Limits {
+    pub(crate) fn new(tolerance: f64, x_norm: f64, c_norm: f64) -> Self {
+        // a vanishing contact force is measured against a millionth of all forces
+        Self {
+            all: tolerance * x_norm,
+            constrained: tolerance * c_norm.max(1e-6 * x_norm),
+        }
+    }
+}
+
+/// Lengths of `z` and of its constrained part.
+pub(crate) fn estimate<A: SymmetricOperator, M: SymmetricOperator>(
+    work: &FaceWorkspace<A, M>,
+) -> (f64, f64) {
+    let z = &work.z;
+    (work.z_norm, vector::norm(&z[..work.face_residual.len()]))
+}
+
+/// The residual on the face from `residual`.
+pub(crate) fn start_residual<A: SymmetricOperator, M: SymmetricOperator>(
+    set: &ProductSet,
+    work: &mut FaceWorkspace<A, M>,
+) {
+    let constrained = work.face_residual.len();
+    work.face_residual
+        .copy_from_slice(&work.residual[..constrained]);
+    work.face.restrict(set, &mut work.face_residual);
+}
+
+/// `z` from the residual on the face; sets its norm and returns `rho`.
+pub(crate) fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &ProductSet,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) -> f64 {
+    let FaceWorkspace {
+        residual,
+        face_residual,
+        saved,
+        z,
+        face,
+        ..
+    } = work;
+    let constrained = face_residual.len();
+    saved.copy_from_slice(&residual[..constrained]);
+    residual[..constrained].copy_from_slice(face_residual);
+    face.damp(set, &mut residual[..constrained]);
+    problem
+        .preconditioner
+        .apply(residual, z, &mut work.preconditioner);
+    let part = &mut z[..constrained];
+    face.restrict(set, part);
+    face.damp(set, part);
+    coarse.project(z);
+    report.preconditionings += 1;
+    residual[..constrained].copy_from_slice(face_residual);
+    let (rho, square) = vector::dot_and_square(residual, z);
+    residual[..constrained].copy_from_slice(saved);
+    work.z_norm = square.sqrt();
+    rho
+}
+
+/// Runs until both estimates have fallen by `forcing` or below the limits; `z` is ready, with `rho`. Returns the length of
+/// the last step if another one is worth while; its direction is then `p`.
+pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+    problem: &FaceProblem<'_, A, M>,
+    coarse: &mut C,
+    set: &ProductSet,
+    x: &mut [f64],
+    ax: &mut [f64],
+    rho: f64,
+    max_products: usize,
+    forcing: f64,
+    limits: &Limits,
+    work: &mut FaceWorkspace<A, M>,
+    report: &mut FaceReport,
+) -> Result<f64, QpError> {
+    let mut rho = rho;
+    vector::axpby(-1.0, &work.z, 0.0, &mut work.p);
+    let start = estimate(work);
+    // below a third of the limits further steps buy nothing
+    let goal = |(all, part): (f64, f64)| {
+        all <= (forcing * start.0).max(0.3 * limits.all)
+            && part <= (forcing * start.1).max(0.3 * limits.constrained)
+    };
+    loop {
+        if report.products() >= max_products || rho <= 0.0 {
+            return Ok(0.0);
+        }
+        problem
+            .operator
+            .apply(&work.p, &mut work.ap, &mut work.operator);
+        report.cg_steps += 1;
+        let plain = vector::dot(&work.p, &work.ap);
+        let curvature = plain + work.face.curvature(set, &work.p);
+        if !curvature.is_finite() {
+            return Err(QpError::NotFinite {
+                quantity: "the curvature",
+                products: report.products(),
+            });
+        }
+        if curvature <= 0.0 {
+            let pp = vector::dot(&work.p, &work.p);
+            if plain < -1e-10 * vector::norm(&work.ap) * pp.sqrt() {
+                return Err(QpError::Indefinite {
+                    curvature: curvature / pp,
+                    products: report.products(),
+                });
+            }
+            return Ok(0.0);
+        }
+        let step = rho / curvature;
+        vector::axpy(step, &work.p, x);
+        vector::axpy(step, &work.ap, ax);
+        coarse.project_transpose(&mut work.ap);
+        vector::axpy(step, &work.ap, &mut work.residual);
+        let constrained = work.face_residual.len();
+        let part = &mut work.ap[..constrained];
+        work.face.restrict(set, part);
+        work.face.add_curvature(set, &work.p, part);
+        vector::axpy(step, part, &mut work.face_residual);
+        let next = precondition(problem, coarse, set, work, report);
+        let errors = estimate(work);
+        vector::axpby(-1.0, &work.z, next / rho, &mut work.p);
+        rho = next;
+        if goal(errors) {
+            let more = errors.0 > limits.all || errors.1 > limits.constrained;
+            return Ok(if more { step } else { 0.0 });
+        }
+    }
+}
