@@ -179,20 +179,26 @@ impl Simulation {
     /// Solves all levels that are left, telling the observer; ends early if it says so.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
     pub fn run(&mut self, observer: &mut impl Observer) -> Result<(), ContactError> {
         let levels = self.model.scene.analysis.levels() - self.state.level();
         observer.started(&self.model.plan, levels);
-        let mut solved = 0;
+        let (mut solved, mut failed) = (0, None);
         while !self.is_finished() {
             let frame = self.step()?;
             solved += 1;
-            if observer.level(&frame) == Flow::Stop {
-                break;
+            match observer.level(&frame) {
+                Flow::Continue => {}
+                Flow::Stop => break,
+                Flow::Fail(source) => {
+                    let level = frame.level();
+                    failed = Some(ContactError::Observer { level, source });
+                    break;
+                }
             }
         }
         observer.finished(solved);
-        Ok(())
+        failed.map_or(Ok(()), Err)
     }
 
     /// The frame of the last level solved.

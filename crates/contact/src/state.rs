@@ -1,12 +1,12 @@
-//! The state between time levels: one serialisable value.
+//! The state between time levels: one value, with feature `checkpoint` also as bytes.
 
 use crate::error::ContactError;
-use serde::{Deserialize, Serialize};
 
 /// What one level hands to the next.
 ///
 /// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Levels solved.
     level: usize,
@@ -27,6 +27,7 @@ pub struct State {
 }
 
 /// Marks the format of stored states.
+#[cfg(feature = "checkpoint")]
 const MAGIC: u32 = 0x5349_4702;
 
 impl State {
@@ -49,20 +50,22 @@ impl State {
         8 * numbers + self.sliding.len() + self.active.len()
     }
 
-    /// Writes the state as bytes (postcard).
+    /// Writes the state as bytes (postcard; feature `checkpoint`).
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the encoder fails.
+    #[cfg(feature = "checkpoint")]
     pub fn to_bytes(&self) -> Result<Vec<u8>, ContactError> {
         postcard::to_stdvec(&(MAGIC, self)).map_err(|e| ContactError::Checkpoint {
             reason: e.to_string(),
         })
     }
 
-    /// Reads what [`to_bytes`](Self::to_bytes) wrote.
+    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`).
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the bytes are damaged or of another format.
+    #[cfg(feature = "checkpoint")]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
         let error = |reason: String| ContactError::Checkpoint { reason };
         let (magic, state): (u32, Self) = postcard::from_bytes(bytes)
@@ -244,8 +247,7 @@ fn pick<T: Copy>(all: &[T], places: &[usize]) -> Vec<T> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn bytes_round_trip_and_damage_is_noticed() {
+    fn state() -> State {
         let mut state = State::default();
         state.advance(
             true,
@@ -256,6 +258,13 @@ mod tests {
             vec![],
             vec![true],
         );
+        state
+    }
+
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn bytes_round_trip_and_damage_is_noticed() {
+        let state = state();
         let bytes = state.to_bytes().unwrap();
         assert_eq!(State::from_bytes(&bytes).unwrap(), state);
         assert!(matches!(
@@ -263,6 +272,11 @@ mod tests {
             Err(ContactError::Checkpoint { .. })
         ));
         assert!(State::from_bytes(&[0; 40]).is_err());
+    }
+
+    #[test]
+    fn sizes_and_numbers_are_checked() {
+        let mut state = state();
         assert!(state.fits(2, 6, 1, 1).is_ok());
         assert!(state.fits(3, 6, 1, 1).is_err());
         state.advance(
