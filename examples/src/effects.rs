@@ -2,6 +2,7 @@
 //! the estimate against the truth and the saving by screening on the benchmark.
 
 mod cases;
+pub mod shapes;
 pub mod table;
 
 use std::io::Write;
@@ -53,8 +54,10 @@ pub struct Cost {
     pub bytes: u64,
     /// Numeric factorisations of a set-up.
     pub factorisations: usize,
-    /// Products with F in all levels.
+    /// Products with F in all levels; of a plan those that are likely.
     pub products: usize,
+    /// The range of a plan; the same number twice for a run.
+    pub range: [usize; 2],
     /// Seconds of the set-up.
     pub setup_seconds: f64,
     /// Seconds of all levels.
@@ -88,6 +91,10 @@ pub struct Line {
     pub slip_bound_updates: usize,
     /// Times slip rates were computed.
     pub rate_updates: usize,
+    /// Levels that the default method handed to SMALSE.
+    pub fallbacks: usize,
+    /// Levels that did not converge.
+    pub unconverged: usize,
     /// Times rows of screened contact nodes came back.
     pub rebuilds: usize,
     /// Contact points left out of the dual problem, summed over the levels.
@@ -106,6 +113,8 @@ pub struct Line {
 pub struct Results {
     /// Effects switched on one by one.
     pub effects: Vec<Line>,
+    /// Other shapes, materials, supports and settings.
+    pub shapes: Vec<Line>,
     /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface.
     pub benchmark: Vec<Line>,
     /// The same with screening.
@@ -122,6 +131,7 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
     let (cells, steps) = if options.short { (2, 4) } else { (CELLS, 10) };
     let mut results = Results {
         effects: Vec::new(),
+        shapes: Vec::new(),
         benchmark: Vec::new(),
         screened: Vec::new(),
     };
@@ -153,6 +163,13 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
         }
     }
     table::estimates(&results.benchmark, rate, out)?;
+    let mut others = shapes::shapes()?;
+    others.extend(shapes::accuracies()?);
+    for case in &others {
+        let line = pool.install(|| measure(case, rate))?;
+        results.shapes.push(line);
+    }
+    table::shapes(&results.shapes, out)?;
     for &n in sizes {
         for screening in [Screening::Off, Screening::on()] {
             let benchmark = Benchmark {
@@ -191,6 +208,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
     let mut simulation = Simulation::new(case.scene.clone(), case.settings.clone())?;
     let (mut solve, mut extra) = (0.0, 0.0);
     let (mut certificate, mut forces) = (0.0_f64, Vec::new());
+    let (mut fallbacks, mut unconverged) = (0, 0);
     while !simulation.is_finished() {
         let start = std::time::Instant::now();
         let frame = simulation.step()?;
@@ -201,6 +219,8 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             extra += start.elapsed().as_secs_f64();
         }
         certificate = certificate.max(frame.certificate().largest());
+        fallbacks += usize::from(frame.report().fallback);
+        unconverged += usize::from(!frame.report().status.converged());
         let force = |p: &PointState| std::iter::once(p.normal_force).chain(p.friction_force);
         forces = frame.points().iter().flat_map(force).collect();
     }
@@ -216,6 +236,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             bytes: plan.estimate.setup_bytes(),
             factorisations: plan.estimate.factorisations,
             products: plan.estimate.products,
+            range: [plan.estimate.fewest_products, plan.estimate.most_products],
             setup_seconds: plan.estimate.setup_seconds(),
             solve_seconds: plan.estimate.solve_seconds(),
         },
@@ -227,6 +248,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
             factorisations: setup.factorisations,
             products: counters.products,
+            range: [counters.products; 2],
             setup_seconds: simulation.setup_time().as_secs_f64(),
             solve_seconds: solve,
         },
@@ -234,6 +256,8 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
         inequality_solves: counters.inequality_solves,
         slip_bound_updates: counters.slip_bound_updates,
         rate_updates: counters.rate_updates,
+        fallbacks,
+        unconverged,
         rebuilds: counters.rebuilds,
         screened_points: counters.screened_points,
         extra_seconds: extra,

@@ -14,7 +14,7 @@
 //! bounds do not vanish with the pressure, and for bodies that contact must hold.
 
 use crate::error::ContactError;
-use crate::frame::{PointState, Rows, point_state};
+use crate::frame::{ContactState, PointState, Rows, point_state};
 use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint, contact_nodes, supports, touch_points};
@@ -59,6 +59,11 @@ impl Screening {
 
 /// Penetration relative to the largest displacement that is rounding.
 const ROUNDING: f64 = 1e-12;
+
+/// Points leave the dual problem beyond this many margins, so that they do not come and go,
+const FAR: f64 = 4.0;
+/// the margin being at least this.
+const NEAR: f64 = 0.05;
 
 /// All contact points and which of them are in the dual problem.
 #[derive(Debug)]
@@ -287,8 +292,14 @@ impl Screen {
         all
     }
 
-    /// The points that must be in after these states; `None` if the result holds for all points.
-    pub(crate) fn needed(&self, states: &[PointState], torn: &[f64]) -> Option<Vec<bool>> {
+    /// The points that must be in after these states; `None` if the result holds for all points. With `release`, points that
+    /// are open and far from the obstacle leave: the tables are made anew in any case.
+    pub(crate) fn needed(
+        &self,
+        states: &[PointState],
+        torn: &[f64],
+        release: bool,
+    ) -> Option<Vec<bool>> {
         let reach = signorini_qp::vector::max_abs(torn);
         let outside = |limit: f64| {
             let list = states.iter().zip(&self.active);
@@ -298,7 +309,14 @@ impl Screen {
             return None;
         }
         let close = outside(self.margin * reach);
-        Some(close.zip(&self.active).map(|(c, a)| c || *a).collect())
+        let far = |s: &PointState| {
+            s.state == ContactState::Open && s.gap > FAR * self.margin.max(NEAR) * reach
+        };
+        let stays = states
+            .iter()
+            .zip(&self.active)
+            .map(|(s, a)| *a && !(release && far(s)));
+        Some(close.zip(stays).map(|(c, s)| c || s).collect())
     }
 
     fn times(&self, row: usize, torn: &[f64]) -> f64 {

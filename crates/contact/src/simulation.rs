@@ -1,9 +1,11 @@
 //! The simulation: set-up, levels, recovery, certificate.
 
 mod resume;
+mod rounds;
 mod screened;
 
-use crate::accuracy::{Accuracy, AccuracyReport, Controller, ROUNDS};
+use crate::accumulated::AccumulatedError;
+use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, certify};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
@@ -12,7 +14,7 @@ use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
-use crate::report::{Counters, LevelReport, LevelStatus};
+use crate::report::{Counters, LevelReport};
 use crate::scene::Scene;
 use crate::screening::Screen;
 use crate::settings::Settings;
@@ -61,6 +63,8 @@ pub struct Simulation {
     total: Counters,
     setup: Duration,
     controller: Controller,
+    /// Algebraic errors of the levels before, if they are estimated.
+    carried: AccumulatedError,
     /// With screening: all points, and which of them are in the model.
     screen: Option<Screen>,
     /// With screening: states of all points.
@@ -90,6 +94,7 @@ impl Simulation {
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
+            carried: AccumulatedError::default(),
             all: Vec::new(),
             screen,
             model,
@@ -223,11 +228,14 @@ impl Simulation {
         state: &State,
         index: usize,
     ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let (tolerance, errors) = state.accuracy();
+        self.controller = Controller::resume(tolerance);
+        self.carried = errors;
         let mut view = self.view(state);
         self.level.prepare(&self.model, &view, index)?;
         self.start(&view)?;
         let (mut report, mut lambda, mut rows) = self.solve()?;
-        while self.widen(state, &lambda)? {
+        while self.widen(state, &lambda, report.counters.rebuilds == 0)? {
             view = self.view(state);
             self.level.prepare(&self.model, &view, index)?;
             let again = self.solve()?;
@@ -239,99 +247,6 @@ impl Simulation {
             .collect();
         self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
         Ok((report, lambda, rows))
-    }
-
-    /// Solves the level to the accuracy of the settings: once, or until the estimated error is small enough.
-    fn solve(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
-        let accuracy = self.settings.accuracy;
-        if accuracy == Accuracy::Tolerance {
-            return self.solve_certified();
-        }
-        let mut total: Option<LevelReport> = None;
-        let mut rounds = 0;
-        loop {
-            let tolerance = self.controller.tolerance();
-            let (mut report, lambda, rows) = self.solve_once(tolerance)?;
-            rounds += 1;
-            let frame = self.frame();
-            let algebraic = frame.algebraic_error();
-            let (discretisation, target) = match accuracy {
-                Accuracy::Balanced { fraction } => {
-                    let relative = frame.discretisation_error()?.relative();
-                    (Some(relative), fraction * relative)
-                }
-                Accuracy::Relative(x) => (None, x),
-                Accuracy::Tolerance => (None, f64::INFINITY),
-            };
-            let found = algebraic.relative();
-            let reached = found <= target;
-            report.accuracy = Some(AccuracyReport {
-                algebraic,
-                discretisation,
-                target,
-                reached,
-                rounds,
-                tolerance,
-            });
-            let converged = report.status.converged();
-            let mut report = match total.take() {
-                Some(before) => before.resumed(report),
-                None => report,
-            };
-            if reached && rounds == 1 {
-                self.controller.relax(found, target);
-            }
-            let again = !reached && converged && rounds < ROUNDS;
-            if !again || !self.controller.tighten(found, target) {
-                if converged && !reached {
-                    report.status = LevelStatus::Stagnated;
-                }
-                return Ok((report, lambda, rows));
-            }
-            total = Some(report);
-            self.iterate.lambda = lambda;
-        }
-    }
-
-    /// Solves with the tolerance of the settings. The certificate has the last word: where it is above the tolerance, the
-    /// solver continues once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies
-    /// errors of the forces), with ever smaller ones.
-    fn solve_certified(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
-        let aim = self.settings.tolerance.max(LEAST);
-        let limit = (CERTIFIED * self.settings.tolerance).max(LEAST);
-        let mut tolerance = self.settings.tolerance;
-        let mut total: Option<LevelReport> = None;
-        loop {
-            let (report, lambda, rows) = self.solve_once(tolerance)?;
-            let largest = self.certificate.largest();
-            let certified = largest <= limit;
-            let first = total.is_none();
-            let mut converged = report.status.converged();
-            let mut report = match total.take() {
-                Some(before) => before.resumed(report),
-                None => report,
-            };
-            if !first && !converged && certified {
-                // an earlier round converged, and what this one could not improve is certified
-                report.status = LevelStatus::Converged;
-                converged = true;
-            }
-            let enough = largest <= aim || certified && !first;
-            if enough || !converged || tolerance <= LEAST {
-                if converged && !certified {
-                    report.status = LevelStatus::NotCertified;
-                }
-                return Ok((report, lambda, rows));
-            }
-            let factor = if certified {
-                (MARGIN * aim / largest).max(0.01)
-            } else {
-                0.01
-            };
-            tolerance = (factor * tolerance).max(LEAST);
-            total = Some(report);
-            self.iterate.lambda = lambda;
-        }
     }
 
     /// One run of the solver from the present iterate, and what is recovered from it: multipliers and `B u`.
@@ -472,20 +387,15 @@ impl Simulation {
             rate,
             sliding,
         );
+        if let Some(accuracy) = &report.accuracy {
+            self.state
+                .set_accuracy(self.controller.tolerance(), accuracy.accumulated);
+        }
         if let Some(screen) = &self.screen {
             self.state.set_active(screen.active());
         }
     }
 }
-
-/// Largest certificate of a converged level over the tolerance.
-const CERTIFIED: f64 = 30.0;
-
-/// Aim of a second round, as a fraction of the tolerance.
-const MARGIN: f64 = 0.3;
-
-/// Smallest tolerance that is tried, and the certificate that rounding leaves.
-const LEAST: f64 = 1e-10;
 
 fn combine(model: &Model, level: &Level) -> Vec<f64> {
     let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();

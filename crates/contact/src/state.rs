@@ -1,5 +1,6 @@
 //! The state between time levels: one value, with feature `checkpoint` also as bytes.
 
+use crate::accumulated::AccumulatedError;
 use crate::error::ContactError;
 
 /// What one level hands to the next.
@@ -24,11 +25,15 @@ pub struct State {
     sliding: Vec<bool>,
     /// With screening: points whose rows were in the dual problem at the last level.
     active: Vec<bool>,
+    /// Tolerance that starts the next level, if an estimate of the error chooses it.
+    tolerance: f64,
+    /// Algebraic errors of the levels so far, if they are estimated.
+    errors: AccumulatedError,
 }
 
 /// Marks the format of stored states.
 #[cfg(feature = "checkpoint")]
-const MAGIC: u32 = 0x5349_4702;
+const MAGIC: u32 = 0x5349_4703;
 
 impl State {
     /// Levels solved so far.
@@ -133,7 +138,20 @@ impl State {
             rate: pick(&self.rate, points),
             sliding: pick(&self.sliding, points),
             active: Vec::new(),
+            tolerance: self.tolerance,
+            errors: self.errors,
         }
+    }
+
+    /// Tolerance and errors so far of levels that end by an estimate.
+    pub(crate) fn accuracy(&self) -> (f64, AccumulatedError) {
+        (self.tolerance, self.errors)
+    }
+
+    /// Notes them.
+    pub(crate) fn set_accuracy(&mut self, tolerance: f64, errors: AccumulatedError) {
+        self.tolerance = tolerance;
+        self.errors = errors;
     }
 
     pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {

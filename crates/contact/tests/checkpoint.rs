@@ -4,7 +4,7 @@
 mod common;
 
 use common::{bits, methods, rest, small_benchmark, state_bits, step, weakening};
-use signorini_contact::{Friction, Screening, Settings, Simulation, State};
+use signorini_contact::{Accuracy, Friction, Screening, Settings, Simulation, State};
 
 #[test]
 fn a_stored_run_continues_bit_for_bit() {
@@ -12,6 +12,7 @@ fn a_stored_run_continues_bit_for_bit() {
         .map(|m| Settings::default().with_method(m))
         .to_vec();
     settings.push(Settings::default().with_screening(Screening::on()));
+    settings.push(Settings::default().with_accuracy(Accuracy::Relative(1e-5)));
     for settings in settings {
         for law in [Friction::coulomb(0.3), weakening()] {
             let new = || {

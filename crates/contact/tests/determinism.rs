@@ -10,7 +10,7 @@ use signorini_contact::{
 };
 
 /// Bits of all levels and of the state at the end.
-fn fingerprint(scene: Scene, settings: Settings) -> (Vec<Vec<u64>>, Vec<u8>) {
+fn fingerprint(scene: Scene, settings: Settings) -> (Vec<Vec<u64>>, String) {
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let levels = rest(&mut simulation).iter().map(bits).collect();
     (levels, state_bits(simulation.state()))

@@ -60,17 +60,42 @@ pub(super) fn estimates(
         let (p, t) = (&l.plan, &l.truth);
         writeln!(
             out,
-            "| {} | {} | {} | {:.2} / {:.2} | {} | {:.3} / {:.3} | {:.2} / {:.2} |",
+            "| {} | {} | {} | {:.2} / {:.2} | {} ({} to {}) / {} | {:.3} / {:.3} | {:.2} / {:.2} |",
             l.name,
             pair(p.rows(), t.rows()),
             pair(p.factorisations, t.factorisations),
             p.bytes as f64 / 1e6,
             t.bytes as f64 / 1e6,
-            pair(p.products, t.products),
+            p.products,
+            p.range[0],
+            p.range[1],
+            t.products,
             p.setup_seconds,
             t.setup_seconds,
             p.solve_seconds,
             t.solve_seconds,
+        )?;
+    }
+    Ok(())
+}
+
+pub(super) fn shapes(lines: &[Line], out: &mut impl Write) -> Result<(), ExampleError> {
+    writeln!(
+        out,
+        "\nOther scenes: the plan's products (likely, and their range) and the truth.\n\n\
+         | scene | levels | rows | likely | range | truth | truth / likely | levels that fell back |\n|---|---|---|---|---|---|---|---|"
+    )?;
+    for l in lines {
+        let ([low, high], truth) = (l.plan.range, l.truth.products);
+        writeln!(
+            out,
+            "| {} | {} | {} | {} | {low} to {high} | {truth} | {:.2} | {} |",
+            l.name,
+            l.levels,
+            l.truth.rows(),
+            l.plan.products,
+            truth as f64 / l.plan.products as f64,
+            l.fallbacks,
         )?;
     }
     Ok(())

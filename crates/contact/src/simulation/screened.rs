@@ -46,13 +46,18 @@ impl Simulation {
     }
 
     /// After a solve: whether points had to come back, so that the level must be solved again. The iterate then starts
-    /// from `lambda`.
-    pub(super) fn widen(&mut self, state: &State, lambda: &[f64]) -> Result<bool, ContactError> {
+    /// from `lambda`. With `release` other points may leave; once a level, so that this ends.
+    pub(super) fn widen(
+        &mut self,
+        state: &State,
+        lambda: &[f64],
+        release: bool,
+    ) -> Result<bool, ContactError> {
         let Some(screen) = &self.screen else {
             return Ok(false);
         };
         self.all = screen.states(&self.model, &self.level, state, &self.points, &self.torn);
-        let Some(active) = screen.needed(&self.all, &self.torn) else {
+        let Some(active) = screen.needed(&self.all, &self.torn, release) else {
             return Ok(false);
         };
         let complete = screen.expand(lambda);
