@@ -2,6 +2,7 @@
 //! the estimate against the truth and the saving by screening on the benchmark.
 
 mod cases;
+pub mod far;
 pub mod shapes;
 pub mod table;
 
@@ -52,7 +53,7 @@ pub struct Cost {
     pub support_rows: usize,
     /// Bytes of inverses, coarse factor and tables.
     pub bytes: u64,
-    /// Numeric factorisations of a set-up.
+    /// Numeric factorisations of the set-up; of a run with those of rebuilds.
     pub factorisations: usize,
     /// Products with F in all levels; of a plan those that are likely.
     pub products: usize,
@@ -103,7 +104,7 @@ pub struct Line {
     pub extra_seconds: f64,
     /// Largest certificate.
     pub certificate: f64,
-    /// Forces of all contact points at the last level, N; for comparisons.
+    /// Forces of all contact points at all levels, N; for comparisons.
     #[serde(skip)]
     pub forces: Vec<f64>,
 }
@@ -115,7 +116,8 @@ pub struct Results {
     pub effects: Vec<Line>,
     /// Other shapes, materials, supports and settings.
     pub shapes: Vec<Line>,
-    /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface.
+    /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface; then
+    /// other scenes with most of the contact surface far away.
     pub benchmark: Vec<Line>,
     /// The same with screening.
     pub screened: Vec<Line>,
@@ -170,25 +172,27 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
         results.shapes.push(line);
     }
     table::shapes(&results.shapes, out)?;
+    let mut wide = Vec::new();
     for &n in sizes {
-        for screening in [Screening::Off, Screening::on()] {
-            let benchmark = Benchmark {
-                cells,
-                steps,
-                ..Benchmark::new(n, Loading::C)
-            };
-            let case = Case {
-                name: format!("n = {n}, four sides"),
-                scene: cases::four_sides(benchmark.scene()?),
-                settings: Settings::default().with_screening(screening),
-                extra: Extra::None,
-            };
-            let line = pool.install(|| measure(&case, rate))?;
-            match screening {
-                Screening::Off => results.benchmark.push(line),
-                _ => results.screened.push(line),
-            }
-        }
+        let benchmark = Benchmark {
+            cells,
+            steps,
+            ..Benchmark::new(n, Loading::C)
+        };
+        wide.push(Case {
+            name: format!("n = {n}, four sides"),
+            scene: cases::four_sides(benchmark.scene()?),
+            settings: Settings::default(),
+            extra: Extra::None,
+        });
+    }
+    wide.extend(far::far(options.short)?);
+    for mut case in wide {
+        let line = pool.install(|| measure(&case, rate))?;
+        results.benchmark.push(line);
+        case.settings = case.settings.with_screening(Screening::on());
+        let line = pool.install(|| measure(&case, rate))?;
+        results.screened.push(line);
     }
     table::screening(&results.benchmark, &results.screened, out)?;
     if let Some(path) = &options.json {
@@ -207,6 +211,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
     let plan = Plan::new(&case.scene, &case.settings)?.with_machine(rate);
     let mut simulation = Simulation::new(case.scene.clone(), case.settings.clone())?;
     let (mut solve, mut extra) = (0.0, 0.0);
+    let factorisations = simulation.tfeti().report().factorisations;
     let (mut certificate, mut forces) = (0.0_f64, Vec::new());
     let (mut fallbacks, mut unconverged) = (0, 0);
     while !simulation.is_finished() {
@@ -222,7 +227,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
         fallbacks += usize::from(frame.report().fallback);
         unconverged += usize::from(!frame.report().status.converged());
         let force = |p: &PointState| std::iter::once(p.normal_force).chain(p.friction_force);
-        forces = frame.points().iter().flat_map(force).collect();
+        forces.extend(frame.points().iter().flat_map(force));
     }
     let (counters, setup) = (simulation.counters(), simulation.tfeti().report());
     Ok(Line {
@@ -246,7 +251,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             interface_rows: setup.rows.interface.len(),
             support_rows: setup.rows.dirichlet.len(),
             bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
-            factorisations: setup.factorisations,
+            factorisations: factorisations + counters.factorisations,
             products: counters.products,
             range: [counters.products; 2],
             setup_seconds: simulation.setup_time().as_secs_f64(),

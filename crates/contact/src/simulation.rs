@@ -69,6 +69,8 @@ pub struct Simulation {
     screen: Option<Screen>,
     /// With screening: states of all points.
     all: Vec<PointState>,
+    /// Factorisations of the set-ups that screening has made in this level.
+    rebuilt: usize,
 }
 
 impl Simulation {
@@ -96,6 +98,7 @@ impl Simulation {
             controller: Controller::default(),
             carried: AccumulatedError::default(),
             all: Vec::new(),
+            rebuilt: 0,
             screen,
             model,
             settings,
@@ -231,17 +234,19 @@ impl Simulation {
         let (tolerance, errors) = state.accuracy();
         self.controller = Controller::resume(tolerance);
         self.carried = errors;
+        let expected = self.look_ahead(state)?;
         let mut view = self.view(state);
         self.level.prepare(&self.model, &view, index)?;
         self.start(&view)?;
         let (mut report, mut lambda, mut rows) = self.solve()?;
-        while self.widen(state, &lambda, report.counters.rebuilds == 0)? {
+        while self.widen(state, &lambda)? {
             view = self.view(state);
             self.level.prepare(&self.model, &view, index)?;
             let again = self.solve()?;
             report.counters.rebuilds += 1;
             (report, lambda, rows) = (report.resumed(again.0), again.1, again.2);
         }
+        report.counters.rebuilds += usize::from(expected);
         let before: Vec<f64> = (0..self.model.tangential_rows())
             .map(|k| view.traces(k).0)
             .collect();
@@ -372,6 +377,7 @@ impl Simulation {
         };
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();
+            report.counters.factorisations = std::mem::take(&mut self.rebuilt);
             (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
             if effects.history {
                 trace = screen.expand_trace(&trace, self.model.tangential_start());
@@ -393,6 +399,8 @@ impl Simulation {
         }
         if let Some(screen) = &self.screen {
             self.state.set_active(screen.active());
+            self.state
+                .push_gaps(self.all.iter().map(|p| p.gap).collect());
         }
     }
 }

@@ -25,6 +25,8 @@ pub struct State {
     sliding: Vec<bool>,
     /// With screening: points whose rows were in the dual problem at the last level.
     active: Vec<bool>,
+    /// With screening: gaps of all points at the last level and the one before, m.
+    gaps: [Vec<f64>; 2],
     /// Tolerance that starts the next level, if an estimate of the error chooses it.
     tolerance: f64,
     /// Algebraic errors of the levels so far, if they are estimated.
@@ -45,7 +47,13 @@ impl State {
     /// Bytes held.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        let pairs = [
+            &self.lambda,
+            &self.f_lambda,
+            &self.multiplier,
+            &self.trace,
+            &self.gaps,
+        ];
         let numbers: usize = pairs
             .iter()
             .flat_map(|p| p.iter())
@@ -91,6 +99,7 @@ impl State {
             &mut state.lambda,
             &mut state.f_lambda,
             &mut state.multiplier,
+            &mut state.gaps,
         ] {
             pair[1] = Vec::new();
         }
@@ -138,9 +147,21 @@ impl State {
             rate: pick(&self.rate, points),
             sliding: pick(&self.sliding, points),
             active: Vec::new(),
+            gaps: Default::default(),
             tolerance: self.tolerance,
             errors: self.errors,
         }
+    }
+
+    /// With screening: gaps of all points at the last level and the one before; empty where they are not known.
+    pub(crate) fn gaps(&self) -> &[Vec<f64>; 2] {
+        &self.gaps
+    }
+
+    /// Notes the gaps of the last level.
+    pub(crate) fn push_gaps(&mut self, gaps: Vec<f64>) {
+        self.gaps.swap(0, 1);
+        self.gaps[0] = gaps;
     }
 
     /// Tolerance and errors so far of levels that end by an estimate.
@@ -232,8 +253,15 @@ impl State {
             && self.trace.iter().all(|v| fit(v, tangential))
             && fit(&self.rate, points)
             && (self.sliding.is_empty() || self.sliding.len() == points)
+            && self.gaps.iter().all(|v| fit(v, points))
             && (self.active.is_empty() || self.active.len() == points);
-        let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        let numbers = [
+            &self.lambda,
+            &self.f_lambda,
+            &self.multiplier,
+            &self.trace,
+            &self.gaps,
+        ];
         let finite = numbers
             .iter()
             .flat_map(|p| p.iter())

@@ -108,23 +108,30 @@ pub(super) fn screening(
 ) -> Result<(), ExampleError> {
     writeln!(
         out,
-        "\nThe benchmark, loading c: without / with screening. Rows at the end; nodes left out: mean over the levels.\n\n\
-         | size | contact rows | nodes left out | rebuilds | products | levels s | forces differ | certificate |\n\
-         |---|---|---|---|---|---|---|---|"
+        "\nWithout / with screening. Rows and bytes at the end; nodes left out: mean over the levels; seconds of levels and rebuilds.\n\n\
+         | scene | contact rows of all rows | nodes left out | rebuilds | factorisations | set-up MB | products | set-up s | levels s | forces differ | certificate |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|"
     )?;
     for (a, b) in off.iter().zip(on) {
         let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
         writeln!(
             out,
-            "| {} | {} / {} | {:.1} of {} | {} | {} / {} | {:.2} / {:.2} | {:.1e} | {:.1e} / {:.1e} |",
+            "| {} | {} / {} of {} | {:.1} of {} | {} | {} / {} | {:.2} / {:.2} | {} / {} | {:.3} / {:.3} | {:.2} / {:.2} | {:.1e} | {:.1e} / {:.1e} |",
             a.name,
             contact(a),
             contact(b),
+            a.truth.rows(),
             b.screened_points as f64 / b.levels as f64,
             a.truth.normal_rows,
             b.rebuilds,
+            a.truth.factorisations,
+            b.truth.factorisations,
+            a.truth.bytes as f64 / 1e6,
+            b.truth.bytes as f64 / 1e6,
             a.truth.products,
             b.truth.products,
+            a.truth.setup_seconds,
+            b.truth.setup_seconds,
             a.truth.solve_seconds,
             b.truth.solve_seconds,
             distance(&a.forces, &b.forces),

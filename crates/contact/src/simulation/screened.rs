@@ -20,7 +20,7 @@ pub(super) fn set_up(
     if !Screen::applies(&scene, settings) {
         return Ok((Model::new(scene, settings)?, None));
     }
-    let model = Model::with_contact_nodes(scene, settings, Some(&[]))?;
+    let model = Model::with_contact_nodes(scene, settings, &[])?;
     match Screen::new(&model, settings)? {
         Some(screen) => Ok((model, Some(screen))),
         None => Ok((Model::new(model.scene, settings)?, None)),
@@ -45,19 +45,23 @@ impl Simulation {
         }
     }
 
+    /// Before a level: lets points in that are expected to touch, and others out; whether the model was made anew.
+    pub(super) fn look_ahead(&mut self, state: &State) -> Result<bool, ContactError> {
+        let expected = self.screen.as_ref().and_then(|s| s.expected(state));
+        match expected {
+            Some(active) => self.admit(active).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
     /// After a solve: whether points had to come back, so that the level must be solved again. The iterate then starts
-    /// from `lambda`. With `release` other points may leave; once a level, so that this ends.
-    pub(super) fn widen(
-        &mut self,
-        state: &State,
-        lambda: &[f64],
-        release: bool,
-    ) -> Result<bool, ContactError> {
+    /// from `lambda`.
+    pub(super) fn widen(&mut self, state: &State, lambda: &[f64]) -> Result<bool, ContactError> {
         let Some(screen) = &self.screen else {
             return Ok(false);
         };
         self.all = screen.states(&self.model, &self.level, state, &self.points, &self.torn);
-        let Some(active) = screen.needed(&self.all, &self.torn, release) else {
+        let Some(active) = screen.needed(&self.all, &self.torn) else {
             return Ok(false);
         };
         let complete = screen.expand(lambda);
@@ -85,10 +89,10 @@ impl Simulation {
             return Ok(());
         }
         let nodes = screen.nodes(&active);
-        let scene = self.model.scene.clone();
-        let model = Model::with_contact_nodes(scene, &self.settings, Some(&nodes))?;
+        let model = self.model.with_other_nodes(&self.settings, &nodes)?;
         let solver = Solver::new(&model, &self.settings)?;
         screen.install(&model, active);
+        self.rebuilt += model.tfeti.report().factorisations;
         self.model = model;
         self.solver = solver;
         self.level = Level::default();
