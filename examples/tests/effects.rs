@@ -89,6 +89,17 @@ fn effects_that_are_off_cost_nothing() {
     ] {
         assert!(distance(&a.forces, &b.forces) < 1e-5);
     }
+    // where most of the contact surface is far away most rows leave, and nothing else changes
+    for (a, b) in results.benchmark.iter().zip(&results.screened) {
+        assert_eq!(a.name, b.name);
+        assert!(distance(&a.forces, &b.forces) < 1e-5, "{}", a.name);
+        let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
+        assert!(contact(b) < contact(a) && b.truth.bytes <= a.truth.bytes);
+        assert_eq!(b.truth.factorisations - a.truth.factorisations, b.rebuilds);
+    }
+    let long = |lines: &[Line]| find(lines, "end bends down").truth;
+    let (a, b) = (long(&results.benchmark), long(&results.screened));
+    assert!(4 * (b.normal_rows + b.tangential_rows) < a.normal_rows + a.tangential_rows);
     let text = String::from_utf8(out).expect("text");
     assert!(text.contains("| + given friction |") && text.contains("| n = 1 |"));
     assert!(
