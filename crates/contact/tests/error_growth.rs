@@ -4,7 +4,7 @@ mod common;
 
 use common::{Level, benchmark, block, foundation, loaded_brick, rest, up_down_up};
 use signorini_contact::{
-    AccumulatedError, Analysis, DifferenceFormula, Doubling, Friction, Scene, Settings, Simulation,
+    AccumulatedError, Accuracy, Analysis, DifferenceFormula, Doubling, Friction, Scene, Settings, Simulation,
     StepDoubling,
 };
 use signorini_fem_mesh::fields;
@@ -65,6 +65,33 @@ fn errors_of_earlier_levels_add_up() {
                 assert!((0.1..15.0).contains(&likely), "{likely}");
             }
         }
+    }
+}
+
+#[test]
+fn an_accuracy_asked_for_is_kept_over_many_levels() {
+    let scene = benchmark(up_down_up(), 50);
+    let exact = levels(&scene, at(1e-10));
+    println!("accuracy | products | largest true error over target | likely over target");
+    for accuracy in [
+        Accuracy::Relative(1e-4),
+        Accuracy::Relative(1e-6),
+        Accuracy::balanced(),
+    ] {
+        let settings = Settings::default().with_accuracy(accuracy);
+        let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
+        let (mut worst, mut likely) = (0.0_f64, 0.0_f64);
+        for level in &exact {
+            let frame = simulation.step().expect("step");
+            let report = frame.report().accuracy.expect("a report");
+            assert!(report.reached && frame.report().status.converged());
+            let truth = distance(&scene, &frame.displacement(), &level.displacement);
+            worst = worst.max(truth / report.target);
+            likely = likely.max(report.accumulated.likely() / report.target);
+        }
+        let products = simulation.counters().products;
+        println!("{accuracy:?} | {products} | {worst:.2} | {likely:.2}");
+        assert!(worst < 1.0 && likely <= 1.0 + 1e-12, "{accuracy:?}");
     }
 }
 
