@@ -4,8 +4,8 @@ mod common;
 
 use common::{Level, benchmark, block, foundation, loaded_brick, rest, up_down_up};
 use signorini_contact::{
-    AccumulatedError, Accuracy, Analysis, DifferenceFormula, Doubling, Friction, Scene, Settings, Simulation,
-    StepDoubling,
+    AccumulatedError, Accuracy, Analysis, DifferenceFormula, Doubling, Friction, Scene, Settings,
+    Simulation, StepDoubling,
 };
 use signorini_fem_mesh::fields;
 

@@ -7,7 +7,7 @@ use signorini::fem_mesh::{
 };
 use signorini::prelude::*;
 use signorini::qp::{FaceSettings, QpError, SmalseSettings};
-use signorini::tfeti::TfetiError;
+use signorini::tfeti::{InverseSettings, TfetiError};
 
 type Checked = Result<(), Error>;
 
@@ -252,6 +252,8 @@ fn times_and_settings() {
         let smalse = f(SmalseSettings::default());
         with(Settings::default().with_method(Method::OneLoop { smalse }))
     };
+    let inverse = InverseSettings::default().with_expected_products(0);
+    let no_products = Settings::default().with_inverse(inverse);
     let accuracy = InnerAccuracy::Adaptive {
         factor: 1.5,
         loosest: 1e-3,
@@ -275,10 +277,13 @@ fn times_and_settings() {
         })) => Error::Contact(ContactError::Setting { .. }), "accuracy.factor";
         "a forcing term of one": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_forcing(1.0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "forcing";
         "no faces": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_max_faces(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_faces";
+        "no patience": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_patience(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "patience";
+        "a settled share above one": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_settled(1.5)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "settled";
+        "no products expected, before any work": made(Plan::new(&good(), &no_products)) => Error::Contact(ContactError::Tfeti(TfetiError::Setting { .. })), "expected_products";
         "a negative penalty": smalse(|s| s.with_penalty(-1.0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "penalty";
         "no outer steps": smalse(|s| s.with_max_outer(0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_outer";
     });
-    assert_eq!(count, 18);
+    assert_eq!(count, 21);
 }
 
 #[test]

@@ -7,12 +7,14 @@ use super::cases::{Case, Extra};
 use crate::brick::{LENGTHS, POISSON, YOUNG, clamped};
 use crate::error::ExampleError;
 
+type Make = fn() -> Result<Scene, Error>;
+
 /// Scenes of other shapes, materials, supports, loads and decompositions, each solved in less than a second.
 ///
 /// # Errors
 /// [`ExampleError`] of the library.
 pub fn shapes() -> Result<Vec<Case>, ExampleError> {
-    let list: [(&str, fn() -> Result<Scene, Error>); 13] = [
+    let list: [(&str, Make); 13] = [
         ("cube sheared by its support", cube),
         ("long beam, bends down", beam),
         ("plate, frictionless, static", plate),
