@@ -2,6 +2,8 @@
 //! the estimate against the truth and the saving by screening on the benchmark.
 
 mod cases;
+pub mod far;
+pub mod shapes;
 pub mod table;
 
 use std::io::Write;
@@ -51,10 +53,12 @@ pub struct Cost {
     pub support_rows: usize,
     /// Bytes of inverses, coarse factor and tables.
     pub bytes: u64,
-    /// Numeric factorisations of a set-up.
+    /// Numeric factorisations of the set-up; of a run with those of rebuilds.
     pub factorisations: usize,
-    /// Products with F in all levels.
+    /// Products with F in all levels; of a plan those that are likely.
     pub products: usize,
+    /// The range of a plan; the same number twice for a run.
+    pub range: [usize; 2],
     /// Seconds of the set-up.
     pub setup_seconds: f64,
     /// Seconds of all levels.
@@ -88,6 +92,10 @@ pub struct Line {
     pub slip_bound_updates: usize,
     /// Times slip rates were computed.
     pub rate_updates: usize,
+    /// Levels that the default method handed to SMALSE.
+    pub fallbacks: usize,
+    /// Levels that did not converge.
+    pub unconverged: usize,
     /// Times rows of screened contact nodes came back.
     pub rebuilds: usize,
     /// Contact points left out of the dual problem, summed over the levels.
@@ -96,7 +104,7 @@ pub struct Line {
     pub extra_seconds: f64,
     /// Largest certificate.
     pub certificate: f64,
-    /// Forces of all contact points at the last level, N; for comparisons.
+    /// Forces of all contact points at all levels, N; for comparisons.
     #[serde(skip)]
     pub forces: Vec<f64>,
 }
@@ -106,7 +114,10 @@ pub struct Line {
 pub struct Results {
     /// Effects switched on one by one.
     pub effects: Vec<Line>,
-    /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface.
+    /// Other shapes, materials, supports and settings.
+    pub shapes: Vec<Line>,
+    /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface; then
+    /// other scenes with most of the contact surface far away.
     pub benchmark: Vec<Line>,
     /// The same with screening.
     pub screened: Vec<Line>,
@@ -122,6 +133,7 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
     let (cells, steps) = if options.short { (2, 4) } else { (CELLS, 10) };
     let mut results = Results {
         effects: Vec::new(),
+        shapes: Vec::new(),
         benchmark: Vec::new(),
         screened: Vec::new(),
     };
@@ -153,25 +165,34 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
         }
     }
     table::estimates(&results.benchmark, rate, out)?;
+    let mut others = shapes::shapes()?;
+    others.extend(shapes::accuracies()?);
+    for case in &others {
+        let line = pool.install(|| measure(case, rate))?;
+        results.shapes.push(line);
+    }
+    table::shapes(&results.shapes, out)?;
+    let mut wide = Vec::new();
     for &n in sizes {
-        for screening in [Screening::Off, Screening::on()] {
-            let benchmark = Benchmark {
-                cells,
-                steps,
-                ..Benchmark::new(n, Loading::C)
-            };
-            let case = Case {
-                name: format!("n = {n}, four sides"),
-                scene: cases::four_sides(benchmark.scene()?),
-                settings: Settings::default().with_screening(screening),
-                extra: Extra::None,
-            };
-            let line = pool.install(|| measure(&case, rate))?;
-            match screening {
-                Screening::Off => results.benchmark.push(line),
-                _ => results.screened.push(line),
-            }
-        }
+        let benchmark = Benchmark {
+            cells,
+            steps,
+            ..Benchmark::new(n, Loading::C)
+        };
+        wide.push(Case {
+            name: format!("n = {n}, four sides"),
+            scene: cases::four_sides(benchmark.scene()?),
+            settings: Settings::default(),
+            extra: Extra::None,
+        });
+    }
+    wide.extend(far::far(options.short)?);
+    for mut case in wide {
+        let line = pool.install(|| measure(&case, rate))?;
+        results.benchmark.push(line);
+        case.settings = case.settings.with_screening(Screening::on());
+        let line = pool.install(|| measure(&case, rate))?;
+        results.screened.push(line);
     }
     table::screening(&results.benchmark, &results.screened, out)?;
     if let Some(path) = &options.json {
@@ -190,7 +211,9 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
     let plan = Plan::new(&case.scene, &case.settings)?.with_machine(rate);
     let mut simulation = Simulation::new(case.scene.clone(), case.settings.clone())?;
     let (mut solve, mut extra) = (0.0, 0.0);
+    let factorisations = simulation.tfeti().report().factorisations;
     let (mut certificate, mut forces) = (0.0_f64, Vec::new());
+    let (mut fallbacks, mut unconverged) = (0, 0);
     while !simulation.is_finished() {
         let start = std::time::Instant::now();
         let frame = simulation.step()?;
@@ -201,8 +224,10 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             extra += start.elapsed().as_secs_f64();
         }
         certificate = certificate.max(frame.certificate().largest());
+        fallbacks += usize::from(frame.report().fallback);
+        unconverged += usize::from(!frame.report().status.converged());
         let force = |p: &PointState| std::iter::once(p.normal_force).chain(p.friction_force);
-        forces = frame.points().iter().flat_map(force).collect();
+        forces.extend(frame.points().iter().flat_map(force));
     }
     let (counters, setup) = (simulation.counters(), simulation.tfeti().report());
     Ok(Line {
@@ -216,6 +241,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             bytes: plan.estimate.setup_bytes(),
             factorisations: plan.estimate.factorisations,
             products: plan.estimate.products,
+            range: [plan.estimate.fewest_products, plan.estimate.most_products],
             setup_seconds: plan.estimate.setup_seconds(),
             solve_seconds: plan.estimate.solve_seconds(),
         },
@@ -225,8 +251,9 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             interface_rows: setup.rows.interface.len(),
             support_rows: setup.rows.dirichlet.len(),
             bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
-            factorisations: setup.factorisations,
+            factorisations: factorisations + counters.factorisations,
             products: counters.products,
+            range: [counters.products; 2],
             setup_seconds: simulation.setup_time().as_secs_f64(),
             solve_seconds: solve,
         },
@@ -234,6 +261,8 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
         inequality_solves: counters.inequality_solves,
         slip_bound_updates: counters.slip_bound_updates,
         rate_updates: counters.rate_updates,
+        fallbacks,
+        unconverged,
         rebuilds: counters.rebuilds,
         screened_points: counters.screened_points,
         extra_seconds: extra,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use signorini::contact::ContactState;
 use signorini::fem_mesh::fields::{nodal_average, von_mises};
-use signorini::fem_mesh::output::{Field, PvdSeries, write_surface_vtu};
+use signorini::fem_mesh::output::{Field, PvdSeries};
 use signorini::fem_mesh::{Surface, brick};
 use signorini::prelude::Simulation;
 
@@ -24,12 +24,11 @@ pub struct RunFiles {
 
 #[derive(Debug)]
 struct Series {
-    folder: PathBuf,
     levels: usize,
+    folder: PathBuf,
     body: PvdSeries,
     surface: Surface,
-    /// Times and file names of the contact surface.
-    contact: Vec<(f64, String)>,
+    contact: PvdSeries,
 }
 
 impl RunFiles {
@@ -52,8 +51,8 @@ impl Sink for RunFiles {
             body: PvdSeries::create(&folder, "body")?,
             surface: Surface::new(simulation.scene().mesh(), &[brick::Z_MIN])?,
             levels: simulation.plan().levels,
+            contact: PvdSeries::create(&folder, "contact")?,
             folder,
-            contact: Vec::new(),
         });
         Ok(())
     }
@@ -117,11 +116,9 @@ impl Series {
             Field::scalar("gap", patch.gap),
             Field::scalar("state", state),
         ];
-        let name = format!("contact_{:04}.vtu", self.contact.len());
-        write_surface_vtu(self.folder.join(&name), mesh, &self.surface, &fields, &[])?;
-        self.contact.push((frame.time(), name));
-        let path = self.folder.join("contact.pvd");
-        std::fs::write(&path, pvd(&self.contact)).map_err(ExampleError::write(&path))
+        self.contact
+            .write_surface(frame.time(), mesh, &self.surface, &fields, &[])?;
+        Ok(())
     }
 }
 
@@ -133,23 +130,6 @@ fn state_number(state: Option<ContactState>) -> f64 {
         Some(ContactState::Slip) => 2.0,
         _ => -1.0,
     }
-}
-
-/// The list of a series that ParaView opens.
-fn pvd(entries: &[(f64, String)]) -> String {
-    let mut xml = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n\
-         <Collection>\n",
-    );
-    for (time, file) in entries {
-        // writing to a string cannot fail
-        let _ = writeln!(
-            xml,
-            "<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>"
-        );
-    }
-    xml.push_str("</Collection>\n</VTKFile>\n");
-    xml
 }
 
 /// The steps as comma-separated values with a header line.

@@ -25,6 +25,21 @@ fn effects_that_are_off_cost_nothing() {
         assert!(ratio > 0.2 && ratio < 5.0, "{}: {ratio}", l.name);
         assert_eq!((l.rebuilds, l.screened_points), (0, 0));
     }
+    // the plan's range of products holds wherever the default method did not give up
+    assert!(results.shapes.len() >= 13);
+    let all = results.shapes.iter().chain(&results.benchmark).chain(lines);
+    for l in all.filter(|l| l.fallbacks == 0) {
+        let ([low, high], truth) = (l.plan.range, l.truth.products);
+        assert!(low <= l.plan.products && l.plan.products <= high);
+        assert!(
+            (low..=high).contains(&truth),
+            "{}: {low} {truth} {high}",
+            l.name
+        );
+        assert_eq!(l.unconverged, 0, "{}", l.name);
+    }
+    let gave_up = results.shapes.iter().filter(|l| l.fallbacks > 0).count();
+    assert!(gave_up <= 4, "{gave_up}");
     let elastic = find(lines, "elastic only");
     assert_eq!(elastic.inequality_solves + elastic.slip_bound_updates, 0);
     assert_eq!(elastic.truth.rows(), elastic.truth.support_rows);
@@ -74,6 +89,17 @@ fn effects_that_are_off_cost_nothing() {
     ] {
         assert!(distance(&a.forces, &b.forces) < 1e-5);
     }
+    // where most of the contact surface is far away most rows leave, and nothing else changes
+    for (a, b) in results.benchmark.iter().zip(&results.screened) {
+        assert_eq!(a.name, b.name);
+        assert!(distance(&a.forces, &b.forces) < 1e-5, "{}", a.name);
+        let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
+        assert!(contact(b) < contact(a) && b.truth.bytes <= a.truth.bytes);
+        assert_eq!(b.truth.factorisations - a.truth.factorisations, b.rebuilds);
+    }
+    let long = |lines: &[Line]| find(lines, "end bends down").truth;
+    let (a, b) = (long(&results.benchmark), long(&results.screened));
+    assert!(4 * (b.normal_rows + b.tangential_rows) < a.normal_rows + a.tangential_rows);
     let text = String::from_utf8(out).expect("text");
     assert!(text.contains("| + given friction |") && text.contains("| n = 1 |"));
     assert!(

@@ -3,17 +3,23 @@
 //! | [`Accuracy`] | a level ends when | extra work a level |
 //! |---|---|---|
 //! | `Tolerance` (default) | the solver's relative tolerance is reached | none |
-//! | `Relative(x)` | the estimated algebraic error is at most `x` in the energy norm | one duality gap a round |
+//! | `Relative(x)` | the estimated algebraic error keeps it on the way to `x` in the energy norm | one duality gap a round |
 //! | `Balanced { fraction }` | it is at most `fraction` of the estimated discretisation error | the same, and one recovery of strains |
 //!
 //! The two that look at the result solve loosely, estimate, tighten the solver's tolerance by what is missing, and
 //! resume from the present iterate. The tolerance that was enough starts the next level. Everything is counted.
+//!
+//! Where levels inherit errors ([`accumulated`](crate::accumulated)) the target is meant for the error with all that earlier
+//! levels have left in it: each level gets an equal share of the squared error that is left, `target / sqrt(L)` with `L` levels of
+//! equal size. Where the load falls again, old errors can be more than the target whatever this level does; the report says so
+//! ([`AccuracyReport::accumulated`]), and the level gets half an equal share.
 
+use crate::accumulated::AccumulatedError;
 use crate::algebraic::AlgebraicError;
 use crate::error::ContactError;
 
 /// Tolerance of the first solve of the first level. A looser one saves little and may end before slip bounds have settled.
-const LOOSEST: f64 = 1e-3;
+pub(crate) const LOOSEST: f64 = 1e-3;
 /// The smallest tolerance a solver is asked for.
 const TIGHTEST: f64 = 1e-12;
 /// Solves of one level.
@@ -28,13 +34,15 @@ pub enum Accuracy {
     /// At the tolerance of the settings. No error is estimated.
     #[default]
     Tolerance,
-    /// Where the algebraic error is `fraction` of the discretisation error, both estimated, in the energy norm.
+    /// Where the algebraic error is `fraction` of the discretisation error, both estimated, in the energy norm, with what
+    /// earlier levels have left in it.
     /// The setting `tolerance` is not used.
     Balanced {
         /// In (0, 1]; 0.1 adds half a per cent to the total error.
         fraction: f64,
     },
-    /// Where the estimated algebraic error is at most this, relative, in the energy norm; in [1e-11, 0.5].
+    /// Where the estimated algebraic error, with what earlier levels have left in it, is at most this, relative, in the energy
+    /// norm; in [1e-11, 0.5].
     /// The setting `tolerance` is not used.
     Relative(f64),
 }
@@ -71,13 +79,17 @@ impl Accuracy {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct AccuracyReport {
-    /// Estimated algebraic error.
+    /// Estimated algebraic error of this level alone.
     pub algebraic: AlgebraicError,
+    /// The same with what earlier levels have left in it. A run that is resumed from a state without such estimates starts at 0.
+    pub accumulated: AccumulatedError,
     /// Estimated discretisation error relative to the displacement, in the energy norm, if it was asked for.
     pub discretisation: Option<f64>,
     /// The relative algebraic error that was asked for.
     pub target: f64,
-    /// Whether it was reached.
+    /// The share of it that this level may have alone.
+    pub share: f64,
+    /// Whether the level kept its share.
     pub reached: bool,
     /// Solves of the level, each warm from the one before.
     pub rounds: usize,
@@ -98,6 +110,15 @@ impl Default for Controller {
 }
 
 impl Controller {
+    /// Continues with a stored tolerance; 0 if none was stored.
+    pub(crate) fn resume(tolerance: f64) -> Self {
+        if tolerance > 0.0 {
+            Self { tolerance }
+        } else {
+            Self::default()
+        }
+    }
+
     /// Tolerance of the next solve.
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance

@@ -50,6 +50,7 @@
 //!   to its fixed point is at most `1 / (1 - q)` times the estimate; `q` is about 0.06 on the benchmark. Where the
 //!   map is not contractive the estimate says nothing about the Coulomb problem.
 //! - *The level before* is taken as it is: errors of old tangential positions are not in the estimate.
+//!   [`AccumulatedError`](crate::AccumulatedError) adds them up.
 
 use crate::certificate::Certificate;
 use crate::contact_move::{Moved, dot};

@@ -170,6 +170,14 @@ pub enum ContactError {
         /// Number of levels.
         levels: usize,
     },
+    /// An observer failed; the level before is solved and kept.
+    #[error("observer, after level {level}: {source}")]
+    Observer {
+        /// Time level, from 0.
+        level: usize,
+        /// Its error.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// A checkpoint does not belong to this scene or is damaged.
     #[error("checkpoint: {reason}")]
     Checkpoint {

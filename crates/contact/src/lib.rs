@@ -1,5 +1,6 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time levels, fixed-point loops and certificates.
 
+pub mod accumulated;
 pub mod accuracy;
 pub mod algebraic;
 mod certificate;
@@ -29,6 +30,7 @@ mod solver;
 mod state;
 pub mod time_error;
 
+pub use accumulated::AccumulatedError;
 pub use accuracy::{Accuracy, AccuracyReport};
 pub use algebraic::AlgebraicError;
 pub use certificate::{Certificate, Violation};

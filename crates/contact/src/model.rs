@@ -89,19 +89,43 @@ pub(crate) struct Model {
 
 impl Model {
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
-        Self::with_contact_nodes(scene, settings, None)
+        Self::build(scene, settings, None, None)
     }
 
     /// The model with rows at some contact nodes only (ascending mesh numbers); the plan is that of the whole scene.
     pub(crate) fn with_contact_nodes(
         scene: Scene,
         settings: &Settings,
-        kept: Option<&[u32]>,
+        kept: &[u32],
     ) -> Result<Self, ContactError> {
-        scene.validate()?;
-        settings.validate()?;
-        let decomposition = scene.decompose()?;
-        let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
+        Self::build(scene, settings, Some(kept), None)
+    }
+
+    /// The same scene with rows at other contact nodes; what does not depend on them is taken over.
+    pub(crate) fn with_other_nodes(
+        &self,
+        settings: &Settings,
+        kept: &[u32],
+    ) -> Result<Self, ContactError> {
+        Self::build(self.scene.clone(), settings, Some(kept), Some(self))
+    }
+
+    fn build(
+        scene: Scene,
+        settings: &Settings,
+        kept: Option<&[u32]>,
+        earlier: Option<&Self>,
+    ) -> Result<Self, ContactError> {
+        let (decomposition, plan) = match earlier {
+            Some(model) => (model.decomposition.clone(), model.plan.clone()),
+            None => {
+                scene.validate()?;
+                settings.validate()?;
+                let decomposition = scene.decompose()?;
+                let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
+                (decomposition, plan)
+            }
+        };
         let (supports, motions) = supports(&scene)?;
         let surface = match &scene.contact {
             Some(contact) => Some(Surface::new(&scene.mesh, &contact.tags)?),
@@ -121,6 +145,9 @@ impl Model {
             .inverse(settings.inverse);
         if let Some(nodes) = &nodes {
             builder = builder.contact(nodes);
+        }
+        if let Some(model) = earlier {
+            builder = builder.reuse(&model.tfeti);
         }
         let tfeti = builder.build()?;
         let mut loads = Vec::with_capacity(scene.loads.len());

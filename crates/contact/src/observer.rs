@@ -2,14 +2,45 @@
 
 use crate::frame::Frame;
 use crate::plan::Plan;
+use std::error::Error;
 
 /// Whether a run goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+///
+/// A `Result` converts into it, so that an observer that can fail ends with `Flow::from(...)`:
+///
+/// ```
+/// use signorini_contact::{Flow, Frame};
+///
+/// let mut log = Vec::new();
+/// let mut write = |frame: &Frame<'_>| {
+///     use std::io::Write;
+///     Flow::from(writeln!(log, "{} {}", frame.time(), frame.summary().active))
+/// };
+/// # fn check(_: &mut impl signorini_contact::Observer) {}
+/// # check(&mut write);
+/// ```
+#[derive(Debug)]
+#[non_exhaustive]
 pub enum Flow {
     /// Solve the next level.
     Continue,
     /// End the run after this level; it can be continued later.
     Stop,
+    /// End the run after this level with [`ContactError::Observer`](crate::ContactError::Observer); it can be continued
+    /// later.
+    Fail(Box<dyn Error + Send + Sync>),
+}
+
+impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<(), E>> for Flow {
+    fn from(result: Result<(), E>) -> Self {
+        Self::from(result.map(|()| Self::Continue))
+    }
+}
+
+impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<Self, E>> for Flow {
+    fn from(result: Result<Self, E>) -> Self {
+        result.unwrap_or_else(|error| Self::Fail(error.into()))
+    }
 }
 
 /// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&Frame) -> Flow` is an observer.
@@ -25,7 +56,7 @@ pub trait Observer {
         Flow::Continue
     }
 
-    /// The run has ended; `levels` were solved in it.
+    /// The run has ended, also by [`Flow::Fail`]; `levels` were solved in it. Not called when a solve ends in an error.
     fn finished(&mut self, levels: usize) {
         let _ = levels;
     }

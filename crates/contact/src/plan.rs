@@ -2,7 +2,7 @@
 
 use crate::clock::Analysis;
 use crate::error::ContactError;
-use crate::estimate::{Estimate, Sizes};
+use crate::estimate::{Estimate, Sizes, stiffness_ratio};
 use crate::law::Friction;
 use crate::scene::{Gap, Scene};
 use crate::settings::{Method, Settings};
@@ -185,6 +185,7 @@ impl Plan {
             primal,
             elements: scene.mesh.tets().len(),
             subdomains: decomposition.subdomains().len(),
+            ratio: largest_ratio(scene)?,
         };
         let estimate = Estimate::new(&effects, settings, &scene.analysis, &forecast, sizes);
         Ok(Self {
@@ -205,6 +206,16 @@ impl Plan {
             estimate,
         })
     }
+}
+
+/// Largest ratio of compressional to shear stiffness in the mesh.
+fn largest_ratio(scene: &Scene) -> Result<f64, ContactError> {
+    let mut regions = scene.mesh.regions().to_vec();
+    regions.sort_unstable();
+    regions.dedup();
+    regions.into_iter().try_fold(0.0_f64, |most, region| {
+        Ok(most.max(stiffness_ratio(scene.materials.get(region)?)))
+    })
 }
 
 /// Number of directions fixed at each node.
@@ -309,11 +320,15 @@ impl fmt::Display for Plan {
         )?;
         write!(
             f,
-            "  estimate    {} products of {:.2} ms, set-up {:.2} s, all levels {:.2} s on one processor",
+            "  estimate    {} products ({} to {}) of {:.2} ms, set-up {:.2} s, all levels {:.2} s ({:.2} to {:.2}) on one processor",
             e.products,
+            e.fewest_products,
+            e.most_products,
             1e3 * e.product_seconds(),
             e.setup_seconds(),
-            e.solve_seconds()
+            e.solve_seconds(),
+            e.solve_seconds_range()[0],
+            e.solve_seconds_range()[1]
         )
     }
 }

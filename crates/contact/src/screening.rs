@@ -3,7 +3,8 @@
 //! An open point carries no force. If its rows are left out and the recovered displacement keeps it off the obstacle, all its
 //! conditions hold, and the result is that of the complete problem: its zero multipliers are part of the solution. This is
 //! checked after every level for every point left out, on the recovered displacement, at the cost of a sparse product
-//! with its rows. If one penetrates, it and all points closer than a margin come back, the tables and the boundary
+//! with its rows. Points that come closer at a speed that makes them touch at the next level come back before it. If one
+//! penetrates nevertheless, it and all points closer than a margin come back, the tables and the boundary
 //! inverses are made anew, and the level is solved again from the multipliers it has. The first solve has no contact
 //! rows at all: it finds the points that the loads press down, and where nothing touches no inequality solver is entered.
 //!
@@ -59,6 +60,11 @@ impl Screening {
 
 /// Penetration relative to the largest displacement that is rounding.
 const ROUNDING: f64 = 1e-12;
+
+/// Levels for which points are taken in at once when one is expected to touch.
+const AHEAD: f64 = 4.0;
+/// Points leave that would not touch within so many: more, so that they do not come and go.
+const AWAY: f64 = 12.0;
 
 /// All contact points and which of them are in the dual problem.
 #[derive(Debug)]
@@ -299,6 +305,37 @@ impl Screen {
         }
         let close = outside(self.margin * reach);
         Some(close.zip(&self.active).map(|(c, a)| c || *a).collect())
+    }
+
+    /// Before a level: the points that should be in, each point keeping the speed of its last step; `None` if those that are in
+    /// will do. If another one would touch at this level, all that would within [`AHEAD`] levels come in, and points without force
+    /// that would not within [`AWAY`] leave: the tables are made anew in any case.
+    pub(crate) fn expected(&self, state: &State) -> Option<Vec<bool>> {
+        let [last, before] = state.gaps();
+        if last.len() != self.points.len() || before.len() != last.len() {
+            return None;
+        }
+        let touches = |k: usize, levels: f64| last[k] + levels * (last[k] - before[k]) < 0.0;
+        let lambda = &state.lambda()[0];
+        let idle = |k: usize| {
+            let free = |row: usize| lambda.get(row).is_none_or(|l| *l == 0.0);
+            let point = &self.points[k];
+            let tangential = point.tangential.rows();
+            let own = tangential.map_or(0..0, |(row, count, _)| row..row + count);
+            last[k] > 0.0 && !touches(k, AWAY) && free(point.row) && own.into_iter().all(free)
+        };
+        let all = 0..self.points.len();
+        if !all.clone().any(|k| !self.active[k] && touches(k, 1.0)) {
+            return None;
+        }
+        let stays = |k| {
+            if self.active[k] {
+                !idle(k)
+            } else {
+                touches(k, AHEAD)
+            }
+        };
+        Some(all.map(stays).collect())
     }
 
     fn times(&self, row: usize, torn: &[f64]) -> f64 {

@@ -241,6 +241,7 @@ impl Settings {
                 range: "[1e-12, 0.1]",
             });
         }
+        self.inverse.validate()?;
         self.accuracy.validate()?;
         self.screening.validate()?;
         if self.max_fixed_point == 0 {

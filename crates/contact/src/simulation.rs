@@ -1,9 +1,11 @@
 //! The simulation: set-up, levels, recovery, certificate.
 
 mod resume;
+mod rounds;
 mod screened;
 
-use crate::accuracy::{Accuracy, AccuracyReport, Controller, ROUNDS};
+use crate::accumulated::AccumulatedError;
+use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, certify};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
@@ -12,7 +14,7 @@ use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
-use crate::report::{Counters, LevelReport, LevelStatus};
+use crate::report::{Counters, LevelReport};
 use crate::scene::Scene;
 use crate::screening::Screen;
 use crate::settings::Settings;
@@ -61,10 +63,14 @@ pub struct Simulation {
     total: Counters,
     setup: Duration,
     controller: Controller,
+    /// Algebraic errors of the levels before, if they are estimated.
+    carried: AccumulatedError,
     /// With screening: all points, and which of them are in the model.
     screen: Option<Screen>,
     /// With screening: states of all points.
     all: Vec<PointState>,
+    /// Factorisations of the set-ups that screening has made in this level.
+    rebuilt: usize,
 }
 
 impl Simulation {
@@ -90,7 +96,9 @@ impl Simulation {
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
+            carried: AccumulatedError::default(),
             all: Vec::new(),
+            rebuilt: 0,
             screen,
             model,
             settings,
@@ -179,20 +187,26 @@ impl Simulation {
     /// Solves all levels that are left, telling the observer; ends early if it says so.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
     pub fn run(&mut self, observer: &mut impl Observer) -> Result<(), ContactError> {
         let levels = self.model.scene.analysis.levels() - self.state.level();
         observer.started(&self.model.plan, levels);
-        let mut solved = 0;
+        let (mut solved, mut failed) = (0, None);
         while !self.is_finished() {
             let frame = self.step()?;
             solved += 1;
-            if observer.level(&frame) == Flow::Stop {
-                break;
+            match observer.level(&frame) {
+                Flow::Continue => {}
+                Flow::Stop => break,
+                Flow::Fail(source) => {
+                    let level = frame.level();
+                    failed = Some(ContactError::Observer { level, source });
+                    break;
+                }
             }
         }
         observer.finished(solved);
-        Ok(())
+        failed.map_or(Ok(()), Err)
     }
 
     /// The frame of the last level solved.
@@ -217,6 +231,10 @@ impl Simulation {
         state: &State,
         index: usize,
     ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let (tolerance, errors) = state.accuracy();
+        self.controller = Controller::resume(tolerance);
+        self.carried = errors;
+        let expected = self.look_ahead(state)?;
         let mut view = self.view(state);
         self.level.prepare(&self.model, &view, index)?;
         self.start(&view)?;
@@ -228,104 +246,12 @@ impl Simulation {
             report.counters.rebuilds += 1;
             (report, lambda, rows) = (report.resumed(again.0), again.1, again.2);
         }
+        report.counters.rebuilds += usize::from(expected);
         let before: Vec<f64> = (0..self.model.tangential_rows())
             .map(|k| view.traces(k).0)
             .collect();
         self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
         Ok((report, lambda, rows))
-    }
-
-    /// Solves the level to the accuracy of the settings: once, or until the estimated error is small enough.
-    fn solve(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
-        let accuracy = self.settings.accuracy;
-        if accuracy == Accuracy::Tolerance {
-            return self.solve_certified();
-        }
-        let mut total: Option<LevelReport> = None;
-        let mut rounds = 0;
-        loop {
-            let tolerance = self.controller.tolerance();
-            let (mut report, lambda, rows) = self.solve_once(tolerance)?;
-            rounds += 1;
-            let frame = self.frame();
-            let algebraic = frame.algebraic_error();
-            let (discretisation, target) = match accuracy {
-                Accuracy::Balanced { fraction } => {
-                    let relative = frame.discretisation_error()?.relative();
-                    (Some(relative), fraction * relative)
-                }
-                Accuracy::Relative(x) => (None, x),
-                Accuracy::Tolerance => (None, f64::INFINITY),
-            };
-            let found = algebraic.relative();
-            let reached = found <= target;
-            report.accuracy = Some(AccuracyReport {
-                algebraic,
-                discretisation,
-                target,
-                reached,
-                rounds,
-                tolerance,
-            });
-            let converged = report.status.converged();
-            let mut report = match total.take() {
-                Some(before) => before.resumed(report),
-                None => report,
-            };
-            if reached && rounds == 1 {
-                self.controller.relax(found, target);
-            }
-            let again = !reached && converged && rounds < ROUNDS;
-            if !again || !self.controller.tighten(found, target) {
-                if converged && !reached {
-                    report.status = LevelStatus::Stagnated;
-                }
-                return Ok((report, lambda, rows));
-            }
-            total = Some(report);
-            self.iterate.lambda = lambda;
-        }
-    }
-
-    /// Solves with the tolerance of the settings. The certificate has the last word: where it is above the tolerance, the
-    /// solver continues once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies
-    /// errors of the forces), with ever smaller ones.
-    fn solve_certified(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
-        let aim = self.settings.tolerance.max(LEAST);
-        let limit = (CERTIFIED * self.settings.tolerance).max(LEAST);
-        let mut tolerance = self.settings.tolerance;
-        let mut total: Option<LevelReport> = None;
-        loop {
-            let (report, lambda, rows) = self.solve_once(tolerance)?;
-            let largest = self.certificate.largest();
-            let certified = largest <= limit;
-            let first = total.is_none();
-            let mut converged = report.status.converged();
-            let mut report = match total.take() {
-                Some(before) => before.resumed(report),
-                None => report,
-            };
-            if !first && !converged && certified {
-                // an earlier round converged, and what this one could not improve is certified
-                report.status = LevelStatus::Converged;
-                converged = true;
-            }
-            let enough = largest <= aim || certified && !first;
-            if enough || !converged || tolerance <= LEAST {
-                if converged && !certified {
-                    report.status = LevelStatus::NotCertified;
-                }
-                return Ok((report, lambda, rows));
-            }
-            let factor = if certified {
-                (MARGIN * aim / largest).max(0.01)
-            } else {
-                0.01
-            };
-            tolerance = (factor * tolerance).max(LEAST);
-            total = Some(report);
-            self.iterate.lambda = lambda;
-        }
     }
 
     /// One run of the solver from the present iterate, and what is recovered from it: multipliers and `B u`.
@@ -451,6 +377,7 @@ impl Simulation {
         };
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();
+            report.counters.factorisations = std::mem::take(&mut self.rebuilt);
             (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
             if effects.history {
                 trace = screen.expand_trace(&trace, self.model.tangential_start());
@@ -466,20 +393,17 @@ impl Simulation {
             rate,
             sliding,
         );
+        if let Some(accuracy) = &report.accuracy {
+            self.state
+                .set_accuracy(self.controller.tolerance(), accuracy.accumulated);
+        }
         if let Some(screen) = &self.screen {
             self.state.set_active(screen.active());
+            self.state
+                .push_gaps(self.all.iter().map(|p| p.gap).collect());
         }
     }
 }
-
-/// Largest certificate of a converged level over the tolerance.
-const CERTIFIED: f64 = 30.0;
-
-/// Aim of a second round, as a fraction of the tolerance.
-const MARGIN: f64 = 0.3;
-
-/// Smallest tolerance that is tried, and the certificate that rounding leaves.
-const LEAST: f64 = 1e-10;
 
 fn combine(model: &Model, level: &Level) -> Vec<f64> {
     let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();

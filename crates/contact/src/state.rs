@@ -1,12 +1,13 @@
-//! The state between time levels: one serialisable value.
+//! The state between time levels: one value, with feature `checkpoint` also as bytes.
 
+use crate::accumulated::AccumulatedError;
 use crate::error::ContactError;
-use serde::{Deserialize, Serialize};
 
 /// What one level hands to the next.
 ///
 /// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Levels solved.
     level: usize,
@@ -24,10 +25,17 @@ pub struct State {
     sliding: Vec<bool>,
     /// With screening: points whose rows were in the dual problem at the last level.
     active: Vec<bool>,
+    /// With screening: gaps of all points at the last level and the one before, m.
+    gaps: [Vec<f64>; 2],
+    /// Tolerance that starts the next level, if an estimate of the error chooses it.
+    tolerance: f64,
+    /// Algebraic errors of the levels so far, if they are estimated.
+    errors: AccumulatedError,
 }
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_4702;
+#[cfg(feature = "checkpoint")]
+const MAGIC: u32 = 0x5349_4703;
 
 impl State {
     /// Levels solved so far.
@@ -39,7 +47,13 @@ impl State {
     /// Bytes held.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        let pairs = [
+            &self.lambda,
+            &self.f_lambda,
+            &self.multiplier,
+            &self.trace,
+            &self.gaps,
+        ];
         let numbers: usize = pairs
             .iter()
             .flat_map(|p| p.iter())
@@ -49,20 +63,22 @@ impl State {
         8 * numbers + self.sliding.len() + self.active.len()
     }
 
-    /// Writes the state as bytes (postcard).
+    /// Writes the state as bytes (postcard; feature `checkpoint`).
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the encoder fails.
+    #[cfg(feature = "checkpoint")]
     pub fn to_bytes(&self) -> Result<Vec<u8>, ContactError> {
         postcard::to_stdvec(&(MAGIC, self)).map_err(|e| ContactError::Checkpoint {
             reason: e.to_string(),
         })
     }
 
-    /// Reads what [`to_bytes`](Self::to_bytes) wrote.
+    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`).
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the bytes are damaged or of another format.
+    #[cfg(feature = "checkpoint")]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
         let error = |reason: String| ContactError::Checkpoint { reason };
         let (magic, state): (u32, Self) = postcard::from_bytes(bytes)
@@ -83,6 +99,7 @@ impl State {
             &mut state.lambda,
             &mut state.f_lambda,
             &mut state.multiplier,
+            &mut state.gaps,
         ] {
             pair[1] = Vec::new();
         }
@@ -130,7 +147,32 @@ impl State {
             rate: pick(&self.rate, points),
             sliding: pick(&self.sliding, points),
             active: Vec::new(),
+            gaps: Default::default(),
+            tolerance: self.tolerance,
+            errors: self.errors,
         }
+    }
+
+    /// With screening: gaps of all points at the last level and the one before; empty where they are not known.
+    pub(crate) fn gaps(&self) -> &[Vec<f64>; 2] {
+        &self.gaps
+    }
+
+    /// Notes the gaps of the last level.
+    pub(crate) fn push_gaps(&mut self, gaps: Vec<f64>) {
+        self.gaps.swap(0, 1);
+        self.gaps[0] = gaps;
+    }
+
+    /// Tolerance and errors so far of levels that end by an estimate.
+    pub(crate) fn accuracy(&self) -> (f64, AccumulatedError) {
+        (self.tolerance, self.errors)
+    }
+
+    /// Notes them.
+    pub(crate) fn set_accuracy(&mut self, tolerance: f64, errors: AccumulatedError) {
+        self.tolerance = tolerance;
+        self.errors = errors;
     }
 
     pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
@@ -211,8 +253,15 @@ impl State {
             && self.trace.iter().all(|v| fit(v, tangential))
             && fit(&self.rate, points)
             && (self.sliding.is_empty() || self.sliding.len() == points)
+            && self.gaps.iter().all(|v| fit(v, points))
             && (self.active.is_empty() || self.active.len() == points);
-        let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        let numbers = [
+            &self.lambda,
+            &self.f_lambda,
+            &self.multiplier,
+            &self.trace,
+            &self.gaps,
+        ];
         let finite = numbers
             .iter()
             .flat_map(|p| p.iter())
@@ -244,8 +293,7 @@ fn pick<T: Copy>(all: &[T], places: &[usize]) -> Vec<T> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn bytes_round_trip_and_damage_is_noticed() {
+    fn state() -> State {
         let mut state = State::default();
         state.advance(
             true,
@@ -256,6 +304,13 @@ mod tests {
             vec![],
             vec![true],
         );
+        state
+    }
+
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn bytes_round_trip_and_damage_is_noticed() {
+        let state = state();
         let bytes = state.to_bytes().unwrap();
         assert_eq!(State::from_bytes(&bytes).unwrap(), state);
         assert!(matches!(
@@ -263,6 +318,11 @@ mod tests {
             Err(ContactError::Checkpoint { .. })
         ));
         assert!(State::from_bytes(&[0; 40]).is_err());
+    }
+
+    #[test]
+    fn sizes_and_numbers_are_checked() {
+        let mut state = state();
         assert!(state.fits(2, 6, 1, 1).is_ok());
         assert!(state.fits(3, 6, 1, 1).is_err());
         state.advance(

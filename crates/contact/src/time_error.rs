@@ -1,23 +1,25 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
-//! Every step is taken once, and again as two steps of half the length; the difference estimates the error. Both
-//! difference formulas are of first order on sliding that begins, ends and turns, so that the error of the *two half
-//! steps* is about the difference, and that of the whole step twice as large.
+//! Every step is taken once, and again as two steps of half the length. If the error falls like the step to the power `p`, that of
+//! the *whole* step is the difference times `1 / (1 - 2^-p)`, and that of the *half* steps `2^-p` of that. Both difference formulas are of
+//! first order on sliding that begins, ends and turns, better where nothing changes, and without order where another step
+//! leads to another sequence of sticking and sliding. `Twice` takes quarter steps as well and measures `p`.
 //!
-//! | [`Doubling`] | the half steps start from | tells | formulas |
-//! |---|---|---|---|
-//! | `Local` | the same [`State`](crate::State) as the whole step | what this step adds | one-step ones (backward Euler), unequal steps too |
-//! | `Global` | their own last state | what all steps so far have added | all |
+//! | [`Doubling`] | the half steps start from | tells | formulas | cost |
+//! |---|---|---|---|---|
+//! | `Local` | the same [`State`](crate::State) as the whole step | what this step adds | one-step ones (backward Euler), unequal steps too | 3 runs |
+//! | `Global` | their own last state | what all steps so far have added | all | 3 runs |
+//! | `Twice` | their own last state, and so do quarter steps | the same, with its order and whether it can be trusted | all | 7 runs |
 //!
 //! The three-step formula has no local version: half a step needs the displacement half a step before the start, which is
 //! no level of the run, and equal steps. From rest both start alike: the body is at rest before time 0, so the missing
 //! old displacements are zero.
 //!
-//! The cost is three times that of the run, and the memory twice.
+//! The memory is that of two runs, of three with `Twice`.
 
 use crate::clock::Analysis;
 use crate::error::ContactError;
-use crate::frame::Frame;
+use crate::frame::{ContactState, Frame};
 use crate::report::Counters;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -32,6 +34,8 @@ pub enum Doubling {
     Local,
     /// From the last half step: the error of all steps so far.
     Global,
+    /// As `Global`, with quarter steps, from which the order follows.
+    Twice,
 }
 
 /// Difference between a step and two half steps, at the end of the step.
@@ -54,13 +58,48 @@ pub struct TimeError {
     pub dissipated_work: f64,
     /// That work, J.
     pub dissipated_work_size: f64,
+    /// Contact points whose state (open, sticking, sliding) is another one after the half steps.
+    pub changed_points: usize,
+    /// Contact points that touch after the half steps.
+    pub touching_points: usize,
+    /// With [`Doubling::Twice`]: energy of the difference to the quarter steps, J.
+    pub quarter_energy: Option<f64>,
+    /// With [`Doubling::Twice`]: order `p` measured on all steps so far; NaN as long as nothing differs.
+    pub order: Option<f64>,
 }
+
+/// A smaller order means that the steps have not settled into a sequence of sticking and sliding.
+const LOWEST: f64 = 0.5;
+/// The steps themselves have no more: a larger measured order comes from such a settling.
+const HIGHEST: f64 = 2.5;
 
 impl TimeError {
     /// Difference of the displacements relative to the displacement, in the energy norm.
     #[must_use]
     pub fn displacement(&self) -> f64 {
         ratio(self.energy, self.elastic).sqrt()
+    }
+
+    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the finest run
+    /// there is, extrapolated with the measured order (taken into its admissible range), or with order one if none was measured.
+    #[must_use]
+    pub fn whole_error(&self) -> f64 {
+        match (self.quarter_energy, self.order) {
+            (Some(energy), Some(order)) => {
+                let order = if order.is_nan() { 1.0 } else { order };
+                let rest = 4.0_f64.powf(-order.clamp(LOWEST, HIGHEST));
+                ratio(energy, self.elastic).sqrt() / (1.0 - rest)
+            }
+            _ => 2.0 * self.displacement(),
+        }
+    }
+
+    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to another
+    /// sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` without
+    /// [`Doubling::Twice`]: two runs cannot tell.
+    #[must_use]
+    pub fn is_reliable(&self) -> Option<bool> {
+        self.order.map(|order| order.is_nan() || order >= LOWEST)
     }
 
     /// Relative difference of the contact forces.
@@ -107,7 +146,10 @@ fn ratio(value: f64, size: f64) -> f64 {
 pub struct StepDoubling {
     whole: Simulation,
     half: Simulation,
+    quarter: Option<Simulation>,
     mode: Doubling,
+    /// Energies of the differences whole - half and half - quarter, relative, summed over the steps.
+    differences: [f64; 2],
     /// Work of friction so far, of the whole and the half steps.
     work: [f64; 2],
 }
@@ -129,20 +171,23 @@ impl StepDoubling {
                 reason: "a formula of three steps cannot start half a step from one state; use Doubling::Global or backward Euler",
             });
         }
-        let mut halves = Vec::with_capacity(2 * times.len());
-        let mut before = 0.0;
-        for &time in times {
-            halves.extend([0.5 * (before + time), time]);
-            before = time;
-        }
-        let analysis = Analysis::Quasistatic {
-            times: halves,
-            formula: *formula,
+        let run = |times: &[f64]| {
+            let analysis = Analysis::Quasistatic {
+                times: times.to_vec(),
+                formula: *formula,
+            };
+            Simulation::new(scene.clone().with_analysis(analysis), settings.clone())
         };
+        let half = halves(times);
         Ok(Self {
             whole: Simulation::new(scene.clone(), settings.clone())?,
-            half: Simulation::new(scene.clone().with_analysis(analysis), settings.clone())?,
+            half: run(&half)?,
+            quarter: match mode {
+                Doubling::Twice => Some(run(&halves(&half))?),
+                _ => None,
+            },
             mode,
+            differences: [0.0; 2],
             work: [0.0; 2],
         })
     }
@@ -165,15 +210,24 @@ impl StepDoubling {
         &self.half
     }
 
-    /// What both runs have cost.
+    /// The run with quarter steps, with [`Doubling::Twice`].
+    #[must_use]
+    pub fn quarter(&self) -> Option<&Simulation> {
+        self.quarter.as_ref()
+    }
+
+    /// What all runs have cost.
     #[must_use]
     pub fn counters(&self) -> Counters {
         let mut sum = *self.whole.counters();
         sum += *self.half.counters();
+        if let Some(quarter) = &self.quarter {
+            sum += *quarter.counters();
+        }
         sum
     }
 
-    /// Takes the next step both ways.
+    /// Takes the next step in all ways.
     ///
     /// # Errors
     /// As [`Simulation::step`].
@@ -187,19 +241,58 @@ impl StepDoubling {
             self.work[1] += self.half.step()?.summary().friction_work;
         }
         self.work[0] += self.whole.step()?.summary().friction_work;
-        compare(&self.whole.frame(), &self.half.frame(), self.work)
+        let mut error = compare(&self.whole.frame(), &self.half.frame(), self.work)?;
+        if let Some(quarter) = &mut self.quarter {
+            for _ in 0..4 {
+                quarter.step()?;
+            }
+            let quarter = quarter.frame();
+            let far = energy_of_difference(&self.whole.frame(), &quarter)?;
+            let near = energy_of_difference(&self.half.frame(), &quarter)?;
+            for (sum, energy) in self.differences.iter_mut().zip([error.energy, near]) {
+                *sum += ratio(energy, error.elastic);
+            }
+            let [first, second] = self.differences;
+            error.quarter_energy = Some(far);
+            error.order = Some(0.5 * (first / second).log2());
+        }
+        Ok(error)
     }
+}
+
+/// The times with one more in the middle of each step.
+fn halves(times: &[f64]) -> Vec<f64> {
+    let mut halves = Vec::with_capacity(2 * times.len());
+    let mut before = 0.0;
+    for &time in times {
+        halves.extend([0.5 * (before + time), time]);
+        before = time;
+    }
+    halves
+}
+
+fn energy_of_difference(a: &Frame<'_>, b: &Frame<'_>) -> Result<f64, ContactError> {
+    let scene = &a.model.scene;
+    let mut difference = a.displacement();
+    let other = b.displacement();
+    difference.iter_mut().zip(&other).for_each(|(a, b)| *a -= b);
+    Ok(fields::strain_energy(
+        &scene.mesh,
+        &scene.materials,
+        &difference,
+    )?)
 }
 
 fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeError, ContactError> {
     let scene = &whole.model.scene;
-    let mut difference = whole.displacement();
     let other = half.displacement();
-    difference.iter_mut().zip(&other).for_each(|(a, b)| *a -= b);
     let (mut force, mut size) = (0.0, 0.0);
+    let (mut changed, mut touching) = (0, 0);
     for (a, b) in whole.points().iter().zip(half.points()) {
         force += (a.normal_force - b.normal_force).powi(2);
         size += b.normal_force.powi(2);
+        changed += usize::from(a.state != b.state);
+        touching += usize::from(b.state != ContactState::Open);
         for c in 0..3 {
             force += (a.friction_force[c] - b.friction_force[c]).powi(2);
             size += b.friction_force[c].powi(2);
@@ -208,11 +301,15 @@ fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeEr
     Ok(TimeError {
         level: whole.level(),
         time: whole.time(),
-        energy: fields::strain_energy(&scene.mesh, &scene.materials, &difference)?,
+        energy: energy_of_difference(whole, half)?,
         elastic: fields::strain_energy(&scene.mesh, &scene.materials, &other)?,
         contact_force: force.sqrt(),
         contact_force_size: size.sqrt(),
         dissipated_work: work[0] - work[1],
         dissipated_work_size: work[1],
+        changed_points: changed,
+        touching_points: touching,
+        quarter_energy: None,
+        order: None,
     })
 }

@@ -9,7 +9,6 @@
 //! # Ok::<(), signorini_fem_mesh::brick::BrickError>(())
 //! ```
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh};
@@ -40,7 +39,8 @@ pub const MAX_PERTURBATION: f64 = 0.15;
 /// i + j + k is even, so the faces of neighbouring cells match, and boxes of cells that are
 /// translates by an even number of cells are cut in the same way. Nodes are numbered with x
 /// fastest, then y, then z; cells likewise, and the tetrahedra of a cell one after the other.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Brick {
     /// The corner of smallest coordinates. Default: the origin.

@@ -5,8 +5,18 @@
 //! group of its surface, the region of a tetrahedron that of its volume; if the file has no
 //! physical groups of that dimension, the numbers of the geometric entities are used, and surfaces
 //! between two volumes are skipped. Entities outside of the groups, if there are any groups, leave
-//! triangles untagged and give region 0. Names of groups are not kept.
+//! triangles untagged and give region 0. [`read_named_gmsh`] also gives the names of the groups:
+//!
+//! ```no_run
+//! use signorini_fem_mesh::gmsh::read_named_gmsh;
+//!
+//! let (mesh, names) = read_named_gmsh("block.msh")?;
+//! let floor = names.surface("foundation").ok_or("the file has no surface \"foundation\"")?;
+//! println!("{} nodes can touch", mesh.nodes_on(floor).len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod names;
 mod walk;
 
 use std::collections::{HashMap, HashSet};
@@ -14,6 +24,8 @@ use std::path::{Path, PathBuf};
 
 use mshio::{ElementType, MshFile};
 use thiserror::Error;
+
+pub use names::GroupNames;
 
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
 
@@ -96,6 +108,18 @@ pub enum GmshError {
         /// Its groups.
         groups: Vec<i32>,
     },
+    /// Two groups of the same dimension have the same name.
+    #[error(
+        "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one",
+        groups[0],
+        groups[1]
+    )]
+    RepeatedName {
+        /// The name.
+        name: String,
+        /// The groups.
+        groups: [u32; 2],
+    },
     /// The parser refuses.
     #[error("the Gmsh file cannot be parsed: {message}")]
     Parser {
@@ -112,12 +136,22 @@ pub enum GmshError {
 /// # Errors
 /// [`GmshError`] if the file cannot be read or understood, or its mesh is not valid.
 pub fn read_gmsh(path: impl AsRef<Path>) -> Result<TetMesh, GmshError> {
-    let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(|source| GmshError::Io {
+    parse_gmsh(&read(path.as_ref())?)
+}
+
+/// As [`read_gmsh`], with the names of the physical groups.
+///
+/// # Errors
+/// As [`read_gmsh`], and if two groups have the same name.
+pub fn read_named_gmsh(path: impl AsRef<Path>) -> Result<(TetMesh, GroupNames), GmshError> {
+    parse_named_gmsh(&read(path.as_ref())?)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, GmshError> {
+    std::fs::read(path).map_err(|source| GmshError::Io {
         path: path.into(),
         source,
-    })?;
-    parse_gmsh(&bytes)
+    })
 }
 
 /// Reads a mesh with its tags and regions from the contents of a file.
@@ -125,8 +159,25 @@ pub fn read_gmsh(path: impl AsRef<Path>) -> Result<TetMesh, GmshError> {
 /// # Errors
 /// [`GmshError`] if the contents cannot be understood or the mesh is not valid.
 pub fn parse_gmsh(bytes: &[u8]) -> Result<TetMesh, GmshError> {
-    // mshio trusts the counts in the file and drops the node numbers: both are looked at first.
-    let node_tags = walk::node_tags(bytes)?;
+    Ok(parse_contents(bytes)?.0)
+}
+
+/// As [`parse_gmsh`], with the names of the physical groups.
+///
+/// # Errors
+/// As [`parse_gmsh`], and if two groups have the same name.
+pub fn parse_named_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError> {
+    let (mesh, list) = parse_contents(bytes)?;
+    let mut names = GroupNames::default();
+    for (dimension, group, name) in list {
+        names.insert(dimension, group, name)?;
+    }
+    Ok((mesh, names))
+}
+
+fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<walk::Name>), GmshError> {
+    // mshio trusts the counts in the file and drops node numbers and names: all are looked at first.
+    let (node_tags, names) = walk::node_tags_and_names(bytes)?;
     let file = parse(bytes)?;
     let nodes = file.data.nodes.as_ref();
     let mut points: Vec<[f64; 3]> = nodes
@@ -182,7 +233,8 @@ pub fn parse_gmsh(bytes: &[u8]) -> Result<TetMesh, GmshError> {
         // Nobody asked for these surfaces by name, and some may lie between two volumes.
         facets = on_boundary(&points, &tets, facets)?;
     }
-    Ok(TetMesh::new(points, tets, facets)?.with_regions(regions)?)
+    let mesh = TetMesh::new(points, tets, facets)?.with_regions(regions)?;
+    Ok((mesh, names))
 }
 
 /// The facets that lie on the boundary of the mesh.

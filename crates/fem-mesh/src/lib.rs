@@ -73,7 +73,8 @@
 //!
 //! # Features
 //!
-//! None is on by default. `vtu` adds [`output`] (crate vtkio), `gmsh` adds [`gmsh`] (crate mshio).
+//! None is on by default. `vtu` adds [`output`] (crate vtkio), `gmsh` adds [`gmsh`] (crate mshio), `serde` lets
+//! [`FacetTag`], [`Facet`], [`Frame`] and [`Brick`] be serialised (crate serde).
 
 #![cfg_attr(
     not(all(feature = "vtu", feature = "gmsh")),

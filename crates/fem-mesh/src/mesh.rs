@@ -5,8 +5,6 @@ mod edit;
 mod error;
 mod faces;
 
-use serde::{Deserialize, Serialize};
-
 pub use edit::{drop_unused_nodes, orient_tets};
 pub use error::MeshError;
 pub(crate) use faces::{NONE, connected_sets};
@@ -15,9 +13,8 @@ use crate::vec3::{self, Vec3};
 use faces::{FaceTable, Sides, face_nodes};
 
 /// Name of a part of the boundary.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FacetTag(pub u32);
 
 impl std::fmt::Display for FacetTag {
@@ -27,7 +24,8 @@ impl std::fmt::Display for FacetTag {
 }
 
 /// A tagged triangle of the boundary.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Facet {
     /// Nodes; in a [`TetMesh`] counter-clockwise seen from outside the body.
     pub nodes: [u32; 3],

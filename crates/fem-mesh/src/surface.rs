@@ -1,6 +1,5 @@
 //! Surfaces with nodal normals, frames and areas, flat or curved.
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::mesh::{FacetTag, TetMesh, facet_area_vector};
@@ -18,7 +17,8 @@ const NO_NORMAL: f64 = 1e-6;
 /// T1 is the x axis projected into the tangent plane (the y axis where the normal is within 0.6
 /// degrees of the x axis), and T2 = T1 x nu. So (T1, nu, T2) is right-handed, and the normal
 /// (0, 0, -1) has T1 = (1, 0, 0), T2 = (0, 1, 0), as the paper uses it on the brick.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frame {
     /// Outward unit normal.
     pub normal: [f64; 3],

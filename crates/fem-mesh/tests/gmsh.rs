@@ -3,7 +3,9 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_fem_mesh::gmsh::{GmshError, parse_gmsh, read_gmsh};
+use signorini_fem_mesh::gmsh::{
+    GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh,
+};
 use signorini_fem_mesh::{FacetTag, MeshError};
 
 /// Two tetrahedra in two volumes (groups 7 and 8) with a tagged face (group 3) of surface 1 and an
@@ -146,6 +148,52 @@ fn text_and_binary() {
     assert_eq!(read_gmsh(file.path()).unwrap(), mesh);
     let windows = TEXT.replace('\n', "\r\n");
     assert_eq!(parse_gmsh(windows.as_bytes()).unwrap(), mesh);
+}
+
+#[test]
+fn names_of_groups() {
+    let more = TEXT.replace(
+        "1\n2 3 \"foundation\"\n",
+        "4\n1 3 \"an edge\"\n2 3 \"the foundation\"\n3 8 \"upper\"\n3 7 \"lower \\u{e9}\"\n",
+    );
+    let (mesh, names) = parse_named_gmsh(more.as_bytes()).unwrap();
+    assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap());
+    assert_eq!(names.surface("the foundation"), Some(FacetTag(3)));
+    assert_eq!(names.volume("upper"), Some(8));
+    assert_eq!(names.surface("upper").or(names.surface("an edge")), None);
+    assert_eq!(names.surfaces().count(), 1);
+    let volumes: Vec<_> = names.volumes().collect();
+    assert_eq!(volumes, [("lower \\u{e9}", 7), ("upper", 8)]);
+    // the section is text in binary files, too
+    for file in [TEXT.as_bytes(), &binary(false), &binary(true)] {
+        let (_, names) = parse_named_gmsh(file).unwrap();
+        let surfaces: Vec<_> = names.surfaces().collect();
+        assert_eq!(surfaces, [("foundation", FacetTag(3))]);
+        assert_eq!(names.volumes().count(), 0);
+    }
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), TEXT).unwrap();
+    assert_eq!(read_named_gmsh(file.path()).unwrap().0, mesh);
+    let twice = TEXT.replace("1\n2 3 \"foundation\"\n", "2\n2 3 \"a\"\n2 4 \"a\"\n");
+    assert!(parse_gmsh(twice.as_bytes()).is_ok());
+    let error = parse_named_gmsh(twice.as_bytes()).unwrap_err();
+    assert!(matches!(
+        error,
+        GmshError::RepeatedName { groups: [3, 4], .. }
+    ));
+    for (from, to) in [
+        ("\"foundation\"", "foundation"),
+        ("2 3 \"f", "2 x \"f"),
+        ("1\n2 3", "9\n2 3"),
+    ] {
+        assert!(matches!(
+            damaged(from, to),
+            GmshError::Damaged {
+                section: "$PhysicalNames",
+                ..
+            }
+        ));
+    }
 }
 
 #[test]

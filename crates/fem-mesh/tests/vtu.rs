@@ -160,6 +160,34 @@ fn series() {
 }
 
 #[test]
+fn series_of_a_surface() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = mesh();
+    let surface = Surface::new(&mesh, &[Z_MIN]).unwrap();
+    let mut series = PvdSeries::create(folder.path(), "contact").unwrap();
+    for step in 0..2 {
+        let gap = Field::scalar("gap", vec![f64::from(step); surface.nodes().len()]);
+        series
+            .write_surface(f64::from(step), &mesh, &surface, &[gap], &[])
+            .unwrap();
+    }
+    assert_eq!(series.times(), [0.0, 1.0]);
+    let list = std::fs::read_to_string(series.path()).unwrap();
+    assert!(list.contains("file=\"contact_0001.vtu\""));
+    let [piece] = &pieces(&folder.path().join("contact_0001.vtu"))[..] else {
+        panic!("one piece is expected")
+    };
+    assert_eq!(piece.cells.num_cells(), surface.triangles().len());
+    assert!(values(&piece.data.point, "gap").iter().all(|&g| g == 1.0));
+    let error = series.write_surface(1.0, &mesh, &surface, &[], &[]);
+    assert!(matches!(error, Err(OutputError::Time { .. })));
+    let short = [Field::scalar("gap", vec![0.0])];
+    let error = series.write_surface(2.0, &mesh, &surface, &short, &[]);
+    assert!(matches!(error, Err(OutputError::FieldLength { .. })));
+    assert_eq!(series.times().len(), 2);
+}
+
+#[test]
 fn bad_fields() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.vtu");

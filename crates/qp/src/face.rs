@@ -128,12 +128,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 
     let mut last_jump = f64::INFINITY;
     let mut peak = vector::norm(x);
-    // without constraints there is one face
-    let mut forcing = if constrained > 0 {
-        settings.forcing
-    } else {
-        0.0
-    };
+    let mut forcing = settings.forcing;
     let mut best = f64::INFINITY;
     let mut waited = 0;
     loop {
@@ -216,7 +211,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
 
         // the natural map predicts the next face, and x moves there, with the next step on top
         vector::copy(x, &mut work.t);
-        let joint = settings.joint_step * step;
+        // without constraints there is no move to share a product with
+        let joint = if constrained > 0 {
+            settings.joint_step * step
+        } else {
+            0.0
+        };
         if joint > 0.0 {
             vector::axpy(joint, &work.p, x);
         }

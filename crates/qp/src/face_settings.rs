@@ -81,6 +81,20 @@ impl FaceSettings {
         self
     }
 
+    /// Sets the share of changing bounds below which the hook is called.
+    #[must_use]
+    pub fn with_settled(mut self, share: f64) -> Self {
+        self.settled = share;
+        self
+    }
+
+    /// Sets the number of faces without progress before the method gives up.
+    #[must_use]
+    pub fn with_patience(mut self, faces: usize) -> Self {
+        self.patience = faces;
+        self
+    }
+
     /// Sets the largest number of faces.
     #[must_use]
     pub fn with_max_faces(mut self, faces: usize) -> Self {

@@ -161,7 +161,7 @@ fn a_problem_without_constraints_is_one_face_and_no_correction() {
         (Status::Converged, 1, 1)
     );
     assert_eq!(report.corrections, 0);
-    assert!(report.cg_steps <= n + 10);
+    assert!(report.cg_steps <= n + 5);
 }
 
 #[test]

@@ -80,6 +80,31 @@ fn a_closure_is_an_observer() -> Result<(), Error> {
 }
 
 #[test]
+fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
+    let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
+    let mut room = 1;
+    let outcome = simulation.run(&mut |_: &Frame<'_>| {
+        room -= 1;
+        Flow::from(if room < 0 {
+            Err(std::io::Error::other("the disk is full"))
+        } else {
+            Ok(())
+        })
+    });
+    let Err(error @ ContactError::Observer { level: 1, .. }) = outcome else {
+        panic!("an error is expected, not {outcome:?}");
+    };
+    assert_eq!(
+        error.to_string(),
+        "observer, after level 1: the disk is full"
+    );
+    assert_eq!(simulation.state().level(), 2);
+    simulation.run(&mut Silent)?;
+    assert!(simulation.is_finished());
+    Ok(())
+}
+
+#[test]
 fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(1)?, Settings::default())?;
     let nodes = simulation.scene().mesh().points().len();

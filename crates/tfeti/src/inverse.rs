@@ -8,12 +8,13 @@ use crate::dense;
 use crate::error::TfetiError;
 use crate::kernel::Kernel;
 use crate::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
+use std::sync::Arc;
 
 /// A generalised inverse of the whole matrix of one subdomain.
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     /// Factor of the regularised matrix.
-    factor: SparseCholesky,
+    factor: Arc<SparseCholesky>,
     /// Whether products are projected to the Moore-Penrose inverse.
     project: bool,
 }
@@ -34,7 +35,18 @@ impl Inverse {
         if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
             return Err(TfetiError::Singular { subdomain, pivot });
         }
-        Ok(Self { factor, project })
+        Ok(Self {
+            factor: Arc::new(factor),
+            project,
+        })
+    }
+
+    /// The same factor, projected or not.
+    pub(crate) fn with_projection(&self, project: bool) -> Self {
+        Self {
+            factor: self.factor.clone(),
+            project,
+        }
     }
 
     /// Work memory that products with so many columns need.

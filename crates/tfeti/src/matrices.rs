@@ -72,27 +72,33 @@ pub(crate) fn assemble(
         .collect()
 }
 
-/// Chooses and computes the inverses of all classes.
+/// Chooses and computes the inverses of all classes; with the factors of another system of the same classes, if there is one.
 pub(crate) fn invert(
     classes: &Classes,
     bases: &[ClassBase],
     map: &BoundaryMap,
     settings: &InverseSettings,
+    earlier: Option<&[ClassInverse]>,
 ) -> Result<Vec<ClassInverse>, TfetiError> {
-    let symbolic: Vec<Symbolic> = (0..bases.len())
+    let start = |k: usize| {
+        if let Some(earlier) = earlier {
+            return Ok(Start::Factor(&earlier[k].full));
+        }
+        let subdomain = classes.classes()[k].members[0] as usize;
+        Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel), 3)
+            .map(Start::Symbolic)
+            .map_err(|e| pattern_error(e, subdomain))
+    };
+    let starts: Vec<Start<'_>> = (0..bases.len())
         .into_par_iter()
-        .map(|k| {
-            let subdomain = classes.classes()[k].members[0] as usize;
-            Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel), 3)
-                .map_err(|e| pattern_error(e, subdomain))
-        })
+        .map(start)
         .collect::<Result<_, _>>()?;
     let sizes: Vec<Size> = (0..bases.len())
         .map(|k| Size {
             dim: bases[k].stiffness.dim,
             boundary: 3 * map.classes[k].nodes.len(),
             members: map.classes[k].members.len(),
-            factor: symbolic[k].stored(),
+            factor: starts[k].stored(),
         })
         .collect();
     let dense = choose(&sizes, settings)?;
@@ -102,16 +108,33 @@ pub(crate) fn invert(
             let base = &bases[k];
             let subdomain = classes.classes()[k].members[0] as usize;
             let project = settings.moore_penrose || dense[k];
-            let full = Inverse::new(
-                &base.stiffness,
-                &base.kernel,
-                &symbolic[k],
-                project,
-                subdomain,
-            )?;
+            let full = match &starts[k] {
+                Start::Factor(full) => full.with_projection(project),
+                Start::Symbolic(symbolic) => {
+                    Inverse::new(&base.stiffness, &base.kernel, symbolic, project, subdomain)?
+                }
+            };
             let boundary =
                 dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
             Ok(ClassInverse { full, boundary })
         })
         .collect()
+}
+
+/// What an inverse is made from.
+enum Start<'a> {
+    /// The pattern of the factor.
+    Symbolic(Symbolic),
+    /// The factor of an earlier system.
+    Factor(&'a Inverse),
+}
+
+impl Start<'_> {
+    /// Numbers stored for the factor.
+    fn stored(&self) -> usize {
+        match self {
+            Self::Symbolic(symbolic) => symbolic.stored(),
+            Self::Factor(inverse) => inverse.stored(),
+        }
+    }
 }

@@ -29,6 +29,7 @@ pub struct TfetiBuilder<'a> {
     rule: RowRule,
     sharing: Sharing,
     inverse: InverseSettings,
+    earlier: Option<&'a Tfeti>,
 }
 
 impl<'a> TfetiBuilder<'a> {
@@ -48,7 +49,17 @@ impl<'a> TfetiBuilder<'a> {
             rule: RowRule::default(),
             sharing: Sharing::default(),
             inverse: InverseSettings::default(),
+            earlier: None,
         }
+    }
+
+    /// Takes classes, stiffness and factors of the subdomains from another system of the same mesh, decomposition, materials and
+    /// sharing: only the rows differ, and what depends on them is made anew. The result is that of a build from nothing, bit
+    /// for bit. Sizes are checked, values are not.
+    #[must_use]
+    pub fn reuse(mut self, earlier: &'a Tfeti) -> Self {
+        self.earlier = Some(earlier);
+        self
     }
 
     /// Sets the supports.
@@ -109,12 +120,24 @@ impl<'a> TfetiBuilder<'a> {
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;
         let mut clock = Clock(Instant::now());
-        let classes = Arc::new(Classes::find(
-            mesh,
-            decomposition,
-            self.materials,
-            self.sharing,
-        )?);
+        let classes = match self.earlier {
+            Some(earlier) => {
+                let own = decomposition.subdomains().len();
+                check("subdomains", own, earlier.subdomains())?;
+                check(
+                    "torn unknowns",
+                    decomposition.torn_dofs(),
+                    earlier.torn_dim(),
+                )?;
+                earlier.parts.classes.clone()
+            }
+            None => Arc::new(Classes::find(
+                mesh,
+                decomposition,
+                self.materials,
+                self.sharing,
+            )?),
+        };
         let classes_seconds = clock.lap();
         let gluing = Arc::new(Gluing::new(
             decomposition,
@@ -125,9 +148,13 @@ impl<'a> TfetiBuilder<'a> {
         )?);
         let map = Arc::new(BoundaryMap::new(&classes, &gluing));
         let gluing_seconds = clock.lap();
-        let bases = Arc::new(assemble(mesh, decomposition, self.materials, &classes)?);
+        let bases = match self.earlier {
+            Some(earlier) => earlier.parts.bases.clone(),
+            None => Arc::new(assemble(mesh, decomposition, self.materials, &classes)?),
+        };
         let assembly_seconds = clock.lap();
-        let inverses = Arc::new(invert(&classes, &bases, &map, &self.inverse)?);
+        let factors = self.earlier.map(|earlier| &earlier.parts.inverses[..]);
+        let inverses = Arc::new(invert(&classes, &bases, &map, &self.inverse, factors)?);
         let inverse_seconds = clock.lap();
         let centres: Vec<[f64; 3]> = decomposition
             .subdomains()
@@ -158,7 +185,7 @@ impl<'a> TfetiBuilder<'a> {
             inverse_bytes: inverses.iter().map(ClassInverse::bytes).sum(),
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
-            factorisations: bases.len() + 1,
+            factorisations: 1 + if factors.is_some() { 0 } else { bases.len() },
             free_motions: factor
                 .free_motions()
                 .iter()

@@ -2,9 +2,11 @@
 
 mod common;
 
-use common::{Brick, build};
+use common::{Brick, build, noise, product};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials};
-use signorini_tfeti::{Classes, InverseKind, RowRule, Sharing, Support, TfetiBuilder, TfetiError};
+use signorini_tfeti::{
+    Classes, InverseKind, InverseSettings, RowRule, Sharing, Support, TfetiBuilder, TfetiError,
+};
 
 fn classes(b: &Brick, sharing: Sharing) -> Classes {
     Classes::find(&b.mesh, &b.decomposition, &b.materials, sharing).unwrap()
@@ -137,4 +139,33 @@ fn bodies_without_rows_and_single_supported_bodies_build() {
         .unwrap();
     assert!(held.coarse_factor().free_motions().is_empty());
     assert!(held.lumped().is_ok() && held.dirichlet().is_ok());
+}
+
+#[test]
+fn a_system_with_other_rows_reuses_the_factors() {
+    let b = Brick::new(2, 5);
+    let supports = [Support::fixed(b.fixed.clone())];
+    let contact = b.contact(true);
+    let bare = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).supports(&supports);
+    for kind in [InverseKind::Auto, InverseKind::Sparse, InverseKind::Dense] {
+        let settings = InverseSettings::default()
+            .with_kind(kind)
+            .with_moore_penrose(false);
+        let bare = bare.inverse(settings);
+        let first = bare.build().unwrap();
+        let fresh = bare.contact(&contact).build().unwrap();
+        let again = bare.contact(&contact).reuse(&first).build().unwrap();
+        assert_eq!(fresh.report().factorisations, 3);
+        assert_eq!(again.report().factorisations, 1);
+        assert_eq!(again.report().rows, fresh.report().rows);
+        let x = noise(fresh.dual_dim(), 1);
+        assert_eq!(product(&again, &x), product(&fresh, &x), "{kind:?}");
+    }
+    let first = bare.build().unwrap();
+    let whole = Decomposition::whole(&b.mesh);
+    let error = TfetiBuilder::new(&b.mesh, &whole, &b.materials)
+        .reuse(&first)
+        .build()
+        .unwrap_err();
+    assert!(matches!(error, TfetiError::DecompositionMismatch { .. }));
 }

@@ -60,17 +60,42 @@ pub(super) fn estimates(
         let (p, t) = (&l.plan, &l.truth);
         writeln!(
             out,
-            "| {} | {} | {} | {:.2} / {:.2} | {} | {:.3} / {:.3} | {:.2} / {:.2} |",
+            "| {} | {} | {} | {:.2} / {:.2} | {} ({} to {}) / {} | {:.3} / {:.3} | {:.2} / {:.2} |",
             l.name,
             pair(p.rows(), t.rows()),
             pair(p.factorisations, t.factorisations),
             p.bytes as f64 / 1e6,
             t.bytes as f64 / 1e6,
-            pair(p.products, t.products),
+            p.products,
+            p.range[0],
+            p.range[1],
+            t.products,
             p.setup_seconds,
             t.setup_seconds,
             p.solve_seconds,
             t.solve_seconds,
+        )?;
+    }
+    Ok(())
+}
+
+pub(super) fn shapes(lines: &[Line], out: &mut impl Write) -> Result<(), ExampleError> {
+    writeln!(
+        out,
+        "\nOther scenes: the plan's products (likely, and their range) and the truth.\n\n\
+         | scene | levels | rows | likely | range | truth | truth / likely | levels that fell back |\n|---|---|---|---|---|---|---|---|"
+    )?;
+    for l in lines {
+        let ([low, high], truth) = (l.plan.range, l.truth.products);
+        writeln!(
+            out,
+            "| {} | {} | {} | {} | {low} to {high} | {truth} | {:.2} | {} |",
+            l.name,
+            l.levels,
+            l.truth.rows(),
+            l.plan.products,
+            truth as f64 / l.plan.products as f64,
+            l.fallbacks,
         )?;
     }
     Ok(())
@@ -83,23 +108,30 @@ pub(super) fn screening(
 ) -> Result<(), ExampleError> {
     writeln!(
         out,
-        "\nThe benchmark, loading c: without / with screening. Rows at the end; nodes left out: mean over the levels.\n\n\
-         | size | contact rows | nodes left out | rebuilds | products | levels s | forces differ | certificate |\n\
-         |---|---|---|---|---|---|---|---|"
+        "\nWithout / with screening. Rows and bytes at the end; nodes left out: mean over the levels; seconds of levels and rebuilds.\n\n\
+         | scene | contact rows of all rows | nodes left out | rebuilds | factorisations | set-up MB | products | set-up s | levels s | forces differ | certificate |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|"
     )?;
     for (a, b) in off.iter().zip(on) {
         let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
         writeln!(
             out,
-            "| {} | {} / {} | {:.1} of {} | {} | {} / {} | {:.2} / {:.2} | {:.1e} | {:.1e} / {:.1e} |",
+            "| {} | {} / {} of {} | {:.1} of {} | {} | {} / {} | {:.2} / {:.2} | {} / {} | {:.3} / {:.3} | {:.2} / {:.2} | {:.1e} | {:.1e} / {:.1e} |",
             a.name,
             contact(a),
             contact(b),
+            a.truth.rows(),
             b.screened_points as f64 / b.levels as f64,
             a.truth.normal_rows,
             b.rebuilds,
+            a.truth.factorisations,
+            b.truth.factorisations,
+            a.truth.bytes as f64 / 1e6,
+            b.truth.bytes as f64 / 1e6,
             a.truth.products,
             b.truth.products,
+            a.truth.setup_seconds,
+            b.truth.setup_seconds,
             a.truth.solve_seconds,
             b.truth.solve_seconds,
             distance(&a.forces, &b.forces),

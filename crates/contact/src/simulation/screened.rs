@@ -20,7 +20,7 @@ pub(super) fn set_up(
     if !Screen::applies(&scene, settings) {
         return Ok((Model::new(scene, settings)?, None));
     }
-    let model = Model::with_contact_nodes(scene, settings, Some(&[]))?;
+    let model = Model::with_contact_nodes(scene, settings, &[])?;
     match Screen::new(&model, settings)? {
         Some(screen) => Ok((model, Some(screen))),
         None => Ok((Model::new(model.scene, settings)?, None)),
@@ -42,6 +42,15 @@ impl Simulation {
             &self.all
         } else {
             &self.points
+        }
+    }
+
+    /// Before a level: lets points in that are expected to touch, and others out; whether the model was made anew.
+    pub(super) fn look_ahead(&mut self, state: &State) -> Result<bool, ContactError> {
+        let expected = self.screen.as_ref().and_then(|s| s.expected(state));
+        match expected {
+            Some(active) => self.admit(active).map(|()| true),
+            None => Ok(false),
         }
     }
 
@@ -80,10 +89,10 @@ impl Simulation {
             return Ok(());
         }
         let nodes = screen.nodes(&active);
-        let scene = self.model.scene.clone();
-        let model = Model::with_contact_nodes(scene, &self.settings, Some(&nodes))?;
+        let model = self.model.with_other_nodes(&self.settings, &nodes)?;
         let solver = Solver::new(&model, &self.settings)?;
         screen.install(&model, active);
+        self.rebuilt += model.tfeti.report().factorisations;
         self.model = model;
         self.solver = solver;
         self.level = Level::default();

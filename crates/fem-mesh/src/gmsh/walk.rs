@@ -2,8 +2,8 @@
 //!
 //! mshio 0.4 reserves memory for any count that the file claims, subtracts unsigned numbers and
 //! panics on unknown sizes, and it drops the node numbers of files whose numbers have no gaps even
-//! if they are not in order. This walk checks every count against the bytes that are there, and
-//! keeps the node numbers in the order of the coordinates.
+//! if they are not in order, and the names of physical groups. This walk checks every count against
+//! the bytes that are there, and keeps the node numbers in the order of the coordinates and the names.
 
 use super::GmshError;
 
@@ -23,8 +23,11 @@ const TYPES: [(i32, usize, &str, bool); 12] = [
     (15, 1, "point", true),
 ];
 
-/// Node numbers of a file in the order in which it gives the coordinates.
-pub(super) fn node_tags(bytes: &[u8]) -> Result<Vec<u64>, GmshError> {
+/// Dimension, number and name of a physical group.
+pub(super) type Name = (i32, i32, String);
+
+/// Node numbers of a file in the order in which it gives the coordinates, and the names of its groups.
+pub(super) fn node_tags_and_names(bytes: &[u8]) -> Result<(Vec<u64>, Vec<Name>), GmshError> {
     let mut walk = Walk {
         bytes,
         at: 0,
@@ -36,9 +39,14 @@ pub(super) fn node_tags(bytes: &[u8]) -> Result<Vec<u64>, GmshError> {
         return Err(GmshError::NotGmsh);
     }
     walk.format()?;
-    let (mut tags, mut elements) = (None, false);
+    let (mut tags, mut names, mut elements) = (None, Vec::new(), false);
     while walk.skip_blanks() {
         match walk.line() {
+            b"$PhysicalNames" => {
+                walk.section = "$PhysicalNames";
+                names = walk.names()?;
+                walk.end(b"$EndPhysicalNames")?;
+            }
             b"$Entities" => {
                 walk.section = "$Entities";
                 walk.entities()?;
@@ -63,7 +71,8 @@ pub(super) fn node_tags(bytes: &[u8]) -> Result<Vec<u64>, GmshError> {
             section: "$Elements",
         });
     }
-    tags.ok_or(GmshError::MissingSection { section: "$Nodes" })
+    let tags = tags.ok_or(GmshError::MissingSection { section: "$Nodes" })?;
+    Ok((tags, names))
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -218,6 +227,25 @@ impl<'a> Walk<'a> {
             };
         }
         self.end(b"$EndMeshFormat")
+    }
+
+    /// Names of groups: text also in binary files.
+    fn names(&mut self) -> Result<Vec<Name>, GmshError> {
+        let is_binary = std::mem::replace(&mut self.is_binary, false);
+        let mut names = Vec::new();
+        for _ in 0..self.count(3)? {
+            let (dimension, group) = (self.int()?, self.int()?);
+            let quoted = self.line().trim_ascii();
+            let inside = quoted
+                .strip_prefix(b"\"")
+                .and_then(|n| n.strip_suffix(b"\""));
+            let Some(name) = inside else {
+                return self.damaged("a name in quotes is expected");
+            };
+            names.push((dimension, group, String::from_utf8_lossy(name).into_owned()));
+        }
+        self.is_binary = is_binary;
+        Ok(names)
     }
 
     fn entities(&mut self) -> Result<(), GmshError> {

@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Field, OutputError, write_vtu, write_vtu_pieces};
+use super::{Field, OutputError, write_surface_vtu, write_vtu, write_vtu_pieces};
 use crate::decomposition::Decomposition;
 use crate::mesh::TetMesh;
+use crate::surface::Surface;
 
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
 ///
@@ -76,6 +77,23 @@ impl PvdSeries {
             point_fields,
             cell_fields,
         )?;
+        self.list(time)
+    }
+
+    /// Writes a surface and its fields at a time (see [`write_surface_vtu`]), and the list.
+    ///
+    /// # Errors
+    /// [`OutputError`] as [`write_surface_vtu`], and if the time does not follow the last one.
+    pub fn write_surface(
+        &mut self,
+        time: f64,
+        mesh: &TetMesh,
+        surface: &Surface,
+        point_fields: &[Field],
+        cell_fields: &[Field],
+    ) -> Result<(), OutputError> {
+        self.check(time)?;
+        write_surface_vtu(self.next_file(), mesh, surface, point_fields, cell_fields)?;
         self.list(time)
     }
 

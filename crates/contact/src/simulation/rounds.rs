@@ -1,0 +1,120 @@
+//! Solves of one level: one, or several until the certificate or an estimate of the error is small enough.
+
+use super::Simulation;
+use crate::accuracy::{Accuracy, AccuracyReport, ROUNDS};
+use crate::error::ContactError;
+use crate::report::{LevelReport, LevelStatus};
+
+/// Largest certificate of a converged level over the tolerance.
+const CERTIFIED: f64 = 30.0;
+
+/// Aim of a second round, as a fraction of the tolerance.
+const MARGIN: f64 = 0.3;
+
+/// Smallest tolerance that is tried, and the certificate that rounding leaves.
+const LEAST: f64 = 1e-10;
+
+impl Simulation {
+    /// Solves the level to the accuracy of the settings: once, or until the estimated error is small enough.
+    pub(super) fn solve(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let accuracy = self.settings.accuracy;
+        if accuracy == Accuracy::Tolerance {
+            return self.solve_certified();
+        }
+        let mut total: Option<LevelReport> = None;
+        let mut rounds = 0;
+        loop {
+            let tolerance = self.controller.tolerance();
+            let (mut report, lambda, rows) = self.solve_once(tolerance)?;
+            rounds += 1;
+            let frame = self.frame();
+            let algebraic = frame.algebraic_error();
+            let (discretisation, target) = match accuracy {
+                Accuracy::Balanced { fraction } => {
+                    let relative = frame.discretisation_error()?.relative();
+                    (Some(relative), fraction * relative)
+                }
+                Accuracy::Relative(x) => (None, x),
+                Accuracy::Tolerance => (None, f64::INFINITY),
+            };
+            let found = algebraic.relative();
+            let plan = &self.model.plan;
+            let history = plan.effects.history;
+            let share = if history {
+                let left = plan.levels - self.level.index;
+                self.carried.share(&algebraic, target, left, plan.levels)
+            } else {
+                target
+            };
+            let reached = found <= share;
+            report.accuracy = Some(AccuracyReport {
+                algebraic,
+                accumulated: self.carried.with(&algebraic, history),
+                discretisation,
+                target,
+                share,
+                reached,
+                rounds,
+                tolerance,
+            });
+            let converged = report.status.converged();
+            let mut report = match total.take() {
+                Some(before) => before.resumed(report),
+                None => report,
+            };
+            if reached && rounds == 1 {
+                self.controller.relax(found, share);
+            }
+            let again = !reached && converged && rounds < ROUNDS;
+            if !again || !self.controller.tighten(found, share) {
+                if converged && !reached {
+                    report.status = LevelStatus::Stagnated;
+                }
+                return Ok((report, lambda, rows));
+            }
+            total = Some(report);
+            self.iterate.lambda = lambda;
+        }
+    }
+
+    /// Solves with the tolerance of the settings. The certificate has the last word: where it is above the tolerance, the
+    /// solver continues once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies
+    /// errors of the forces), with ever smaller ones.
+    fn solve_certified(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+        let aim = self.settings.tolerance.max(LEAST);
+        let limit = (CERTIFIED * self.settings.tolerance).max(LEAST);
+        let mut tolerance = self.settings.tolerance;
+        let mut total: Option<LevelReport> = None;
+        loop {
+            let (report, lambda, rows) = self.solve_once(tolerance)?;
+            let largest = self.certificate.largest();
+            let certified = largest <= limit;
+            let first = total.is_none();
+            let mut converged = report.status.converged();
+            let mut report = match total.take() {
+                Some(before) => before.resumed(report),
+                None => report,
+            };
+            if !first && !converged && certified {
+                // an earlier round converged, and what this one could not improve is certified
+                report.status = LevelStatus::Converged;
+                converged = true;
+            }
+            let enough = largest <= aim || certified && !first;
+            if enough || !converged || tolerance <= LEAST {
+                if converged && !certified {
+                    report.status = LevelStatus::NotCertified;
+                }
+                return Ok((report, lambda, rows));
+            }
+            let factor = if certified {
+                (MARGIN * aim / largest).max(0.01)
+            } else {
+                0.01
+            };
+            tolerance = (factor * tolerance).max(LEAST);
+            total = Some(report);
+            self.iterate.lambda = lambda;
+        }
+    }
+}
