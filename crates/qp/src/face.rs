@@ -26,7 +26,9 @@
 
 use crate::coarse_space::CoarseSpace;
 use crate::error::{QpError, expect_finite, expect_length};
+use crate::face_view::{FacePreconditioner, FaceView};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
+use crate::guard::{Guard, HALVINGS, restore};
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
 use crate::report::Status;
@@ -60,7 +62,7 @@ pub type FaceHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
 /// # Errors
 /// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
 /// [`QpError::CoarseDeficient`] if not even all components together hold the rigid modes.
-pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
     set: &mut ProductSet,
@@ -126,7 +128,16 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     let mut forcing = settings.forcing;
     let mut best = f64::INFINITY;
     let mut waited = 0;
+    let mut left = (f64::INFINITY, f64::INFINITY);
+    let mut guard: Option<Guard> = None;
+    let mut current = true;
+    let mut drift = f64::INFINITY;
     loop {
+        if std::env::var_os("FDBG").is_some() {
+            let mut y = ax.to_vec();
+            problem.operator.apply(x, &mut y, &mut work.operator);
+            eprintln!("AX {:.1e} of {:.1e}", vector::distance(&y, ax), vector::norm(&y));
+        }
         residual(problem, coarse, ax, work);
         work.face
             .classify(set, x, &work.residual, problem.scale, settings.natural_step);
@@ -139,6 +150,10 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             }
             Err(error) => return Err(error),
         }
+        let view = FaceView::new(set, &work.face);
+        problem
+            .preconditioner
+            .enter(&view, &mut work.preconditioner);
         for (r, g) in work.r.iter_mut().zip(&work.residual) {
             *r = -g;
         }
@@ -157,6 +172,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         }
         // the jump is what the last move to the predicted face changed
         let settled = report.faces == 0 || last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
+        let settled = settled && current;
         if peak > SHRUNK * x_norm {
             // A x still carries the rounding errors of a much larger x
             peak = x_norm;
@@ -169,6 +185,11 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             report.status = Status::Converged;
             return Ok(report);
         }
+        if std::env::var_os("FDBG").is_some() {
+            let (mut fr, mut sl, mut fx) = (0, 0, 0);
+            for d in &work.face.discs { match d { crate::face_state::Disc::Free => fr += 1, crate::face_state::Disc::Fixed => fx += 1, _ => sl += 1 } }
+            eprintln!("face {} prod {} err {:.2e} cerr {:.2e} jump {:.2e} lim {:.1e} freeb {} changed {} discs free {} slide {} fixed {} forcing {:.0e} hooks {}", report.faces, report.products(), errors.0/limits.all*settings.tolerance, errors.1/limits.constrained*settings.tolerance, last_jump/limits.constrained*settings.tolerance, settings.tolerance, work.face.free_bounds, work.face.changed, fr, sl, fx, forcing, report.hook_calls);
+        }
         let measure =
             (errors.0 / limits.all).max(errors.1.max(last_jump.min(f64::MAX)) / limits.constrained);
         if measure < 0.9 * best {
@@ -177,21 +198,38 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         } else if report.faces > 0 {
             waited += 1;
         }
-        if waited >= settings.patience && forcing > FINEST {
+        if waited >= settings.patience && guard.is_none() {
+            guard = Some(Guard::new(n));
+            forcing *= FINER;
+            best = measure;
+            waited = 0;
+            if !coarse.repairs_apart() {
+                vector::copy(x, &mut work.t);
+                work.face.loose_weights(set, &mut work.r);
+                restore(coarse, set, x, problem.rhs, &work.r)?;
+                correct(problem, x, ax, true, work, &mut report);
+                continue;
+            }
+        }
+        if waited >= settings.patience && forcing > FINEST && false {
             // predictions from a badly conditioned face need a better solution on it
             forcing *= FINER;
             best = measure;
             waited = 0;
         }
-        if waited >= settings.patience {
+        if waited >= 5 * settings.patience {
             report.status = Status::Stagnated;
             return Ok(report);
         }
-        if report.faces >= settings.max_faces || report.products() >= settings.max_products {
+        if report.faces >= settings.max_faces * (1 + 2 * usize::from(guard.is_some())) || report.products() >= settings.max_products {
             report.status = Status::IterationLimit;
             return Ok(report);
         }
 
+        let solved = errors.1 <= (0.1 * drift).max(limits.constrained);
+        if let Some(guard) = &mut guard {
+            guard.enter(x, ax, &work.residual);
+        }
         conjugate_gradients(
             problem,
             coarse,
@@ -202,18 +240,26 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             forcing,
             &limits,
             constrained,
+            (MAGNIFIED * (last_jump + left.0), MAGNIFIED * (last_jump + left.1)),
             work,
             &mut report,
         )?;
+        left = estimate(&work.z, constrained);
         report.faces += 1;
+        if std::env::var_os("FDBG").is_some() { eprintln!("   cg done products {}", report.products()); }
 
         // the natural map predicts the next face, and x moves there
         residual(problem, coarse, ax, work);
+        if let Some(guard) = &mut guard {
+            guard.leave(x, ax);
+        }
         vector::copy(x, &mut work.t);
         work.face
             .settle_bounds(set, x, &work.residual, problem.scale, settings.natural_step);
         let few = (settings.settled * work.face.free_bounds as f64).max(2.0);
-        if work.face.changed as f64 <= few {
+        let call = (guard.is_none() || solved) && work.face.changed as f64 <= few;
+        current = guard.is_none() || call;
+        if call {
             hook(x, set);
             set.validate()?;
             report.hook_calls += 1;
@@ -224,12 +270,43 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         work.face
             .settle_discs(set, x, &work.residual, problem.scale, settings.natural_step);
         last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
-        if last_jump > 0.0 {
+        if guard.is_some() {
+            // r is free until the next face
+            work.face.loose_weights(set, &mut work.r);
+        }
+        if guard.is_some() && !coarse.repairs_apart() {
+            restore(coarse, set, x, problem.rhs, &work.r)?;
+            last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+            correct(problem, x, ax, true, work, &mut report);
+        } else if last_jump > 0.0 {
             coarse.repair(x, problem.rhs);
             correct(problem, x, ax, true, work, &mut report);
         }
+        if let Some(guard) = &guard {
+            if current {
+                drift = last_jump;
+            } else {
+                let mut t = 1.0;
+                for _ in 0..HALVINGS {
+                    if guard.descends(x, ax, t) {
+                        break;
+                    }
+                    guard.shorten(t, x, ax);
+                    vector::copy(x, &mut work.t);
+                    restore(coarse, set, x, problem.rhs, &work.r)?;
+                    last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+                    correct(problem, x, ax, true, work, &mut report);
+                    t *= 0.5;
+                }
+                if std::env::var_os("FDBG").is_some() { eprintln!("  guard t {t}"); }
+            }
+        }
     }
 }
+
+/// An error after a jump larger than that many times the jump and the error before it comes from bad conditioning, and
+/// has to fall further than `forcing` before the face tells anything.
+const MAGNIFIED: f64 = 10.0;
 
 /// Factor on the forcing after faces without progress, and the forcing below which there is nothing to gain.
 const FINER: f64 = 0.05;
@@ -324,6 +401,20 @@ fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             Err(QpError::CoarseDeficient { .. }) => {}
             Err(error) => return Err(error),
         }
+        let lines = work.face.lines(set);
+        if !lines.is_empty() && count == 2 {
+            match coarse.set_weights_and_lines(&work.w, &lines) {
+                Ok(anew) => {
+                    factored |= anew;
+                    report.factorisations += usize::from(anew);
+                    if coarse.balances(x, problem.rhs) {
+                        return Ok(factored);
+                    }
+                }
+                Err(QpError::CoarseDeficient { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
         if !work.face.release(count) {
             break;
         }
@@ -389,12 +480,14 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
     forcing: f64,
     limits: &Limits,
     constrained: usize,
+    expected: (f64, f64),
     work: &mut FaceWorkspace<A, M>,
     report: &mut FaceReport,
 ) -> Result<(), QpError> {
     vector::copy(&work.z, &mut work.p);
     let mut rho = vector::dot(&work.r, &work.z);
     let start = estimate(&work.z, constrained);
+    let start = (start.0.min(expected.0), start.1.min(expected.1));
     // below a third of the limits further steps buy nothing
     let goal = |all: f64, part: f64| {
         all <= (forcing * start.0).max(0.3 * limits.all)

@@ -7,6 +7,7 @@
 //! | `n`, `tau` | outward normal and tangent of a disc at `x` |
 //! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
 
+use crate::coarse_space::Line;
 use crate::product::{ProductSet, Segment};
 
 /// State of a disc on the current face.
@@ -110,6 +111,25 @@ impl Face {
         self.free_bounds = self.free.len();
     }
 
+    /// The directions of sliding discs, weighted like the preconditioner weighs them.
+    pub(crate) fn lines(&self, set: &ProductSet) -> Vec<Line> {
+        let mut lines = Vec::new();
+        visit(
+            set,
+            |_, _, _, _| {},
+            |first, k, _| {
+                if let Disc::Sliding { tau, damp, .. } = self.discs[k] {
+                    lines.push(Line {
+                        first,
+                        direction: tau,
+                        weight: damp * damp,
+                    });
+                }
+            },
+        );
+        lines
+    }
+
     /// Frees the `count` discs that slide least; false if none slides.
     pub(crate) fn release(&mut self, count: usize) -> bool {
         let mut sliding: Vec<(f64, usize)> = Vec::new();
@@ -182,6 +202,12 @@ impl Face {
             }
             start = end;
         }
+    }
+
+    /// As [`weights`](Self::weights), with 1 on both components of sliding discs too.
+    pub(crate) fn loose_weights(&self, set: &ProductSet, w: &mut [f64]) {
+        self.weights(set, w);
+        self.for_sliding(set, |i, _, _| w[i..i + 2].fill(1.0));
     }
 
     /// Drops the components of `v` that are not free on the face.
