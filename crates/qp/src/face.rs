@@ -28,7 +28,7 @@ use crate::coarse_space::CoarseSpace;
 use crate::error::{QpError, expect_finite, expect_length};
 use crate::face_view::{FacePreconditioner, FaceView};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
-use crate::guard::{Guard, HALVINGS, restore};
+use crate::guard::{Guard, HALVINGS, SHORT, restore};
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
 use crate::report::Status;
@@ -299,6 +299,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
                     t *= 0.5;
                 }
                 if std::env::var_os("FDBG").is_some() { eprintln!("  guard t {t}"); }
+                if t < SHORT {
+                    let (from, step) = guard.path();
+                    work.face.block(set, from, step);
+                } else {
+                    work.face.blocked.clear();
+                }
             }
         }
     }
@@ -307,6 +313,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
 /// An error after a jump larger than that many times the jump and the error before it comes from bad conditioning, and
 /// has to fall further than `forcing` before the face tells anything.
 const MAGNIFIED: f64 = 10.0;
+
+/// Most steps on one face: where more are needed, rounding has taken over or the face is not worth it.
+const MOST_STEPS: usize = 500;
 
 /// Factor on the forcing after faces without progress, and the forcing below which there is nothing to gain.
 const FINER: f64 = 0.05;
@@ -487,6 +496,9 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
     vector::copy(&work.z, &mut work.p);
     let mut rho = vector::dot(&work.r, &work.z);
     let start = estimate(&work.z, constrained);
+    let last = settings
+        .max_products
+        .min(report.products() + MOST_STEPS);
     let start = (start.0.min(expected.0), start.1.min(expected.1));
     // below a third of the limits further steps buy nothing
     let goal = |all: f64, part: f64| {
@@ -494,7 +506,7 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
             && part <= (forcing * start.1).max(0.3 * limits.constrained)
     };
     loop {
-        if report.products() >= settings.max_products || rho <= 0.0 {
+        if report.products() >= last || rho <= 0.0 {
             return Ok(());
         }
         problem

@@ -27,6 +27,9 @@ pub(crate) struct Guard {
 /// Share of the decrease on the face that a move has to keep.
 const SUFFICIENT: f64 = 1e-2;
 
+/// Steps shortened below this part of their length are held up by blocks at their boundary.
+pub(crate) const SHORT: f64 = 0.3;
+
 /// Halvings of the step.
 pub(crate) const HALVINGS: usize = 10;
 
@@ -69,6 +72,11 @@ impl Guard {
         change <= SUFFICIENT * t * self.full
     }
 
+    /// The last feasible point and the step from it.
+    pub(crate) fn path(&self) -> (&[f64], &[f64]) {
+        (&self.x, &self.step)
+    }
+
     /// The point at `t` times the step, not projected.
     pub(crate) fn shorten(&self, t: f64, x: &mut [f64], ax: &mut [f64]) {
         vector::copy(&self.x, x);
@@ -107,5 +115,6 @@ pub(crate) fn restore<C: CoarseSpace>(
         set.project(x);
         coarse.balance(x, e, w)?;
     }
+    if std::env::var_os("FDBG").is_some() { eprintln!("  restore {:.1e}", set.violation(x) / vector::norm(x)); }
     Ok(())
 }
