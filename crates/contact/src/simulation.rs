@@ -298,7 +298,6 @@ impl Simulation {
         loop {
             let (report, lambda, rows) = self.solve_once(tolerance)?;
             let largest = self.certificate.largest();
-            if std::env::var_os("FDBG").is_some() { eprintln!("CERT {} {:?}", report.status.converged(), self.certificate.parts().map(|p| (p.0, p.1.relative()))); }
             let certified = largest <= limit;
             let first = total.is_none();
             let mut converged = report.status.converged();

@@ -13,9 +13,11 @@
 //! inverse of `A` on the face, so its length is the distance to the solution up to the quality of
 //! the preconditioner.
 //!
-//! A predicted face must hold every rigid mode; where it does not, the points that slide least are taken for
-//! sticking. The prediction is not monotone in general. After `patience` faces without progress the faces are
-//! solved more accurately, and [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
+//! A predicted face must hold every rigid mode; where it does not, points that slide help along their circles, or those
+//! that slide least are taken for sticking. The prediction is not monotone in general. After `patience` faces without
+//! progress the faces are solved more accurately, every move has to lower the cost, and the set follows the solution
+//! only where the problem with the present set is solved. [`Status::Stagnated`] tells that this did not help either;
+//! [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
 //!
 //! | local | meaning |
 //! |---|---|
@@ -26,9 +28,10 @@
 
 use crate::coarse_space::CoarseSpace;
 use crate::error::{QpError, expect_finite, expect_length};
-use crate::face_view::{FacePreconditioner, FaceView};
+use crate::face_hold::{hold, set_face};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
-use crate::guard::{Guard, HALVINGS, SHORT, restore};
+use crate::face_view::{FacePreconditioner, FaceView};
+use crate::guard::{Guard, SHORT, SHORTEST, restore};
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
 use crate::report::Status;
@@ -128,16 +131,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     let mut forcing = settings.forcing;
     let mut best = f64::INFINITY;
     let mut waited = 0;
+    // error estimate after the last face
     let mut left = (f64::INFINITY, f64::INFINITY);
     let mut guard: Option<Guard> = None;
-    let mut current = true;
-    let mut drift = f64::INFINITY;
+    // with a guard: whether the set followed the last face, how far x moved then, and very short steps in a row
+    let (mut current, mut drift, mut held_up) = (true, f64::INFINITY, 0);
     loop {
-        if std::env::var_os("FDBG").is_some() {
-            let mut y = ax.to_vec();
-            problem.operator.apply(x, &mut y, &mut work.operator);
-            eprintln!("AX {:.1e} of {:.1e}", vector::distance(&y, ax), vector::norm(&y));
-        }
         residual(problem, coarse, ax, work);
         work.face
             .classify(set, x, &work.residual, problem.scale, settings.natural_step);
@@ -171,8 +170,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             });
         }
         // the jump is what the last move to the predicted face changed
-        let settled = report.faces == 0 || last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
-        let settled = settled && current;
+        let settled =
+            report.faces == 0 || current && last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
         if peak > SHRUNK * x_norm {
             // A x still carries the rounding errors of a much larger x
             peak = x_norm;
@@ -181,14 +180,15 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             continue;
         }
         peak = peak.max(x_norm);
+        // with a guard the set follows the solution only where the problem with the present set is solved
+        let solved = errors.1 <= (FOLLOW * drift).max(limits.constrained);
+        if solved && !work.face.blocked.is_empty() {
+            work.face.blocked.clear();
+            continue;
+        }
         if errors.0 <= limits.all && errors.1 <= limits.constrained && settled {
             report.status = Status::Converged;
             return Ok(report);
-        }
-        if std::env::var_os("FDBG").is_some() {
-            let (mut fr, mut sl, mut fx) = (0, 0, 0);
-            for d in &work.face.discs { match d { crate::face_state::Disc::Free => fr += 1, crate::face_state::Disc::Fixed => fx += 1, _ => sl += 1 } }
-            eprintln!("face {} prod {} err {:.2e} cerr {:.2e} jump {:.2e} lim {:.1e} freeb {} changed {} discs free {} slide {} fixed {} forcing {:.0e} hooks {}", report.faces, report.products(), errors.0/limits.all*settings.tolerance, errors.1/limits.constrained*settings.tolerance, last_jump/limits.constrained*settings.tolerance, settings.tolerance, work.face.free_bounds, work.face.changed, fr, sl, fx, forcing, report.hook_calls);
         }
         let measure =
             (errors.0 / limits.all).max(errors.1.max(last_jump.min(f64::MAX)) / limits.constrained);
@@ -199,6 +199,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             waited += 1;
         }
         if waited >= settings.patience && guard.is_none() {
+            // predictions run in circles: solve the faces better, and descend
             guard = Some(Guard::new(n));
             forcing *= FINER;
             best = measure;
@@ -211,22 +212,15 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
                 continue;
             }
         }
-        if waited >= settings.patience && forcing > FINEST && false {
-            // predictions from a badly conditioned face need a better solution on it
-            forcing *= FINER;
-            best = measure;
-            waited = 0;
-        }
-        if waited >= 5 * settings.patience {
+        if waited >= LONGER * settings.patience || held_up >= HELD_UP {
             report.status = Status::Stagnated;
             return Ok(report);
         }
-        if report.faces >= settings.max_faces * (1 + 2 * usize::from(guard.is_some())) || report.products() >= settings.max_products {
+        let faces = if guard.is_some() { LONGER } else { 1 } * settings.max_faces;
+        if report.faces >= faces || report.products() >= settings.max_products {
             report.status = Status::IterationLimit;
             return Ok(report);
         }
-
-        let solved = errors.1 <= (0.1 * drift).max(limits.constrained);
         if let Some(guard) = &mut guard {
             guard.enter(x, ax, &work.residual);
         }
@@ -240,13 +234,15 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             forcing,
             &limits,
             constrained,
-            (MAGNIFIED * (last_jump + left.0), MAGNIFIED * (last_jump + left.1)),
+            (
+                MAGNIFIED * (last_jump + left.0),
+                MAGNIFIED * (last_jump + left.1),
+            ),
             work,
             &mut report,
         )?;
         left = estimate(&work.z, constrained);
         report.faces += 1;
-        if std::env::var_os("FDBG").is_some() { eprintln!("   cg done products {}", report.products()); }
 
         // the natural map predicts the next face, and x moves there
         residual(problem, coarse, ax, work);
@@ -282,30 +278,26 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             coarse.repair(x, problem.rhs);
             correct(problem, x, ax, true, work, &mut report);
         }
-        if let Some(guard) = &guard {
-            if current {
-                drift = last_jump;
-            } else {
-                let mut t = 1.0;
-                for _ in 0..HALVINGS {
-                    if guard.descends(x, ax, t) {
-                        break;
-                    }
-                    guard.shorten(t, x, ax);
-                    vector::copy(x, &mut work.t);
-                    restore(coarse, set, x, problem.rhs, &work.r)?;
-                    last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
-                    correct(problem, x, ax, true, work, &mut report);
-                    t *= 0.5;
-                }
-                if std::env::var_os("FDBG").is_some() { eprintln!("  guard t {t}"); }
-                if t < SHORT {
-                    let (from, step) = guard.path();
-                    work.face.block(set, from, step);
-                } else {
-                    work.face.blocked.clear();
-                }
-            }
+        let Some(guard) = &guard else { continue };
+        if current {
+            drift = last_jump;
+            continue;
+        }
+        let mut t = 1.0;
+        while t > SHORTEST && !guard.descends(x, ax, t) {
+            guard.shorten(t, x, ax);
+            vector::copy(x, &mut work.t);
+            restore(coarse, set, x, problem.rhs, &work.r)?;
+            last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+            correct(problem, x, ax, true, work, &mut report);
+            t *= 0.5;
+        }
+        held_up = if t > 16.0 * SHORTEST { 0 } else { held_up + 1 };
+        if t < SHORT {
+            let (from, step) = guard.path();
+            work.face.block(set, from, step);
+        } else {
+            work.face.blocked.clear();
         }
     }
 }
@@ -317,9 +309,14 @@ const MAGNIFIED: f64 = 10.0;
 /// Most steps on one face: where more are needed, rounding has taken over or the face is not worth it.
 const MOST_STEPS: usize = 500;
 
-/// Factor on the forcing after faces without progress, and the forcing below which there is nothing to gain.
+/// Factor on the forcing after faces without progress.
 const FINER: f64 = 0.05;
-const FINEST: f64 = 1e-3;
+
+/// With a guard: factor on patience and faces; share of the last move of the set to which its problem is solved before the
+/// set follows again; very short steps in a row that end it.
+const LONGER: usize = 5;
+const FOLLOW: f64 = 0.1;
+const HELD_UP: usize = 20;
 
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
@@ -372,65 +369,6 @@ fn residual<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     vector::copy(ax, &mut work.residual);
     vector::axpy(-1.0, problem.linear, &mut work.residual);
     coarse.project_transpose(&mut work.residual);
-}
-
-/// Hands the weights of the current face to the coarse space; whether it factored anew.
-fn set_face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    coarse: &mut C,
-    set: &ProductSet,
-    work: &mut FaceWorkspace<A, M>,
-    report: &mut FaceReport,
-) -> Result<bool, QpError> {
-    work.face.weights(set, &mut work.w);
-    let factored = coarse.set_weights(&work.w)?;
-    report.factorisations += usize::from(factored);
-    Ok(factored)
-}
-
-/// As [`set_face`]; where the free components of the predicted face do not hold every rigid mode, the points that slide
-/// least are taken for sticking, as many as it needs, and in the end every component for free.
-fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    problem: &FaceProblem<'_, A, M>,
-    coarse: &mut C,
-    set: &ProductSet,
-    x: &[f64],
-    work: &mut FaceWorkspace<A, M>,
-    report: &mut FaceReport,
-) -> Result<bool, QpError> {
-    let mut count = 2;
-    let mut factored = false;
-    loop {
-        match set_face(coarse, set, work, report) {
-            Ok(anew) => {
-                factored |= anew;
-                if coarse.balances(x, problem.rhs) {
-                    return Ok(factored);
-                }
-            }
-            Err(QpError::CoarseDeficient { .. }) => {}
-            Err(error) => return Err(error),
-        }
-        let lines = work.face.lines(set);
-        if !lines.is_empty() && count == 2 {
-            match coarse.set_weights_and_lines(&work.w, &lines) {
-                Ok(anew) => {
-                    factored |= anew;
-                    report.factorisations += usize::from(anew);
-                    if coarse.balances(x, problem.rhs) {
-                        return Ok(factored);
-                    }
-                }
-                Err(QpError::CoarseDeficient { .. }) => {}
-                Err(error) => return Err(error),
-            }
-        }
-        if !work.face.release(count) {
-            break;
-        }
-        count *= 2;
-    }
-    work.face.free_all();
-    Ok(set_face(coarse, set, work, report)? || factored)
 }
 
 /// `ax += A (x - t)`, or `ax = A x`.
@@ -496,9 +434,7 @@ fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperato
     vector::copy(&work.z, &mut work.p);
     let mut rho = vector::dot(&work.r, &work.z);
     let start = estimate(&work.z, constrained);
-    let last = settings
-        .max_products
-        .min(report.products() + MOST_STEPS);
+    let last = settings.max_products.min(report.products() + MOST_STEPS);
     let start = (start.0.min(expected.0), start.1.min(expected.1));
     // below a third of the limits further steps buy nothing
     let goal = |all: f64, part: f64| {

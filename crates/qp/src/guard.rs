@@ -30,8 +30,8 @@ const SUFFICIENT: f64 = 1e-2;
 /// Steps shortened below this part of their length are held up by blocks at their boundary.
 pub(crate) const SHORT: f64 = 0.3;
 
-/// Halvings of the step.
-pub(crate) const HALVINGS: usize = 10;
+/// Shortest step that is tried.
+pub(crate) const SHORTEST: f64 = 1e-3;
 
 impl Guard {
     pub(crate) fn new(n: usize) -> Self {
@@ -59,8 +59,8 @@ impl Guard {
         vector::subtract(&self.x, &mut self.step);
         vector::copy(ax, &mut self.astep);
         vector::subtract(&self.ax, &mut self.astep);
-        self.full = vector::dot(&self.step, &self.residual)
-            + 0.5 * vector::dot(&self.step, &self.astep);
+        self.full =
+            vector::dot(&self.step, &self.residual) + 0.5 * vector::dot(&self.step, &self.astep);
     }
 
     /// Whether the cost at `x` has fallen enough for a step of length `t`.
@@ -115,6 +115,5 @@ pub(crate) fn restore<C: CoarseSpace>(
         set.project(x);
         coarse.balance(x, e, w)?;
     }
-    if std::env::var_os("FDBG").is_some() { eprintln!("  restore {:.1e}", set.violation(x) / vector::norm(x)); }
     Ok(())
 }

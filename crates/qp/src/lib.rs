@@ -93,6 +93,7 @@ pub mod dense;
 mod dense_coarse;
 mod error;
 pub mod face;
+mod face_hold;
 mod face_settings;
 mod face_state;
 mod face_view;

@@ -207,11 +207,10 @@ impl CoarseSpace for FaceSpace {
         let fixed = lines.is_empty() && w[self.contact_rows..].iter().all(|w| *w == 1.0);
         let split = self.split.as_ref().filter(|_| fixed);
         let spare = self.spare.take();
-        let factor =
-            match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
-                Some(factor) => factor,
-                None => self.coarse.factor_weighted(weights).map_err(deficient)?,
-            };
+        let factor = match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
+            Some(factor) => factor,
+            None => self.coarse.factor_weighted(weights).map_err(deficient)?,
+        };
         if let Some(motion) = self.deficiency(&factor) {
             return Err(QpError::CoarseDeficient { motion });
         }

@@ -137,14 +137,21 @@ impl Scaling {
         let count = self.pointers[group + 1] - self.pointers[group];
         image.clear();
         image.resize(count, 0.0);
-        let places = || values.iter().enumerate().map(|(k, v)| (self.contact[row + k].1 as usize, v));
+        let places = || {
+            values
+                .iter()
+                .enumerate()
+                .map(|(k, v)| (self.contact[row + k].1 as usize, v))
+        };
         for (place, value) in places() {
             for (out, entry) in image.iter_mut().zip(&matrix[place * count..]) {
                 *out += value * entry;
             }
         }
         let own: f64 = places().map(|(place, value)| value * image[place]).sum();
-        let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
+        let size = (0..count)
+            .map(|k| matrix[k * (count + 1)])
+            .fold(0.0, f64::max);
         if own <= 1e-14 * size {
             return;
         }
