@@ -292,7 +292,11 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             correct(problem, x, ax, true, work, &mut report);
             t *= 0.5;
         }
-        held_up = if t > 16.0 * SHORTEST { 0 } else { held_up + 1 };
+        held_up = if t > 16.0 * SHORTEST || !coarse.repairs_apart() {
+            0
+        } else {
+            held_up + 1
+        };
         if t < SHORT {
             let (from, step) = guard.path();
             work.face.block(set, from, step);
