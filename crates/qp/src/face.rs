@@ -208,6 +208,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
                 vector::copy(x, &mut work.t);
                 work.face.loose_weights(set, &mut work.r);
                 restore(coarse, set, x, problem.rhs, &work.r)?;
+                last_jump = last_jump.max(set.violation(x));
                 correct(problem, x, ax, true, work, &mut report);
                 continue;
             }
@@ -272,7 +273,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         }
         if guard.is_some() && !coarse.repairs_apart() {
             restore(coarse, set, x, problem.rhs, &work.r)?;
-            last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+            // where set and equality do not meet, this does not fall
+            last_jump =
+                vector::distance(&x[..constrained], &work.t[..constrained]).max(set.violation(x));
             correct(problem, x, ax, true, work, &mut report);
         } else if last_jump > 0.0 {
             coarse.repair(x, problem.rhs);
@@ -288,7 +291,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             guard.shorten(t, x, ax);
             vector::copy(x, &mut work.t);
             restore(coarse, set, x, problem.rhs, &work.r)?;
-            last_jump = vector::distance(&x[..constrained], &work.t[..constrained]);
+            // where set and equality do not meet, this does not fall
+            last_jump =
+                vector::distance(&x[..constrained], &work.t[..constrained]).max(set.violation(x));
             correct(problem, x, ax, true, work, &mut report);
             t *= 0.5;
         }
