@@ -4,7 +4,9 @@
 mod common;
 
 use common::block;
-use signorini_contact::{Contact, Friction, LevelStatus, Load, Scene, Settings, Simulation, Support};
+use signorini_contact::{
+    Contact, Friction, LevelStatus, Load, Scene, Settings, Simulation, Support,
+};
 use signorini_fem_mesh::{Hooke, Materials, brick};
 
 /// One level: status, certificate, products, whether SMALSE had to help.
@@ -46,7 +48,8 @@ fn jumps_on_interfaces_are_solved() {
             Friction::None
         };
         let (status, certificate, found, fallback) = level(ratio, law);
-        let what = format!("ratio {ratio:e}, F {friction}: {found} products, certificate {certificate:e}");
+        let what =
+            format!("ratio {ratio:e}, F {friction}: {found} products, certificate {certificate:e}");
         println!("{what}, fallback {fallback}");
         assert!(status.converged() && certificate <= 1e-5, "{what}");
         assert!(!fallback && found <= products, "{what}");
