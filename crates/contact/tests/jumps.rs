@@ -5,12 +5,12 @@ mod common;
 
 use common::block;
 use signorini_contact::{
-    Contact, Friction, LevelStatus, Load, Scene, Settings, Simulation, Support,
+    Contact, Friction, LevelStatus, Load, Method, Scene, Settings, Simulation, Support,
 };
 use signorini_fem_mesh::{Hooke, Materials, brick};
+use signorini_qp::FaceSettings;
 
-/// One level: status, certificate, products, whether SMALSE had to help.
-fn level(ratio: f64, friction: Friction) -> (LevelStatus, f64, usize, bool) {
+fn scene(ratio: f64, friction: Friction) -> Scene {
     let mesh = block([3.0, 1.0, 1.0], [9, 3, 3]);
     let regions = (0..mesh.tets().len())
         .map(|t| {
@@ -20,14 +20,19 @@ fn level(ratio: f64, friction: Friction) -> (LevelStatus, f64, usize, bool) {
         .collect();
     let hooke = |young| Hooke::isotropic(young, 0.277).expect("material");
     let materials = Materials::new(vec![(0, hooke(1e3)), (1, hooke(1e3 / ratio))]);
-    let scene = Scene::new(
+    Scene::new(
         mesh.with_regions(regions).expect("regions"),
         materials.expect("materials"),
     )
     .with_support(Support::fixed(brick::X_MIN))
     .with_load(Load::traction(brick::Z_MAX, [0.1, 0.0, -1.0]))
     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
-    .with_boxes([3, 1, 1]);
+    .with_boxes([3, 1, 1])
+}
+
+/// One level: status, certificate, products, whether SMALSE had to help.
+fn level(ratio: f64, friction: Friction) -> (LevelStatus, f64, usize, bool) {
+    let scene = scene(ratio, friction);
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
     let frame = simulation.step().expect("step");
     let report = frame.report();
@@ -63,3 +68,25 @@ const JUMPS: [(f64, f64, usize); 4] = [
     (1e3, 0.3, 3000),
     (1e6, 0.0, 300),
 ];
+
+/// The fall-back says no in time.
+#[test]
+fn the_fall_back_is_bounded() {
+    let limit = 50;
+    let few = Method::Face(FaceSettings::default().with_max_faces(1));
+    let settings = Settings::default()
+        .with_method(few)
+        .with_max_fallback_products(limit);
+    let scene = scene(1e6, Friction::coulomb(0.3));
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    let frame = simulation.step().expect("step");
+    let report = frame.report();
+    assert!(report.fallback);
+    assert_eq!(report.status, LevelStatus::IterationLimit);
+    // the last step of KPRGP is finished
+    assert!(
+        (1..=limit + 10).contains(&report.fallback_products),
+        "{}",
+        report.fallback_products
+    );
+}
