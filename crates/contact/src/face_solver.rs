@@ -141,10 +141,12 @@ impl FaceSolver {
             None => Box::new(PaperSolver::new(model, settings)?),
         };
         iterate.multiplier.clear();
-        let outcome = paper.solve(model, level, settings, iterate);
+        let limit = settings.max_fallback_products;
+        let outcome = paper.solve_within(limit, model, level, settings, iterate);
         self.paper = Some(paper);
         let second = outcome?;
         report.fallback = true;
+        report.fallback_products = second.counters.products;
         // SMALSE has no such estimate
         report.estimated_error = None;
         report.status = second.status;

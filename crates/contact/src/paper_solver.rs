@@ -35,6 +35,8 @@ pub(crate) struct PaperSolver {
     settings: SmalseSettings,
     accuracy: InnerAccuracy,
     one_loop: bool,
+    /// Products left.
+    left: usize,
 }
 
 impl std::fmt::Debug for PaperSolver {
@@ -71,7 +73,23 @@ impl PaperSolver {
             settings: smalse,
             accuracy,
             one_loop,
+            left: usize::MAX,
         })
+    }
+
+    /// As [`solve`](Self::solve), with at most `limit` products.
+    pub(crate) fn solve_within(
+        &mut self,
+        limit: usize,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<LevelReport, ContactError> {
+        self.left = limit;
+        let report = self.solve(model, level, settings, iterate);
+        self.left = usize::MAX;
+        report
     }
 
     pub(crate) fn solve(
@@ -119,12 +137,13 @@ impl PaperSolver {
         hook: &mut impl OuterHook<ProductSet>,
         iterate: &mut Iterate,
     ) -> Result<SmalseReport, ContactError> {
-        let settings = self
+        let mut settings = self
             .settings
             .with_tolerance(Tolerance::Relative(tolerance))
             .with_equality(tolerance);
+        settings.inner.max_products = settings.inner.max_products.min(self.left).max(1);
         let operator = model.tfeti.dual();
-        Ok(smalse(
+        let report = smalse(
             operator,
             &level.linear,
             &self.coarse,
@@ -136,7 +155,9 @@ impl PaperSolver {
             &mut iterate.lambda,
             &mut iterate.multiplier,
             &mut self.work,
-        )?)
+        )?;
+        self.left = self.left.saturating_sub(report.products.total());
+        Ok(report)
     }
 
     /// (3.17): the map takes normal multipliers to normal multipliers.
@@ -172,6 +193,9 @@ impl PaperSolver {
                     exact = 1;
                 }
                 last = change;
+                if self.left == 0 {
+                    return Err(None);
+                }
                 let tolerance = match self.accuracy {
                     InnerAccuracy::Adaptive { factor, loosest } if exact == 0 => {
                         (factor * change).min(loosest).max(target)
@@ -182,14 +206,26 @@ impl PaperSolver {
                 iterate.lambda[normal.clone()].copy_from_slice(x);
                 level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
-                let qp = self.given_friction(model, level, tolerance, &mut (), iterate)?;
+                let qp = self
+                    .given_friction(model, level, tolerance, &mut (), iterate)
+                    .map_err(Some)?;
                 inner = qp.status;
                 add(report, &qp);
                 x.copy_from_slice(&iterate.lambda[normal.clone()]);
                 exact += usize::from(tolerance <= target);
-                Ok::<bool, ContactError>(tolerance <= target)
+                Ok(tolerance <= target)
             },
-        )?;
+        );
+        let outcome = match outcome {
+            Ok(outcome) => outcome,
+            // no products left
+            Err(None) => {
+                report.iterations = report.counters.quadratic_programs;
+                report.status = LevelStatus::IterationLimit;
+                return Ok(());
+            }
+            Err(Some(error)) => return Err(error),
+        };
         report.iterations = outcome.evaluations;
         report.status = match outcome.verdict {
             Verdict::Converged => level_status(inner),

@@ -3,7 +3,7 @@
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::settings::Preconditioner as Choice;
-use signorini_qp::{SymmetricOperator, vector};
+use signorini_qp::{FacePreconditioner, FaceView, SymmetricOperator, vector};
 use signorini_tfeti::{Preconditioner, PreconditionerScratch};
 
 /// A preconditioner of the dual problem.
@@ -63,6 +63,14 @@ impl SymmetricOperator for DualPreconditioner {
             }
             // a scratch of another preconditioner
             (Self::Stiffness(_), None) => y.fill(0.0),
+        }
+    }
+}
+
+impl FacePreconditioner for DualPreconditioner {
+    fn enter(&self, face: &FaceView<'_>, s: &mut Self::Scratch) {
+        if let (Self::Stiffness(p), Some(s)) = (self, s) {
+            p.enter(face, s);
         }
     }
 }

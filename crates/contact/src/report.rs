@@ -97,6 +97,8 @@ pub struct LevelReport {
     pub fixed_point: Option<FixedPointReport>,
     /// Whether the face method gave up and SMALSE finished the level.
     pub fallback: bool,
+    /// Products with F that SMALSE took for that, contained in the counters.
+    pub fallback_products: usize,
     /// The solver's own estimate of the relative error of the multipliers, where it has one.
     pub estimated_error: Option<f64>,
     /// Estimates of the level's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
@@ -112,6 +114,7 @@ impl LevelReport {
             steps: Steps::default(),
             fixed_point: None,
             fallback: false,
+            fallback_products: 0,
             estimated_error: None,
             accuracy: None,
         }
@@ -123,6 +126,7 @@ impl LevelReport {
         next.iterations += self.iterations;
         next.steps += self.steps;
         next.fallback |= self.fallback;
+        next.fallback_products += self.fallback_products;
         next
     }
 }

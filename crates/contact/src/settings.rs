@@ -119,6 +119,7 @@ pub enum Preconditioner {
 /// | `sharing` | whether equal subdomains share factors | | automatic | |
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
+/// | `max_fallback_products` | most products with F of one call of SMALSE's fall-back, after which a level ends as `IterationLimit` | >= 1 | 20,000 | |
 /// | `screening` | whether contact points that stay open leave the dual problem | [`Screening`] | off | |
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -141,6 +142,8 @@ pub struct Settings {
     pub inverse: InverseSettings,
     /// Preconditioner of the default method.
     pub preconditioner: Preconditioner,
+    /// Most products with F that the fall-back of the default method may take at a time.
+    pub max_fallback_products: usize,
     /// Whether contact points that stay open leave the dual problem.
     pub screening: Screening,
 }
@@ -157,6 +160,7 @@ impl Default for Settings {
             sharing: Sharing::default(),
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
+            max_fallback_products: 20_000,
             screening: Screening::default(),
         }
     }
@@ -226,6 +230,13 @@ impl Settings {
         self
     }
 
+    /// Sets the most products of the fall-back.
+    #[must_use]
+    pub fn with_max_fallback_products(mut self, max: usize) -> Self {
+        self.max_fallback_products = max;
+        self
+    }
+
     /// Sets whether contact points that stay open leave the dual problem.
     #[must_use]
     pub fn with_screening(mut self, screening: Screening) -> Self {
@@ -244,12 +255,17 @@ impl Settings {
         self.inverse.validate()?;
         self.accuracy.validate()?;
         self.screening.validate()?;
-        if self.max_fixed_point == 0 {
-            return Err(ContactError::Setting {
-                name: "max_fixed_point",
-                value: 0.0,
-                range: "at least 1",
-            });
+        for (name, value) in [
+            ("max_fixed_point", self.max_fixed_point),
+            ("max_fallback_products", self.max_fallback_products),
+        ] {
+            if value == 0 {
+                return Err(ContactError::Setting {
+                    name,
+                    value: 0.0,
+                    range: "at least 1",
+                });
+            }
         }
         match &self.method {
             Method::Face(face) => face.validate()?,

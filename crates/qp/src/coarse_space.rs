@@ -28,6 +28,16 @@ pub trait CoarseSpace {
     /// rigid mode. The previous factorisation is then lost.
     fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError>;
 
+    /// As [`set_weights`](Self::set_weights), with pairs of components of weight zero that may move along one direction
+    /// each (points that slide). For faces whose free components alone do not suffice; a space without such weights
+    /// leaves the lines out.
+    ///
+    /// # Errors
+    /// [`QpError::CoarseDeficient`] if that does not hold every rigid mode either.
+    fn set_weights_and_lines(&mut self, w: &[f64], _lines: &[Line]) -> Result<bool, QpError> {
+        self.set_weights(w)
+    }
+
     /// Whether the components of weight zero, at their values in `x`, leave a balance that the others can complete: rigid
     /// modes that no component of positive weight holds must see no work of `e - G x`.
     fn balances(&mut self, _x: &[f64], _e: &[f64]) -> bool {
@@ -46,6 +56,32 @@ pub trait CoarseSpace {
     /// The least change of unconstrained components (weights of the last
     /// [`set_weights`](Self::set_weights) where those alone do not suffice) that restores `G x = e`.
     fn repair(&mut self, x: &mut [f64], e: &[f64]);
+
+    /// Whether [`repair`](Self::repair) changes unconstrained components only.
+    fn repairs_apart(&self) -> bool {
+        true
+    }
+
+    /// The change of components with weights `w`, least in their metric, that restores `G x = e`; constrained ones may
+    /// leave their set. A space that can [`repair`](Self::repair) apart may use the weights of its last face.
+    ///
+    /// # Errors
+    /// [`QpError::CoarseDeficient`] if these components do not hold every rigid mode.
+    fn balance(&mut self, x: &mut [f64], e: &[f64], _w: &[f64]) -> Result<(), QpError> {
+        self.repair(x, e);
+        Ok(())
+    }
+}
+
+/// Weight `weight * c cᵀ` on the components `first` and `first + 1`, `c` the unit `direction`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// First of the two components.
+    pub first: usize,
+    /// Unit vector.
+    pub direction: [f64; 2],
+    /// Positive weight.
+    pub weight: f64,
 }
 
 /// No equality constraint at all: every projector is the identity.

@@ -13,9 +13,11 @@
 //! inverse of `A` on the face, so its length is the distance to the solution up to the quality of
 //! the preconditioner.
 //!
-//! A predicted face must hold every rigid mode; where it does not, the points that slide least are taken for
-//! sticking. The prediction is not monotone in general. After `patience` faces without progress the faces are
-//! solved more accurately, and [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
+//! A predicted face must hold every rigid mode; where it does not, points that slide help along their circles, or those
+//! that slide least are taken for sticking. The prediction is not monotone in general. After `patience` faces without
+//! progress the faces are solved more accurately, every move has to lower the cost, and the set follows the solution
+//! only where the problem with the present set is solved. [`Status::Stagnated`] tells that this did not help either;
+//! [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
 //!
 //! The move to the next face and the next conjugate gradient step share one product: the step is taken with the length of
 //! the last one, and conjugate gradients start anew from the exact residual.
@@ -30,7 +32,10 @@
 use crate::coarse_space::CoarseSpace;
 use crate::error::{QpError, expect_finite, expect_length};
 use crate::face_cg::{Limits, conjugate_gradients, estimate, precondition, start_residual};
+use crate::face_hold::{hold, set_face};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
+use crate::face_view::{FacePreconditioner, FaceView};
+use crate::guard::{Guard, SHORT, SHORTEST, restore};
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
 use crate::report::Status;
@@ -64,7 +69,7 @@ pub type FaceHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
 /// # Errors
 /// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
 /// [`QpError::CoarseDeficient`] if not even all components together hold the rigid modes.
-pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
+pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
     set: &mut ProductSet,
@@ -131,6 +136,11 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     let mut forcing = settings.forcing;
     let mut best = f64::INFINITY;
     let mut waited = 0;
+    // error estimate after the last face
+    let mut left = (f64::INFINITY, f64::INFINITY);
+    let mut guard: Option<Guard> = None;
+    // with a guard: whether the set followed the last face, how far x moved then, and very short steps in a row
+    let (mut current, mut drift, mut held_up) = (true, f64::INFINITY, 0);
     loop {
         residual(problem, coarse, ax, work);
         work.face
@@ -144,6 +154,10 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             }
             Err(error) => return Err(error),
         }
+        let view = FaceView::new(set, &work.face);
+        problem
+            .preconditioner
+            .enter(&view, &mut work.preconditioner);
         start_residual(set, work);
         let rho = precondition(problem, coarse, set, work, &mut report);
         let (x_norm, c_norm) = (vector::norm(x), vector::norm(&x[..constrained]));
@@ -158,7 +172,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             });
         }
         // the jump is what the last move to the predicted face changed
-        let settled = report.faces == 0 || last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
+        let settled =
+            report.faces == 0 || current && last_jump <= limits.constrained.max(f64::MIN_POSITIVE);
         if peak > SHRUNK * x_norm {
             // A x still carries the rounding errors of a much larger x
             peak = x_norm;
@@ -167,6 +182,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             continue;
         }
         peak = peak.max(x_norm);
+        // with a guard the set follows the solution only where the problem with the present set is solved
+        let solved = errors.1 <= (FOLLOW * drift).max(limits.constrained);
+        if solved && !work.face.blocked.is_empty() {
+            work.face.blocked.clear();
+            continue;
+        }
         if errors.0 <= limits.all && errors.1 <= limits.constrained && settled {
             report.status = Status::Converged;
             return Ok(report);
@@ -179,21 +200,33 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         } else if report.faces > 0 {
             waited += 1;
         }
-        if waited >= settings.patience && forcing > FINEST {
-            // predictions from a badly conditioned face need a better solution on it
+        if waited >= settings.patience && guard.is_none() {
+            // predictions run in circles: solve the faces better, and descend
+            guard = Some(Guard::new(n));
             forcing *= FINER;
             best = measure;
             waited = 0;
+            if !coarse.repairs_apart() {
+                vector::copy(x, &mut work.t);
+                work.face.loose_weights(set, &mut work.z);
+                restore(coarse, set, x, problem.rhs, &work.z)?;
+                last_jump = last_jump.max(set.violation(x));
+                correct(problem, x, ax, true, work, &mut report);
+                continue;
+            }
         }
-        if waited >= settings.patience {
+        if waited >= LONGER * settings.patience || held_up >= HELD_UP {
             report.status = Status::Stagnated;
             return Ok(report);
         }
-        if report.faces >= settings.max_faces || report.products() >= settings.max_products {
+        let faces = if guard.is_some() { LONGER } else { 1 } * settings.max_faces;
+        if report.faces >= faces || report.products() >= settings.max_products {
             report.status = Status::IterationLimit;
             return Ok(report);
         }
-
+        if let Some(guard) = &mut guard {
+            guard.enter(x, ax, &work.residual);
+        }
         let step = conjugate_gradients(
             problem,
             coarse,
@@ -204,15 +237,23 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
             settings.max_products,
             forcing,
             &limits,
+            (
+                MAGNIFIED * (last_jump + left.0),
+                MAGNIFIED * (last_jump + left.1),
+            ),
             work,
             &mut report,
         )?;
+        left = estimate(work);
         report.faces += 1;
+        if let Some(guard) = &mut guard {
+            guard.leave(x, ax);
+        }
 
-        // the natural map predicts the next face, and x moves there, with the next step on top
+        // the natural map predicts the next face, and x moves there, with the next step on top: without constraints
+        // there is no move to share a product with, and with a guard only what descends is taken
         vector::copy(x, &mut work.t);
-        // without constraints there is no move to share a product with
-        let joint = if constrained > 0 {
+        let joint = if constrained > 0 && guard.is_none() {
             settings.joint_step * step
         } else {
             0.0
@@ -225,7 +266,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         work.face
             .settle_bounds(set, x, &work.residual, problem.scale, natural);
         let few = (settings.settled * work.face.free_bounds as f64).max(2.0);
-        if work.face.changed as f64 <= few {
+        let call = (guard.is_none() || solved) && work.face.changed as f64 <= few;
+        current = guard.is_none() || call;
+        if call {
             hook(x, set);
             set.validate()?;
             report.hook_calls += 1;
@@ -236,18 +279,64 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         work.face
             .settle_discs(set, x, &work.residual, problem.scale, natural);
         last_jump = vector::distance(&x[..constrained], &work.before);
-        if last_jump > 0.0 {
-            coarse.repair(x, problem.rhs);
+        if guard.is_some() {
+            // z is free until the next face
+            work.face.loose_weights(set, &mut work.z);
         }
-        if last_jump > 0.0 || joint > 0.0 {
+        if guard.is_some() && !coarse.repairs_apart() {
+            restore(coarse, set, x, problem.rhs, &work.z)?;
+            // where set and equality do not meet, this does not fall
+            last_jump =
+                vector::distance(&x[..constrained], &work.t[..constrained]).max(set.violation(x));
             correct(problem, x, ax, true, work, &mut report);
+        } else if last_jump > 0.0 {
+            coarse.repair(x, problem.rhs);
+            correct(problem, x, ax, true, work, &mut report);
+        } else if joint > 0.0 {
+            correct(problem, x, ax, true, work, &mut report);
+        }
+        let Some(guard) = &guard else { continue };
+        if current {
+            drift = last_jump;
+            continue;
+        }
+        let mut t = 1.0;
+        while t > SHORTEST && !guard.descends(x, ax, t) {
+            guard.shorten(t, x, ax);
+            vector::copy(x, &mut work.t);
+            restore(coarse, set, x, problem.rhs, &work.z)?;
+            // where set and equality do not meet, this does not fall
+            last_jump =
+                vector::distance(&x[..constrained], &work.t[..constrained]).max(set.violation(x));
+            correct(problem, x, ax, true, work, &mut report);
+            t *= 0.5;
+        }
+        held_up = if t > 16.0 * SHORTEST || !coarse.repairs_apart() {
+            0
+        } else {
+            held_up + 1
+        };
+        if t < SHORT {
+            let (from, step) = guard.path();
+            work.face.block(set, from, step);
+        } else {
+            work.face.blocked.clear();
         }
     }
 }
 
-/// Factor on the forcing after faces without progress, and the forcing below which there is nothing to gain.
+/// An error after a jump larger than that many times the jump and the error before it comes from bad conditioning, and
+/// has to fall further than `forcing` before the face tells anything.
+const MAGNIFIED: f64 = 10.0;
+
+/// Factor on the forcing after faces without progress.
 const FINER: f64 = 0.05;
-const FINEST: f64 = 1e-3;
+
+/// With a guard: factor on patience and faces; share of the last move of the set to which its problem is solved before the
+/// set follows again; very short steps in a row that end it.
+const LONGER: usize = 5;
+const FOLLOW: f64 = 0.1;
+const HELD_UP: usize = 20;
 
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
@@ -279,51 +368,6 @@ fn residual<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     vector::copy(ax, &mut work.residual);
     vector::axpy(-1.0, problem.linear, &mut work.residual);
     coarse.project_transpose(&mut work.residual);
-}
-
-/// Hands the weights of the current face to the coarse space; whether it factored anew.
-fn set_face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    coarse: &mut C,
-    set: &ProductSet,
-    work: &mut FaceWorkspace<A, M>,
-    report: &mut FaceReport,
-) -> Result<bool, QpError> {
-    work.face.weights(set, &mut work.w);
-    let factored = coarse.set_weights(&work.w)?;
-    report.factorisations += usize::from(factored);
-    Ok(factored)
-}
-
-/// As [`set_face`]; where the free components of the predicted face do not hold every rigid mode, the points that slide
-/// least are taken for sticking, as many as it needs, and in the end every component for free.
-fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
-    problem: &FaceProblem<'_, A, M>,
-    coarse: &mut C,
-    set: &ProductSet,
-    x: &[f64],
-    work: &mut FaceWorkspace<A, M>,
-    report: &mut FaceReport,
-) -> Result<bool, QpError> {
-    let mut count = 2;
-    let mut factored = false;
-    loop {
-        match set_face(coarse, set, work, report) {
-            Ok(anew) => {
-                factored |= anew;
-                if coarse.balances(x, problem.rhs) {
-                    return Ok(factored);
-                }
-            }
-            Err(QpError::CoarseDeficient { .. }) => {}
-            Err(error) => return Err(error),
-        }
-        if !work.face.release(count) {
-            break;
-        }
-        count *= 2;
-    }
-    work.face.free_all();
-    Ok(set_face(coarse, set, work, report)? || factored)
 }
 
 /// `ax += A (x - t)`, or `ax = A x`.

@@ -89,7 +89,11 @@ pub(crate) fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOpe
     rho
 }
 
-/// Runs until both estimates have fallen by `forcing` or below the limits; `z` is ready, with `rho`. Returns the length of
+/// Most steps on one face: where more are needed, rounding has taken over or the face is not worth it.
+const MOST_STEPS: usize = 500;
+
+/// Runs until both estimates have fallen by `forcing` from the smaller of their values now and those `expected`, or below
+/// the limits; `z` is ready, with `rho`. Returns the length of
 /// the last step if another one is worth while; its direction is then `p`.
 pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     problem: &FaceProblem<'_, A, M>,
@@ -101,19 +105,22 @@ pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: Symme
     max_products: usize,
     forcing: f64,
     limits: &Limits,
+    expected: (f64, f64),
     work: &mut FaceWorkspace<A, M>,
     report: &mut FaceReport,
 ) -> Result<f64, QpError> {
     let mut rho = rho;
     vector::axpby(-1.0, &work.z, 0.0, &mut work.p);
     let start = estimate(work);
+    let start = (start.0.min(expected.0), start.1.min(expected.1));
+    let last = max_products.min(report.products() + MOST_STEPS);
     // below a third of the limits further steps buy nothing
     let goal = |(all, part): (f64, f64)| {
         all <= (forcing * start.0).max(0.3 * limits.all)
             && part <= (forcing * start.1).max(0.3 * limits.constrained)
     };
     loop {
-        if report.products() >= max_products || rho <= 0.0 {
+        if report.products() >= last || rho <= 0.0 {
             return Ok(0.0);
         }
         problem

@@ -13,9 +13,9 @@ use crate::report::Status;
 /// | `natural_step` | step of the natural map that predicts the next face, in units of the preconditioner's diagonal | (0, 1] | 0.4 |
 /// | `joint_step` | part of the next step that is taken together with the move to the next face | [0, 1] | 1 |
 /// | `settled` | share of the free bounded components that may change on a face for the hook to be called | [0, 1] | 0.3 |
-/// | `max_faces` | faces | >= 1 | 100 |
+/// | `max_faces` | faces; five times as many once descent is enforced | >= 1 | 100 |
 /// | `max_products` | operator products | >= 1 | 10 000 |
-/// | `patience` | faces without a better error estimate before giving up | >= 1 | 12 |
+/// | `patience` | faces without a better error estimate before every move has to descend; five times as many before giving up | >= 1 | 12 |
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct FaceSettings {
@@ -29,11 +29,11 @@ pub struct FaceSettings {
     pub joint_step: f64,
     /// Share of changing bounds below which the hook is called.
     pub settled: f64,
-    /// Most faces.
+    /// Most faces before descent is enforced; five times as many with it.
     pub max_faces: usize,
     /// Most products.
     pub max_products: usize,
-    /// Faces without progress before [`Status::Stagnated`].
+    /// Faces without progress before descent is enforced; five times as many before [`Status::Stagnated`].
     pub patience: usize,
 }
 

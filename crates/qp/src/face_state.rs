@@ -7,6 +7,7 @@
 //! | `n`, `tau` | outward normal and tangent of a disc at `x` |
 //! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
 
+use crate::coarse_space::Line;
 use crate::product::{ProductSet, Segment};
 
 /// State of a disc on the current face.
@@ -34,6 +35,8 @@ pub(crate) struct Face {
     pub(crate) free: Vec<bool>,
     /// For every disc, in order.
     pub(crate) discs: Vec<Disc>,
+    /// Blocks that stopped a step at their boundary, bounds first, then discs; empty for none. They stay there.
+    pub(crate) blocked: Vec<bool>,
     /// Bounded components that changed between free and held in the last [`classify`](Face::classify).
     pub(crate) changed: usize,
     /// Bounded components that are free.
@@ -80,6 +83,7 @@ impl Face {
         self.free.resize(bounds, false);
         self.discs.clear();
         self.discs.resize(discs, Disc::Fixed);
+        self.blocked.clear();
         self.changed = bounds;
         self.free_bounds = 0;
     }
@@ -110,6 +114,25 @@ impl Face {
         self.free_bounds = self.free.len();
     }
 
+    /// The directions of sliding discs, weighted like the preconditioner weighs them.
+    pub(crate) fn lines(&self, set: &ProductSet) -> Vec<Line> {
+        let mut lines = Vec::new();
+        visit(
+            set,
+            |_, _, _, _| {},
+            |first, k, _| {
+                if let Disc::Sliding { tau, damp, .. } = self.discs[k] {
+                    lines.push(Line {
+                        first,
+                        direction: tau,
+                        weight: damp * damp,
+                    });
+                }
+            },
+        );
+        lines
+    }
+
     /// Frees the `count` discs that slide least; false if none slides.
     pub(crate) fn release(&mut self, count: usize) -> bool {
         let mut sliding: Vec<(f64, usize)> = Vec::new();
@@ -134,24 +157,62 @@ impl Face {
         scale: &[f64],
         step: f64,
     ) {
-        let Self { free, discs, .. } = self;
+        let Self {
+            free,
+            discs,
+            blocked,
+            ..
+        } = self;
+        let bounds = free.len();
+        let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
         let (mut changed, mut free_bounds) = (0, 0);
         visit(
             set,
             |i, k, lo, hi| {
                 let s = x[i] - step * scale[i] * g[i];
                 // a component is held only if it also is where it would be held
-                let held = lo >= hi || (s <= lo && x[i] <= lo) || (s >= hi && x[i] >= hi);
+                let held = lo >= hi
+                    || (x[i] <= lo && (s <= lo || stays(k)))
+                    || (x[i] >= hi && (s >= hi || stays(k)));
                 changed += usize::from(free[k] == held);
                 free[k] = !held;
                 free_bounds += usize::from(!held);
             },
             |i, k, radius| {
-                discs[k] = disc_state([x[i], x[i + 1]], [g[i], g[i + 1]], radius, scale[i]);
+                let at = [x[i], x[i + 1]];
+                let state = disc_state(at, [g[i], g[i + 1]], radius, scale[i]);
+                discs[k] = if stays(bounds + k) && state == Disc::Free {
+                    along_circle(at, radius)
+                } else {
+                    state
+                };
             },
         );
         self.changed = changed;
         self.free_bounds = free_bounds;
+    }
+
+    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it.
+    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64]) {
+        let (bounds, discs) = (self.free.len(), self.discs.len());
+        let mut blocked = std::mem::take(&mut self.blocked);
+        blocked.resize(bounds + discs, false);
+        let blocked = std::cell::RefCell::new(blocked);
+        visit(
+            set,
+            |i, k, lo, hi| {
+                if (x[i] <= lo && step[i] < 0.0) || (x[i] >= hi && step[i] > 0.0) {
+                    blocked.borrow_mut()[k] = true;
+                }
+            },
+            |i, k, radius| {
+                let outward = x[i] * step[i] + x[i + 1] * step[i + 1];
+                if x[i].hypot(x[i + 1]) >= radius * (1.0 - ON_CIRCLE) && outward > 0.0 {
+                    blocked.borrow_mut()[bounds + k] = true;
+                }
+            },
+        );
+        self.blocked = blocked.into_inner();
     }
 
     /// 1 on components that may move in both directions, 0 on others (sliding discs included: their one
@@ -182,6 +243,12 @@ impl Face {
             }
             start = end;
         }
+    }
+
+    /// As [`weights`](Self::weights), with 1 on both components of sliding discs too.
+    pub(crate) fn loose_weights(&self, set: &ProductSet, w: &mut [f64]) {
+        self.weights(set, w);
+        self.for_sliding(set, |i, _, _| w[i..i + 2].fill(1.0));
     }
 
     /// Drops the components of `v` that are not free on the face.
@@ -315,6 +382,20 @@ impl Face {
             }
             start += segment.len();
         }
+    }
+}
+
+/// Free along the circle, without curvature; free everywhere inside of it.
+fn along_circle(x: [f64; 2], radius: f64) -> Disc {
+    let length = x[0].hypot(x[1]);
+    if length < radius * (1.0 - ON_CIRCLE) {
+        return Disc::Free;
+    }
+    Disc::Sliding {
+        tau: [-x[1] / length, x[0] / length],
+        kappa: 0.0,
+        damp: 1.0,
+        slip: 0.0,
     }
 }
 

@@ -94,8 +94,11 @@ mod dense_coarse;
 mod error;
 pub mod face;
 mod face_cg;
+mod face_hold;
 mod face_settings;
 mod face_state;
+mod face_view;
+mod guard;
 pub mod kkt;
 pub mod kprgp;
 mod kprgp_settings;
@@ -113,12 +116,13 @@ mod smalse_settings;
 pub mod spectrum;
 pub mod vector;
 
-pub use coarse_space::{CoarseSpace, NoCoarseSpace};
+pub use coarse_space::{CoarseSpace, Line, NoCoarseSpace};
 pub use dense::{DenseEquality, DenseOperator};
 pub use dense_coarse::DenseCoarseSpace;
 pub use error::{QpError, SetError};
 pub use face::{FaceHook, FaceProblem, face};
 pub use face_settings::{FaceReport, FaceSettings, FaceWorkspace};
+pub use face_view::{FacePreconditioner, FaceView, Freedom};
 pub use kkt::Kkt;
 pub use kprgp::kprgp;
 pub use kprgp_settings::{

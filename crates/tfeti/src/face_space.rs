@@ -2,10 +2,10 @@
 
 use crate::coarse::{Coarse, CoarseScratch};
 use crate::coarse_factor::{CoarseFactor, Factor};
-use crate::coarse_matrix::RowWeights;
+use crate::coarse_matrix::{LineWeight, RowWeights};
 use crate::error::TfetiError;
 use crate::split_factor::{SplitBase, SplitFactor};
-use signorini_qp::{CoarseSpace, QpError};
+use signorini_qp::{CoarseSpace, Line, QpError};
 use std::sync::Arc;
 
 /// How `G W G^T` is factored when the face changes.
@@ -32,10 +32,14 @@ pub struct FaceSpace {
     always: Option<CoarseFactor>,
     face: CoarseFactor,
     weights: Vec<f64>,
+    /// Directions of the last face besides its weights.
+    lines: Vec<Line>,
     contact_rows: usize,
     split: Option<Arc<SplitBase>>,
     /// Memory of the last but one factor.
     spare: Option<SplitFactor>,
+    /// Factor of the last balance where the always free rows do not hold the bodies, with its weights.
+    loose: Option<(Vec<f64>, CoarseFactor)>,
     /// Weight of each row where it is free; `None` means 1.
     metric: Option<Vec<f64>>,
     rhs: Vec<f64>,
@@ -93,9 +97,11 @@ impl FaceSpace {
             always,
             face: factor,
             weights,
+            lines: Vec::new(),
             contact_rows,
             split,
             spare: None,
+            loose: None,
             metric,
             rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
@@ -165,6 +171,12 @@ fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
     }
 }
 
+fn deficient(error: TfetiError) -> QpError {
+    QpError::CoarseDeficient {
+        motion: error.to_string(),
+    }
+}
+
 impl CoarseSpace for FaceSpace {
     fn dim(&self) -> usize {
         self.coarse.dim()
@@ -175,29 +187,36 @@ impl CoarseSpace for FaceSpace {
     }
 
     fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
-        if w == self.weights {
+        self.set_weights_and_lines(w, &[])
+    }
+
+    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[Line]) -> Result<bool, QpError> {
+        if w == self.weights && lines == self.lines {
             return match self.deficiency(&self.face) {
                 Some(motion) => Err(QpError::CoarseDeficient { motion }),
                 None => Ok(false),
             };
         }
-        let weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
-        let fixed = w[self.contact_rows..].iter().all(|w| *w == 1.0);
+        let mut weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
+        let metric = |row: usize| self.metric.as_ref().map_or(1.0, |m| m[row]);
+        weights.lines.extend(lines.iter().map(|line| LineWeight {
+            row: line.first,
+            direction: line.direction,
+            weight: line.weight * metric(line.first),
+        }));
+        let fixed = lines.is_empty() && w[self.contact_rows..].iter().all(|w| *w == 1.0);
         let split = self.split.as_ref().filter(|_| fixed);
         let spare = self.spare.take();
-        let factor =
-            match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
-                Some(factor) => factor,
-                None => self.coarse.factor_weighted(weights).map_err(|error| {
-                    QpError::CoarseDeficient {
-                        motion: error.to_string(),
-                    }
-                })?,
-            };
+        let factor = match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
+            Some(factor) => factor,
+            None => self.coarse.factor_weighted(weights).map_err(deficient)?,
+        };
         if let Some(motion) = self.deficiency(&factor) {
             return Err(QpError::CoarseDeficient { motion });
         }
         self.weights.copy_from_slice(w);
+        self.lines.clear();
+        self.lines.extend_from_slice(lines);
         self.spare = std::mem::replace(&mut self.face, factor).into_split();
         Ok(true)
     }
@@ -230,6 +249,26 @@ impl CoarseSpace for FaceSpace {
 
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
         self.face.amplitudes(g, out, &mut self.scratch);
+    }
+
+    fn repairs_apart(&self) -> bool {
+        self.always.is_some()
+    }
+
+    fn balance(&mut self, x: &mut [f64], e: &[f64], w: &[f64]) -> Result<(), QpError> {
+        if self.always.is_some() {
+            self.face.project(x, Some(e), &mut self.scratch);
+            return Ok(());
+        }
+        if self.loose.as_ref().is_none_or(|(old, _)| old != w) {
+            let weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
+            let factor = self.coarse.factor_weighted(weights).map_err(deficient)?;
+            self.loose = Some((w.to_vec(), factor));
+        }
+        if let Some((_, factor)) = &self.loose {
+            factor.project(x, Some(e), &mut self.scratch);
+        }
+        Ok(())
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {

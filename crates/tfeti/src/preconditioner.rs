@@ -16,7 +16,7 @@ use crate::scaling::Scaling;
 use crate::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::system::Tfeti;
 use rayon::prelude::*;
-use signorini_qp::SymmetricOperator;
+use signorini_qp::{FacePreconditioner, FaceView, SymmetricOperator};
 use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +58,8 @@ pub struct PreconditionerScratch {
     boundary: Vec<f64>,
     lanes: Vec<LaneScratch>,
     dual: Vec<f64>,
+    /// The matrices of [`Scaling`] on the face; empty for all rows.
+    groups: Vec<f64>,
     masked: Vec<f64>,
 }
 
@@ -199,6 +201,7 @@ impl SymmetricOperator for Preconditioner {
             boundary: vec![0.0; self.map.len()],
             lanes: (0..self.map.lanes.len()).map(lane).collect(),
             dual: vec![0.0; if self.scaling.is_some() { rows } else { 0 }],
+            groups: Vec::new(),
             masked: vec![0.0; rows],
         }
     }
@@ -210,11 +213,19 @@ impl SymmetricOperator for Preconditioner {
             return;
         };
         let mut dual = std::mem::take(&mut s.dual);
-        scaling.solve(x, &mut dual);
+        scaling.solve(&s.groups, x, &mut dual);
         self.stiffness_product(&dual, s);
         self.map.collect(&s.boundary, &mut dual);
-        scaling.solve(&dual, y);
+        scaling.solve(&s.groups, &dual, y);
         s.dual = dual;
+    }
+}
+
+impl FacePreconditioner for Preconditioner {
+    fn enter(&self, face: &FaceView<'_>, s: &mut PreconditionerScratch) {
+        if let Some(scaling) = &self.scaling {
+            scaling.on_face(face, &mut s.groups);
+        }
     }
 }
 

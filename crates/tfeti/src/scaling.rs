@@ -3,6 +3,7 @@
 use crate::dense;
 use crate::error::TfetiError;
 use crate::system::Tfeti;
+use signorini_qp::{FaceView, Freedom};
 
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or to
 /// a contact pair) are coupled by a small matrix, which is inverted once.
@@ -16,6 +17,8 @@ pub(crate) struct Scaling {
     /// Inverse of the matrix of each group, column-major.
     inverse_pointers: Vec<usize>,
     inverses: Vec<f64>,
+    /// Group of each contact row, and its place there.
+    contact: Vec<(u32, u32)>,
 }
 
 impl Scaling {
@@ -60,6 +63,7 @@ impl Scaling {
             rows: Vec::with_capacity(members.len()),
             inverse_pointers: vec![0],
             inverses: Vec::new(),
+            contact: vec![(0, 0); gluing.ranges().contact().end],
         };
         for rows in members.chunk_by(|a, b| a.0 == b.0) {
             let count = rows.len();
@@ -83,6 +87,11 @@ impl Scaling {
             }
             let inverse = dense::inverse(matrix, count, 0.0)
                 .map_err(|pivot| TfetiError::CoarseSingular { pivot })?;
+            for (place, &(_, row)) in rows.iter().enumerate() {
+                if let Some(contact) = out.contact.get_mut(row as usize) {
+                    *contact = ((out.pointers.len() - 1) as u32, place as u32);
+                }
+            }
             out.rows.extend(rows.iter().map(|r| r.1));
             out.pointers.push(out.rows.len());
             out.inverses.extend(inverse);
@@ -99,11 +108,70 @@ impl Scaling {
         &self.weights
     }
 
-    /// `y = (B D^-1 B^T)^-1 x`.
-    pub(crate) fn solve(&self, x: &[f64], y: &mut [f64]) {
+    /// The matrices of the groups without the directions that a face holds: with `H` these directions,
+    /// `N - N H (H^T N H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and
+    /// a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the copies.
+    pub(crate) fn on_face(&self, face: &FaceView<'_>, groups: &mut Vec<f64>) {
+        groups.clear();
+        groups.extend_from_slice(&self.inverses);
+        let mut held = Vec::new();
+        face.for_each(|row, count, freedom| match freedom {
+            Freedom::Free => {}
+            Freedom::Held => {
+                for row in row..row + count {
+                    self.drop_direction(groups, row, &[1.0], &mut held);
+                }
+            }
+            Freedom::Along(tau) => self.drop_direction(groups, row, &[-tau[1], tau[0]], &mut held),
+        });
+    }
+
+    /// Takes the direction with `values` on the rows from `row` on out of the matrix of its group.
+    fn drop_direction(&self, groups: &mut [f64], row: usize, values: &[f64], image: &mut Vec<f64>) {
+        let Some(&(group, _)) = self.contact.get(row) else {
+            return;
+        };
+        let group = group as usize;
+        let range = self.inverse_pointers[group]..self.inverse_pointers[group + 1];
+        let matrix = &mut groups[range];
+        let count = self.pointers[group + 1] - self.pointers[group];
+        image.clear();
+        image.resize(count, 0.0);
+        let places = || {
+            values
+                .iter()
+                .enumerate()
+                .map(|(k, v)| (self.contact[row + k].1 as usize, v))
+        };
+        for (place, value) in places() {
+            for (out, entry) in image.iter_mut().zip(&matrix[place * count..]) {
+                *out += value * entry;
+            }
+        }
+        let own: f64 = places().map(|(place, value)| value * image[place]).sum();
+        let size = (0..count)
+            .map(|k| matrix[k * (count + 1)])
+            .fold(0.0, f64::max);
+        if own <= 1e-14 * size {
+            return;
+        }
+        for (j, &b) in image.iter().enumerate() {
+            for (i, &a) in image.iter().enumerate() {
+                matrix[i + j * count] -= a * b / own;
+            }
+        }
+    }
+
+    /// `y = N x` with `N = (B D^-1 B^T)^-1`, or with the matrices in `groups` unless empty.
+    pub(crate) fn solve(&self, groups: &[f64], x: &[f64], y: &mut [f64]) {
+        let inverses = if groups.is_empty() {
+            &self.inverses
+        } else {
+            groups
+        };
         for (k, pair) in self.pointers.windows(2).enumerate() {
             let rows = &self.rows[pair[0]..pair[1]];
-            let inverse = &self.inverses[self.inverse_pointers[k]..self.inverse_pointers[k + 1]];
+            let inverse = &inverses[self.inverse_pointers[k]..self.inverse_pointers[k + 1]];
             for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
                 y[target as usize] = column
                     .iter()

@@ -5,7 +5,7 @@ use super::case::{Case, Expect, Failure, Setup};
 use signorini::prelude::*;
 
 /// What a problem without a certified solution may end with.
-pub(crate) const UNSOLVED: &[LevelStatus] = &[
+const UNSOLVED: &[LevelStatus] = &[
     LevelStatus::NotContractive,
     LevelStatus::IterationLimit,
     LevelStatus::Stagnated,
@@ -34,7 +34,7 @@ pub fn friction() -> Vec<Case> {
             hard,
             move || block.setup(),
         );
-        cases.push(if coefficient > 2.0 {
+        cases.push(if coefficient > 100.0 {
             case.expect(Expect::CertifiedOr(1e-4, UNSOLVED))
         } else if coefficient == 0.0 {
             case.same_as("no friction", 1e-5)
@@ -59,15 +59,12 @@ pub fn friction() -> Vec<Case> {
         cells: [2; 3],
         ..Block::default()
     };
-    cases.push(
-        Case::new(
-            GROUP,
-            "coefficient 3, paper's method",
-            "successive approximations without a contraction",
-            move || paper.setup(),
-        )
-        .expect(Expect::CertifiedOr(1e-5, UNSOLVED)),
-    );
+    cases.push(Case::new(
+        GROUP,
+        "coefficient 3, paper's method",
+        "successive approximations without a contraction",
+        move || paper.setup(),
+    ));
     let weak = Block {
         friction: Friction::Coulomb(Coefficient::Exponential {
             fixed: 1.0,

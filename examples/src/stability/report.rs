@@ -86,7 +86,7 @@ Most cases are the benchmark's brick (3 m x 1 m x 1 m, steel, clamped at one end
 `face`, tolerance 1e-6. What has to hold:
 
 - *certified*: every level converges, and the largest relative violation of all conditions (column *certificate*; computed \
-from the recovered displacement, not by the solver) stays below 1e-5 (1e-4 beyond coefficients of 2);
+from the recovered displacement, not by the solver) stays below 1e-5 (1e-4 for a coefficient of 1000);
 - or the *status* says that there is no certified result, and why: `NotContractive`, `IterationLimit`, `Stagnated`, \
 `NotCertified` (the solver met its tolerance, the certificate did not follow);
 - or the scene is *refused* before anything is solved, with a message that names the place;

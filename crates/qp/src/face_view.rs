@@ -1,0 +1,75 @@
+//! What a face leaves free, as preconditioners and coarse spaces see it.
+
+use crate::dense::DenseOperator;
+use crate::face_state::{Disc, Face, visit};
+use crate::operator::SymmetricOperator;
+use crate::product::ProductSet;
+use crate::projected_cg::Identity;
+
+/// How a block may move on a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Freedom {
+    /// Not at all.
+    Held,
+    /// In every direction.
+    Free,
+    /// A point on its circle: along this unit vector only.
+    Along([f64; 2]),
+}
+
+/// The constrained blocks of a face.
+#[derive(Debug, Clone, Copy)]
+pub struct FaceView<'a> {
+    set: &'a ProductSet,
+    face: &'a Face,
+}
+
+impl<'a> FaceView<'a> {
+    pub(crate) fn new(set: &'a ProductSet, face: &'a Face) -> Self {
+        Self { set, face }
+    }
+
+    /// Hands each constrained block in order to `f`: first component, number of components, freedom. Unconstrained
+    /// components are left out.
+    pub fn for_each(&self, f: impl FnMut(usize, usize, Freedom)) {
+        let f = std::cell::RefCell::new(f);
+        visit(
+            self.set,
+            |i, k, _, _| {
+                let freedom = if self.face.free[k] {
+                    Freedom::Free
+                } else {
+                    Freedom::Held
+                };
+                f.borrow_mut()(i, 1, freedom);
+            },
+            |i, k, _| {
+                let freedom = match self.face.discs[k] {
+                    Disc::Fixed => Freedom::Held,
+                    Disc::Free => Freedom::Free,
+                    Disc::Sliding { tau, .. } => Freedom::Along(tau),
+                };
+                f.borrow_mut()(i, 2, freedom);
+            },
+        );
+    }
+}
+
+/// A preconditioner of the face method.
+///
+/// What approximates the inverse of `A` on one face need not do so on another: held components drop out of the matrix
+/// that is inverted. A preconditioner that can follow is told every face before it is used there.
+pub trait FacePreconditioner: SymmetricOperator {
+    /// The next products are on this face: they start from vectors that vanish where it is held, and only the free part
+    /// of their result counts. Stays symmetric on such vectors.
+    fn enter(&self, _face: &FaceView<'_>, _s: &mut Self::Scratch) {}
+}
+
+impl FacePreconditioner for Identity {}
+impl FacePreconditioner for DenseOperator {}
+
+impl<T: FacePreconditioner + ?Sized> FacePreconditioner for &T {
+    fn enter(&self, face: &FaceView<'_>, s: &mut Self::Scratch) {
+        (**self).enter(face, s);
+    }
+}
