@@ -4,7 +4,7 @@ use crate::coarse::{Coarse, CoarseScratch};
 use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::RowWeights;
 use crate::error::TfetiError;
-use crate::split_factor::{SplitBase, SplitFactor};
+use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use signorini_qp::{CoarseSpace, QpError};
 use std::sync::Arc;
 
@@ -36,6 +36,7 @@ pub struct FaceSpace {
     split: Option<Arc<SplitBase>>,
     /// Memory of the last but one factor.
     spare: Option<SplitFactor>,
+    fronts: Fronts,
     /// Weight of each row where it is free; `None` means 1.
     metric: Option<Vec<f64>>,
     rhs: Vec<f64>,
@@ -82,7 +83,10 @@ impl FaceSpace {
         };
         let split = split.map(Arc::new);
         let row_weights = RowWeights::diagonal(weighted(&weights, metric.as_deref()));
-        let factor = match split_factor(coarse, split.as_ref(), &row_weights, contact_rows, None) {
+        let mut fronts = Fronts::default();
+        let own = split.as_ref();
+        let factor = match split_factor(coarse, own, &row_weights, contact_rows, None, &mut fronts)
+        {
             Some(factor) => factor,
             None => coarse.factor_weighted(row_weights)?,
         };
@@ -96,6 +100,7 @@ impl FaceSpace {
             contact_rows,
             split,
             spare: None,
+            fronts,
             metric,
             rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
@@ -142,13 +147,14 @@ fn split_factor(
     weights: &RowWeights,
     contact_rows: usize,
     spare: Option<SplitFactor>,
+    fronts: &mut Fronts,
 ) -> Option<CoarseFactor> {
     let split = split?;
     if !coarse.0.free_motions(Some(weights)).is_empty() {
         return None;
     }
     let factor = split
-        .factor(&weights.diagonal[..contact_rows], spare)
+        .factor(&weights.diagonal[..contact_rows], spare, fronts)
         .ok()?;
     Some(CoarseFactor::new(
         coarse.clone(),
@@ -186,7 +192,14 @@ impl CoarseSpace for FaceSpace {
         let split = self.split.as_ref().filter(|_| fixed);
         let spare = self.spare.take();
         let factor =
-            match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
+            match split_factor(
+                &self.coarse,
+                split,
+                &weights,
+                self.contact_rows,
+                spare,
+                &mut self.fronts,
+            ) {
                 Some(factor) => factor,
                 None => self.coarse.factor_weighted(weights).map_err(|error| {
                     QpError::CoarseDeficient {

@@ -7,15 +7,24 @@
 use crate::dense;
 use crate::error::TfetiError;
 use crate::kernel::Kernel;
+use crate::packed::PackedFactor;
 use crate::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 
 /// A generalised inverse of the whole matrix of one subdomain.
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     /// Factor of the regularised matrix.
-    factor: SparseCholesky,
+    factor: Factor,
     /// Whether products are projected to the Moore-Penrose inverse.
     project: bool,
+}
+
+#[derive(Debug, Clone)]
+enum Factor {
+    /// For many columns at once.
+    Sparse(SparseCholesky),
+    /// For one column.
+    Packed(PackedFactor),
 }
 
 impl Inverse {
@@ -34,17 +43,45 @@ impl Inverse {
         if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
             return Err(TfetiError::Singular { subdomain, pivot });
         }
-        Ok(Self { factor, project })
+        Ok(Self {
+            factor: Factor::Sparse(factor),
+            project,
+        })
+    }
+
+    /// The same, stored for products with one column.
+    pub(crate) fn packed(self) -> Self {
+        let factor = match self.factor {
+            Factor::Sparse(factor) => PackedFactor::new(&factor),
+            Factor::Packed(factor) => factor,
+        };
+        Self {
+            factor: Factor::Packed(factor),
+            project: self.project,
+        }
     }
 
     /// Work memory that products with so many columns need.
     pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
-        self.factor.need(columns)
+        match &self.factor {
+            Factor::Sparse(factor) => factor.need(columns),
+            Factor::Packed(factor) => factor.need(),
+        }
     }
 
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
-        self.factor.stored()
+        match &self.factor {
+            Factor::Sparse(factor) => factor.stored(),
+            Factor::Packed(factor) => factor.stored(),
+        }
+    }
+
+    fn solve(&self, x: &mut [f64], columns: usize, memory: &mut SolveMemory) {
+        match &self.factor {
+            Factor::Sparse(factor) => factor.solve(x, columns, memory),
+            Factor::Packed(factor) => factor.solve(x, &mut memory.numbers),
+        }
     }
 
     /// `X = K+ X` in place for column-major blocks.
@@ -58,7 +95,7 @@ impl Inverse {
         if self.project {
             remove_rigid(kernel, x);
         }
-        self.factor.solve(x, columns, memory);
+        self.solve(x, columns, memory);
         if self.project {
             remove_rigid(kernel, x);
         }
@@ -71,7 +108,7 @@ impl Inverse {
         let (dim, size) = (3 * kernel.nodes(), 3 * boundary.len());
         let dof = |b: usize| 3 * boundary[b / 3] as usize + b % 3;
         let columns = COLUMNS;
-        let mut memory = SolveMemory::new(self.factor.need(columns));
+        let mut memory = SolveMemory::new(self.need(columns));
         let mut out = vec![0.0; size * size];
         let mut x = vec![0.0; dim * columns];
         for start in (0..size).step_by(columns) {
@@ -79,7 +116,7 @@ impl Inverse {
             let x = &mut x[..dim * count];
             x.fill(0.0);
             (0..count).for_each(|j| x[j * dim + dof(start + j)] = 1.0);
-            self.factor.solve(x, count, &mut memory);
+            self.solve(x, count, &mut memory);
             for (column, target) in x
                 .chunks_exact(dim)
                 .zip(out[start * size..].chunks_exact_mut(size))
@@ -94,7 +131,7 @@ impl Inverse {
         let modes = kernel.modes();
         let z = &mut x[..6 * dim];
         z.copy_from_slice(&modes);
-        self.factor.solve(z, 6, &mut memory);
+        self.solve(z, 6, &mut memory);
         let mut s = [[0.0; 6]; 6];
         for (m, z) in z.chunks_exact(dim).enumerate() {
             let products = kernel.transpose_times(z);

@@ -111,6 +111,8 @@ pub(crate) fn invert(
             )?;
             let boundary =
                 dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
+            let single = sizes[k].members == 1 && boundary.is_none();
+            let full = if single { full.packed() } else { full };
             Ok(ClassInverse { full, boundary })
         })
         .collect()
