@@ -72,7 +72,7 @@ impl Node {
     }
 
     /// Numbers of its columns.
-    fn stored(&self) -> f64 {
+    pub(crate) fn stored(&self) -> f64 {
         let (w, h) = (self.width() as f64, self.height() as f64);
         w * (h - 0.5 * w)
     }
@@ -121,15 +121,15 @@ impl CoarseTree {
         6 * self.blocks.len()
     }
 
-    /// Numbers of the factor.
-    pub(crate) fn stored(&self) -> f64 {
-        self.nodes.iter().map(Node::stored).sum()
-    }
-
-    /// Operations when the face changes.
-    pub(crate) fn operations(&self) -> f64 {
-        let nodes = self.nodes.iter().filter(|n| n.changing);
-        nodes.map(Node::operations).sum()
+    /// Sum of a size of all nodes, of the larger side only of the first cut.
+    pub(crate) fn longest(&self, size: impl Fn(&Node) -> f64) -> f64 {
+        let Some(root) = self.regions.last() else {
+            return 0.0;
+        };
+        let sum = |nodes: Range<usize>| self.nodes[nodes].iter().map(&size).sum::<f64>();
+        let own = root.steady.start..root.changing.end;
+        let middle = (root.region.children).map_or(0, |[_, right]| self.regions[right].first_node);
+        sum(own.clone()) + sum(0..middle).max(sum(middle..own.start))
     }
 
     /// The node that holds a position.
@@ -319,4 +319,78 @@ fn postorder(
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coarse_order::tests::grid;
+
+    /// Places that elimination fills, block by block.
+    fn filled(graph: &[Vec<u32>], tree: &CoarseTree) -> Vec<Vec<bool>> {
+        let count = graph.len();
+        let mut fill = vec![vec![false; count]; count];
+        for (a, list) in graph.iter().enumerate() {
+            for &b in list {
+                fill[tree.place[a] as usize][tree.place[b as usize] as usize] = true;
+            }
+        }
+        for k in 0..count {
+            let below: Vec<usize> = (k + 1..count).filter(|&i| fill[i][k]).collect();
+            for &i in &below {
+                below.iter().for_each(|&j| fill[i][j] = true);
+            }
+        }
+        fill
+    }
+
+    fn check(size: [usize; 3], changing: impl Fn(&[f64; 3]) -> bool, cuts: usize) {
+        let (graph, centres) = grid(size);
+        let changing: Vec<bool> = centres.iter().map(changing).collect();
+        let tree = CoarseTree::new(&graph, &centres, &changing, cuts).unwrap();
+        let fill = filled(&graph, &tree);
+        let mut next = 0;
+        for (k, node) in tree.nodes.iter().enumerate() {
+            assert_eq!(node.columns.start, next);
+            next = node.columns.end;
+            for column in node.columns.clone() {
+                let rows = (node.columns.end..graph.len()).filter(|&row| fill[row][column]);
+                for row in rows {
+                    assert!(node.border.contains(&(row as u32)), "{row} {column}");
+                }
+                assert!(node.changing || !changing[tree.blocks[column] as usize]);
+            }
+            let Some(parent) = node.parent else {
+                assert!(node.border.is_empty());
+                continue;
+            };
+            let above = &tree.nodes[parent];
+            assert!(above.children.contains(&k) && (above.changing || !node.changing));
+            let places: Vec<u32> = (above.columns.clone().map(|p| p as u32))
+                .chain(above.border.iter().copied())
+                .collect();
+            let found = node.into.iter().map(|&k| places[k as usize]);
+            assert!(found.eq(node.border.iter().copied()));
+        }
+        assert_eq!(next, graph.len());
+        for region in &tree.regions {
+            let nodes = &tree.nodes[region.steady.start..region.changing.end];
+            let own = region.region.own.len();
+            for &p in nodes.iter().flat_map(|n| &n.border) {
+                let local = region.local(p) as usize;
+                assert!(local < own || region.behind[local - own] == p);
+            }
+        }
+    }
+
+    #[test]
+    fn borders_hold_the_fill_and_places_in_parents_agree() {
+        for cuts in 0..3 {
+            check([12, 4, 3], |c| c[2] == 0.0, cuts);
+        }
+        check([9, 3, 2], |_| true, 1);
+        check([9, 3, 2], |_| false, 1);
+        check([10, 4, 2], |c| c[0] > 6.0 || c[1] == 0.0, 2);
+        check([1, 1, 1], |_| true, 0);
+    }
 }

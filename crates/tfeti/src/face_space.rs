@@ -17,7 +17,7 @@ pub enum FaceFactor {
     Auto,
     /// A sparse factor of the whole matrix each time.
     Sparse,
-    /// The subdomains without contact rows are eliminated once; a dense matrix of the others is factored each time.
+    /// What no subdomain with contact rows leads to is eliminated once; the rest of the tree is factored each time.
     Split,
 }
 

@@ -17,9 +17,10 @@ impl PackedFactor {
     pub(crate) fn new(factor: &SparseCholesky) -> Self {
         let mut aligned = true;
         factor.for_supernodes(&mut |columns, below, _| {
-            let whole = |t: &[usize]| t[0] % 3 == 0 && t[t.len() - 1] == t[0] + 2;
-            aligned &= columns.start % 3 == 0 && columns.len() % 3 == 0;
-            aligned &= below.len() % 3 == 0 && below.chunks(3).all(whole);
+            let three = |k: usize| k.is_multiple_of(3);
+            let whole = |t: &[usize]| three(t[0]) && t[t.len() - 1] == t[0] + 2;
+            aligned &= three(columns.start) && three(columns.len());
+            aligned &= three(below.len()) && below.chunks(3).all(whole);
         });
         let unit = if aligned { 3 } else { 1 };
         let mut groups = Supernodes::new(unit);

@@ -67,7 +67,7 @@ const OPERATIONS: f64 = 3e5;
 /// Solves with the factor of one face; seconds for a number that they read; seconds for an operation of a change.
 const SOLVES: f64 = 12.0;
 const READ: f64 = 0.6e-9;
-const OPERATION: f64 = 0.03e-9;
+const OPERATION: f64 = 0.04e-9;
 /// Most levels of cuts through blocks that change.
 const CUTS: usize = 4;
 
@@ -88,8 +88,16 @@ pub(crate) fn cheapest_tree(
     Some(best)
 }
 
+/// Seconds on two threads.
 fn cost(tree: &CoarseTree) -> f64 {
-    SOLVES * READ * tree.stored() + OPERATION * tree.operations()
+    tree.longest(|node| {
+        let change = if node.changing {
+            node.operations()
+        } else {
+            0.0
+        };
+        SOLVES * READ * node.stored() + OPERATION * change
+    })
 }
 
 impl SplitBase {
@@ -157,7 +165,7 @@ impl SplitBase {
     pub(crate) fn pays(&self, rows: usize, stored: usize) -> bool {
         const SPARSE: f64 = 0.1e-9;
         let whole = stored as f64;
-        let sparse = SOLVES * 2.0 * READ * whole + SPARSE * whole * whole / rows.max(1) as f64;
+        let sparse = SOLVES * READ * whole + SPARSE * whole * whole / rows.max(1) as f64;
         cost(&self.tree) < sparse
     }
 

@@ -298,9 +298,7 @@ impl Backward<'_> {
                 } else {
                     &self.behind[U * (row - first)..][..U]
                 };
-                for k in 0..U {
-                    target[k] = source[k];
-                }
+                target[..U].copy_from_slice(source);
             }
             t[height..].fill(0.0);
             let mut tiles = &self.tiles[node.tiles.clone()];
