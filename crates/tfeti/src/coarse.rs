@@ -4,13 +4,12 @@ use crate::boundary::{BoundaryMap, RigidTables};
 use crate::class::Classes;
 use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::{CoarseMatrix, ModeTable, RowWeights};
-use crate::coarse_order::CoarseOrder;
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
 use crate::matrices::ClassBase;
 use crate::mobility::{FreeMotion, Mobility};
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
-use crate::split_factor::SplitBase;
+use crate::split_factor::{SplitBase, cheapest_tree};
 use std::sync::Arc;
 
 /// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.
@@ -62,10 +61,16 @@ impl Coarse {
             what: "coarse unknowns",
             count,
         };
-        let symbolic = Symbolic::new(matrix.pattern(), 6).map_err(too_large)?;
-        let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
+        let (symbolic, (mobility, tables)) = rayon::join(
+            || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
+            || {
+                let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
+                (mobility, RigidTables::new(&map, &bases, &gluing))
+            },
+        );
+        let symbolic = symbolic?;
         let mut data = CoarseData {
-            tables: RigidTables::new(&map, &bases, &gluing),
+            tables,
             map,
             bases,
             classes,
@@ -224,14 +229,25 @@ impl Coarse {
             changing[e.subdomain as usize] = true;
         }
         let graph = data.matrix.graph();
-        let order = CoarseOrder::new(&graph, data.mobility.centres(), &changing).ok()?;
+        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
         let modes = ModeTable::new(&data.bases, &data.classes);
-        let matrix = data.matrix.assemble(gluing, &modes, weights.as_ref());
-        let own = match metric {
-            Some(metric) => metric[..rows].to_vec(),
-            None => vec![1.0; rows],
+        let mut diagonal = match metric {
+            Some(metric) => metric.to_vec(),
+            None => vec![1.0; self.dim()],
         };
-        SplitBase::new(&data.matrix, &matrix, &order, gluing, &modes, &own).ok()
+        diagonal[..rows].fill(0.0);
+        let weights = RowWeights::diagonal(diagonal);
+        let matrix = data.matrix.assemble(gluing, &modes, Some(&weights));
+        SplitBase::new(
+            tree,
+            &data.matrix,
+            &graph,
+            &matrix.values,
+            gluing,
+            &modes,
+            rows,
+        )
+        .ok()
     }
 }
 

@@ -1,11 +1,14 @@
 //! Assembly of `G W G^T` in blocks of six.
 
 use crate::class::Classes;
+use crate::coarse_tree::CoarseTree;
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
+use crate::kernel::Kernel;
 use crate::matrices::ClassBase;
 use crate::rows::RowRanges;
 use crate::sparse::Columns;
+use rayon::prelude::*;
 
 /// Weights `W` of the rows of `B` in `G W G^T`: a diagonal, and for chosen pairs of tangential rows a single direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,11 +133,12 @@ type Modes = [[f64; 6]; 3];
 /// Rows of `R` at all nodes of each class.
 pub(crate) struct ModeTable<'a> {
     tables: Vec<Vec<Modes>>,
+    bases: &'a [ClassBase],
     classes: &'a Classes,
 }
 
 impl<'a> ModeTable<'a> {
-    pub(crate) fn new(bases: &[ClassBase], classes: &'a Classes) -> Self {
+    pub(crate) fn new(bases: &'a [ClassBase], classes: &'a Classes) -> Self {
         let table = |base: &ClassBase| {
             (0..base.kernel.nodes())
                 .map(|n| base.kernel.node_modes(n))
@@ -142,8 +146,13 @@ impl<'a> ModeTable<'a> {
         };
         Self {
             tables: bases.iter().map(table).collect(),
+            bases,
             classes,
         }
+    }
+
+    fn kernel(&self, subdomain: u32) -> &Kernel {
+        &self.bases[self.classes.place(subdomain as usize).0].kernel
     }
 
     fn at(&self, subdomain: u32, local: u32) -> &Modes {
@@ -174,31 +183,55 @@ impl<'a> ModeTable<'a> {
     }
 }
 
+/// Rows of each subdomain: interface blocks, then others.
+struct Touching([(Vec<usize>, Vec<u32>); 2]);
+
+impl Touching {
+    fn new(gluing: &Gluing, subdomains: usize) -> Self {
+        let blocks = (0..gluing.blocks()).flat_map(|b| {
+            let entries = gluing.block(b).iter();
+            entries.map(move |e| (e.subdomain, b as u32))
+        });
+        let specials = (0..gluing.specials()).flat_map(|k| {
+            let entries = gluing.special(k).iter();
+            entries.map(move |e| (e.subdomain, k as u32))
+        });
+        Self([
+            by_subdomain(subdomains, &blocks.collect::<Vec<_>>()),
+            by_subdomain(subdomains, &specials.collect::<Vec<_>>()),
+        ])
+    }
+
+    fn of(&self, kind: usize, subdomain: usize) -> &[u32] {
+        let (pointers, rows) = &self.0[kind];
+        &rows[pointers[subdomain]..pointers[subdomain + 1]]
+    }
+}
+
+/// Pointers and rows by subdomain from pairs in the order of the rows.
+fn by_subdomain(subdomains: usize, pairs: &[(u32, u32)]) -> (Vec<usize>, Vec<u32>) {
+    let mut pointers = vec![0; subdomains + 1];
+    for &(s, _) in pairs {
+        pointers[s as usize + 1] += 1;
+    }
+    for s in 0..subdomains {
+        pointers[s + 1] += pointers[s];
+    }
+    let (mut next, mut rows) = (pointers.clone(), vec![0; pairs.len()]);
+    for &(s, row) in pairs {
+        rows[next[s as usize]] = row;
+        next[s as usize] += 1;
+    }
+    (pointers, rows)
+}
+
 impl CoarseMatrix {
     pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>, subdomains: usize) -> Self {
-        let mut lists: Vec<Vec<u32>> = (0..subdomains as u32).map(|s| vec![s]).collect();
-        let mut join = |a: u32, b: u32| {
-            let list = &mut lists[a.min(b) as usize];
-            if !list.contains(&a.max(b)) {
-                list.push(a.max(b));
-            }
-        };
-        for block in 0..gluing.blocks() {
-            let entries = gluing.block(block);
-            for (k, a) in entries.iter().enumerate() {
-                entries[..k]
-                    .iter()
-                    .for_each(|b| join(a.subdomain, b.subdomain));
-            }
-        }
-        for special in 0..gluing.specials() {
-            let entries = gluing.special(special);
-            for (k, a) in entries.iter().enumerate() {
-                entries[..k]
-                    .iter()
-                    .for_each(|b| join(a.subdomain, b.subdomain));
-            }
-        }
+        let touching = Touching::new(gluing, subdomains);
+        let columns: Vec<(Vec<u32>, Vec<f64>)> = (0..subdomains)
+            .into_par_iter()
+            .map(|s| block_column(gluing, modes, &touching, s))
+            .collect();
         let mut matrix = Self {
             pointers: vec![0],
             neighbours: Vec::new(),
@@ -209,8 +242,7 @@ impl CoarseMatrix {
                 values: Vec::new(),
             },
         };
-        for mut list in lists {
-            list.sort_unstable();
+        for (list, values) in columns {
             for _ in 0..6 {
                 matrix.interface.rows.extend(
                     list.iter()
@@ -220,19 +252,60 @@ impl CoarseMatrix {
             }
             matrix.neighbours.extend(list);
             matrix.pointers.push(matrix.neighbours.len());
+            matrix.interface.values.extend(values);
         }
-        let mut values = vec![0.0; matrix.interface.rows.len()];
-        for block in 0..gluing.blocks() {
-            matrix.add_block(gluing, block, 1.0, modes, &mut values);
-        }
-        matrix.interface.values = values;
         matrix
     }
 
-    /// Neighbours of each subdomain with numbers not below its own, itself first.
+    /// Neighbours of each subdomain, without itself, ascending.
     pub(crate) fn graph(&self) -> Vec<Vec<u32>> {
-        let list = |pair: &[usize]| self.neighbours[pair[0]..pair[1]].to_vec();
-        self.pointers.windows(2).map(list).collect()
+        let mut graph: Vec<Vec<u32>> = vec![Vec::new(); self.pointers.len() - 1];
+        for (a, pair) in self.pointers.windows(2).enumerate() {
+            for &b in &self.neighbours[pair[0] + 1..pair[1]] {
+                graph[a].push(b);
+                graph[b as usize].push(a as u32);
+            }
+        }
+        graph.iter_mut().for_each(|list| list.sort_unstable());
+        graph
+    }
+
+    /// The diagonal of a matrix with these values.
+    pub(crate) fn diagonal<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        // Columns hold the rows from those of the diagonal block on.
+        let pointers = self.interface.pointers.iter().enumerate();
+        let columns = pointers.take(self.interface.dim);
+        columns.map(|(column, &start)| values[start + column % 6])
+    }
+
+    /// Adds the entries of the columns of node `k` of a tree of this `graph`.
+    pub(crate) fn load(
+        &self,
+        tree: &CoarseTree,
+        graph: &[Vec<u32>],
+        k: usize,
+        values: &[f64],
+        columns: &mut [f64],
+    ) {
+        let node = &tree.nodes[k];
+        let height = node.height();
+        for q in node.columns.clone() {
+            let a = tree.blocks[q];
+            for &b in graph[a as usize].iter().chain([&a]) {
+                let p = tree.place[b as usize];
+                if (p as usize) < q {
+                    continue;
+                }
+                let target = &mut columns[tree.place_in(k, p, q as u32)..];
+                let (start, stride) = self.place(a.max(b), a.min(b));
+                for c in 0..6 {
+                    for r in 0..6 {
+                        let (row, column) = if a <= b { (r, c) } else { (c, r) };
+                        target[c * height + r] += values[start + column * stride + row];
+                    }
+                }
+            }
+        }
     }
 
     pub(crate) fn pattern(&self) -> &Columns {
@@ -244,32 +317,6 @@ impl CoarseMatrix {
         let list = &self.neighbours[self.pointers[j as usize]..self.pointers[j as usize + 1]];
         let k = list.partition_point(|&n| n < i);
         (36 * self.pointers[j as usize] + 6 * k, 6 * list.len())
-    }
-
-    fn add_block(
-        &self,
-        gluing: &Gluing,
-        block: usize,
-        weight: f64,
-        modes: &ModeTable<'_>,
-        values: &mut [f64],
-    ) {
-        let entries = gluing.block(block);
-        for a in entries {
-            let ra = modes.at(a.subdomain, a.local);
-            for b in entries.iter().filter(|b| a.subdomain >= b.subdomain) {
-                let rb = modes.at(b.subdomain, b.local);
-                let factor = weight * a.coefficient * b.coefficient;
-                let (start, stride) = self.place(a.subdomain, b.subdomain);
-                for c in 0..6 {
-                    let column = &mut values[start + c * stride..][..6];
-                    for r in 0..6 {
-                        column[r] += factor
-                            * (ra[0][r] * rb[0][c] + ra[1][r] * rb[1][c] + ra[2][r] * rb[2][c]);
-                    }
-                }
-            }
-        }
     }
 
     /// Adds `weight g g^T`.
@@ -350,4 +397,101 @@ impl CoarseMatrix {
             self.add_row(&row, weight - 1.0, values);
         }
     }
+}
+
+/// `sum f`, `sum f a`, `sum f b` and `sum f a b^T` over pairs of copies of nodes with the arms `a` and `b`.
+#[derive(Clone, Copy, Default)]
+struct Moments {
+    sum: f64,
+    first: [f64; 3],
+    second: [f64; 3],
+    both: [[f64; 3]; 3],
+}
+
+impl Moments {
+    fn add(&mut self, factor: f64, a: &[f64; 3], b: &[f64; 3]) {
+        self.sum += factor;
+        for i in 0..3 {
+            let scaled = factor * a[i];
+            self.first[i] += scaled;
+            self.second[i] += factor * b[i];
+            for j in 0..3 {
+                self.both[i][j] += scaled * b[j];
+            }
+        }
+    }
+
+    /// `sum f Q_a Q_b^T`, by columns: `Q` takes a force to its wrench.
+    fn wrenches(&self) -> [[f64; 6]; 6] {
+        let mut out = [[0.0; 6]; 6];
+        let trace = self.both[0][0] + self.both[1][1] + self.both[2][2];
+        for i in 0..3 {
+            out[i][i] = self.sum;
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            // Moments of unit forces, and their transpose.
+            out[j][3 + k] = self.first[i];
+            out[k][3 + j] = -self.first[i];
+            out[3 + k][j] = self.second[i];
+            out[3 + j][k] = -self.second[i];
+            for (r, row) in self.both.iter().enumerate() {
+                out[3 + r][3 + i] = -row[i];
+            }
+        }
+        for i in 0..3 {
+            out[3 + i][3 + i] += trace;
+        }
+        out
+    }
+}
+
+/// Neighbours of a subdomain with numbers not below its own, and what the interface rows contribute to its columns.
+fn block_column(
+    gluing: &Gluing,
+    modes: &ModeTable<'_>,
+    touching: &Touching,
+    subdomain: usize,
+) -> (Vec<u32>, Vec<f64>) {
+    let own = subdomain as u32;
+    let kernel = modes.kernel(own);
+    let mut moments: Vec<(u32, Moments)> = vec![(own, Moments::default())];
+    for &block in touching.of(0, subdomain) {
+        let entries = gluing.block(block as usize);
+        for b in entries.iter().filter(|e| e.subdomain == own) {
+            for a in entries.iter().filter(|e| e.subdomain >= own) {
+                let at = match moments.iter().position(|m| m.0 == a.subdomain) {
+                    Some(at) => at,
+                    None => {
+                        moments.push((a.subdomain, Moments::default()));
+                        moments.len() - 1
+                    }
+                };
+                moments[at].1.add(
+                    a.coefficient * b.coefficient,
+                    modes.kernel(a.subdomain).arm(a.local as usize),
+                    kernel.arm(b.local as usize),
+                );
+            }
+        }
+    }
+    for &special in touching.of(1, subdomain) {
+        for e in gluing.special(special as usize) {
+            if e.subdomain > own && moments.iter().all(|m| m.0 != e.subdomain) {
+                moments.push((e.subdomain, Moments::default()));
+            }
+        }
+    }
+    moments.sort_unstable_by_key(|m| m.0);
+    let stride = 6 * moments.len();
+    let mut values = vec![0.0; 6 * stride];
+    for (k, (other, sums)) in moments.iter().enumerate() {
+        let other = modes.kernel(*other);
+        let columns = sums.wrenches().map(|column| other.project_wrench(&column));
+        for r in 0..6 {
+            let row = kernel.project_wrench(&std::array::from_fn(|c| columns[c][r]));
+            for c in 0..6 {
+                values[6 * k + r + c * stride] = row[c];
+            }
+        }
+    }
+    (moments.into_iter().map(|m| m.0).collect(), values)
 }

@@ -6,7 +6,10 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::mat::{MatMut, MatRef};
+use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, Par};
 
 /// `out = a b` for `a` of shape `m x k` and `b` of shape `k x n`.
@@ -80,6 +83,69 @@ pub(crate) fn cholesky(a: &mut [f64], n: usize, threshold: f64) -> Result<(), us
         }
     }
     Ok(())
+}
+
+/// Replaces the first `width` columns of a symmetric matrix of `height` rows, lower triangle, by those of its Cholesky
+/// factor. `Err(pivot)` as in [`cholesky`].
+pub(crate) fn cholesky_columns(
+    a: &mut [f64],
+    height: usize,
+    width: usize,
+    threshold: f64,
+) -> Result<(), usize> {
+    if width == 0 {
+        return Ok(());
+    }
+    let params = Default::default();
+    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(
+        width,
+        Par::Seq,
+        params,
+    ));
+    let columns = MatMut::from_column_major_slice_mut(&mut a[..height * width], height, width);
+    let (mut triangle, below) = columns.split_at_row_mut(width);
+    llt::factor::cholesky_in_place(
+        triangle.rb_mut(),
+        Default::default(),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        params,
+    )
+    .map_err(|error| match error {
+        llt::factor::LltError::NonPositivePivot { index } => index,
+    })?;
+    for j in 0..width {
+        let pivot = triangle[(j, j)] * triangle[(j, j)];
+        if pivot.is_nan() || pivot <= threshold {
+            return Err(j);
+        }
+    }
+    if height > width {
+        solve_lower_triangular_in_place(triangle.rb(), below.transpose_mut(), Par::Seq);
+    }
+    Ok(())
+}
+
+/// Subtracts from the lower triangle of `out` what the elimination of the columns of [`cholesky_columns`] does to the
+/// unknowns behind them.
+pub(crate) fn subtract_columns(out: &mut [f64], a: &[f64], height: usize, width: usize) {
+    let behind = height - width;
+    if behind == 0 || width == 0 {
+        return;
+    }
+    let columns = MatRef::from_column_major_slice(&a[..height * width], height, width);
+    let below = columns.split_at_row(width).1;
+    triangular::matmul(
+        MatMut::from_column_major_slice_mut(&mut out[..behind * behind], behind, behind),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        below,
+        BlockStructure::Rectangular,
+        below.transpose(),
+        BlockStructure::Rectangular,
+        -1.0,
+        Par::Seq,
+    );
 }
 
 /// Inverse of a symmetric positive definite matrix in both triangles. `Err(pivot)` as in [`cholesky`].

@@ -4,7 +4,7 @@ use crate::coarse::{Coarse, CoarseScratch};
 use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::{LineWeight, RowWeights};
 use crate::error::TfetiError;
-use crate::split_factor::{SplitBase, SplitFactor};
+use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use signorini_qp::{CoarseSpace, Line, QpError};
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub enum FaceFactor {
     Auto,
     /// A sparse factor of the whole matrix each time.
     Sparse,
-    /// The subdomains without contact rows are eliminated once; a dense matrix of the others is factored each time.
+    /// What no subdomain with contact rows leads to is eliminated once; the rest of the tree is factored each time.
     Split,
 }
 
@@ -40,6 +40,7 @@ pub struct FaceSpace {
     spare: Option<SplitFactor>,
     /// Factor of the last balance where the always free rows do not hold the bodies, with its weights.
     loose: Option<(Vec<f64>, CoarseFactor)>,
+    fronts: Fronts,
     /// Weight of each row where it is free; `None` means 1.
     metric: Option<Vec<f64>>,
     rhs: Vec<f64>,
@@ -86,7 +87,10 @@ impl FaceSpace {
         };
         let split = split.map(Arc::new);
         let row_weights = RowWeights::diagonal(weighted(&weights, metric.as_deref()));
-        let factor = match split_factor(coarse, split.as_ref(), &row_weights, contact_rows, None) {
+        let mut fronts = Fronts::default();
+        let own = split.as_ref();
+        let factor = match split_factor(coarse, own, &row_weights, contact_rows, None, &mut fronts)
+        {
             Some(factor) => factor,
             None => coarse.factor_weighted(row_weights)?,
         };
@@ -102,6 +106,7 @@ impl FaceSpace {
             split,
             spare: None,
             loose: None,
+            fronts,
             metric,
             rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
@@ -148,13 +153,14 @@ fn split_factor(
     weights: &RowWeights,
     contact_rows: usize,
     spare: Option<SplitFactor>,
+    fronts: &mut Fronts,
 ) -> Option<CoarseFactor> {
     let split = split?;
     if !coarse.0.free_motions(Some(weights)).is_empty() {
         return None;
     }
     let factor = split
-        .factor(&weights.diagonal[..contact_rows], spare)
+        .factor(&weights.diagonal[..contact_rows], spare, fronts)
         .ok()?;
     Some(CoarseFactor::new(
         coarse.clone(),
@@ -207,7 +213,8 @@ impl CoarseSpace for FaceSpace {
         let fixed = lines.is_empty() && w[self.contact_rows..].iter().all(|w| *w == 1.0);
         let split = self.split.as_ref().filter(|_| fixed);
         let spare = self.spare.take();
-        let factor = match split_factor(&self.coarse, split, &weights, self.contact_rows, spare) {
+        let (rows, fronts) = (self.contact_rows, &mut self.fronts);
+        let factor = match split_factor(&self.coarse, split, &weights, rows, spare, fronts) {
             Some(factor) => factor,
             None => self.coarse.factor_weighted(weights).map_err(deficient)?,
         };

@@ -7,6 +7,7 @@
 use crate::dense;
 use crate::error::TfetiError;
 use crate::kernel::Kernel;
+use crate::packed::PackedFactor;
 use crate::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use std::sync::Arc;
 
@@ -14,9 +15,17 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(crate) struct Inverse {
     /// Factor of the regularised matrix.
-    factor: Arc<SparseCholesky>,
+    factor: Factor,
     /// Whether products are projected to the Moore-Penrose inverse.
     project: bool,
+}
+
+#[derive(Debug, Clone)]
+enum Factor {
+    /// For many columns at once.
+    Sparse(Arc<SparseCholesky>),
+    /// For one column.
+    Packed(Arc<PackedFactor>),
 }
 
 impl Inverse {
@@ -36,7 +45,7 @@ impl Inverse {
             return Err(TfetiError::Singular { subdomain, pivot });
         }
         Ok(Self {
-            factor: Arc::new(factor),
+            factor: Factor::Sparse(Arc::new(factor)),
             project,
         })
     }
@@ -49,14 +58,44 @@ impl Inverse {
         }
     }
 
+    /// Whether it is stored for products with one column.
+    pub(crate) fn is_packed(&self) -> bool {
+        matches!(self.factor, Factor::Packed(_))
+    }
+
+    /// The same, stored for products with one column.
+    pub(crate) fn packed(self) -> Self {
+        let factor = match self.factor {
+            Factor::Sparse(factor) => Arc::new(PackedFactor::new(&factor)),
+            Factor::Packed(factor) => factor,
+        };
+        Self {
+            factor: Factor::Packed(factor),
+            project: self.project,
+        }
+    }
+
     /// Work memory that products with so many columns need.
     pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
-        self.factor.need(columns)
+        match &self.factor {
+            Factor::Sparse(factor) => factor.need(columns),
+            Factor::Packed(factor) => factor.need(),
+        }
     }
 
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
-        self.factor.stored()
+        match &self.factor {
+            Factor::Sparse(factor) => factor.stored(),
+            Factor::Packed(factor) => factor.stored(),
+        }
+    }
+
+    fn solve(&self, x: &mut [f64], columns: usize, memory: &mut SolveMemory) {
+        match &self.factor {
+            Factor::Sparse(factor) => factor.solve(x, columns, memory),
+            Factor::Packed(factor) => factor.solve(x, &mut memory.numbers),
+        }
     }
 
     /// `X = K+ X` in place for column-major blocks.
@@ -70,7 +109,7 @@ impl Inverse {
         if self.project {
             remove_rigid(kernel, x);
         }
-        self.factor.solve(x, columns, memory);
+        self.solve(x, columns, memory);
         if self.project {
             remove_rigid(kernel, x);
         }
@@ -83,7 +122,7 @@ impl Inverse {
         let (dim, size) = (3 * kernel.nodes(), 3 * boundary.len());
         let dof = |b: usize| 3 * boundary[b / 3] as usize + b % 3;
         let columns = COLUMNS;
-        let mut memory = SolveMemory::new(self.factor.need(columns));
+        let mut memory = SolveMemory::new(self.need(columns));
         let mut out = vec![0.0; size * size];
         let mut x = vec![0.0; dim * columns];
         for start in (0..size).step_by(columns) {
@@ -91,7 +130,7 @@ impl Inverse {
             let x = &mut x[..dim * count];
             x.fill(0.0);
             (0..count).for_each(|j| x[j * dim + dof(start + j)] = 1.0);
-            self.factor.solve(x, count, &mut memory);
+            self.solve(x, count, &mut memory);
             for (column, target) in x
                 .chunks_exact(dim)
                 .zip(out[start * size..].chunks_exact_mut(size))
@@ -106,7 +145,7 @@ impl Inverse {
         let modes = kernel.modes();
         let z = &mut x[..6 * dim];
         z.copy_from_slice(&modes);
-        self.factor.solve(z, 6, &mut memory);
+        self.solve(z, 6, &mut memory);
         let mut s = [[0.0; 6]; 6];
         for (m, z) in z.chunks_exact(dim).enumerate() {
             let products = kernel.transpose_times(z);

@@ -72,6 +72,11 @@ pub(crate) fn assemble(
         .collect()
 }
 
+fn symbolic(base: &ClassBase, subdomain: usize) -> Result<Symbolic, TfetiError> {
+    Symbolic::new(&regularised(&base.stiffness, &base.kernel), 3)
+        .map_err(|e| pattern_error(e, subdomain))
+}
+
 /// Chooses and computes the inverses of all classes; with the factors of another system of the same classes, if there is one.
 pub(crate) fn invert(
     classes: &Classes,
@@ -85,9 +90,7 @@ pub(crate) fn invert(
             return Ok(Start::Factor(&earlier[k].full));
         }
         let subdomain = classes.classes()[k].members[0] as usize;
-        Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel), 3)
-            .map(Start::Symbolic)
-            .map_err(|e| pattern_error(e, subdomain))
+        symbolic(&bases[k], subdomain).map(Start::Symbolic)
     };
     let starts: Vec<Start<'_>> = (0..bases.len())
         .into_par_iter()
@@ -109,13 +112,22 @@ pub(crate) fn invert(
             let subdomain = classes.classes()[k].members[0] as usize;
             let project = settings.moore_penrose || dense[k];
             let full = match &starts[k] {
-                Start::Factor(full) => full.with_projection(project),
+                // a packed factor has no products with many columns
+                Start::Factor(full) if !(dense[k] && full.is_packed()) => {
+                    full.with_projection(project)
+                }
+                Start::Factor(_) => {
+                    let symbolic = symbolic(base, subdomain)?;
+                    Inverse::new(&base.stiffness, &base.kernel, &symbolic, project, subdomain)?
+                }
                 Start::Symbolic(symbolic) => {
                     Inverse::new(&base.stiffness, &base.kernel, symbolic, project, subdomain)?
                 }
             };
             let boundary =
                 dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
+            let single = sizes[k].members == 1 && boundary.is_none();
+            let full = if single { full.packed() } else { full };
             Ok(ClassInverse { full, boundary })
         })
         .collect()

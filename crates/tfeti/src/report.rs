@@ -40,7 +40,7 @@ pub struct SetupReport {
     pub assembly_seconds: f64,
     /// Seconds for the generalised inverses.
     pub inverse_seconds: f64,
-    /// Seconds for the coarse matrix and its factor.
+    /// Seconds for the coarse matrix and its factor beyond those for the inverses, which run beside it.
     pub coarse_seconds: f64,
 }
 

@@ -158,28 +158,50 @@ pub(crate) struct SparseCholesky {
 }
 
 /// Work memory of one thread for solves with a bounded number of columns.
-pub(crate) struct SolveMemory(MemBuffer);
+pub(crate) struct SolveMemory {
+    memory: MemBuffer,
+    /// For packed factors.
+    pub(crate) numbers: Vec<f64>,
+}
 
 impl std::fmt::Debug for SolveMemory {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "SolveMemory({} bytes)", self.0.len())
+        let bytes = self.memory.len() + 8 * self.numbers.len();
+        write!(f, "SolveMemory({bytes} bytes)")
     }
 }
 
 /// Size and alignment of a work memory.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct MemoryNeed(StackReq);
+pub(crate) struct MemoryNeed {
+    memory: StackReq,
+    numbers: usize,
+}
 
 impl MemoryNeed {
+    /// Memory of a packed factor.
+    pub(crate) fn numbers(numbers: usize) -> Self {
+        Self {
+            memory: StackReq::EMPTY,
+            numbers,
+        }
+    }
+
     /// Memory that serves both.
     pub(crate) fn or(self, other: Self) -> Self {
-        Self(self.0.or(other.0))
+        Self {
+            memory: self.memory.or(other.memory),
+            numbers: self.numbers.max(other.numbers),
+        }
     }
 }
 
 impl SolveMemory {
     pub(crate) fn new(need: MemoryNeed) -> Self {
-        Self(MemBuffer::new(need.0))
+        Self {
+            memory: MemBuffer::new(need.memory),
+            numbers: vec![0.0; need.numbers],
+        }
     }
 }
 
@@ -229,6 +251,14 @@ impl SparseCholesky {
         self.values.len()
     }
 
+    /// Old number of each unknown.
+    pub(crate) fn order(&self) -> Vec<u32> {
+        match self.symbolic.0.perm() {
+            Some(permutation) => permutation.arrays().0.iter().map(|&k| k as u32).collect(),
+            None => (0..self.dim() as u32).collect(),
+        }
+    }
+
     /// Smallest and largest squared pivot with the elimination step of the smallest.
     pub(crate) fn pivots(&self) -> (f64, usize, f64) {
         let mut smallest = (f64::INFINITY, 0);
@@ -272,12 +302,11 @@ impl SparseCholesky {
     /// The same, before there is a factor.
     pub(crate) fn need_of(symbolic: &Symbolic, columns: usize) -> MemoryNeed {
         let permuted = StackReq::new::<f64>(symbolic.0.nrows() * columns + 64);
-        MemoryNeed(
-            symbolic
-                .0
-                .solve_in_place_scratch::<f64>(columns, Par::Seq)
-                .and(permuted),
-        )
+        let solve = symbolic.0.solve_in_place_scratch::<f64>(columns, Par::Seq);
+        MemoryNeed {
+            memory: solve.and(permuted),
+            numbers: 0,
+        }
     }
 
     pub(crate) fn memory(&self, columns: usize) -> SolveMemory {
@@ -291,7 +320,7 @@ impl SparseCholesky {
             Conj::No,
             x,
             Par::Seq,
-            MemStack::new(&mut memory.0),
+            MemStack::new(&mut memory.memory),
         );
     }
 
@@ -311,7 +340,7 @@ impl SparseCholesky {
                 Conj::No,
                 column,
                 Par::Seq,
-                MemStack::new(&mut memory.0),
+                MemStack::new(&mut memory.memory),
             );
         }
     }
@@ -329,7 +358,7 @@ impl SparseCholesky {
                 Conj::No,
                 column,
                 Par::Seq,
-                MemStack::new(&mut memory.0),
+                MemStack::new(&mut memory.memory),
             );
         }
         match self.symbolic.0.perm() {

@@ -154,22 +154,27 @@ impl<'a> TfetiBuilder<'a> {
         };
         let assembly_seconds = clock.lap();
         let factors = self.earlier.map(|earlier| &earlier.parts.inverses[..]);
-        let inverses = Arc::new(invert(&classes, &bases, &map, &self.inverse, factors)?);
-        let inverse_seconds = clock.lap();
         let centres: Vec<[f64; 3]> = decomposition
             .subdomains()
             .iter()
             .map(|s| mean(s.nodes.iter().map(|&n| mesh.points()[n as usize])))
             .collect();
-        let coarse = Coarse::new(
-            map.clone(),
-            bases.clone(),
-            classes.clone(),
-            gluing.clone(),
-            centres,
-        )?;
-        let factor = coarse.factor()?;
-        let coarse_seconds = clock.lap();
+        let started = Instant::now();
+        let ((inverses, inverse_seconds), coarse) = rayon::join(
+            || {
+                let inverses = invert(&classes, &bases, &map, &self.inverse, factors);
+                (inverses, started.elapsed().as_secs_f64())
+            },
+            || {
+                let parts = (map.clone(), bases.clone(), classes.clone(), gluing.clone());
+                let coarse = Coarse::new(parts.0, parts.1, parts.2, parts.3, centres)?;
+                let factor = coarse.factor()?;
+                Ok::<_, TfetiError>((coarse, factor))
+            },
+        );
+        let inverses = Arc::new(inverses?);
+        let (coarse, factor) = coarse?;
+        let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
         let dual = DualOperator::new(map.clone(), bases.clone(), inverses.clone());
         let mut offsets = vec![0];
         for subdomain in decomposition.subdomains() {

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Brick, build, distance, noise, norm};
+use signorini_fem_mesh::Decomposition;
 use signorini_qp::{CoarseSpace, QpError};
 use signorini_tfeti::{
     FaceFactor, FaceSpace, InverseKind, RowRule, Sharing, Support, Tfeti, TfetiBuilder,
@@ -96,6 +97,33 @@ fn a_metric_of_the_rows_is_kept() {
         let w = face(&system, share, seed);
         assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
         compare(&system, &mut split, &mut sparse);
+    }
+}
+
+#[test]
+fn one_subdomain_and_no_or_only_contact() {
+    // All three subdomains of the first brick touch the floor.
+    let (few, many) = (system(1, 3), system(3, 2));
+    let b = Brick::new(1, 3);
+    let (supports, contact) = (b.supports(), b.contact(true));
+    let one = TfetiBuilder::new(&b.mesh, &Decomposition::whole(&b.mesh), &b.materials)
+        .supports(&supports)
+        .contact(&contact)
+        .build()
+        .unwrap();
+    for system in [&few, &many, &one] {
+        let all = system.gluing().ranges().contact().end;
+        for rows in [0, all] {
+            let new = |kind| FaceSpace::with_factor(system.coarse(), rows, None, kind).unwrap();
+            let (mut split, mut sparse) = (new(FaceFactor::Split), new(FaceFactor::Sparse));
+            compare(system, &mut split, &mut sparse);
+            let w = match rows {
+                0 => vec![1.0; system.dual_dim()],
+                _ => face(system, 0.5, 4),
+            };
+            assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
+            compare(system, &mut split, &mut sparse);
+        }
     }
 }
 

@@ -21,6 +21,45 @@ pub(crate) struct RigidTables {
     block_copies: Vec<[u32; 2]>,
     /// The same for the other rows.
     row_copies: Vec<[u32; 2]>,
+    spread: Padded,
+}
+
+/// Interface blocks of the copies of each node of a panel: layers of one block a member, filled up with weights of zero,
+/// so that the loops over members have no branches.
+#[derive(Debug, Default)]
+struct Padded {
+    /// First node of each panel.
+    nodes: Vec<usize>,
+    /// First entry of each node.
+    starts: Vec<u32>,
+    blocks: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+impl Padded {
+    fn new(map: &BoundaryMap) -> Self {
+        let mut out = Self::default();
+        for panel in &map.panels {
+            let width = panel.columns.len();
+            out.nodes.push(out.starts.len());
+            for first in panel.copies.clone().step_by(width) {
+                out.starts.push(out.blocks.len() as u32);
+                let entries = |m: usize| {
+                    let pair = &map.spread_pointers[first + m..][..2];
+                    pair[0] as usize..pair[1] as usize
+                };
+                let layers = (0..width).map(|m| entries(m).len()).max().unwrap_or(0);
+                for (layer, m) in (0..layers).flat_map(|l| (0..width).map(move |m| (l, m))) {
+                    let entry = entries(m).nth(layer);
+                    out.blocks.push(entry.map_or(0, |e| map.spread_blocks[e]));
+                    out.weights
+                        .push(entry.map_or(0.0, |e| map.spread_weights[e]));
+                }
+            }
+        }
+        out.starts.push(out.blocks.len() as u32);
+        out
+    }
 }
 
 impl RigidTables {
@@ -48,6 +87,7 @@ impl RigidTables {
         Self {
             block_copies: blocks.map(|e| copy(e.subdomain, e.local)).collect(),
             row_copies: rows.map(|e| copy(e.subdomain, e.local)).collect(),
+            spread: Padded::new(map),
             arms,
             first,
         }
@@ -61,6 +101,9 @@ struct PanelWrenches<'a> {
     weights: Option<&'a [f64]>,
     panel: &'a Panel,
     arms: &'a [[f64; 3]],
+    spread: &'a Padded,
+    /// First of the starts of the panel's nodes.
+    node: usize,
     kernel: &'a Kernel,
     out: &'a mut [f64],
 }
@@ -70,21 +113,81 @@ impl WithSimd for PanelWrenches<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let map = self.map;
-        let Self {
-            x,
-            weights,
-            panel,
-            arms,
-            kernel,
-            out,
-            ..
-        } = self;
-        match panel.columns.len() {
-            1 => map.panel_wrenches::<1>(x, weights, panel, arms, kernel, out),
-            2..=8 => map.panel_wrenches::<8>(x, weights, panel, arms, kernel, out),
-            _ => map.panel_wrenches::<PANEL>(x, weights, panel, arms, kernel, out),
+        match self.panel.columns.len() {
+            1 => self.run::<1>(),
+            2..=8 => self.run::<8>(),
+            _ => self.run::<PANEL>(),
         }
+    }
+}
+
+impl PanelWrenches<'_> {
+    #[inline(always)]
+    fn run<const N: usize>(self) {
+        let (map, panel, arms) = (self.map, self.panel, self.arms);
+        let (x, weights) = (self.x, self.weights);
+        let interface = &x[map.interface.clone()];
+        let width = panel.columns.len();
+        let mut wrench = [[0.0; N]; 6];
+        for (node, arm) in arms.iter().enumerate() {
+            let force = self.node_forces::<N>(interface, self.node + node, width);
+            let [rx, ry, rz] = *arm;
+            let [fx, fy, fz] = &force;
+            let [w0, w1, w2, w3, w4, w5] = &mut wrench;
+            for m in 0..N {
+                w0[m] += fx[m];
+                w1[m] += fy[m];
+                w2[m] += fz[m];
+                w3[m] += ry * fz[m] - rz * fy[m];
+                w4[m] += rz * fx[m] - rx * fz[m];
+                w5[m] += rx * fy[m] - ry * fx[m];
+            }
+        }
+        for k in panel.specials.clone() {
+            let copy = map.special_copies[k] as usize - panel.copies.start;
+            let mut force = [0.0; 3];
+            for e in map.special_pointers[k] as usize..map.special_pointers[k + 1] as usize {
+                let row = map.special_rows[e] as usize;
+                let value = x[row] * weights.map_or(1.0, |w| w[row]);
+                for c in 0..3 {
+                    force[c] += map.special_vectors[e][c] * value;
+                }
+            }
+            let mut sum = [0.0; 6];
+            crate::kernel::add_wrench(&mut sum, &arms[copy / width], force);
+            for (w, s) in wrench.iter_mut().zip(sum) {
+                w[copy % width] += s;
+            }
+        }
+        for (m, target) in self.out.chunks_exact_mut(6).enumerate() {
+            let own = std::array::from_fn(|k| wrench[k][m]);
+            target.copy_from_slice(&self.kernel.project_wrench(&own));
+        }
+    }
+
+    /// Forces of the interface rows on the copies of one node.
+    #[inline(always)]
+    fn node_forces<const N: usize>(
+        &self,
+        interface: &[f64],
+        node: usize,
+        width: usize,
+    ) -> [[f64; N]; 3] {
+        let mut force = [[0.0; N]; 3];
+        let spread = self.spread;
+        let range = spread.starts[node] as usize..spread.starts[node + 1] as usize;
+        let blocks = spread.blocks[range.clone()].chunks_exact(width);
+        for (blocks, weights) in blocks.zip(spread.weights[range].chunks_exact(width)) {
+            let [fx, fy, fz] = &mut force;
+            let targets = fx.iter_mut().zip(fy).zip(fz);
+            for ((&block, &weight), ((fx, fy), fz)) in blocks.iter().zip(weights).zip(targets) {
+                let value = &interface[3 * block as usize..][..3];
+                *fx += weight * value[0];
+                *fy += weight * value[1];
+                *fz += weight * value[2];
+            }
+        }
+        force
     }
 }
 
@@ -100,7 +203,8 @@ impl BoundaryMap {
     ) {
         self.for_columns(columns, &|lane, part| {
             let mut rest = part;
-            for panel in &self.panels[lane.panels.clone()] {
+            for number in lane.panels.clone() {
+                let panel = &self.panels[number];
                 let width = panel.columns.len();
                 let (own, tail) = std::mem::take(&mut rest).split_at_mut(6 * width);
                 rest = tail;
@@ -113,85 +217,13 @@ impl BoundaryMap {
                     weights,
                     panel,
                     arms,
+                    spread: &tables.spread,
+                    node: tables.spread.nodes[number],
                     kernel,
                     out: own,
                 });
             }
         });
-    }
-
-    #[inline(always)]
-    fn panel_wrenches<const N: usize>(
-        &self,
-        x: &[f64],
-        weights: Option<&[f64]>,
-        panel: &Panel,
-        arms: &[[f64; 3]],
-        kernel: &Kernel,
-        out: &mut [f64],
-    ) {
-        let interface = &x[self.interface.clone()];
-        let width = panel.columns.len();
-        let pointers = &self.spread_pointers[panel.copies.start..=panel.copies.end];
-        let (mut wrench, mut force) = ([[0.0; N]; 6], [[0.0; N]; 3]);
-        for (node, arm) in arms.iter().enumerate() {
-            self.node_forces(interface, &pointers[node * width..], width, &mut force);
-            let [rx, ry, rz] = *arm;
-            let [fx, fy, fz] = &force;
-            let [w0, w1, w2, w3, w4, w5] = &mut wrench;
-            for m in 0..N {
-                w0[m] += fx[m];
-                w1[m] += fy[m];
-                w2[m] += fz[m];
-                w3[m] += ry * fz[m] - rz * fy[m];
-                w4[m] += rz * fx[m] - rx * fz[m];
-                w5[m] += rx * fy[m] - ry * fx[m];
-            }
-        }
-        for k in panel.specials.clone() {
-            let copy = self.special_copies[k] as usize - panel.copies.start;
-            let mut force = [0.0; 3];
-            for e in self.special_pointers[k] as usize..self.special_pointers[k + 1] as usize {
-                let row = self.special_rows[e] as usize;
-                let value = x[row] * weights.map_or(1.0, |w| w[row]);
-                for c in 0..3 {
-                    force[c] += self.special_vectors[e][c] * value;
-                }
-            }
-            let mut sum = [0.0; 6];
-            crate::kernel::add_wrench(&mut sum, &arms[copy / width], force);
-            for (w, s) in wrench.iter_mut().zip(sum) {
-                w[copy % width] += s;
-            }
-        }
-        for (m, target) in out.chunks_exact_mut(6).enumerate() {
-            target.copy_from_slice(&kernel.project_wrench(&std::array::from_fn(|k| wrench[k][m])));
-        }
-    }
-
-    /// Forces of the interface rows on the copies of one node.
-    #[inline(always)]
-    fn node_forces<const N: usize>(
-        &self,
-        interface: &[f64],
-        pointers: &[u32],
-        width: usize,
-        force: &mut [[f64; N]; 3],
-    ) {
-        for m in 0..width {
-            let range = pointers[m] as usize..pointers[m + 1] as usize;
-            let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            let blocks = self.spread_blocks[range.clone()].iter();
-            for (&block, &weight) in blocks.zip(&self.spread_weights[range]) {
-                let value = &interface[3 * block as usize..][..3];
-                a += weight * value[0];
-                b += weight * value[1];
-                c += weight * value[2];
-            }
-            force[0][m] = a;
-            force[1][m] = b;
-            force[2][m] = c;
-        }
     }
 
     /// Hands `B R alpha` to `interface(x, value)` and `other(row, x, value)`, row by row, with the entries of `x`.
