@@ -1,5 +1,6 @@
 //! Settings, report and work memory of the face method.
 
+use crate::coarse_space::Line;
 use crate::error::QpError;
 use crate::operator::SymmetricOperator;
 use crate::report::Status;
@@ -224,6 +225,7 @@ pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) p: Vec<f64>,
     pub(crate) ap: Vec<f64>,
     pub(crate) w: Vec<f64>,
+    pub(crate) lines: Vec<Line>,
     pub(crate) t: Vec<f64>,
     pub(crate) face: crate::face_state::Face,
 }
@@ -245,6 +247,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
             p: v(),
             ap: v(),
             w: v(),
+            lines: Vec::new(),
             t: v(),
             face: crate::face_state::Face::default(),
         }

@@ -115,8 +115,8 @@ impl Face {
     }
 
     /// The directions of sliding discs, weighted like the preconditioner weighs them.
-    pub(crate) fn lines(&self, set: &ProductSet) -> Vec<Line> {
-        let mut lines = Vec::new();
+    pub(crate) fn lines(&self, set: &ProductSet, lines: &mut Vec<Line>) {
+        lines.clear();
         visit(
             set,
             |_, _, _, _| {},
@@ -130,7 +130,6 @@ impl Face {
                 }
             },
         );
-        lines
     }
 
     /// Frees the `count` discs that slide least; false if none slides.
@@ -215,8 +214,8 @@ impl Face {
         self.blocked = blocked.into_inner();
     }
 
-    /// 1 on components that may move in both directions, 0 on others (sliding discs included: their one
-    /// direction is left to the preconditioned iteration).
+    /// 1 on components that may move in both directions, 0 on others (the one direction of sliding discs is among the
+    /// [`lines`](Self::lines)).
     pub(crate) fn weights(&self, set: &ProductSet, w: &mut [f64]) {
         w.fill(1.0);
         let (mut start, mut bound, mut disc) = (0, 0, 0);
@@ -391,11 +390,17 @@ fn along_circle(x: [f64; 2], radius: f64) -> Disc {
     if length < radius * (1.0 - ON_CIRCLE) {
         return Disc::Free;
     }
+    slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)
+}
+
+/// Sliding with outward normal `n`.
+fn slides(n: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
+    let kappa = slip / radius;
     Disc::Sliding {
-        tau: [-x[1] / length, x[0] / length],
-        kappa: 0.0,
-        damp: 1.0,
-        slip: 0.0,
+        tau: [-n[1], n[0]],
+        kappa,
+        damp: (1.0 / (1.0 + kappa * scale)).sqrt(),
+        slip,
     }
 }
 
@@ -412,13 +417,7 @@ fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
     if outward >= 0.0 {
         return Disc::Free;
     }
-    let kappa = -outward / radius;
-    Disc::Sliding {
-        tau: [-n[1], n[0]],
-        kappa,
-        damp: (1.0 / (1.0 + kappa * scale)).sqrt(),
-        slip: -outward,
-    }
+    slides(n, -outward, radius, scale)
 }
 
 fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {

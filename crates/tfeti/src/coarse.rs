@@ -43,6 +43,8 @@ pub struct CoarseScratch {
     pub(crate) memory: SolveMemory,
     /// For split factors.
     pub(crate) split: Vec<f64>,
+    /// Entries of the rows that stand in lines.
+    pub(crate) pairs: Vec<[f64; 2]>,
 }
 
 impl Coarse {
@@ -122,6 +124,7 @@ impl Coarse {
             dual: vec![0.0; self.dim()],
             memory: SolveMemory::new(SparseCholesky::need_of(&self.0.symbolic, 1)),
             split: Vec::new(),
+            pairs: Vec::with_capacity(self.0.gluing.ranges().discs.len() / 2),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Factors of `G W G^T`, projectors and orthonormal rows.
 
 use crate::coarse::{Coarse, CoarseScratch};
-use crate::coarse_matrix::RowWeights;
+use crate::coarse_matrix::{LineWeight, RowWeights};
 use crate::mobility::FreeMotion;
 use crate::sparse::{SolveMemory, SparseCholesky};
 use crate::split_factor::{SplitBase, SplitFactor};
@@ -20,7 +20,7 @@ struct FactorData {
     coarse: Coarse,
     factor: Factor,
     weights: Option<RowWeights>,
-    /// Whether interface rows have weight one and no row stands in a line.
+    /// Whether interface rows have weight one.
     plain: bool,
     free: Vec<FreeMotion>,
 }
@@ -39,6 +39,13 @@ impl CoarseFactor {
         free: Vec<FreeMotion>,
     ) -> Self {
         let ranges = coarse.0.gluing.ranges();
+        let mut weights = weights;
+        if let Some(RowWeights { diagonal, lines }) = &mut weights {
+            // products count these rows in full and are corrected by what the lines leave out
+            lines
+                .iter()
+                .for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
+        }
         let plain = weights.as_ref().is_none_or(|w| w.is_plain(ranges));
         Self(Arc::new(FactorData {
             coarse,
@@ -116,6 +123,10 @@ impl CoarseFactor {
         self.0.weights.as_ref().map(|w| &w.diagonal[..])
     }
 
+    fn lines(&self) -> &[LineWeight] {
+        self.0.weights.as_ref().map_or(&[], |w| &w.lines)
+    }
+
     fn weigh(&self, x: &mut [f64]) {
         if let Some(weights) = &self.0.weights {
             weights.apply(x);
@@ -131,6 +142,7 @@ impl CoarseFactor {
         }
         self.solve_with(&mut s.first, &mut s.memory, &mut s.split);
         if self.0.plain {
+            keep(self.lines(), x, &mut s.pairs);
             let weight = |row: usize| self.diagonal().map_or(1.0, |w| w[row]);
             data.with_transpose(
                 &s.first,
@@ -139,6 +151,11 @@ impl CoarseFactor {
                 |x, v| *x -= v,
                 |row, x, v| *x -= weight(row) * v,
             );
+            for (line, old) in self.lines().iter().zip(&s.pairs) {
+                let along = line.along([old[0] - x[line.row], old[1] - x[line.row + 1]]);
+                x[line.row] = old[0] - along[0];
+                x[line.row + 1] = old[1] - along[1];
+            }
         } else {
             data.product_transpose(&s.first, &mut s.dual, &mut s.motions);
             self.weigh(&mut s.dual);
@@ -149,7 +166,18 @@ impl CoarseFactor {
     /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
     /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
     pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        self.amplitudes(r, alpha, s);
+        if self.0.plain {
+            keep(self.lines(), r, &mut s.pairs);
+            for (line, old) in self.lines().iter().zip(&s.pairs) {
+                r[line.row..line.row + 2].copy_from_slice(&line.along(*old));
+            }
+            self.plain_amplitudes(r, alpha, s);
+            for (line, old) in self.lines().iter().zip(&s.pairs) {
+                r[line.row..line.row + 2].copy_from_slice(old);
+            }
+        } else {
+            self.amplitudes(r, alpha, s);
+        }
         let data = &self.0.coarse.0;
         data.with_transpose(alpha, r, &mut s.motions, |r, v| *r += v, |_, r, v| *r += v);
     }
@@ -158,14 +186,22 @@ impl CoarseFactor {
     /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
     /// equality (open contact, sliding).
     pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse.0;
-        if self.0.plain {
-            data.product(r, self.diagonal(), alpha, &mut s.columns);
-        } else {
-            s.dual.copy_from_slice(r);
-            self.weigh(&mut s.dual);
-            data.product(&s.dual, None, alpha, &mut s.columns);
+        if self.0.plain && self.lines().is_empty() {
+            self.plain_amplitudes(r, alpha, s);
+            return;
         }
+        s.dual.copy_from_slice(r);
+        self.weigh(&mut s.dual);
+        let data = &self.0.coarse.0;
+        data.product(&s.dual, None, alpha, &mut s.columns);
+        self.solve_with(alpha, &mut s.memory, &mut s.split);
+        alpha.iter_mut().for_each(|a| *a = -*a);
+    }
+
+    /// The same for interface rows of weight one and rows in lines that are weighted already.
+    fn plain_amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        data.product(r, self.diagonal(), alpha, &mut s.columns);
         self.solve_with(alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -193,6 +229,12 @@ impl CoarseFactor {
         (self.0.weights.is_none() && self.0.free.is_empty() && self.sparse().is_some())
             .then(|| OrthonormalCoarse(self.clone()))
     }
+}
+
+/// Remembers the entries of the rows in lines.
+fn keep(lines: &[LineWeight], x: &[f64], pairs: &mut Vec<[f64; 2]>) {
+    pairs.clear();
+    pairs.extend(lines.iter().map(|l| [x[l.row], x[l.row + 1]]));
 }
 
 /// The constraint `G x = e` with orthonormal rows: `C x = L^-1 P e` with `C = L^-1 P G`, `C C^T = I`.

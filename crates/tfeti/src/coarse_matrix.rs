@@ -30,6 +30,15 @@ pub struct LineWeight {
     pub weight: f64,
 }
 
+impl LineWeight {
+    /// `weight * c c^T` times a pair.
+    pub(crate) fn along(&self, pair: [f64; 2]) -> [f64; 2] {
+        let [c, d] = self.direction;
+        let value = self.weight * (c * pair[0] + d * pair[1]);
+        [value * c, value * d]
+    }
+}
+
 impl RowWeights {
     /// A diagonal only.
     #[must_use]
@@ -40,10 +49,10 @@ impl RowWeights {
         }
     }
 
-    /// Whether all interface rows have weight one and no row stands in a line.
+    /// Whether all interface rows have weight one.
     pub(crate) fn is_plain(&self, ranges: &RowRanges) -> bool {
         let interface = &self.diagonal[ranges.interface.clone()];
-        self.lines.is_empty() && interface.iter().all(|w| *w == 1.0)
+        interface.iter().all(|w| *w == 1.0)
     }
 
     pub(crate) fn in_line(&self, row: usize) -> bool {
@@ -92,18 +101,14 @@ impl RowWeights {
 
     /// `x = W x`.
     pub fn apply(&self, x: &mut [f64]) {
-        let along = |line: &LineWeight, x: &[f64]| {
-            line.weight * (line.direction[0] * x[line.row] + line.direction[1] * x[line.row + 1])
-        };
         if self.lines.is_empty() {
             x.iter_mut().zip(&self.diagonal).for_each(|(x, w)| *x *= w);
             return;
         }
         // Lines first: the diagonal pass would overwrite what they need.
         for line in &self.lines {
-            let value = along(line, x);
-            x[line.row] = value * line.direction[0];
-            x[line.row + 1] = value * line.direction[1];
+            let pair = line.along([x[line.row], x[line.row + 1]]);
+            x[line.row..line.row + 2].copy_from_slice(&pair);
         }
         let mut lines = self.lines.iter().map(|l| l.row).peekable();
         let mut k = 0;

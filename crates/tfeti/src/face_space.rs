@@ -3,6 +3,7 @@
 use crate::coarse::{Coarse, CoarseScratch};
 use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::{LineWeight, RowWeights};
+use crate::contact_fronts::ContactWeights;
 use crate::error::TfetiError;
 use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use signorini_qp::{CoarseSpace, Line, QpError};
@@ -41,6 +42,7 @@ pub struct FaceSpace {
     /// Factor of the last balance where the always free rows do not hold the bodies, with its weights.
     loose: Option<(Vec<f64>, CoarseFactor)>,
     fronts: Fronts,
+    contact: ContactWeights,
     /// Weight of each row where it is free; `None` means 1.
     metric: Option<Vec<f64>>,
     rhs: Vec<f64>,
@@ -87,10 +89,10 @@ impl FaceSpace {
         };
         let split = split.map(Arc::new);
         let row_weights = RowWeights::diagonal(weighted(&weights, metric.as_deref()));
-        let mut fronts = Fronts::default();
-        let own = split.as_ref();
-        let factor = match split_factor(coarse, own, &row_weights, contact_rows, None, &mut fronts)
-        {
+        let (mut fronts, mut contact) = (Fronts::default(), ContactWeights::default());
+        let (own, rows) = (split.as_ref(), contact_rows);
+        let work = (&mut fronts, &mut contact);
+        let factor = match split_factor(coarse, own, &row_weights, rows, None, work.0, work.1) {
             Some(factor) => factor,
             None => coarse.factor_weighted(row_weights)?,
         };
@@ -107,6 +109,7 @@ impl FaceSpace {
             spare: None,
             loose: None,
             fronts,
+            contact,
             metric,
             rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
@@ -154,14 +157,14 @@ fn split_factor(
     contact_rows: usize,
     spare: Option<SplitFactor>,
     fronts: &mut Fronts,
+    contact: &mut ContactWeights,
 ) -> Option<CoarseFactor> {
     let split = split?;
-    if !coarse.0.free_motions(Some(weights)).is_empty() {
+    if !split.allows(&weights.lines) || !coarse.0.free_motions(Some(weights)).is_empty() {
         return None;
     }
-    let factor = split
-        .factor(&weights.diagonal[..contact_rows], spare, fronts)
-        .ok()?;
+    contact.set(&weights.diagonal[..contact_rows], &weights.lines);
+    let factor = split.factor(contact, spare, fronts).ok()?;
     Some(CoarseFactor::new(
         coarse.clone(),
         Factor::Split(split.clone(), factor),
@@ -210,11 +213,12 @@ impl CoarseSpace for FaceSpace {
             direction: line.direction,
             weight: line.weight * metric(line.first),
         }));
-        let fixed = lines.is_empty() && w[self.contact_rows..].iter().all(|w| *w == 1.0);
+        let fixed = w[self.contact_rows..].iter().all(|w| *w == 1.0);
         let split = self.split.as_ref().filter(|_| fixed);
         let spare = self.spare.take();
-        let (rows, fronts) = (self.contact_rows, &mut self.fronts);
-        let factor = match split_factor(&self.coarse, split, &weights, rows, spare, fronts) {
+        let (rows, fronts, contact) = (self.contact_rows, &mut self.fronts, &mut self.contact);
+        let base = &self.coarse;
+        let factor = match split_factor(base, split, &weights, rows, spare, fronts, contact) {
             Some(factor) => factor,
             None => self.coarse.factor_weighted(weights).map_err(deficient)?,
         };

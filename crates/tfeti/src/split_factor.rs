@@ -6,9 +6,9 @@
 //! kept, and a new face adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut
 //! run on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
 
-use crate::coarse_matrix::{CoarseMatrix, ModeTable};
+use crate::coarse_matrix::{CoarseMatrix, LineWeight, ModeTable};
 use crate::coarse_tree::{CoarseTree, TreeRegion};
-use crate::contact_fronts::ContactFronts;
+use crate::contact_fronts::{ContactFronts, ContactWeights};
 use crate::dense;
 use crate::gluing::Gluing;
 use crate::supernodes::{Supernodes, Tile};
@@ -169,10 +169,15 @@ impl SplitBase {
         cost(&self.tree) < sparse
     }
 
+    /// Whether pairs of contact rows may stand in these lines.
+    pub(crate) fn allows(&self, lines: &[LineWeight]) -> bool {
+        self.contact.allow(lines)
+    }
+
     /// Factor for other weights of the contact rows; reuses the memory of `old`.
     pub(crate) fn factor(
         &self,
-        weights: &[f64],
+        weights: &ContactWeights,
         old: Option<SplitFactor>,
         fronts: &mut Fronts,
     ) -> Result<SplitFactor, usize> {
