@@ -20,6 +20,7 @@
 use crate::law::Friction;
 use crate::level::{Level, normal_force};
 use crate::model::{Model, Tangential};
+use crate::state::REST;
 use signorini_qp::vector;
 
 /// A violation and the quantity it is relative to, in the same unit.
@@ -105,6 +106,9 @@ pub(crate) struct Measured<'a> {
     pub(crate) residual: &'a [f64],
 }
 
+/// Part of all forces that a vanishing contact force is measured against.
+const SMALL_PART: f64 = 1e-4;
+
 pub(crate) fn certify(
     model: &Model,
     level: &Level,
@@ -113,7 +117,9 @@ pub(crate) fn certify(
 ) -> Certificate {
     let ranges = model.tfeti.gluing().ranges();
     // where nothing moves, what the loads would do to the torn subdomains is the scale
-    let displacement = vector::max_abs(m.u).max(vector::max_abs(&level.load));
+    let displacement = vector::max_abs(m.u)
+        .max(vector::max_abs(&level.load))
+        .max(REST * level.peak.displacement);
     let mut contact_force = 0.0_f64;
     let mut total = vector::dot(m.force, m.force);
     for point in &model.points {
@@ -127,10 +133,15 @@ pub(crate) fn certify(
         contact_force = contact_force.max(sum.sqrt());
         total += sum;
     }
+    // likewise where no force acts, or next to none on the contact surface
+    let all = total.sqrt().max(REST * level.peak.multipliers);
+    contact_force = contact_force
+        .max(REST * level.peak.force)
+        .max(SMALL_PART * all);
     let mut c = Certificate {
         equilibrium: Violation {
             value: vector::norm(m.residual),
-            reference: total.sqrt(),
+            reference: all,
         },
         ..Certificate::default()
     };

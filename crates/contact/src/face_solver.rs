@@ -11,6 +11,7 @@ use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
 use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
+use crate::state::REST;
 use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face};
 use signorini_tfeti::{DualOperator, FaceSpace};
 
@@ -73,7 +74,8 @@ impl FaceSolver {
         let face_settings = self
             .settings
             .clone()
-            .with_tolerance(settings.tolerance * SAFETY);
+            .with_tolerance(settings.tolerance * SAFETY)
+            .with_least(REST * level.peak.multipliers);
         let coulomb = is_coulomb(model);
         let mut updates = 0;
         let mut hook = |x: &[f64], set: &mut ProductSet| {

@@ -3,7 +3,7 @@
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
-use crate::state::State;
+use crate::state::{Peak, State};
 use signorini_qp::{ProductSet, vector};
 
 /// Data of one level; vectors are allocated once and rewritten.
@@ -25,6 +25,8 @@ pub(crate) struct Level {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
+    /// Largest sizes at earlier levels.
+    pub(crate) peak: Peak,
     /// Coefficient of friction at each point; empty unless Coulomb.
     pub(crate) coefficients: Vec<f64>,
 }
@@ -45,6 +47,7 @@ impl Level {
         self.index = index;
         self.time = time;
         self.step = analysis.step(index);
+        self.peak = state.peak();
         self.factors.clear();
         self.factors.extend(
             model

@@ -6,7 +6,7 @@ mod screened;
 
 use crate::accumulated::AccumulatedError;
 use crate::accuracy::Controller;
-use crate::certificate::{Certificate, Measured, certify};
+use crate::certificate::{Certificate, Measured, Violation, certify};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
@@ -19,7 +19,7 @@ use crate::scene::Scene;
 use crate::screening::Screen;
 use crate::settings::Settings;
 use crate::solver::{Iterate, Solver};
-use crate::state::State;
+use crate::state::{Peak, State};
 use signorini_fem_mesh::Decomposition;
 use signorini_qp::vector;
 use signorini_tfeti::Tfeti;
@@ -375,6 +375,12 @@ impl Simulation {
         } else {
             (Vec::new(), Vec::new(), Vec::new())
         };
+        let largest = |v: &Violation| v.reference;
+        self.state.raise(Peak {
+            multipliers: vector::norm(&lambda),
+            force: largest(&self.certificate.sign),
+            displacement: largest(&self.certificate.gap),
+        });
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();
             report.counters.factorisations = std::mem::take(&mut self.rebuilt);

@@ -31,11 +31,39 @@ pub struct State {
     tolerance: f64,
     /// Algebraic errors of the levels so far, if they are estimated.
     errors: AccumulatedError,
+    /// Largest sizes at the levels so far.
+    peak: Peak,
+}
+
+/// Largest sizes at earlier levels: what a level where forces and displacements vanish is measured against.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Peak {
+    /// Norm of the multipliers, N.
+    pub(crate) multipliers: f64,
+    /// Contact force at a node, N.
+    pub(crate) force: f64,
+    /// Displacement, m.
+    pub(crate) displacement: f64,
+}
+
+/// Part of the earlier sizes that a vanishing quantity is measured against.
+pub(crate) const REST: f64 = 1e-3;
+
+impl Peak {
+    /// The larger of both, one by one.
+    fn or(self, other: Self) -> Self {
+        Self {
+            multipliers: self.multipliers.max(other.multipliers),
+            force: self.force.max(other.force),
+            displacement: self.displacement.max(other.displacement),
+        }
+    }
 }
 
 /// Marks the format of stored states.
 #[cfg(feature = "checkpoint")]
-const MAGIC: u32 = 0x5349_4703;
+const MAGIC: u32 = 0x5349_4704;
 
 impl State {
     /// Levels solved so far.
@@ -150,6 +178,7 @@ impl State {
             gaps: Default::default(),
             tolerance: self.tolerance,
             errors: self.errors,
+            peak: self.peak,
         }
     }
 
@@ -233,6 +262,16 @@ impl State {
         self.rate = rate;
         self.sliding = sliding;
         self.level += 1;
+    }
+
+    /// Largest sizes at the levels so far.
+    pub(crate) fn peak(&self) -> Peak {
+        self.peak
+    }
+
+    /// Takes the sizes of a level into account.
+    pub(crate) fn raise(&mut self, peak: Peak) {
+        self.peak = self.peak.or(peak);
     }
 
     /// Checks that the state fits a model of these sizes.

@@ -161,9 +161,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         start_residual(set, work);
         let rho = precondition(problem, coarse, set, work, &mut report);
         let (x_norm, c_norm) = (vector::norm(x), vector::norm(&x[..constrained]));
-        let limits = Limits::new(settings.tolerance, x_norm, c_norm);
+        let limits = Limits::new(settings.tolerance, x_norm, c_norm, settings.least);
         let errors = estimate(work);
-        report.error = ratio(errors.0, x_norm);
+        report.error = ratio(errors.0, limits.all / settings.tolerance);
         report.constrained_error = ratio(errors.1, limits.constrained / settings.tolerance);
         if !(errors.0.is_finite() && x_norm.is_finite()) {
             return Err(QpError::NotFinite {

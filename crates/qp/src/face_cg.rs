@@ -19,6 +19,9 @@ use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 use crate::vector;
 
+/// Part of the norm of `x` that vanishing constrained components are measured against.
+const SMALL_PART: f64 = 1e-4;
+
 /// Absolute limits of the two error estimates.
 pub(crate) struct Limits {
     pub(crate) all: f64,
@@ -26,11 +29,12 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    pub(crate) fn new(tolerance: f64, x_norm: f64, c_norm: f64) -> Self {
-        // a vanishing contact force is measured against a millionth of all forces
+    /// `least` is what a vanishing solution is measured against, and a small part of it vanishing constrained components.
+    pub(crate) fn new(tolerance: f64, x_norm: f64, c_norm: f64, least: f64) -> Self {
+        let all = x_norm.max(least);
         Self {
-            all: tolerance * x_norm,
-            constrained: tolerance * c_norm.max(1e-6 * x_norm),
+            all: tolerance * all,
+            constrained: tolerance * c_norm.max(SMALL_PART * all),
         }
     }
 }

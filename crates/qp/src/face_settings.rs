@@ -10,6 +10,7 @@ use crate::report::Status;
 /// | setting | meaning | range | default |
 /// |---|---|---|---|
 /// | `tolerance` | estimated error of `x` relative to its norm, and of its constrained part relative to its own | (0, 1) | 1e-7 |
+/// | `least` | norm of `x` below which errors count relative to it: what a vanishing solution is measured against | >= 0 | 0 |
 /// | `forcing` | decrease of the error estimate on one face before the face is looked at again | (0, 1) | 0.4 |
 /// | `natural_step` | step of the natural map that predicts the next face, in units of the preconditioner's diagonal | (0, 1] | 0.4 |
 /// | `joint_step` | part of the next step that is taken together with the move to the next face | [0, 1] | 1 |
@@ -22,6 +23,8 @@ use crate::report::Status;
 pub struct FaceSettings {
     /// Relative error asked for.
     pub tolerance: f64,
+    /// Norm of `x` that errors are at least relative to.
+    pub least: f64,
     /// Decrease of the error estimate on one face.
     pub forcing: f64,
     /// Step of the natural map, times the preconditioner's diagonal.
@@ -42,6 +45,7 @@ impl Default for FaceSettings {
     fn default() -> Self {
         Self {
             tolerance: 1e-7,
+            least: 0.0,
             forcing: 0.4,
             natural_step: 0.4,
             joint_step: 1.0,
@@ -58,6 +62,13 @@ impl FaceSettings {
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
+        self
+    }
+
+    /// Sets the norm of `x` that errors are at least relative to.
+    #[must_use]
+    pub fn with_least(mut self, norm: f64) -> Self {
+        self.least = norm;
         self
     }
 
@@ -128,6 +139,13 @@ impl FaceSettings {
         };
         open("tolerance", self.tolerance)?;
         open("forcing", self.forcing)?;
+        if !(self.least >= 0.0 && self.least.is_finite()) {
+            return Err(QpError::Setting {
+                name: "least",
+                value: self.least,
+                range: "finite and not negative",
+            });
+        }
         if !(self.natural_step > 0.0 && self.natural_step <= 1.0) {
             return Err(QpError::Setting {
                 name: "natural_step",
