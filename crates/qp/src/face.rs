@@ -113,19 +113,21 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     set.project(x);
     work.face.resize(set);
     work.face.guess(set, x);
-    if let Err(QpError::CoarseDeficient { .. }) = set_face(coarse, set, work, &mut report) {
+    if let Err(QpError::CoarseDeficient { .. }) = set_face(coarse, set, work, &mut report, false) {
         // held by its constraints only: forces that balance with all of them at work tell the first face
         work.face.free_all();
-        set_face(coarse, set, work, &mut report)?;
+        set_face(coarse, set, work, &mut report, false)?;
         coarse.repair(x, problem.rhs);
         hook(x, set);
         set.validate()?;
         report.hook_calls += 1;
         set.project(x);
         work.face.guess(set, x);
-        if let Err(QpError::CoarseDeficient { .. }) = set_face(coarse, set, work, &mut report) {
+        if let Err(QpError::CoarseDeficient { .. }) =
+            set_face(coarse, set, work, &mut report, false)
+        {
             work.face.free_all();
-            set_face(coarse, set, work, &mut report)?;
+            set_face(coarse, set, work, &mut report, false)?;
         }
     }
     coarse.repair(x, problem.rhs);
@@ -145,7 +147,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         residual(problem, coarse, ax, work);
         work.face
             .classify(set, x, &work.residual, problem.scale, settings.natural_step);
-        match hold(problem, coarse, set, x, work, &mut report) {
+        match hold(problem, coarse, set, x, work, &mut report, guard.is_some()) {
             Ok(true) => residual(problem, coarse, ax, work),
             Ok(false) => {}
             Err(QpError::CoarseDeficient { .. }) => {
