@@ -133,6 +133,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     coarse.repair(x, problem.rhs);
     correct(problem, x, ax, ax_known, work, &mut report);
 
+    // bodies that only contact holds are touchier: every move of theirs changes constrained components
+    let apart = coarse.repairs_apart();
     let mut last_jump = f64::INFINITY;
     let mut peak = vector::norm(x);
     let mut forcing = settings.forcing;
@@ -147,7 +149,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         residual(problem, coarse, ax, work);
         work.face
             .classify(set, x, &work.residual, problem.scale, settings.natural_step);
-        match hold(problem, coarse, set, x, work, &mut report, guard.is_some()) {
+        let sparing = guard.is_some() || !apart;
+        match hold(problem, coarse, set, x, work, &mut report, sparing) {
             Ok(true) => residual(problem, coarse, ax, work),
             Ok(false) => {}
             Err(QpError::CoarseDeficient { .. }) => {
@@ -255,7 +258,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         // the natural map predicts the next face, and x moves there, with the next step on top: without constraints
         // there is no move to share a product with, and with a guard only what descends is taken
         vector::copy(x, &mut work.t);
-        let joint = if constrained > 0 && guard.is_none() {
+        let joint = if constrained > 0 && guard.is_none() && apart {
             settings.joint_step * step
         } else {
             0.0

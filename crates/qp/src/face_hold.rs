@@ -9,8 +9,9 @@ use crate::product::ProductSet;
 
 /// Hands the weights of the current face to the coarse space; whether it factored anew.
 ///
-/// The directions of points that slide belong to the face too. Where predictions run in circles they are left out as long
-/// as the other components suffice (`sparing`): faces with jumps of stiffness descend better so.
+/// The directions of points that slide belong to the face too. Where predictions run in circles, and for
+/// bodies that only contact holds, they are left out as long as the other components suffice (`sparing`): measured, not
+/// proved, to need fewer faces there.
 pub(crate) fn set_face<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     coarse: &mut C,
     set: &ProductSet,
