@@ -97,8 +97,8 @@ pub(crate) fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOpe
 const MOST_STEPS: usize = 500;
 
 /// Runs until both estimates have fallen by `forcing` from the smaller of their values now and those `expected`, or below
-/// the limits; `z` is ready, with `rho`. Returns the length of
-/// the last step if another one is worth while; its direction is then `p`.
+/// the limits; `z` is ready, with `rho`. Returns the length of the last step if another one is worth while; its direction
+/// is then `p`.
 pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     problem: &FaceProblem<'_, A, M>,
     coarse: &mut C,
@@ -114,7 +114,9 @@ pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: Symme
     report: &mut FaceReport,
 ) -> Result<f64, QpError> {
     let mut rho = rho;
-    vector::axpby(-1.0, &work.z, 0.0, &mut work.p);
+    // not by a factor of zero: what an earlier solve has left need not be finite
+    vector::copy(&work.z, &mut work.p);
+    vector::scale(-1.0, &mut work.p);
     let start = estimate(work);
     let start = (start.0.min(expected.0), start.1.min(expected.1));
     let last = max_products.min(report.products() + MOST_STEPS);

@@ -3,11 +3,12 @@
 use crate::boundary::{BoundaryMap, RigidTables};
 use crate::class::Classes;
 use crate::coarse_factor::{CoarseFactor, Factor};
-use crate::coarse_matrix::{CoarseMatrix, ModeTable, RowWeights};
+use crate::coarse_matrix::{CoarseMatrix, ModeTable};
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
 use crate::matrices::ClassBase;
 use crate::mobility::{FreeMotion, Mobility};
+use crate::row_weights::RowWeights;
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::split_factor::{SplitBase, cheapest_tree};
 use std::sync::Arc;

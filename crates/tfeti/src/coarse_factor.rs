@@ -1,8 +1,8 @@
 //! Factors of `G W G^T`, projectors and orthonormal rows.
 
 use crate::coarse::{Coarse, CoarseScratch};
-use crate::coarse_matrix::{LineWeight, RowWeights};
 use crate::mobility::FreeMotion;
+use crate::row_weights::{LineWeight, RowWeights};
 use crate::sparse::{SolveMemory, SparseCholesky};
 use crate::split_factor::{SplitBase, SplitFactor};
 use signorini_qp::Equality;

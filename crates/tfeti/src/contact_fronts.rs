@@ -1,8 +1,9 @@
 //! What the contact rows add to the fronts of the coarse matrix.
 
-use crate::coarse_matrix::{LineWeight, ModeTable};
+use crate::coarse_matrix::ModeTable;
 use crate::coarse_tree::CoarseTree;
 use crate::gluing::Gluing;
+use crate::row_weights::LineWeight;
 
 /// The terms `w_r g_r g_r^T` of the contact rows `r`, by the node to whose columns they belong.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 
 use crate::coarse::{Coarse, CoarseScratch};
 use crate::coarse_factor::{CoarseFactor, Factor};
-use crate::coarse_matrix::{LineWeight, RowWeights};
 use crate::contact_fronts::ContactWeights;
 use crate::error::TfetiError;
+use crate::row_weights::{LineWeight, RowWeights};
 use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use signorini_qp::{CoarseSpace, Line, QpError};
 use std::sync::Arc;

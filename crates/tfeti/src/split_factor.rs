@@ -6,11 +6,12 @@
 //! kept, and a new face adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut
 //! run on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
 
-use crate::coarse_matrix::{CoarseMatrix, LineWeight, ModeTable};
+use crate::coarse_matrix::{CoarseMatrix, ModeTable};
 use crate::coarse_tree::{CoarseTree, TreeRegion};
 use crate::contact_fronts::{ContactFronts, ContactWeights};
 use crate::dense;
 use crate::gluing::Gluing;
+use crate::row_weights::LineWeight;
 use crate::supernodes::{Supernodes, Tile};
 
 /// What does not depend on the weights of contact rows.
