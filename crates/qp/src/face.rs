@@ -211,7 +211,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             forcing *= FINER;
             best = measure;
             waited = 0;
-            if !coarse.repairs_apart() {
+            if !apart {
                 vector::copy(x, &mut work.t);
                 work.face.loose_weights(set, &mut work.z);
                 restore(coarse, set, x, problem.rhs, &work.z)?;
@@ -288,16 +288,16 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             // z is free until the next face
             work.face.loose_weights(set, &mut work.z);
         }
-        if guard.is_some() && !coarse.repairs_apart() {
+        if guard.is_some() && !apart {
             restore(coarse, set, x, problem.rhs, &work.z)?;
             // where set and equality do not meet, this does not fall
             last_jump =
                 vector::distance(&x[..constrained], &work.t[..constrained]).max(set.violation(x));
             correct(problem, x, ax, true, work, &mut report);
-        } else if last_jump > 0.0 {
-            coarse.repair(x, problem.rhs);
-            correct(problem, x, ax, true, work, &mut report);
-        } else if joint > 0.0 {
+        } else if last_jump > 0.0 || joint > 0.0 {
+            if last_jump > 0.0 {
+                coarse.repair(x, problem.rhs);
+            }
             correct(problem, x, ax, true, work, &mut report);
         }
         let Some(guard) = &guard else { continue };
@@ -316,7 +316,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             correct(problem, x, ax, true, work, &mut report);
             t *= 0.5;
         }
-        held_up = if t > 16.0 * SHORTEST || !coarse.repairs_apart() {
+        held_up = if t > 16.0 * SHORTEST || !apart {
             0
         } else {
             held_up + 1

@@ -57,32 +57,7 @@ pub(crate) fn add_product_transposed(
 /// Replaces the lower triangle of the symmetric `a` by its Cholesky factor. `Err(pivot)` if `a` is not positive
 /// definite to working precision: a pivot at or below `threshold`.
 pub(crate) fn cholesky(a: &mut [f64], n: usize, threshold: f64) -> Result<(), usize> {
-    if n == 0 {
-        return Ok(());
-    }
-    let params = Default::default();
-    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(
-        n,
-        Par::Seq,
-        params,
-    ));
-    llt::factor::cholesky_in_place(
-        MatMut::from_column_major_slice_mut(a, n, n),
-        Default::default(),
-        Par::Seq,
-        MemStack::new(&mut memory),
-        params,
-    )
-    .map_err(|error| match error {
-        llt::factor::LltError::NonPositivePivot { index } => index,
-    })?;
-    for j in 0..n {
-        let pivot = a[j + j * n] * a[j + j * n];
-        if pivot.is_nan() || pivot <= threshold {
-            return Err(j);
-        }
-    }
-    Ok(())
+    cholesky_columns(a, n, n, threshold)
 }
 
 /// Replaces the first `width` columns of a symmetric matrix of `height` rows, lower triangle, by those of its Cholesky

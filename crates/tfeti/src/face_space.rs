@@ -92,10 +92,7 @@ impl FaceSpace {
         let (mut fronts, mut contact) = (Fronts::default(), ContactWeights::default());
         let (own, rows) = (split.as_ref(), contact_rows);
         let work = (&mut fronts, &mut contact);
-        let factor = match split_factor(coarse, own, &row_weights, rows, None, work.0, work.1) {
-            Some(factor) => factor,
-            None => coarse.factor_weighted(row_weights)?,
-        };
+        let factor = factor(coarse, own, row_weights, rows, None, work.0, work.1)?;
         let always = factor.free_motions().is_empty().then(|| factor.clone());
         Ok(Self {
             scratch: factor.scratch(),
@@ -148,29 +145,33 @@ impl FaceSpace {
     }
 }
 
-/// The factor for `weights` on the basis of `split`; `None` if there is no such basis, if free motions ask for a
-/// generalised inverse, or if the matrix is singular to working precision.
-fn split_factor(
+/// The factor for `weights` on the basis of `split`; of the whole matrix if there is no such basis, if free motions ask for
+/// a generalised inverse, or if the matrix is singular to working precision.
+fn factor(
     coarse: &Coarse,
     split: Option<&Arc<SplitBase>>,
-    weights: &RowWeights,
+    weights: RowWeights,
     contact_rows: usize,
     spare: Option<SplitFactor>,
     fronts: &mut Fronts,
     contact: &mut ContactWeights,
-) -> Option<CoarseFactor> {
-    let split = split?;
-    if !split.allows(&weights.lines) || !coarse.0.free_motions(Some(weights)).is_empty() {
-        return None;
+) -> Result<CoarseFactor, TfetiError> {
+    let usable = |base: &&Arc<SplitBase>| {
+        base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty()
+    };
+    if let Some(base) = split.filter(usable) {
+        contact.set(&weights.diagonal[..contact_rows], &weights.lines);
+        if let Ok(factor) = base.factor(contact, spare, fronts) {
+            let factor = Factor::Split(base.clone(), factor);
+            return Ok(CoarseFactor::new(
+                coarse.clone(),
+                factor,
+                Some(weights),
+                Vec::new(),
+            ));
+        }
     }
-    contact.set(&weights.diagonal[..contact_rows], &weights.lines);
-    let factor = split.factor(contact, spare, fronts).ok()?;
-    Some(CoarseFactor::new(
-        coarse.clone(),
-        Factor::Split(split.clone(), factor),
-        Some(weights.clone()),
-        Vec::new(),
-    ))
+    coarse.factor_weighted(weights)
 }
 
 fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
@@ -218,10 +219,8 @@ impl CoarseSpace for FaceSpace {
         let spare = self.spare.take();
         let (rows, fronts, contact) = (self.contact_rows, &mut self.fronts, &mut self.contact);
         let base = &self.coarse;
-        let factor = match split_factor(base, split, &weights, rows, spare, fronts, contact) {
-            Some(factor) => factor,
-            None => self.coarse.factor_weighted(weights).map_err(deficient)?,
-        };
+        let factor =
+            factor(base, split, weights, rows, spare, fronts, contact).map_err(deficient)?;
         if let Some(motion) = self.deficiency(&factor) {
             return Err(QpError::CoarseDeficient { motion });
         }
