@@ -9,8 +9,10 @@
 #[cfg(doc)]
 use crate::cost::PANEL;
 mod build;
+mod globs;
 mod rigid;
 
+pub(crate) use globs::Wrench;
 pub(crate) use rigid::RigidTables;
 
 use rayon::prelude::*;
@@ -289,13 +291,13 @@ impl BoundaryMap {
     }
 }
 
-fn over_lanes<W: Send>(
-    lanes: &[Lane],
+fn over_lanes<L: Sync, W: Send, T: Send>(
+    lanes: &[L],
     work: &mut [W],
-    y: &mut [f64],
-    offset: &(impl Fn(&Lane) -> usize + Sync),
+    y: &mut [T],
+    offset: &(impl Fn(&L) -> usize + Sync),
     parallel: bool,
-    task: &(impl Fn(&Lane, &mut W, &mut [f64]) + Sync),
+    task: &(impl Fn(&L, &mut W, &mut [T]) + Sync),
 ) {
     match lanes {
         [] => {}

@@ -1,6 +1,6 @@
 //! The natural coarse space: `G = R^T B^T`, its products and factors of `G W G^T`.
 
-use crate::boundary::{BoundaryMap, RigidTables};
+use crate::boundary::{BoundaryMap, RigidTables, Wrench};
 use crate::class::Classes;
 use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::{CoarseMatrix, ModeTable};
@@ -36,6 +36,8 @@ pub(crate) struct CoarseData {
 pub struct CoarseScratch {
     /// Wrenches by column.
     pub(crate) columns: Vec<f64>,
+    /// Wrenches by glob and subdomain.
+    pub(crate) sides: Vec<Wrench>,
     /// Motions by column.
     pub(crate) motions: Vec<[f64; 6]>,
     pub(crate) first: Vec<f64>,
@@ -68,7 +70,7 @@ impl Coarse {
             || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
             || {
                 let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
-                (mobility, RigidTables::new(&map, &bases, &gluing))
+                (mobility, RigidTables::new(&map, &bases, &classes, &gluing))
             },
         );
         let symbolic = symbolic?;
@@ -119,6 +121,7 @@ impl Coarse {
         let rows = self.rows();
         CoarseScratch {
             columns: vec![0.0; rows],
+            sides: vec![Wrench::default(); self.0.tables.work()],
             motions: vec![[0.0; 6]; rows / 6],
             first: vec![0.0; rows],
             second: vec![0.0; rows],
@@ -131,7 +134,7 @@ impl Coarse {
 
     /// `out = G x`: the wrenches of the multipliers on the subdomains.
     pub fn apply(&self, x: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0.product(x, None, out, &mut s.columns);
+        self.0.product(x, None, out, &mut s.columns, &mut s.sides);
     }
 
     /// `out = G^T y`.
@@ -263,9 +266,10 @@ impl CoarseData {
         weights: Option<&[f64]>,
         out: &mut [f64],
         columns: &mut [f64],
+        sides: &mut [Wrench],
     ) {
         let map = &self.map;
-        map.wrenches(&self.tables, &self.bases, x, weights, columns);
+        map.wrenches(&self.tables, &self.bases, x, weights, columns, sides);
         for (&column, target) in map.column_of.iter().zip(out.chunks_exact_mut(6)) {
             target.copy_from_slice(&columns[6 * column as usize..][..6]);
         }
@@ -277,7 +281,9 @@ impl CoarseData {
             self.map.column_of.iter().zip(y.chunks_exact(6)).enumerate()
         {
             let kernel = &self.bases[self.classes.place(s).0].kernel;
-            motions[column as usize] = kernel.motion(amplitudes);
+            let mut motion = kernel.motion(amplitudes);
+            motion[3..].iter_mut().for_each(|w| *w /= kernel.radius());
+            motions[column as usize] = motion;
         }
     }
 

@@ -136,7 +136,7 @@ impl CoarseFactor {
     /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
-        data.product(x, None, &mut s.first, &mut s.columns);
+        data.product(x, None, &mut s.first, &mut s.columns, &mut s.sides);
         if let Some(e) = e {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
@@ -193,7 +193,7 @@ impl CoarseFactor {
         s.dual.copy_from_slice(r);
         self.weigh(&mut s.dual);
         let data = &self.0.coarse.0;
-        data.product(&s.dual, None, alpha, &mut s.columns);
+        data.product(&s.dual, None, alpha, &mut s.columns, &mut s.sides);
         self.solve_with(alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -201,7 +201,7 @@ impl CoarseFactor {
     /// The same for interface rows of weight one and rows in lines that are weighted already.
     fn plain_amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
-        data.product(r, self.diagonal(), alpha, &mut s.columns);
+        data.product(r, self.diagonal(), alpha, &mut s.columns, &mut s.sides);
         self.solve_with(alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -290,7 +290,7 @@ impl Equality for OrthonormalCoarse {
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse().0;
-        data.product(x, None, &mut s.first, &mut s.columns);
+        data.product(x, None, &mut s.first, &mut s.columns, &mut s.sides);
         self.half_solve(&s.first, y, &mut s.memory);
     }
 

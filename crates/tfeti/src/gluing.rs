@@ -5,7 +5,10 @@
 //! row is a list of (copy, vector). Supports and contact act on the mean of the copies, the interface rows on its
 //! complement, so the rows are independent by construction; what would depend is reported in [`Gluing::removed`].
 
-use crate::contact::{ContactNodes, ContactRow, PointRows, contact_rows};
+mod build;
+
+use self::build::Builder;
+use crate::contact::{ContactNodes, contact_rows};
 use crate::error::TfetiError;
 use crate::rows::{RemovedRow, RowRanges, RowRule};
 use crate::supports::{MergedSupports, Support};
@@ -71,6 +74,23 @@ pub(crate) struct BlockEntry {
     pub(crate) coefficient: f64,
 }
 
+/// A *glob*: nodes that the same subdomains share, such as those inside a face or an edge of a subdomain.
+///
+/// Its interface blocks stand together: one run of `nodes` blocks after the other, each of the same coefficients.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Glob {
+    pub(crate) first_block: u32,
+    pub(crate) nodes: u32,
+    pub(crate) runs: u32,
+}
+
+impl Glob {
+    /// Block of a node in a run.
+    pub(crate) fn block(&self, run: usize, node: usize) -> usize {
+        self.first_block as usize + run * self.nodes as usize + node
+    }
+}
+
 /// The rows of `B`, their names and their counts.
 #[derive(Debug, Clone)]
 pub struct Gluing {
@@ -79,6 +99,7 @@ pub struct Gluing {
     block_pointers: Vec<u32>,
     block_entries: Vec<BlockEntry>,
     block_nodes: Vec<u32>,
+    globs: Vec<Glob>,
     row_pointers: Vec<u32>,
     row_entries: Vec<CopyEntry>,
     row_nodes: Vec<u32>,
@@ -160,6 +181,7 @@ impl Gluing {
             block_pointers: vec![0],
             block_entries: Vec::new(),
             block_nodes: Vec::new(),
+            globs: Vec::new(),
             row_pointers: vec![0],
             row_entries: Vec::new(),
             row_nodes: Vec::new(),
@@ -280,6 +302,11 @@ impl Gluing {
             [self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
     }
 
+    /// The globs, in the order of their blocks.
+    pub(crate) fn globs(&self) -> &[Glob] {
+        &self.globs
+    }
+
     /// Number of rows that are not interface rows: contact rows, then support rows.
     pub(crate) fn specials(&self) -> usize {
         self.row_pointers.len() - 1
@@ -304,181 +331,6 @@ impl Gluing {
             row
         } else {
             row - self.ranges.interface.len()
-        }
-    }
-}
-
-struct Builder<'a> {
-    decomposition: &'a Decomposition,
-    rule: RowRule,
-    gluing: Gluing,
-}
-
-impl Builder<'_> {
-    /// Spreads a vector that multiplies the mean displacement of a node over its copies.
-    fn spread(&mut self, node: u32, vector: [f64; 3]) {
-        if vector == [0.0; 3] {
-            return;
-        }
-        let copies = self.decomposition.copies(node as usize);
-        let (used, factor) = match self.rule {
-            RowRule::Orthonormal => (copies.len(), 1.0 / (copies.len() as f64).sqrt()),
-            RowRule::Chained => (1, 1.0),
-        };
-        let vector = vector.map(|v| v * factor);
-        let entries = copies.iter().take(used).map(|c| CopyEntry {
-            subdomain: c.subdomain,
-            local: c.local,
-            vector,
-        });
-        self.gluing.row_entries.extend(entries);
-    }
-
-    fn close(&mut self, node: u32) -> usize {
-        self.gluing
-            .row_pointers
-            .push(self.gluing.row_entries.len() as u32);
-        self.gluing.row_nodes.push(node);
-        self.gluing.row_pointers.len() - 2
-    }
-
-    fn contact_row(
-        &mut self,
-        node: u32,
-        opponent: Option<u32>,
-        row: &ContactRow,
-        prescribed: &[(u32, [f64; 3])],
-    ) -> usize {
-        self.spread(node, row.node);
-        if let Some(opponent) = opponent {
-            self.spread(opponent, row.opponent);
-        }
-        let number = self.close(node);
-        for (case, moved) in prescribed {
-            let along: f64 = (0..3).map(|c| row.direction[c] * moved[c]).sum();
-            if along != 0.0 {
-                self.gluing.prescribed[*case as usize].push((number as u32, -row.scale * along));
-            }
-        }
-        number
-    }
-
-    fn contact(&mut self, contact: &ContactNodes, points: &[PointRows]) {
-        let place = |p: &PointRows| {
-            (
-                contact.points[p.point].node,
-                contact.points[p.point].opponent,
-            )
-        };
-        for p in points {
-            let (node, opponent) = place(p);
-            let row = self.contact_row(node, opponent, &p.normal, &p.prescribed);
-            self.gluing.contact.push(ContactInfo {
-                point: p.point,
-                node,
-                opponent,
-                frame: contact.points[p.point].frame,
-                row,
-                scale: p.normal.scale,
-                tangential: TangentialRows::None,
-            });
-            let skew = |r: &ContactRow| {
-                let length: f64 = (0..3)
-                    .map(|c| r.node[c] * r.node[c] + r.opponent[c] * r.opponent[c])
-                    .sum();
-                (length - 1.0).abs() > 1e-12
-            };
-            if skew(&p.normal) || p.tangential.iter().any(skew) {
-                self.gluing.orthonormal = false;
-            }
-        }
-        let normal = self.gluing.specials();
-        for (k, p) in points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.tangential.len() == 2)
-        {
-            let (node, opponent) = place(p);
-            let row = self.contact_row(node, opponent, &p.tangential[0], &p.prescribed);
-            self.contact_row(node, opponent, &p.tangential[1], &p.prescribed);
-            self.gluing.contact[k].tangential = TangentialRows::Disc {
-                row,
-                scale: p.tangential[0].scale,
-            };
-        }
-        let discs = self.gluing.specials();
-        for (k, p) in points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.tangential.len() == 1)
-        {
-            let (node, opponent) = place(p);
-            let tangent = &p.tangential[0];
-            let row = self.contact_row(node, opponent, tangent, &p.prescribed);
-            let (direction, scale) = (tangent.direction, tangent.scale);
-            self.gluing.contact[k].tangential = TangentialRows::Interval {
-                row,
-                direction,
-                scale,
-            };
-        }
-        let end = self.gluing.specials();
-        let ranges = &mut self.gluing.ranges;
-        (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
-        ranges.interface = end..end;
-    }
-
-    fn interface(&mut self, nodes: usize) {
-        for node in 0..nodes {
-            let copies = self.decomposition.copies(node);
-            for j in 1..copies.len() {
-                let entry = |k: usize, coefficient: f64| {
-                    let copy = &copies[k];
-                    BlockEntry {
-                        subdomain: copy.subdomain,
-                        local: copy.local,
-                        coefficient,
-                    }
-                };
-                match self.rule {
-                    RowRule::Orthonormal => {
-                        let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
-                        self.gluing
-                            .block_entries
-                            .extend((0..j).map(|k| entry(k, scale)));
-                        self.gluing
-                            .block_entries
-                            .push(entry(j, -(j as f64) * scale));
-                    }
-                    RowRule::Chained => {
-                        self.gluing
-                            .block_entries
-                            .extend([entry(j - 1, 1.0), entry(j, -1.0)]);
-                    }
-                }
-                self.gluing
-                    .block_pointers
-                    .push(self.gluing.block_entries.len() as u32);
-                self.gluing.block_nodes.push(node as u32);
-            }
-        }
-    }
-
-    fn dirichlet(&mut self, merged: &MergedSupports) {
-        for fixed in &merged.nodes {
-            let scale = match self.rule {
-                RowRule::Orthonormal => {
-                    (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt()
-                }
-                RowRule::Chained => 1.0,
-            };
-            for direction in &fixed.directions {
-                self.spread(fixed.node, direction.direction);
-                let number = self.close(fixed.node);
-                for &(case, value) in &direction.values {
-                    self.gluing.prescribed[case as usize].push((number as u32, scale * value));
-                }
-            }
         }
     }
 }

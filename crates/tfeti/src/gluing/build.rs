@@ -1,0 +1,192 @@
+//! Building the rows: contact rows, interface blocks glob by glob, support rows.
+
+use super::{BlockEntry, ContactInfo, CopyEntry, Glob, Gluing, TangentialRows};
+use crate::contact::{ContactNodes, ContactRow, PointRows};
+use crate::rows::RowRule;
+use crate::supports::MergedSupports;
+use signorini_fem_mesh::{Decomposition, NodeCopy};
+
+pub(super) struct Builder<'a> {
+    pub(super) decomposition: &'a Decomposition,
+    pub(super) rule: RowRule,
+    pub(super) gluing: Gluing,
+}
+
+impl Builder<'_> {
+    /// Spreads a vector that multiplies the mean displacement of a node over its copies.
+    fn spread(&mut self, node: u32, vector: [f64; 3]) {
+        if vector == [0.0; 3] {
+            return;
+        }
+        let copies = self.decomposition.copies(node as usize);
+        let (used, factor) = match self.rule {
+            RowRule::Orthonormal => (copies.len(), 1.0 / (copies.len() as f64).sqrt()),
+            RowRule::Chained => (1, 1.0),
+        };
+        let vector = vector.map(|v| v * factor);
+        let entries = copies.iter().take(used).map(|c| CopyEntry {
+            subdomain: c.subdomain,
+            local: c.local,
+            vector,
+        });
+        self.gluing.row_entries.extend(entries);
+    }
+
+    fn close(&mut self, node: u32) -> usize {
+        self.gluing
+            .row_pointers
+            .push(self.gluing.row_entries.len() as u32);
+        self.gluing.row_nodes.push(node);
+        self.gluing.row_pointers.len() - 2
+    }
+
+    fn contact_row(
+        &mut self,
+        node: u32,
+        opponent: Option<u32>,
+        row: &ContactRow,
+        prescribed: &[(u32, [f64; 3])],
+    ) -> usize {
+        self.spread(node, row.node);
+        if let Some(opponent) = opponent {
+            self.spread(opponent, row.opponent);
+        }
+        let number = self.close(node);
+        for (case, moved) in prescribed {
+            let along: f64 = (0..3).map(|c| row.direction[c] * moved[c]).sum();
+            if along != 0.0 {
+                self.gluing.prescribed[*case as usize].push((number as u32, -row.scale * along));
+            }
+        }
+        number
+    }
+
+    pub(super) fn contact(&mut self, contact: &ContactNodes, points: &[PointRows]) {
+        let place = |p: &PointRows| {
+            (
+                contact.points[p.point].node,
+                contact.points[p.point].opponent,
+            )
+        };
+        for p in points {
+            let (node, opponent) = place(p);
+            let row = self.contact_row(node, opponent, &p.normal, &p.prescribed);
+            self.gluing.contact.push(ContactInfo {
+                point: p.point,
+                node,
+                opponent,
+                frame: contact.points[p.point].frame,
+                row,
+                scale: p.normal.scale,
+                tangential: TangentialRows::None,
+            });
+            let skew = |r: &ContactRow| {
+                let length: f64 = (0..3)
+                    .map(|c| r.node[c] * r.node[c] + r.opponent[c] * r.opponent[c])
+                    .sum();
+                (length - 1.0).abs() > 1e-12
+            };
+            if skew(&p.normal) || p.tangential.iter().any(skew) {
+                self.gluing.orthonormal = false;
+            }
+        }
+        let normal = self.gluing.specials();
+        for (k, p) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.tangential.len() == 2)
+        {
+            let (node, opponent) = place(p);
+            let row = self.contact_row(node, opponent, &p.tangential[0], &p.prescribed);
+            self.contact_row(node, opponent, &p.tangential[1], &p.prescribed);
+            self.gluing.contact[k].tangential = TangentialRows::Disc {
+                row,
+                scale: p.tangential[0].scale,
+            };
+        }
+        let discs = self.gluing.specials();
+        for (k, p) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.tangential.len() == 1)
+        {
+            let (node, opponent) = place(p);
+            let tangent = &p.tangential[0];
+            let row = self.contact_row(node, opponent, tangent, &p.prescribed);
+            let (direction, scale) = (tangent.direction, tangent.scale);
+            self.gluing.contact[k].tangential = TangentialRows::Interval {
+                row,
+                direction,
+                scale,
+            };
+        }
+        let end = self.gluing.specials();
+        let ranges = &mut self.gluing.ranges;
+        (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
+        ranges.interface = end..end;
+    }
+
+    pub(super) fn interface(&mut self, nodes: usize) {
+        let decomposition = self.decomposition;
+        let copies = |node: u32| decomposition.copies(node as usize);
+        let sharers = |node: u32| copies(node).iter().map(|c| c.subdomain);
+        let mut shared: Vec<u32> = (0..nodes as u32)
+            .filter(|&node| copies(node).len() > 1)
+            .collect();
+        shared.sort_unstable_by(|&a, &b| {
+            let by_kind = copies(a).len().cmp(&copies(b).len());
+            by_kind.then_with(|| sharers(a).cmp(sharers(b)).then(a.cmp(&b)))
+        });
+        for glob in shared.chunk_by(|&a, &b| sharers(a).eq(sharers(b))) {
+            let runs = copies(glob[0]).len() - 1;
+            self.gluing.globs.push(Glob {
+                first_block: self.gluing.block_nodes.len() as u32,
+                nodes: glob.len() as u32,
+                runs: runs as u32,
+            });
+            for run in 1..=runs {
+                for &node in glob {
+                    self.interface_block(node, copies(node), run);
+                }
+            }
+        }
+    }
+
+    /// Row `j` of a node's Helmert matrix, or link `j` of its chain.
+    fn interface_block(&mut self, node: u32, copies: &[NodeCopy], j: usize) {
+        let entry = |k: usize, coefficient: f64| BlockEntry {
+            subdomain: copies[k].subdomain,
+            local: copies[k].local,
+            coefficient,
+        };
+        let entries = &mut self.gluing.block_entries;
+        match self.rule {
+            RowRule::Orthonormal => {
+                let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
+                entries.extend((0..j).map(|k| entry(k, scale)));
+                entries.push(entry(j, -(j as f64) * scale));
+            }
+            RowRule::Chained => entries.extend([entry(j - 1, 1.0), entry(j, -1.0)]),
+        }
+        self.gluing.block_pointers.push(entries.len() as u32);
+        self.gluing.block_nodes.push(node);
+    }
+
+    pub(super) fn dirichlet(&mut self, merged: &MergedSupports) {
+        for fixed in &merged.nodes {
+            let scale = match self.rule {
+                RowRule::Orthonormal => {
+                    (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt()
+                }
+                RowRule::Chained => 1.0,
+            };
+            for direction in &fixed.directions {
+                self.spread(fixed.node, direction.direction);
+                let number = self.close(fixed.node);
+                for &(case, value) in &direction.values {
+                    self.gluing.prescribed[case as usize].push((number as u32, scale * value));
+                }
+            }
+        }
+    }
+}
