@@ -193,3 +193,37 @@ fn free_motions_are_found_and_long_bodies_raise_no_alarm() {
     assert!(system.coarse_factor().free_motions().is_empty());
     assert!(system.coarse_factor().orthonormal().is_some());
 }
+
+/// Products with `G` against its columns, for both rules, for globs of one to many nodes and of two to many subdomains.
+#[test]
+fn products_go_through_globs_as_through_rows() {
+    let mut single = Brick::of(1, 2, 0.1);
+    let parts: Vec<u32> = (0..single.mesh.tets().len() as u32).collect();
+    single.decomposition = Decomposition::from_parts(&single.mesh, &parts).unwrap();
+    let most = (0..single.mesh.points().len())
+        .map(|node| single.decomposition.copies(node).len())
+        .max();
+    assert!(most > Some(8), "{most:?} subdomains share a node");
+    for b in [Brick::new(2, 3), Brick::of(2, 2, 0.1), single] {
+        for rule in [RowRule::Orthonormal, RowRule::Chained] {
+            let system = build(&b, InverseKind::Auto, Sharing::Translates, rule);
+            let coarse = system.coarse();
+            let mut s = coarse.scratch();
+            let (x, y) = (noise(coarse.dim(), 3), noise(coarse.rows(), 5));
+            let (mut gx, mut gy) = (vec![0.0; y.len()], vec![0.0; x.len()]);
+            coarse.apply(&x, &mut gx, &mut s);
+            coarse.apply_transpose(&y, &mut gy, &mut s);
+            let (mut rx, mut ry) = (vec![0.0; y.len()], vec![0.0; x.len()]);
+            for row in 0..x.len() {
+                for (subdomain, modes) in coarse.column(row) {
+                    for (k, mode) in modes.iter().enumerate() {
+                        rx[6 * subdomain + k] += mode * x[row];
+                        ry[row] += mode * y[6 * subdomain + k];
+                    }
+                }
+            }
+            assert!(distance(&gx, &rx) < 1e-13 * norm(&rx), "{rule:?}");
+            assert!(distance(&gy, &ry) < 1e-13 * norm(&ry), "{rule:?}");
+        }
+    }
+}
