@@ -10,6 +10,7 @@
 use crate::cost::PANEL;
 mod build;
 mod globs;
+mod points;
 mod rigid;
 
 pub(crate) use globs::Wrench;

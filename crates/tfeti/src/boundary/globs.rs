@@ -144,10 +144,11 @@ impl GlobTables {
     fn cut(&mut self) {
         let work = |p: &Piece| u64::from(p.runs * (p.nodes + 4 * p.count) + 8);
         let total: u64 = self.globs.iter().map(work).sum();
+        let tasks = (total / TASK).clamp(1, LANES as u64);
         let (mut done, mut start) = (0, 0);
         for k in 0..self.globs.len() {
             done += work(&self.globs[k]);
-            let full = done * LANES as u64 >= total * (self.tasks.len() as u64 + 1);
+            let full = done * tasks >= total * (self.tasks.len() as u64 + 1);
             if full || k + 1 == self.globs.len() {
                 let first = &self.globs[start];
                 self.tasks.push(Task {
@@ -292,6 +293,8 @@ fn by_column(columns: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
 
 /// Numbers worked on at a time: whole nodes and whole vector registers.
 const CHUNK: usize = 12;
+/// Least work of a task: some microseconds.
+const TASK: u64 = 8192;
 /// Sides of a glob whose shifted motions are kept.
 const KEPT: usize = 8;
 

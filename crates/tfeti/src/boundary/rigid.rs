@@ -3,20 +3,21 @@
 //! Interface rows are worked on glob by glob, the others by the position of their node (its *arm*).
 
 use super::globs::{GlobTables, Wrench};
+use super::points::PointRows;
 use super::{BoundaryMap, Panel};
 use crate::class::Classes;
 use crate::gluing::Gluing;
-use crate::kernel::{add_wrench, displacement};
+use crate::kernel::add_wrench;
 use crate::matrices::ClassBase;
 
-/// Arms of the boundary nodes of all classes in metres, and the copies of the entries of `B`.
+/// Arms of the boundary nodes of all classes in metres, and the rows of `B` grouped by nodes.
 #[derive(Debug)]
 pub(crate) struct RigidTables {
     arms: Vec<[f64; 3]>,
     /// First arm of each class.
     first: Vec<u32>,
-    /// Column and arm of each entry of the rows that are no interface rows.
-    row_copies: Vec<[u32; 2]>,
+    contact: PointRows,
+    supports: PointRows,
     globs: GlobTables,
 }
 
@@ -43,13 +44,14 @@ impl RigidTables {
             let place = places[class_of(subdomain)][local as usize];
             [map.column_of[subdomain as usize], place]
         };
-        let rows = (0..gluing.specials()).flat_map(|k| gluing.special(k));
+        let contact = gluing.ranges().interface.start;
         let kernel = |subdomain: u32| {
             let class = class_of(subdomain);
             (class, &bases[class].kernel)
         };
         Self {
-            row_copies: rows.map(|e| copy(e.subdomain, e.local)).collect(),
+            contact: PointRows::new(gluing, 0..contact, copy),
+            supports: PointRows::new(gluing, contact..gluing.specials(), copy),
             globs: GlobTables::new(gluing, &map.column_of, kernel),
             arms,
             first,
@@ -140,8 +142,10 @@ impl BoundaryMap {
         let (inner, dirichlet) = rest.split_at_mut(self.interface.len());
         let second = self.interface.end;
         let others = |contact: &mut [f64], dirichlet: &mut [f64]| {
-            self.row_motions(tables, motions, 0, 0, contact, &other);
-            self.row_motions(tables, motions, contact.len(), second, dirichlet, &other);
+            let arms = &tables.arms;
+            tables.contact.motions(motions, arms, contact, &other);
+            let other = |row, x: &mut f64, v| other(second + row, x, v);
+            tables.supports.motions(motions, arms, dirichlet, &other);
         };
         if self.is_large() {
             rayon::join(
@@ -162,30 +166,7 @@ impl BoundaryMap {
         out: &mut [f64],
     ) {
         let contact = &mut out[..self.interface.start];
-        self.row_motions(tables, motions, 0, 0, contact, &|_, x: &mut f64, v| *x = v);
-    }
-
-    /// Rows from the special row `special` on, which is row `row` of `B`.
-    fn row_motions(
-        &self,
-        tables: &RigidTables,
-        motions: &[[f64; 6]],
-        special: usize,
-        row: usize,
-        out: &mut [f64],
-        each: &impl Fn(usize, &mut f64, f64),
-    ) {
-        for (k, target) in out.iter_mut().enumerate() {
-            let pointers = &self.row_pointers[special + k..][..2];
-            let range = pointers[0] as usize..pointers[1] as usize;
-            let copies = tables.row_copies[range.clone()].iter();
-            let terms = copies
-                .zip(&self.row_vectors[range])
-                .map(|(&[column, arm], v)| {
-                    let u = displacement(&motions[column as usize], &tables.arms[arm as usize]);
-                    v[0] * u[0] + v[1] * u[1] + v[2] * u[2]
-                });
-            each(row + k, target, terms.sum());
-        }
+        let set = |_, x: &mut f64, v| *x = v;
+        tables.contact.motions(motions, &tables.arms, contact, &set);
     }
 }

@@ -1,0 +1,111 @@
+//! Rigid motions at single points: rows that are no interface rows.
+//!
+//! The normal and tangential rows of a contact point, or the rows of a supported node, act on the same copies, whose
+//! displacements are computed once for all of them.
+
+use crate::gluing::Gluing;
+use crate::kernel::displacement;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Consecutive rows, grouped by the copies on which they act.
+#[derive(Debug, Default)]
+pub(crate) struct PointRows {
+    points: Vec<Point>,
+    /// Column and arm.
+    copies: Vec<[u32; 2]>,
+    /// Counted from the first of the consecutive rows.
+    rows: Vec<u32>,
+    /// What multiplies the displacement: for each row of a point one vector for each copy.
+    vectors: Vec<[f64; 3]>,
+}
+
+/// Ends of a point's part of the tables; those of the point before are the beginnings.
+#[derive(Debug, Clone, Copy, Default)]
+struct Point {
+    copies: usize,
+    rows: usize,
+    vectors: usize,
+}
+
+/// Copies of a point whose displacements are kept.
+const KEPT: usize = 8;
+
+impl PointRows {
+    /// For the special rows `specials`; `copy` gives column and arm from subdomain and local node.
+    pub(crate) fn new(
+        gluing: &Gluing,
+        specials: Range<usize>,
+        copy: impl Fn(u32, u32) -> [u32; 2],
+    ) -> Self {
+        let mut numbers: HashMap<Vec<[u32; 2]>, usize> = HashMap::new();
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for special in specials.clone() {
+            let entries = gluing.special(special).iter();
+            let copies = entries.map(|e| copy(e.subdomain, e.local)).collect();
+            let number = *numbers.entry(copies).or_insert(groups.len());
+            if number == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[number].push(special);
+        }
+        let mut out = Self::default();
+        for group in groups {
+            let entries = gluing.special(group[0]).iter();
+            out.copies
+                .extend(entries.map(|e| copy(e.subdomain, e.local)));
+            for special in group {
+                out.rows.push((special - specials.start) as u32);
+                out.vectors
+                    .extend(gluing.special(special).iter().map(|e| e.vector));
+            }
+            out.points.push(Point {
+                copies: out.copies.len(),
+                rows: out.rows.len(),
+                vectors: out.vectors.len(),
+            });
+        }
+        out
+    }
+
+    /// Hands each row to `each(row, x, value)` with the displacement that the motions of the columns give it.
+    pub(crate) fn motions(
+        &self,
+        motions: &[[f64; 6]],
+        arms: &[[f64; 3]],
+        x: &mut [f64],
+        each: &impl Fn(usize, &mut f64, f64),
+    ) {
+        let mut start = Point::default();
+        for &end in &self.points {
+            let copies = &self.copies[start.copies..end.copies];
+            let at = |&[column, arm]: &[u32; 2]| {
+                displacement(&motions[column as usize], &arms[arm as usize])
+            };
+            let rows = &self.rows[start.rows..end.rows];
+            let vectors = &self.vectors[start.vectors..end.vectors];
+            start = end;
+            if let [copy] = copies {
+                let u = at(copy);
+                for (&row, v) in rows.iter().zip(vectors) {
+                    let value = v[0] * u[0] + v[1] * u[1] + v[2] * u[2];
+                    each(row as usize, &mut x[row as usize], value);
+                }
+                continue;
+            }
+            let mut kept = [[0.0; 3]; KEPT];
+            for (kept, copy) in kept.iter_mut().zip(copies) {
+                *kept = at(copy);
+            }
+            let mut vectors = vectors.iter();
+            for &row in rows {
+                let mut sum = 0.0;
+                for (k, (copy, v)) in copies.iter().zip(&mut vectors).enumerate() {
+                    let u = kept.get(k).copied().unwrap_or_else(|| at(copy));
+                    sum += v[0] * u[0] + v[1] * u[1] + v[2] * u[2];
+                }
+                each(row as usize, &mut x[row as usize], sum);
+            }
+        }
+    }
+}
