@@ -1,12 +1,12 @@
 //! How close the kernels are to what the machine can do, measured in the same run.
 //!
 //! - one product with `F` over the best dense matrix product of the same number of operations,
-//! - projector and preconditioner over one product,
+//! - projectors and vector work as a share of an iteration (with the product and the preconditioner),
 //! - for subdomains that share nothing: one product over the time to stream their factors or blocks once.
 //!
 //! `cargo bench -p signorini-benches --bench ratios`; with `-- --test` everything runs once and the figures mean nothing.
 
-use signorini::qp::{CoarseSpace, SymmetricOperator};
+use signorini::qp::{CoarseSpace, SymmetricOperator, vector};
 use signorini::tfeti::{FaceSpace, InverseKind, Sharing, Tfeti};
 use signorini_benches::{Body, Failure, gemm, seconds, triad, wave};
 
@@ -19,9 +19,11 @@ fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> 
     Ok(pool.install(|| seconds(quick, || f.apply(&x, &mut y, &mut scratch))))
 }
 
-/// Seconds of the lumped preconditioner, of both projectors of an iteration and of a change of the face.
-fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 3], Failure> {
+/// Seconds of the lumped preconditioner, of both projectors and of the vector work of an iteration, and of a change of the
+/// face.
+fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 4], Failure> {
     let (mut x, mut y) = (wave(system.dual_dim()), wave(system.dual_dim()));
+    let mut z = x.clone();
     let contact = system.gluing().ranges().contact().end;
     let mut space = FaceSpace::new(system.coarse(), contact, None)?;
     let (lumped, mut w, mut k) = (system.lumped()?, vec![1.0; x.len()], 0);
@@ -35,12 +37,21 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 3], Failur
             space.project(&mut x);
             space.project_transpose(&mut y);
         });
+        // what a step of `qp::face` does besides
+        let v = seconds(quick, || {
+            let step = 1e-9 * vector::dot(&x, &y).clamp(0.0, 1.0);
+            vector::axpy(step, &x, &mut y);
+            vector::axpy(step, &y, &mut z);
+            let (rho, _) = vector::dot_and_square(&x, &y);
+            vector::axpy(1e-9 * rho.clamp(0.0, 1.0), &x, &mut z);
+            vector::axpby(-1.0, &y, 0.5, &mut z);
+        });
         let change = seconds(quick, || {
             k += 1;
             w[k % contact] = 1.0 - w[k % contact];
             drop(space.set_weights(&w));
         });
-        [m, p, change]
+        [m, p, v, change]
     }))
 }
 
@@ -51,9 +62,9 @@ fn main() -> Result<(), Failure> {
         "Shared subdomains. Times in ms; ratio = F over the better of both dense products A X and X A.\n"
     );
     println!(
-        "| n | threads | F | A X | X A | ratio | lumped | both projectors | change of face | (P + P^T) / F | set-up / F |"
+        "| n | threads | F | A X | X A | ratio | lumped | both projectors | vectors | share of an iteration | change of face | set-up / F |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for n in sizes.clone() {
         let body = Body::new(n)?;
         let system = body.system(Sharing::Translates, InverseKind::Auto)?;
@@ -64,22 +75,23 @@ fn main() -> Result<(), Failure> {
                 .build()?;
             let time = product(quick, &system, threads)?;
             let [left, right] = gemm(quick, system.dual().flops(), size.unwrap_or(1), threads)?;
-            let [m, p, change] = parts(quick, &system, threads)?;
+            let [m, p, v, change] = parts(quick, &system, threads)?;
             let setup = pool.install(|| {
                 seconds(quick, || {
                     drop(body.system(Sharing::Translates, InverseKind::Auto))
                 })
             });
             println!(
-                "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.1} |",
+                "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.1} |",
                 1e3 * time,
                 1e3 * left,
                 1e3 * right,
                 time / left.min(right),
                 1e3 * m,
                 1e3 * p,
+                1e3 * v,
+                (p + v) / (time + m + p + v),
                 1e3 * change,
-                p / time,
                 setup / time
             );
         }
