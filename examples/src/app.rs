@@ -61,8 +61,18 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
     if let Some(dir) = &options.out {
         draw(dir, &outcomes)?;
     }
+    if let Some(path) = &options.chart {
+        let records: Vec<&RunRecord> = records.clone().collect();
+        save(path, &pictures::growth(&records, is_standard(options))?)?;
+    }
     strict(options.common.strict, records)?;
     Ok(outcomes)
+}
+
+/// Whether the runs are the benchmark, but for its size.
+fn is_standard(options: &BrickOptions) -> bool {
+    let mut loadings = options.loading.loadings().iter();
+    loadings.all(|&l| options.benchmark(1, l).is_standard())
 }
 
 fn plan(options: &BrickOptions, out: &mut impl Write) -> Result<(), ExampleError> {
@@ -99,12 +109,7 @@ fn report(
         first.method, options.steps, first.formula, first.tolerance, first.cells, first.threads
     )?;
     write!(out, "{}", table(&records))?;
-    let standard = options
-        .loading
-        .loadings()
-        .iter()
-        .all(|&l| options.benchmark(1, l).is_standard());
-    if standard {
+    if is_standard(options) {
         writeln!(out, "{}", verdict(&records))?;
     } else {
         writeln!(
@@ -143,7 +148,11 @@ fn draw(dir: &Path, outcomes: &[Outcome]) -> Result<(), ExampleError> {
     Ok(())
 }
 
-fn save(path: &Path, svg: &str) -> Result<(), ExampleError> {
+/// Writes a picture.
+///
+/// # Errors
+/// [`ExampleError`] if the file cannot be written.
+pub(crate) fn save(path: &Path, svg: &str) -> Result<(), ExampleError> {
     std::fs::write(path, svg).map_err(ExampleError::write(path))
 }
 

@@ -156,6 +156,9 @@ pub struct BrickOptions {
     /// With --out: write a VTU file at every K-th step and at the last; 0 writes none.
     #[arg(long, value_name = "K", default_value_t = 1)]
     pub vtu_every: usize,
+    /// Draw products and seconds against the size into this SVG file.
+    #[arg(long, value_name = "FILE")]
+    pub chart: Option<PathBuf>,
     /// Print the plan only.
     #[arg(long)]
     pub plan: bool,

@@ -1,15 +1,18 @@
 //! The ladder from the paper's method to the default: what each idea saves, on the brick.
 
 use std::io::Write;
+use std::path::PathBuf;
 
 use clap::Parser;
 use signorini::contact::InnerAccuracy;
 use signorini::prelude::*;
 use signorini::qp::FaceSettings;
 
+use crate::app::save;
 use crate::brick::{Benchmark, Loading};
 use crate::error::ExampleError;
 use crate::paper;
+use crate::pictures;
 use crate::run::{Header, pool, run};
 
 /// Options of the `performance` example.
@@ -31,6 +34,9 @@ pub struct PerformanceOptions {
     /// Only the default method and its neighbours, not the paper's.
     #[arg(long)]
     pub face_only: bool,
+    /// Draw the ladder into this SVG file.
+    #[arg(long, value_name = "FILE")]
+    pub chart: Option<PathBuf>,
 }
 
 /// One rung of the ladder.
@@ -176,6 +182,9 @@ pub fn execute(
                 }
             }
         }
+    }
+    if let Some(path) = &options.chart {
+        save(path, &pictures::ladder(&lines))?;
     }
     Ok(lines)
 }

@@ -7,6 +7,7 @@ use signorini::prelude::{Settings, Simulation};
 use signorini_examples::app::{execute, strict};
 use signorini_examples::brick::{Benchmark, Loading, scene, sizes};
 use signorini_examples::options::BrickOptions;
+use signorini_examples::performance::{self, PerformanceOptions};
 use signorini_examples::record::RunRecord;
 use signorini_examples::run::Outcome;
 use signorini_examples::{ExampleError, paper};
@@ -266,4 +267,29 @@ fn threads_change_no_bit() {
     let (one, two) = (run(&line(1)).0, run(&line(2)).0);
     assert_eq!(one[0].record.steps, two[0].record.steps);
     assert_eq!(one[0].snapshot.displacement, two[0].snapshot.displacement);
+}
+
+#[test]
+fn charts_show_every_run() {
+    let dir = tempfile::tempdir().expect("folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    run(&format!(
+        "brick --n 1 --steps 3 --cells 3 --quiet --chart {}",
+        path("growth.svg")
+    ));
+    let growth = std::fs::read_to_string(path("growth.svg")).expect("chart");
+    assert!(growth.contains("loading b") && growth.contains("loading c"));
+    assert!(growth.contains("seconds of the run"));
+    // other steps and cells: not the paper's benchmark
+    assert!(!growth.contains("paper, b"));
+    let line = format!(
+        "performance --n 1 --steps 2 --cells 2 --chart {}",
+        path("ladder.svg")
+    );
+    let options = PerformanceOptions::try_parse_from(line.split_whitespace()).expect("options");
+    let lines = performance::execute(&options, &mut Vec::new()).expect("ladder");
+    let ladder = std::fs::read_to_string(path("ladder.svg")).expect("chart");
+    for line in &lines {
+        assert!(ladder.contains(line.name) && ladder.contains(&format!(">{}<", line.products)));
+    }
 }
