@@ -249,7 +249,7 @@ impl CoarseTree {
 }
 
 /// Positions below the diagonal in each column of the factor.
-fn patterns(graph: &[Vec<u32>], blocks: &[u32]) -> Vec<Vec<u32>> {
+pub(crate) fn patterns(graph: &[Vec<u32>], blocks: &[u32]) -> Vec<Vec<u32>> {
     let count = blocks.len();
     let mut place = vec![0_u32; count];
     for (position, &block) in blocks.iter().enumerate() {

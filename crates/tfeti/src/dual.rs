@@ -65,7 +65,9 @@ impl DualOperator {
             let columns = panel.columns.len();
             gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
             if self.inverses[panel.class].boundary.is_none() {
-                full = full.max(self.bases[panel.class].stiffness.dim * columns);
+                if !self.inverses[panel.class].full.is_packed() {
+                    full = full.max(self.bases[panel.class].stiffness.dim * columns);
+                }
                 let own = self.inverses[panel.class].full.need(columns);
                 need = Some(need.map_or(own, |n| n.or(own)));
             }
@@ -97,10 +99,14 @@ impl DualOperator {
                         let base = &self.bases[panel.class];
                         let nodes = &self.map.classes[panel.class].nodes;
                         let dim = base.stiffness.dim;
+                        let full_inverse = &inverse.full;
+                        if full_inverse.apply_at(&base.kernel, nodes, gathered, out, memory) {
+                            continue;
+                        }
                         let full = &mut scratch.full[..dim * columns];
                         full.fill(0.0);
                         expand(nodes, gathered, full, dim);
-                        inverse.full.apply(&base.kernel, full, columns, memory);
+                        full_inverse.apply(&base.kernel, full, columns, memory);
                         restrict(nodes, full, out, dim);
                     }
                 }

@@ -63,10 +63,26 @@ impl Inverse {
         matches!(self.factor, Factor::Packed(_))
     }
 
+    /// `u = K+ f` for forces and displacements at some `nodes`, if it is stored for products with one column.
+    pub(crate) fn apply_at(
+        &self,
+        kernel: &Kernel,
+        nodes: &[u32],
+        f: &[f64],
+        u: &mut [f64],
+        memory: &mut SolveMemory,
+    ) -> bool {
+        if let Factor::Packed(factor) = &self.factor {
+            let kernel = self.project.then_some(kernel);
+            factor.product(kernel, nodes, f, u, &mut memory.numbers);
+        }
+        self.is_packed()
+    }
+
     /// The same, stored for products with one column.
-    pub(crate) fn packed(self) -> Self {
+    pub(crate) fn packed(self, stiffness: &Columns) -> Self {
         let factor = match self.factor {
-            Factor::Sparse(factor) => Arc::new(PackedFactor::new(&factor)),
+            Factor::Sparse(factor) => Arc::new(PackedFactor::new(&factor, stiffness, 3)),
             Factor::Packed(factor) => factor,
         };
         Self {

@@ -68,6 +68,7 @@ mod kernel;
 mod matrices;
 mod mobility;
 mod packed;
+mod panels;
 mod preconditioner;
 mod recovery;
 mod report;

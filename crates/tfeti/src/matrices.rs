@@ -127,7 +127,11 @@ pub(crate) fn invert(
             let boundary =
                 dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
             let single = sizes[k].members == 1 && boundary.is_none();
-            let full = if single { full.packed() } else { full };
+            let full = if single {
+                full.packed(&base.stiffness)
+            } else {
+                full
+            };
             Ok(ClassInverse { full, boundary })
         })
         .collect()

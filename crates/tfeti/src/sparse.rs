@@ -109,7 +109,7 @@ impl Symbolic {
 }
 
 /// Graph of the blocks of a pattern of full blocks: pointers and neighbours.
-fn quotient(pattern: &Columns, block: usize) -> (Vec<usize>, Vec<usize>) {
+pub(crate) fn quotient(pattern: &Columns, block: usize) -> (Vec<usize>, Vec<usize>) {
     let (mut pointers, mut rows) = (vec![0], Vec::new());
     for j in 0..pattern.dim / block {
         // Blocks are full: the first column of each shows all of its neighbours.

@@ -11,8 +11,9 @@ use crate::coarse_tree::{CoarseTree, TreeRegion};
 use crate::contact_fronts::{ContactFronts, ContactWeights};
 use crate::dense;
 use crate::gluing::Gluing;
+use crate::panels::Tile;
 use crate::row_weights::LineWeight;
-use crate::supernodes::{Supernodes, Tile};
+use crate::supernodes::Supernodes;
 
 /// What does not depend on the weights of contact rows.
 #[derive(Debug)]

@@ -2,26 +2,14 @@
 //!
 //! One right-hand side at a time, so the time is that of reading the factor once in each direction. The columns of a group
 //! are stored in panels of up to [`PANEL`], each a run of tiles in the order in which both directions read it. The factor
-//! is `L D L^T` with unit diagonal blocks: `D^-1` of each panel comes first, then the tiles of the rows below.
+//! is `L D L^T` with unit diagonal blocks: the first rows of a panel's tiles are `D^-1`, the others are `-L`. Elimination
+//! then is one product with all tiles, substitution one with their transposes, and no tile is left half empty in between.
 
+use crate::panels::{
+    LANES, PANEL, Tile, copy, eliminate, eliminate_alike, panel, substitute, substitute_alike,
+};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
-
-/// Rows of a tile.
-const LANES: usize = 8;
-/// Columns of a panel: two nodes of three unknowns, or one block of six.
-const PANEL: usize = 6;
-
-/// Consecutive rows of one column.
-#[derive(Debug, Clone, Copy)]
-#[repr(C, align(64))]
-pub(crate) struct Tile([f64; LANES]);
-
-impl Tile {
-    const ZERO: Self = Self([0.0; LANES]);
-    /// Numbers of a tile.
-    pub(crate) const NUMBERS: usize = LANES;
-}
 
 /// Pattern of groups of columns. Rows are counted from the first of these columns on; rows beyond them (*behind*) belong
 /// to others. Rows below a group come in units of `unit` consecutive ones.
@@ -40,6 +28,8 @@ struct Supernode {
     columns: Range<usize>,
     rows: Range<usize>,
     tiles: Range<usize>,
+    /// How many groups of one panel and one shape end here, one after another; they are worked on in one loop.
+    alike: usize,
 }
 
 impl Supernodes {
@@ -59,19 +49,32 @@ impl Supernodes {
         self.rows.extend(rows);
         let rows = first..self.rows.len();
         let (width, height) = (columns.len(), columns.len() + self.unit * rows.len());
-        let panels = (0..width).step_by(PANEL);
-        let count = panels.map(|c| {
-            let panel = PANEL.min(width - c);
-            panel * (1 + (height - c - panel).div_ceil(LANES))
-        });
         let start = self.tiles;
-        self.tiles += count.sum::<usize>();
+        self.tiles += Self::tiles_of(width, height);
+        let single = width <= PANEL && !rows.is_empty();
+        let before = self.nodes.last().filter(|last| {
+            last.columns.end == columns.start
+                && last.columns.len() == width
+                && last.rows.len() == rows.len()
+        });
+        let alike = match (single, before) {
+            (false, _) => 0,
+            (true, None) => 1,
+            (true, Some(before)) => before.alike + 1,
+        };
         self.height = self.height.max(height);
         self.nodes.push(Supernode {
             columns,
             rows,
             tiles: start..self.tiles,
+            alike,
         });
+    }
+
+    /// Tiles of a group.
+    pub(crate) fn tiles_of(width: usize, height: usize) -> usize {
+        let panel = |c: usize| PANEL.min(width - c) * (height - c).div_ceil(LANES);
+        (0..width).step_by(PANEL).map(panel).sum()
     }
 
     /// Tiles of all groups.
@@ -97,7 +100,7 @@ impl Supernodes {
         });
     }
 
-    /// `x = D L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind.
+    /// `x = D^-1 L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind.
     pub(crate) fn forward(
         &self,
         tiles: &[Tile],
@@ -114,7 +117,7 @@ impl Supernodes {
         });
     }
 
-    /// `x = L^-T D^-1 x` for the columns' unknowns, given those `behind`.
+    /// `x = L^-T x` for the columns' unknowns, given those `behind`.
     pub(crate) fn backward(
         &self,
         tiles: &[Tile],
@@ -150,8 +153,7 @@ impl WithSimd for Pack<'_> {
         for first in (0..width).step_by(PANEL) {
             let columns = &self.factor[first * height..];
             let (count, length) = (PANEL.min(width - first), height - first);
-            let below = length - count;
-            let (own, rest) = tiles.split_at_mut(count * (1 + below.div_ceil(LANES)));
+            let (own, rest) = tiles.split_at_mut(count * length.div_ceil(LANES));
             tiles = rest;
             let at = |i: usize, j: usize| columns[j * height + first + i];
             // Inverse of the triangle.
@@ -163,14 +165,8 @@ impl WithSimd for Pack<'_> {
                     inverse[j][i] = -sum / at(i, i);
                 }
             }
-            for j in 0..count {
-                for i in 0..count {
-                    let sum = (i.max(j)..count).map(|k| inverse[i][k] * inverse[j][k]);
-                    own[j].0[i] = sum.sum();
-                }
-            }
-            for (k, chunk) in own[count..].chunks_exact_mut(count).enumerate() {
-                let start = count + LANES * k;
+            for (k, chunk) in own.chunks_exact_mut(count).enumerate() {
+                let start = LANES * k;
                 let rows = LANES.min(length - start);
                 let mut read = [[0.0; LANES]; PANEL];
                 for (j, read) in read.iter_mut().take(count).enumerate() {
@@ -184,8 +180,12 @@ impl WithSimd for Pack<'_> {
                     let mut sum = [0.0; LANES];
                     for i in j..count {
                         for l in 0..LANES {
-                            sum[l] += read[i][l] * inverse[j][i];
+                            sum[l] -= read[i][l] * inverse[j][i];
                         }
+                    }
+                    for i in start..count.min(start + LANES) {
+                        let terms = (i.max(j)..count).map(|k| inverse[i][k] * inverse[j][k]);
+                        sum[i - start] = terms.sum();
                     }
                     tile.0 = sum;
                 }
@@ -207,43 +207,58 @@ impl WithSimd for Forward<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         match self.factor.unit {
-            6 => self.run::<6>(),
-            3 => self.run::<3>(),
-            _ => self.run::<1>(),
+            6 => self.run::<S, 6>(simd),
+            3 => self.run::<S, 3>(simd),
+            _ => self.run::<S, 1>(simd),
         }
     }
 }
 
 impl Forward<'_> {
     #[inline(always)]
-    fn run<const U: usize>(self) {
+    fn run<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
         let first = x.len() / U;
-        for node in &factor.nodes {
+        let mut nodes = &factor.nodes[..];
+        while let Some(node) = nodes.first() {
+            let run = nodes.iter().zip(1..);
+            let alike = run.take_while(|(n, k)| n.alike == *k).count();
+            if alike > 0 {
+                let (run, rest) = nodes.split_at(alike);
+                nodes = rest;
+                let last = &run[alike - 1];
+                let (count, start) = (node.columns.len(), node.columns.start);
+                let own = &self.tiles[node.tiles.start..last.tiles.end];
+                let rows = &factor.rows[node.rows.start..last.rows.end];
+                let units = node.rows.len();
+                let t = &mut self.buffer[..];
+                let behind = &mut self.behind[..];
+                panel!(
+                    eliminate_alike,
+                    simd,
+                    count,
+                    U,
+                    (own, rows, units, start, &mut x[..], behind, t)
+                );
+                continue;
+            }
+            nodes = &nodes[1..];
             let rows = &factor.rows[node.rows.clone()];
             let (width, height) = (node.columns.len(), node.columns.len() + U * rows.len());
             let t = &mut self.buffer[..height + LANES];
-            t[..width].copy_from_slice(&x[node.columns.clone()]);
+            copy::<U>(&x[node.columns.clone()], &mut t[..width]);
             t[width..].fill(0.0);
             let mut tiles = &self.tiles[node.tiles.clone()];
             for start in (0..width).step_by(PANEL) {
                 let count = PANEL.min(width - start);
-                let chunks = (height - start - count).div_ceil(LANES);
-                let (own, rest) = tiles.split_at(count * (1 + chunks));
+                let (own, rest) = tiles.split_at(count * (height - start).div_ceil(LANES));
                 tiles = rest;
                 let t = &mut t[start..];
-                match count {
-                    1 => eliminate::<1>(own, t),
-                    2 => eliminate::<2>(own, t),
-                    3 => eliminate::<3>(own, t),
-                    4 => eliminate::<4>(own, t),
-                    5 => eliminate::<5>(own, t),
-                    _ => eliminate::<PANEL>(own, t),
-                }
+                panel!(eliminate, simd, count, U, (own, t));
             }
-            x[node.columns.clone()].copy_from_slice(&t[..width]);
+            copy::<U>(&t[..width], &mut x[node.columns.clone()]);
             for (&row, sum) in rows.iter().zip(t[width..].chunks_exact(U)) {
                 let row = row as usize;
                 let target = if row < first {
@@ -272,25 +287,46 @@ impl WithSimd for Backward<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         match self.factor.unit {
-            6 => self.run::<6>(),
-            3 => self.run::<3>(),
-            _ => self.run::<1>(),
+            6 => self.run::<S, 6>(simd),
+            3 => self.run::<S, 3>(simd),
+            _ => self.run::<S, 1>(simd),
         }
     }
 }
 
 impl Backward<'_> {
     #[inline(always)]
-    fn run<const U: usize>(self) {
+    fn run<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
         let first = x.len() / U;
-        for node in factor.nodes.iter().rev() {
+        let mut nodes = &factor.nodes[..];
+        while let Some((node, before)) = nodes.split_last() {
+            if node.alike > 0 {
+                let (rest, run) = nodes.split_at(nodes.len() - node.alike);
+                nodes = rest;
+                let first = &run[0];
+                let (count, start) = (node.columns.len(), first.columns.start);
+                let own = &self.tiles[first.tiles.start..node.tiles.end];
+                let rows = &factor.rows[first.rows.start..node.rows.end];
+                let units = node.rows.len();
+                let t = &mut self.buffer[..];
+                let behind = self.behind;
+                panel!(
+                    substitute_alike,
+                    simd,
+                    count,
+                    U,
+                    (own, rows, units, start, &mut x[..], behind, t)
+                );
+                continue;
+            }
+            nodes = before;
             let rows = &factor.rows[node.rows.clone()];
             let (width, height) = (node.columns.len(), node.columns.len() + U * rows.len());
             let t = &mut self.buffer[..height + LANES];
-            t[..width].copy_from_slice(&x[node.columns.clone()]);
+            copy::<U>(&x[node.columns.clone()], &mut t[..width]);
             for (&row, target) in rows.iter().zip(t[width..].chunks_exact_mut(U)) {
                 let row = row as usize;
                 let source = if row < first {
@@ -310,65 +346,14 @@ impl Backward<'_> {
                     end % PANEL
                 };
                 let start = end - count;
-                let chunks = (height - end).div_ceil(LANES);
-                let (rest, own) = tiles.split_at(tiles.len() - count * (1 + chunks));
+                let length = count * (height - start).div_ceil(LANES);
+                let (rest, own) = tiles.split_at(tiles.len() - length);
                 (tiles, end) = (rest, start);
                 let t = &mut t[start..];
-                match count {
-                    1 => substitute::<1>(own, t),
-                    2 => substitute::<2>(own, t),
-                    3 => substitute::<3>(own, t),
-                    4 => substitute::<4>(own, t),
-                    5 => substitute::<5>(own, t),
-                    _ => substitute::<PANEL>(own, t),
-                }
+                panel!(substitute, simd, count, U, (own, t));
             }
-            x[node.columns.clone()].copy_from_slice(&t[..width]);
+            copy::<U>(&t[..width], &mut x[node.columns.clone()]);
         }
-    }
-}
-
-/// Forward elimination of one panel; `t` holds its unknowns and the rows below.
-#[inline(always)]
-fn eliminate<const N: usize>(tiles: &[Tile], t: &mut [f64]) {
-    let (own, rest) = t.split_at_mut(N);
-    let x: [f64; N] = std::array::from_fn(|k| own[k]);
-    let chunks = tiles[N..].chunks_exact(N);
-    for (chunk, t) in chunks.zip(rest.chunks_exact_mut(LANES)) {
-        let mut sum = [0.0; LANES];
-        for k in 0..N {
-            for l in 0..LANES {
-                sum[l] += chunk[k].0[l] * x[k];
-            }
-        }
-        for l in 0..LANES {
-            t[l] -= sum[l];
-        }
-    }
-}
-
-/// Back substitution of one panel; `t` holds its unknowns and those of the rows below.
-#[inline(always)]
-fn substitute<const N: usize>(tiles: &[Tile], t: &mut [f64]) {
-    let (own, rest) = t.split_at_mut(N);
-    let mut value = [0.0; LANES];
-    for k in 0..N {
-        for l in 0..LANES {
-            value[l] += tiles[k].0[l] * own[k];
-        }
-    }
-    let mut sums = [[0.0; LANES]; N];
-    let chunks = tiles[N..].chunks_exact(N);
-    for (chunk, t) in chunks.zip(rest.chunks_exact(LANES)) {
-        for k in 0..N {
-            for l in 0..LANES {
-                sums[k][l] += chunk[k].0[l] * t[l];
-            }
-        }
-    }
-    for k in 0..N {
-        let s = &sums[k];
-        own[k] = value[k] - (((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7])));
     }
 }
 

@@ -132,14 +132,19 @@ fn product_agrees_with_torn_vectors_and_rows() {
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
     let b = Brick::new(3, 5);
-    for kind in [InverseKind::Auto, InverseKind::Sparse] {
+    let (shared, never) = (Sharing::Translates, Sharing::Never);
+    for (kind, sharing) in [
+        (InverseKind::Auto, shared),
+        (InverseKind::Sparse, shared),
+        (InverseKind::Sparse, never),
+    ] {
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
                 .unwrap();
             pool.install(|| {
-                let system = build(&b, kind, Sharing::Translates, RowRule::Orthonormal);
+                let system = build(&b, kind, sharing, RowRule::Orthonormal);
                 let x = noise(system.dual_dim(), 1);
                 let y = product(&system, &x);
                 let c = system.coarse_factor().orthonormal().unwrap();
@@ -158,7 +163,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                     .collect::<Vec<u64>>()
             })
         };
-        assert_eq!(run(1), run(2), "{kind:?}");
+        assert_eq!(run(1), run(2), "{kind:?} {sharing:?}");
     }
 }
 
