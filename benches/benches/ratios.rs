@@ -8,7 +8,7 @@
 
 use signorini::qp::{CoarseSpace, SymmetricOperator, vector};
 use signorini::tfeti::{FaceSpace, InverseKind, Sharing, Tfeti};
-use signorini_benches::{Body, Failure, gemm, seconds, triad, wave};
+use signorini_benches::{Body, Failure, MEMORY, gemm, seconds, triad, wave};
 
 fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> {
     let f = system.dual();
@@ -97,10 +97,10 @@ fn main() -> Result<(), Failure> {
         }
     }
     println!(
-        "\nNo shared subdomains: F over the time to read factors or blocks once at the bandwidth of the triad.\n"
+        "\nNo shared subdomains: F over the time to read factors or blocks once, at the bandwidth of the triad on arrays of 201 MB (memory) and of the same size.\n"
     );
     println!(
-        "| n | inverse | threads | GB/s | MB | F | read once | ratio |\n|---|---|---|---|---|---|---|---|"
+        "| n | inverse | threads | MB | F | GB/s of memory | ratio | GB/s of that size | ratio |\n|---|---|---|---|---|---|---|---|---|"
     );
     for n in sizes.clone().take_while(|n| *n <= 4) {
         let body = Body::new(n)?;
@@ -122,15 +122,18 @@ fn main() -> Result<(), Failure> {
                 }
             };
             for threads in [1, 2] {
-                let bandwidth = triad(quick, threads)?;
-                let (time, once) = (product(quick, &system, threads)?, bytes as f64 / bandwidth);
+                let once = |bandwidth: f64| bytes as f64 / bandwidth;
+                let memory = triad(quick, threads, MEMORY)?;
+                let own = triad(quick, threads, bytes)?;
+                let time = product(quick, &system, threads)?;
                 println!(
-                    "| {n} | {name} | {threads} | {:.1} | {:.1} | {:.3} | {:.3} | {:.2} |",
-                    1e-9 * bandwidth,
+                    "| {n} | {name} | {threads} | {:.1} | {:.3} | {:.1} | {:.2} | {:.1} | {:.2} |",
                     1e-6 * bytes as f64,
                     1e3 * time,
-                    1e3 * once,
-                    time / once
+                    1e-9 * memory,
+                    time / once(memory),
+                    1e-9 * own,
+                    time / once(own)
                 );
             }
         }

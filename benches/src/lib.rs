@@ -120,21 +120,24 @@ pub fn gemm(quick: bool, flops: u64, size: usize, threads: usize) -> Result<[f64
     Ok([time(true), time(false)])
 }
 
-/// Bytes per second of the triad `a = b + s c` on 64 MiB arrays, counting two reads and one write.
+/// Bytes of the three arrays of [`triad`] that stand for memory.
+pub const MEMORY: u64 = 3 << 26;
+
+/// Bytes per second of the triad `a = b + s c` on three arrays of so many `bytes` in all, counting two reads and one write.
 ///
 /// # Errors
 /// If the thread pool cannot be made.
-pub fn triad(quick: bool, threads: usize) -> Result<f64, Failure> {
-    const CHUNK: usize = 1 << 16;
-    let length = if quick { 1 << 18 } else { 1 << 23 };
+pub fn triad(quick: bool, threads: usize, bytes: u64) -> Result<f64, Failure> {
+    let length = (bytes / 24).clamp(1, if quick { 1 << 18 } else { 1 << 32 }) as usize;
+    let chunk = length.div_ceil(8 * threads).min(1 << 16);
     let (mut a, b, c) = (vec![0.0; length], wave(length), wave(length));
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()?;
     let time = pool.install(|| {
         seconds(quick, || {
-            a.par_chunks_mut(CHUNK)
-                .zip(b.par_chunks(CHUNK).zip(c.par_chunks(CHUNK)))
+            a.par_chunks_mut(chunk)
+                .zip(b.par_chunks(chunk).zip(c.par_chunks(chunk)))
                 .for_each(|(a, (b, c))| {
                     for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
                         *a = b + 3.0 * c;
