@@ -6,6 +6,7 @@
 //! complement, so the rows are independent by construction; what would depend is reported in [`Gluing::removed`].
 
 use crate::contact::{ContactNodes, ContactRow, PointRows, contact_rows};
+use crate::copy_stiffness::CopyStiffness;
 use crate::error::TfetiError;
 use crate::rows::{RemovedRow, RowRanges, RowRule};
 use crate::supports::{MergedSupports, Support};
@@ -90,23 +91,27 @@ pub struct Gluing {
 }
 
 impl Gluing {
-    /// Builds the rows. `contact` is `None` for a body without obstacle.
+    /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
+    /// orthonormal contact and support rows, its default all alike.
     pub fn new(
         decomposition: &Decomposition,
         nodes: usize,
         supports: &[Support],
         contact: Option<&ContactNodes>,
         rule: RowRule,
+        stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
         let merged = MergedSupports::new(supports, nodes)?;
         let none = ContactNodes::default();
         let contact_nodes = contact.unwrap_or(&none);
-        let copies = |node: u32| decomposition.copies(node as usize).len();
-        let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, copies)?;
+        let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
+        let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, squares)?;
         let mut builder = Builder {
             decomposition,
             rule,
-            gluing: Self::empty(rule, merged.cases),
+            stiffness,
+            shares: Vec::new(),
+            gluing: Self::empty(rule, merged.cases, stiffness.is_plain()),
         };
         builder.gluing.removed = dropped
             .into_iter()
@@ -147,7 +152,7 @@ impl Gluing {
         Ok(gluing)
     }
 
-    fn empty(rule: RowRule, cases: usize) -> Self {
+    fn empty(rule: RowRule, cases: usize, plain: bool) -> Self {
         Self {
             rule,
             ranges: RowRanges {
@@ -167,7 +172,7 @@ impl Gluing {
             removed: Vec::new(),
             prescribed: vec![Vec::new(); cases],
             paper_rows: 0,
-            orthonormal: rule == RowRule::Orthonormal,
+            orthonormal: rule == RowRule::Orthonormal && plain,
         }
     }
 
@@ -311,6 +316,8 @@ impl Gluing {
 struct Builder<'a> {
     decomposition: &'a Decomposition,
     rule: RowRule,
+    stiffness: &'a CopyStiffness,
+    shares: Vec<f64>,
     gluing: Gluing,
 }
 
@@ -321,15 +328,14 @@ impl Builder<'_> {
             return;
         }
         let copies = self.decomposition.copies(node as usize);
-        let (used, factor) = match self.rule {
-            RowRule::Orthonormal => (copies.len(), 1.0 / (copies.len() as f64).sqrt()),
-            RowRule::Chained => (1, 1.0),
-        };
-        let vector = vector.map(|v| v * factor);
-        let entries = copies.iter().take(used).map(|c| CopyEntry {
+        match self.rule {
+            RowRule::Orthonormal => self.stiffness.unit_shares(copies, &mut self.shares),
+            RowRule::Chained => self.shares.splice(.., [1.0]).for_each(drop),
+        }
+        let entries = copies.iter().zip(&self.shares).map(|(c, share)| CopyEntry {
             subdomain: c.subdomain,
             local: c.local,
-            vector,
+            vector: vector.map(|v| v * share),
         });
         self.gluing.row_entries.extend(entries);
     }
@@ -468,7 +474,8 @@ impl Builder<'_> {
         for fixed in &merged.nodes {
             let scale = match self.rule {
                 RowRule::Orthonormal => {
-                    (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt()
+                    let copies = self.decomposition.copies(fixed.node as usize);
+                    self.stiffness.squares(copies).sqrt().recip()
                 }
                 RowRule::Chained => 1.0,
             };
