@@ -326,13 +326,14 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         } else {
             held_up + 1
         };
-        let (back, reach) = guard.accept(set, x, ax, t);
-        if back {
-            last_jump = f64::INFINITY;
-        }
+        let (rises, reach) = guard.judge(set, x, ax, t);
         if t < SHORT {
             let (from, step) = guard.path();
-            work.face.block(set, from, step, reach);
+            let more = work.face.block(set, from, step, reach);
+            if rises && more {
+                guard.back(x, ax);
+                last_jump = f64::INFINITY;
+            }
         } else {
             work.face.blocked.clear();
         }

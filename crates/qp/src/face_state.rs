@@ -197,11 +197,13 @@ impl Face {
     }
 
     /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it; with a `reach`
-    /// also those that this part of the step takes across.
-    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64], reach: f64) {
+    /// also those that this part of the step takes across. Whether there are more than before.
+    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64], reach: f64) -> bool {
         let (bounds, discs) = (self.free.len(), self.discs.len());
         let mut blocked = std::mem::take(&mut self.blocked);
         blocked.resize(bounds + discs, false);
+        let count = |blocked: &[bool]| blocked.iter().filter(|b| **b).count();
+        let before = count(&blocked);
         let blocked = std::cell::RefCell::new(blocked);
         visit(
             set,
@@ -223,6 +225,7 @@ impl Face {
         );
         self.blocked = blocked.into_inner();
         self.near = reach > 0.0;
+        count(&self.blocked) > before
     }
 
     /// 1 on components that may move in both directions, 0 on others (the one direction of sliding discs is among the

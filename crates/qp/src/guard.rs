@@ -107,30 +107,6 @@ impl Guard {
         enough && !self.stuck
     }
 
-    /// After a step of length `t`: takes it back if it is one between feasible points that does not descend; whether it
-    /// did. Second, the part of the step within which blocks are to be held.
-    pub(crate) fn accept(
-        &mut self,
-        set: &ProductSet,
-        x: &mut [f64],
-        ax: &mut [f64],
-        t: f64,
-    ) -> (bool, f64) {
-        let limit = 2.0 * INSIDE * vector::norm(x);
-        self.exact = set.violation(&self.x) <= limit && set.violation(x) <= limit;
-        self.stuck = self.exact && !self.descends(x, ax, t);
-        if self.stuck {
-            vector::copy(&self.x, x);
-            vector::copy(&self.ax, ax);
-        }
-        let reach = if self.exact {
-            (REACH * t).min(SHORT)
-        } else {
-            0.0
-        };
-        (self.stuck, reach)
-    }
-
     /// Whether the cost at `x` has fallen enough for a step of length `t`.
     pub(crate) fn descends(&self, x: &[f64], ax: &[f64], t: f64) -> bool {
         let mut change = 0.0;
@@ -138,6 +114,27 @@ impl Guard {
             change += (v - self.x[k]) * (self.residual[k] + 0.5 * (ax[k] - self.ax[k]));
         }
         change <= SUFFICIENT * t * self.full
+    }
+
+    /// After a step of length `t`: whether it is one between feasible points that does not descend, and the part of the
+    /// step within which blocks are to be held.
+    pub(crate) fn judge(&mut self, set: &ProductSet, x: &[f64], ax: &[f64], t: f64) -> (bool, f64) {
+        let limit = 2.0 * INSIDE * vector::norm(x);
+        self.exact = set.violation(&self.x) <= limit && set.violation(x) <= limit;
+        self.stuck = false;
+        let reach = if self.exact {
+            (REACH * t).min(SHORT)
+        } else {
+            0.0
+        };
+        (self.exact && !self.descends(x, ax, t), reach)
+    }
+
+    /// Back to the last feasible point.
+    pub(crate) fn back(&mut self, x: &mut [f64], ax: &mut [f64]) {
+        vector::copy(&self.x, x);
+        vector::copy(&self.ax, ax);
+        self.stuck = true;
     }
 
     /// The last feasible point and the step from it.
