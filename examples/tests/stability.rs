@@ -28,6 +28,16 @@ fn short_cases() {
     all_as_they_should_be(&["stability", "--short"]);
 }
 
+/// The face method solves what it certifies by itself.
+#[test]
+fn short_cases_need_no_fall_back() {
+    let cases = chosen(&StabilityOptions::parse_from(["stability", "--short"]));
+    for line in run_all(&cases, |_| {}) {
+        let text = plain(&line);
+        assert!(!text.contains("fall-back"), "{text}");
+    }
+}
+
 #[test]
 #[ignore = "a minute in release"]
 fn all_cases() {

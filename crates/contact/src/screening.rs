@@ -102,6 +102,7 @@ impl Screen {
             &supports,
             Some(&nodes),
             settings.row_rule,
+            model.tfeti.copy_stiffness(),
         )?;
         let points = touch_points(&model.scene, contact, surface, &gluing)?;
         let entry = |(subdomain, dof, value): (usize, usize, f64)| {

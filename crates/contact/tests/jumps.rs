@@ -1,5 +1,5 @@
 //! A soft part between stiff ones, cut along the jump of stiffness: contact nodes on the interfaces belong to stiff and soft
-//! subdomains. The preconditioner has to follow the face there, and the faces have to descend.
+//! subdomains. Their rows have to follow the stiff ones.
 
 mod common;
 
@@ -62,11 +62,13 @@ fn jumps_on_interfaces_are_solved() {
 }
 
 /// Ratio, coefficient of friction, most products.
-const JUMPS: [(f64, f64, usize); 4] = [
-    (1e1, 0.3, 150),
-    (1e3, 0.0, 150),
-    (1e3, 0.3, 3000),
-    (1e6, 0.0, 300),
+const JUMPS: [(f64, f64, usize); 6] = [
+    (1e1, 0.3, 60),
+    (1e3, 0.0, 60),
+    (1e3, 0.3, 60),
+    (1e6, 0.0, 60),
+    (1e6, 0.3, 60),
+    (1e9, 0.3, 60),
 ];
 
 /// The fall-back says no in time.

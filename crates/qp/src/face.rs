@@ -189,7 +189,10 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         peak = peak.max(x_norm);
         // with a guard the set follows the solution only where the problem with the present set is solved
         let solved = errors.1 <= (FOLLOW * drift).max(limits.constrained);
-        if solved && !work.face.blocked.is_empty() {
+        let any = !work.face.blocked.is_empty();
+        if let Some(guard) = &mut guard
+            && guard.releases(any, solved, errors.1, limits.constrained)
+        {
             work.face.blocked.clear();
             continue;
         }
@@ -251,8 +254,10 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         )?;
         left = estimate(work);
         report.faces += 1;
-        if let Some(guard) = &mut guard {
-            guard.leave(x, ax);
+        if let Some(guard) = &mut guard
+            && guard.leave(x, ax)
+        {
+            waited = 0;
         }
 
         // the natural map predicts the next face, and x moves there, with the next step on top: without constraints
@@ -300,7 +305,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             }
             correct(problem, x, ax, true, work, &mut report);
         }
-        let Some(guard) = &guard else { continue };
+        let Some(guard) = &mut guard else { continue };
         if current {
             drift = last_jump;
             continue;
@@ -321,9 +326,14 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         } else {
             held_up + 1
         };
+        let (rises, reach) = guard.judge(set, x, ax, t);
         if t < SHORT {
             let (from, step) = guard.path();
-            work.face.block(set, from, step);
+            let more = work.face.block(set, from, step, reach);
+            if rises && more {
+                guard.back(x, ax);
+                last_jump = f64::INFINITY;
+            }
         } else {
             work.face.blocked.clear();
         }

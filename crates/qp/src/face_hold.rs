@@ -49,6 +49,11 @@ pub(crate) fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
         match set_face(coarse, set, work, report, sparing) {
             Ok(anew) => {
                 factored |= anew;
+                if sparing && !coarse.holds_all() {
+                    // steps along circles would unbalance the modes that are left
+                    sparing = false;
+                    continue;
+                }
                 if coarse.balances(x, problem.rhs) {
                     return Ok(factored);
                 }

@@ -37,6 +37,8 @@ pub(crate) struct Face {
     pub(crate) discs: Vec<Disc>,
     /// Blocks that stopped a step at their boundary, bounds first, then discs; empty for none. They stay there.
     pub(crate) blocked: Vec<bool>,
+    /// Whether they stay where they are inside of their boundary, too.
+    pub(crate) near: bool,
     /// Bounded components that changed between free and held in the last [`classify`](Face::classify).
     pub(crate) changed: usize,
     /// Bounded components that are free.
@@ -160,8 +162,10 @@ impl Face {
             free,
             discs,
             blocked,
+            near,
             ..
         } = self;
+        let near = *near;
         let bounds = free.len();
         let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
         let (mut changed, mut free_bounds) = (0, 0);
@@ -172,7 +176,8 @@ impl Face {
                 // a component is held only if it also is where it would be held
                 let held = lo >= hi
                     || (x[i] <= lo && (s <= lo || stays(k)))
-                    || (x[i] >= hi && (s >= hi || stays(k)));
+                    || (x[i] >= hi && (s >= hi || stays(k)))
+                    || (near && stays(k));
                 changed += usize::from(free[k] == held);
                 free[k] = !held;
                 free_bounds += usize::from(!held);
@@ -181,7 +186,7 @@ impl Face {
                 let at = [x[i], x[i + 1]];
                 let state = disc_state(at, [g[i], g[i + 1]], radius, scale[i]);
                 discs[k] = if stays(bounds + k) && state == Disc::Free {
-                    along_circle(at, radius)
+                    along_circle(at, if near { 0.0 } else { radius })
                 } else {
                     state
                 };
@@ -191,27 +196,36 @@ impl Face {
         self.free_bounds = free_bounds;
     }
 
-    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it.
-    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64]) {
+    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it; with a `reach`
+    /// also those that this part of the step takes across. Whether there are more than before.
+    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64], reach: f64) -> bool {
         let (bounds, discs) = (self.free.len(), self.discs.len());
         let mut blocked = std::mem::take(&mut self.blocked);
         blocked.resize(bounds + discs, false);
+        let count = |blocked: &[bool]| blocked.iter().filter(|b| **b).count();
+        let before = count(&blocked);
         let blocked = std::cell::RefCell::new(blocked);
         visit(
             set,
             |i, k, lo, hi| {
-                if (x[i] <= lo && step[i] < 0.0) || (x[i] >= hi && step[i] > 0.0) {
+                let end = x[i] + reach * step[i];
+                if (x[i].min(end) <= lo && step[i] < 0.0) || (x[i].max(end) >= hi && step[i] > 0.0)
+                {
                     blocked.borrow_mut()[k] = true;
                 }
             },
             |i, k, radius| {
                 let outward = x[i] * step[i] + x[i + 1] * step[i + 1];
-                if x[i].hypot(x[i + 1]) >= radius * (1.0 - ON_CIRCLE) && outward > 0.0 {
+                let end = (x[i] + reach * step[i]).hypot(x[i + 1] + reach * step[i + 1]);
+                let far = x[i].hypot(x[i + 1]).max(end);
+                if far >= radius * (1.0 - ON_CIRCLE) && outward > 0.0 {
                     blocked.borrow_mut()[bounds + k] = true;
                 }
             },
         );
         self.blocked = blocked.into_inner();
+        self.near = reach > 0.0;
+        count(&self.blocked) > before
     }
 
     /// 1 on components that may move in both directions, 0 on others (the one direction of sliding discs is among the
@@ -384,10 +398,10 @@ impl Face {
     }
 }
 
-/// Free along the circle, without curvature; free everywhere inside of it.
+/// Free along the circle, without curvature; free everywhere inside of it. With radius 0 along the circle through `x`.
 fn along_circle(x: [f64; 2], radius: f64) -> Disc {
     let length = x[0].hypot(x[1]);
-    if length < radius * (1.0 - ON_CIRCLE) {
+    if length <= 0.0 || length < radius * (1.0 - ON_CIRCLE) {
         return Disc::Free;
     }
     slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)

@@ -5,6 +5,10 @@
 //! the step of conjugate gradients is shortened and projected until it does (Bertsekas 1982: the projected step descends
 //! as long as components that the gradient presses against their bound are held). Costs are compared by their difference,
 //! which keeps its digits near the solution.
+//!
+//! Blocks that a shortened step takes across their boundary are held (*blocked*), also those a little inside of it. Where no
+//! length descends, the point stays and more blocks are held. They are released when the problem with them is solved. All
+//! this holds between feasible points only: where set and equality hardly meet, moves that do not descend are taken, too.
 
 use crate::coarse_space::CoarseSpace;
 use crate::error::QpError;
@@ -22,6 +26,13 @@ pub(crate) struct Guard {
     astep: Vec<f64>,
     /// Change of the cost by the whole step, before projection.
     full: f64,
+    /// Smallest decrease by a whole step so far.
+    best: f64,
+    /// Whether the last step led from one feasible point to another, and whether it was taken back.
+    exact: bool,
+    stuck: bool,
+    /// Error estimate of the last face without blocked blocks.
+    unblocked: f64,
 }
 
 /// Share of the decrease on the face that a move has to keep.
@@ -33,6 +44,15 @@ pub(crate) const SHORT: f64 = 0.3;
 /// Shortest step that is tried.
 pub(crate) const SHORTEST: f64 = 1e-3;
 
+/// Lengths of a failed step within which blocks that it takes across their boundary are held.
+const REACH: f64 = 2.0;
+
+/// Part of the error without blocked blocks to which the problem with them is solved before they are released.
+const RELEASE: f64 = 0.01;
+
+/// Decrease by a whole step, over the smallest so far, that counts as progress.
+const LESS: f64 = 0.9;
+
 impl Guard {
     pub(crate) fn new(n: usize) -> Self {
         let v = || vec![0.0; n];
@@ -43,6 +63,10 @@ impl Guard {
             step: v(),
             astep: v(),
             full: 0.0,
+            best: f64::INFINITY,
+            exact: false,
+            stuck: false,
+            unblocked: f64::INFINITY,
         }
     }
 
@@ -53,14 +77,34 @@ impl Guard {
         vector::copy(residual, &mut self.residual);
     }
 
-    /// Remembers the step to the minimum on the face.
-    pub(crate) fn leave(&mut self, x: &[f64], ax: &[f64]) {
+    /// Remembers the step to the minimum on the face; whether less than ever is left to gain.
+    pub(crate) fn leave(&mut self, x: &[f64], ax: &[f64]) -> bool {
         vector::copy(x, &mut self.step);
         vector::subtract(&self.x, &mut self.step);
         vector::copy(ax, &mut self.astep);
         vector::subtract(&self.ax, &mut self.astep);
         self.full =
             vector::dot(&self.step, &self.residual) + 0.5 * vector::dot(&self.step, &self.astep);
+        let progress = self.exact && -self.full < LESS * self.best;
+        if progress {
+            self.best = -self.full;
+        }
+        progress
+    }
+
+    /// Whether blocked blocks (`any` of them) are to be released at a face with this error estimate; `solved` is what
+    /// decides where points are not feasible.
+    pub(crate) fn releases(&mut self, any: bool, solved: bool, error: f64, limit: f64) -> bool {
+        if !any {
+            self.unblocked = error;
+            return false;
+        }
+        let enough = if self.exact {
+            error <= (RELEASE * self.unblocked).max(limit)
+        } else {
+            solved
+        };
+        enough && !self.stuck
     }
 
     /// Whether the cost at `x` has fallen enough for a step of length `t`.
@@ -70,6 +114,27 @@ impl Guard {
             change += (v - self.x[k]) * (self.residual[k] + 0.5 * (ax[k] - self.ax[k]));
         }
         change <= SUFFICIENT * t * self.full
+    }
+
+    /// After a step of length `t`: whether it is one between feasible points that does not descend, and the part of the
+    /// step within which blocks are to be held.
+    pub(crate) fn judge(&mut self, set: &ProductSet, x: &[f64], ax: &[f64], t: f64) -> (bool, f64) {
+        let limit = 2.0 * INSIDE * vector::norm(x);
+        self.exact = set.violation(&self.x) <= limit && set.violation(x) <= limit;
+        self.stuck = false;
+        let reach = if self.exact {
+            (REACH * t).min(SHORT)
+        } else {
+            0.0
+        };
+        (self.exact && !self.descends(x, ax, t), reach)
+    }
+
+    /// Back to the last feasible point.
+    pub(crate) fn back(&mut self, x: &mut [f64], ax: &mut [f64]) {
+        vector::copy(&self.x, x);
+        vector::copy(&self.ax, ax);
+        self.stuck = true;
     }
 
     /// The last feasible point and the step from it.

@@ -68,13 +68,14 @@ pub(crate) struct PointRows {
 /// Below this share of a direction that can move, the direction counts as fixed.
 const FIXED: f64 = 1e-8;
 
-/// Rows of all points and what was left out. `copies(node)` is the number of copies of a node.
+/// Rows of all points and what was left out. `squares(node)` is the sum of the squared
+/// shares of the copies of a node in their mean: one over their number where all count alike.
 pub(crate) fn contact_rows(
     contact: &ContactNodes,
     supports: &MergedSupports,
     rule: RowRule,
     nodes: usize,
-    copies: impl Fn(u32) -> usize,
+    squares: impl Fn(u32) -> f64,
 ) -> Result<(Vec<PointRows>, Vec<RemovedRow>), TfetiError> {
     let mut used = vec![false; nodes];
     let mut rows = Vec::with_capacity(contact.points.len());
@@ -97,9 +98,9 @@ pub(crate) fn contact_rows(
         let (alpha, beta, scale) = match rule {
             RowRule::Chained => (1.0, f64::from(u8::from(point.opponent.is_some())), 1.0),
             RowRule::Orthonormal => {
-                // Unit row on the means: weights c/sqrt(k) with c = (1/k_a + 1/k_b)^(-1/2).
-                let a = 1.0 / copies(point.node) as f64;
-                let b = point.opponent.map_or(0.0, |n| 1.0 / copies(n) as f64);
+                // Unit row on the means of k copies: weights c/sqrt(k) with c = (1/k_a + 1/k_b)^(-1/2).
+                let a = squares(point.node);
+                let b = point.opponent.map_or(0.0, &squares);
                 let c = (a + b).sqrt().recip();
                 (c * a.sqrt(), c * b.sqrt(), c)
             }

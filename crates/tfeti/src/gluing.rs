@@ -9,6 +9,7 @@ mod build;
 
 use self::build::Builder;
 use crate::contact::{ContactNodes, contact_rows};
+use crate::copy_stiffness::CopyStiffness;
 use crate::error::TfetiError;
 use crate::rows::{RemovedRow, RowRanges, RowRule};
 use crate::supports::{MergedSupports, Support};
@@ -111,23 +112,27 @@ pub struct Gluing {
 }
 
 impl Gluing {
-    /// Builds the rows. `contact` is `None` for a body without obstacle.
+    /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
+    /// orthonormal contact and support rows, its default all alike.
     pub fn new(
         decomposition: &Decomposition,
         nodes: usize,
         supports: &[Support],
         contact: Option<&ContactNodes>,
         rule: RowRule,
+        stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
         let merged = MergedSupports::new(supports, nodes)?;
         let none = ContactNodes::default();
         let contact_nodes = contact.unwrap_or(&none);
-        let copies = |node: u32| decomposition.copies(node as usize).len();
-        let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, copies)?;
+        let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
+        let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, squares)?;
         let mut builder = Builder {
             decomposition,
             rule,
-            gluing: Self::empty(rule, merged.cases),
+            stiffness,
+            shares: Vec::new(),
+            gluing: Self::empty(rule, merged.cases, stiffness.is_plain()),
         };
         builder.gluing.removed = dropped
             .into_iter()
@@ -168,7 +173,7 @@ impl Gluing {
         Ok(gluing)
     }
 
-    fn empty(rule: RowRule, cases: usize) -> Self {
+    fn empty(rule: RowRule, cases: usize, plain: bool) -> Self {
         Self {
             rule,
             ranges: RowRanges {
@@ -189,7 +194,7 @@ impl Gluing {
             removed: Vec::new(),
             prescribed: vec![Vec::new(); cases],
             paper_rows: 0,
-            orthonormal: rule == RowRule::Orthonormal,
+            orthonormal: rule == RowRule::Orthonormal && plain,
         }
     }
 

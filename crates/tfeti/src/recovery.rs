@@ -245,19 +245,21 @@ impl Tfeti {
         }
     }
 
-    /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`.
+    /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies of several materials count by
+    /// their stiffness.
     #[must_use]
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
-        let mut copies = vec![0.0; self.nodes];
+        let mut sums = vec![0.0; self.nodes];
         for (k, &node) in self.node_of.iter().enumerate() {
-            copies[node as usize] += 1.0;
+            let weight = self.copy_stiffness().weight(k);
+            sums[node as usize] += weight;
             for c in 0..3 {
-                out[3 * node as usize + c] += u[3 * k + c];
+                out[3 * node as usize + c] += weight * u[3 * k + c];
             }
         }
-        for (value, count) in out.chunks_exact_mut(3).zip(&copies) {
-            value.iter_mut().for_each(|v| *v /= count);
+        for (value, sum) in out.chunks_exact_mut(3).zip(&sums) {
+            value.iter_mut().for_each(|v| *v /= sum);
         }
         out
     }

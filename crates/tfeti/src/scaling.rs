@@ -24,24 +24,12 @@ pub(crate) struct Scaling {
 impl Scaling {
     pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
-        // Stiffness of every copy: the mean diagonal entry of its node.
-        let mut compliance = vec![1.0; system.torn_dim() / 3];
-        if system.heterogeneous {
-            for s in 0..system.subdomains() {
-                let stiffness = &system.parts.bases[system.parts.classes.place(s).0].stiffness;
-                let first = system.torn_range(s).start / 3;
-                for (node, value) in compliance[first..first + stiffness.dim / 3]
-                    .iter_mut()
-                    .enumerate()
-                {
-                    let diagonal = (3 * node..3 * node + 3).filter_map(|i| stiffness.find(i, i));
-                    let sum: f64 = diagonal.map(|k| stiffness.values[k]).sum();
-                    *value = if sum > 0.0 { 3.0 / sum } else { 1.0 };
-                }
-            }
-            let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
-            compliance.iter_mut().for_each(|v| *v /= smallest);
-        }
+        let stiffness = system.copy_stiffness();
+        let mut compliance: Vec<f64> = (0..system.torn_dim() / 3)
+            .map(|k| 1.0 / stiffness.weight(k))
+            .collect();
+        let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
+        compliance.iter_mut().for_each(|v| *v /= smallest);
         // Rows by group: a mesh node, or the two nodes of a contact pair.
         let mut group: Vec<u32> = (0..system.nodes as u32).collect();
         for info in gluing.contact() {
@@ -110,7 +98,8 @@ impl Scaling {
 
     /// The matrices of the groups without the directions that a face holds: with `H` these directions,
     /// `N - N H (H^T N H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and
-    /// a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the copies.
+    /// a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the copies. (Rows that
+    /// weigh the copies by stiffness do not need it, chained ones do.)
     pub(crate) fn on_face(&self, face: &FaceView<'_>, groups: &mut Vec<f64>) {
         groups.clear();
         groups.extend_from_slice(&self.inverses);

@@ -5,6 +5,7 @@ use crate::class::{Classes, Sharing};
 use crate::coarse::Coarse;
 use crate::coarse_factor::CoarseFactor;
 use crate::contact::ContactNodes;
+use crate::copy_stiffness::CopyStiffness;
 use crate::cost::InverseSettings;
 use crate::dual::DualOperator;
 use crate::error::TfetiError;
@@ -139,20 +140,27 @@ impl<'a> TfetiBuilder<'a> {
             )?),
         };
         let classes_seconds = clock.lap();
+        let bases = match self.earlier {
+            Some(earlier) => earlier.parts.bases.clone(),
+            None => Arc::new(assemble(mesh, decomposition, self.materials, &classes)?),
+        };
+        let assembly_seconds = clock.lap();
+        let heterogeneous = has_several_laws(mesh, self.materials);
+        let stiffness = if heterogeneous {
+            CopyStiffness::new(decomposition, &classes, &bases)
+        } else {
+            CopyStiffness::default()
+        };
         let gluing = Arc::new(Gluing::new(
             decomposition,
             mesh.points().len(),
             self.supports,
             self.contact,
             self.rule,
+            &stiffness,
         )?);
         let map = Arc::new(BoundaryMap::new(&classes, &gluing));
         let gluing_seconds = clock.lap();
-        let bases = match self.earlier {
-            Some(earlier) => earlier.parts.bases.clone(),
-            None => Arc::new(assemble(mesh, decomposition, self.materials, &classes)?),
-        };
-        let assembly_seconds = clock.lap();
         let factors = self.earlier.map(|earlier| &earlier.parts.inverses[..]);
         let centres: Vec<[f64; 3]> = decomposition
             .subdomains()
@@ -208,7 +216,6 @@ impl<'a> TfetiBuilder<'a> {
             .flat_map(|s| s.nodes.iter().copied())
             .collect();
         let nodes = mesh.points().len();
-        let heterogeneous = has_several_laws(mesh, self.materials);
         let parts = Parts {
             classes,
             gluing,
@@ -226,6 +233,7 @@ impl<'a> TfetiBuilder<'a> {
             node_of,
             nodes,
             heterogeneous,
+            stiffness,
         })
     }
 }
@@ -277,6 +285,7 @@ pub struct Tfeti {
     pub(crate) nodes: usize,
     /// Whether elements differ in their Hooke tensors.
     pub(crate) heterogeneous: bool,
+    stiffness: CopyStiffness,
 }
 
 impl Tfeti {
@@ -284,6 +293,12 @@ impl Tfeti {
     #[must_use]
     pub fn gluing(&self) -> &Gluing {
         &self.parts.gluing
+    }
+
+    /// How the copies of a node count in contact and support rows.
+    #[must_use]
+    pub fn copy_stiffness(&self) -> &CopyStiffness {
+        &self.stiffness
     }
 
     /// The classes of subdomains.

@@ -217,3 +217,28 @@ fn bad_systems_are_refused() {
         Err(TfetiError::Setting { .. })
     ));
 }
+
+/// The compliance of a row is the diagonal of `F`; without dense inverses it is estimated from below, closely.
+#[test]
+fn row_compliance_is_the_diagonal_of_f() {
+    let b = Brick::new(1, 3);
+    for kind in [InverseKind::Dense, InverseKind::Sparse] {
+        let system = build(&b, kind, Sharing::Translates, RowRule::Orthonormal);
+        let rows = system.gluing().ranges().contact();
+        let (mut found, mut stiffness) = (vec![0.0; rows.len()], vec![0.0; rows.len()]);
+        system.row_compliance(rows.clone(), &mut found);
+        system.row_stiffness(rows.clone(), &mut stiffness);
+        for row in rows {
+            let mut x = vec![0.0; system.dual_dim()];
+            x[row] = 1.0;
+            let ratio = found[row] / product(&system, &x)[row];
+            if kind == InverseKind::Dense {
+                assert!((ratio - 1.0).abs() < 1e-9, "{row}: {ratio}");
+            } else {
+                assert!((0.4..1.5).contains(&ratio), "{row}: {ratio}");
+            }
+            let loose = found[row] * stiffness[row];
+            assert!((0.5..5.0).contains(&loose), "{row}: {loose}");
+        }
+    }
+}

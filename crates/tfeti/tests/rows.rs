@@ -3,10 +3,10 @@
 mod common;
 
 use common::{Brick, dot, noise};
-use signorini_fem_mesh::{Decomposition, Frame, brick};
+use signorini_fem_mesh::{Decomposition, Frame, Hooke, Materials, brick};
 use signorini_tfeti::{
-    ContactNodes, ContactPoint, Directions, Gluing, Motion, RemovalReason, RowKind, RowRule,
-    Support, TangentialRows, TfetiError,
+    ContactNodes, ContactPoint, CopyStiffness, Directions, Gluing, Motion, RemovalReason, RowKind,
+    RowRule, Support, TangentialRows, TfetiBuilder, TfetiError,
 };
 
 fn gluing(
@@ -21,6 +21,7 @@ fn gluing(
         supports,
         contact,
         rule,
+        &CopyStiffness::default(),
     )
 }
 
@@ -434,10 +435,65 @@ fn a_whole_body_has_no_interface_rows() {
         &b.supports(),
         Some(&contact),
         RowRule::Orthonormal,
+        &CopyStiffness::default(),
     )
     .unwrap();
     assert!(g.ranges().interface.is_empty());
     assert!(g.contact().iter().all(|c| (c.scale - 1.0).abs() < 1e-15));
     let x = noise(3, 1);
     assert!(x.iter().all(|v| v.abs() <= 1.0));
+}
+
+/// Between a stiff and a soft subdomain a contact row follows the stiff one, and gluing errors of the soft one stay out of
+/// it. Physical forces and gaps go with the sum of the coefficients.
+#[test]
+fn contact_rows_follow_the_stiff_copy() {
+    let mut b = Brick::new(1, 2);
+    let ratio = 1e4;
+    let regions = (0..b.mesh.tets().len())
+        .map(|t| {
+            u32::from(
+                b.mesh
+                    .tet_points(t)
+                    .iter()
+                    .all(|p| p[0] >= 1.0 && p[0] <= 2.0),
+            )
+        })
+        .collect();
+    b.mesh = b.mesh.with_regions(regions).unwrap();
+    let hooke = |young| Hooke::isotropic(young, 0.3).unwrap();
+    let materials = Materials::new(vec![(0, hooke(1.0)), (1, hooke(1.0 / ratio))]).unwrap();
+    let (supports, contact) = (b.supports(), b.contact(true));
+    let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &materials)
+        .supports(&supports)
+        .contact(&contact)
+        .build()
+        .unwrap();
+    let g = system.gluing();
+    assert!(!g.is_orthonormal());
+    for (i, row) in gram(g).iter().enumerate() {
+        assert!((row[i] - 1.0).abs() < 1e-13);
+    }
+    let mut shared = 0;
+    for info in g.contact() {
+        let row = g.row(info.row);
+        let sum: f64 = row.iter().map(|e| -e.2).sum();
+        assert!((sum - info.scale).abs() < 1e-13);
+        if row.len() == 2 {
+            shared += 1;
+            let soft = row.iter().position(|e| e.0 == 1).unwrap();
+            let found = row[1 - soft].2 / row[soft].2;
+            assert!(found > 0.1 * ratio && found < 10.0 * ratio, "{found}");
+        }
+    }
+    assert_eq!(shared, 6);
+    let mut torn = vec![0.0; system.torn_dim()];
+    torn[system.torn_range(0)].fill(1.0);
+    let mean = system.nodal_mean(&torn);
+    for node in b.mesh.nodes_on(brick::Z_MIN) {
+        let x = b.mesh.points()[node as usize][0];
+        if x == 1.0 {
+            assert!((mean[3 * node as usize] - 1.0).abs() < 10.0 / ratio);
+        }
+    }
 }

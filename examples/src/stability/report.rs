@@ -112,10 +112,42 @@ displacement increments can be slightly negative at nodes that stick after slidi
 
 ";
 
+const BOUNDS: &str = "
+## What the expensive cases are bound by
+
+Most cases need 10 to 50 products a level. The others, and what was found in them:
+
+- *Jumps of stiffness between subdomains.* While the interface is not glued yet, the soft copy of a contact node is displaced \
+by the error of gluing, which is large in the soft part. Rows on the plain mean of the copies showed this error as slip and \
+penetration of the stiff part: wrong faces, error estimates 1e5 times too large, tens of thousands of products. Rows now weigh \
+the copies by stiffness (`CopyStiffness`), and the jump has no influence on the number of products. Nodal displacements are the \
+same mean, else the energy of the stiff part would carry the error of the soft one.
+- *Poisson's ratios near 1/2, and flat elements.* With all its neighbours held, a node can hardly move: the lumped stiffness of its \
+row is 120 times (nu = 0.499) to 12000 times (0.49999) the stiffness with the subdomain free; ordinary are 1 to 4. The natural map \
+that predicts faces had steps that much too large. They are now limited (to five times the latter). What is left is the \
+condition of the preconditioner: conjugate gradients need 100 and more steps on a face, and the estimate of the error, the length \
+of the preconditioned residual, is as much too large as the stiffness. These cases are therefore solved more accurately than \
+asked (see their certificates), at some times the cost. The Dirichlet preconditioner does not cure it: with all boundary nodes of \
+a subdomain held its volume is held, too. It saves up to half of the products in flat bodies and costs more near nu = 1/2.
+- *Barely not tipping.* Nearly all nodes of the edge slide, by about a micrometre, and stick and slip change with the last digits. \
+Where one point sticks and the loads have no moment about it, turning about that point is held by sliding points only; steps \
+along their circles used to leave equilibrium, and no step length lowered the cost. They count as holding now. What is left: a \
+step on a face leads across the circles of other points at a thousandth of its length. Such points are held one group after another, \
+which takes a hundred faces a level. Over twelve such cases (shear 0.08 to 0.124 of the pressure) 32 of 36 levels are solved by the face \
+method, none before; other settings of equal right leave 0 to 4 levels to the fall-back and change the products by a fifth.
+- *Barely held by friction.* With the slip bounds of the moment set and equilibrium hardly meet; alternating projections on both take \
+hundreds of rounds (the time), and the slip bounds have to follow (the products).
+- *A coefficient of 1000.* Slip bounds follow normal forces with a factor of 1000, and neither the face method nor successive \
+approximations come to rest; the latter see changes that do not shrink and say `NotContractive`. The result reported solves the \
+problem of given friction with the last bounds (see its certificate), not Coulomb's. A damped outer loop was not tried. Whether there is a \
+solution near is not known.
+
+";
+
 const LOCKING: &str = "
 ## Locking of linear tetrahedra
 
-The solver is not troubled by Poisson's ratios near 1/2, but the element is: a linear tetrahedron with nearly no change of \
+The solver copes with Poisson's ratios near 1/2, but the element does not: a linear tetrahedron with nearly no change of \
 volume has hardly any way to bend. Deflection of the clamped brick under a transverse force at its end, over that of \
 Timoshenko's beam (bending and shear; the clamped end makes a few per cent):
 
@@ -180,6 +212,8 @@ pub fn document(lines: &[Line<'_>], command: &str) -> Result<String, Failure> {
             m.seconds
         );
     }
+    out.push_str(BOUNDS.trim_end());
+    out.push('\n');
     let cells: Vec<String> = locking::CELLS
         .iter()
         .map(|c| format!("{c} cells across"))

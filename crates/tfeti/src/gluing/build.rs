@@ -2,6 +2,7 @@
 
 use super::{BlockEntry, ContactInfo, CopyEntry, Glob, Gluing, TangentialRows};
 use crate::contact::{ContactNodes, ContactRow, PointRows};
+use crate::copy_stiffness::CopyStiffness;
 use crate::rows::RowRule;
 use crate::supports::MergedSupports;
 use signorini_fem_mesh::{Decomposition, NodeCopy};
@@ -9,6 +10,9 @@ use signorini_fem_mesh::{Decomposition, NodeCopy};
 pub(super) struct Builder<'a> {
     pub(super) decomposition: &'a Decomposition,
     pub(super) rule: RowRule,
+    pub(super) stiffness: &'a CopyStiffness,
+    /// Shares of the copies of a node.
+    pub(super) shares: Vec<f64>,
     pub(super) gluing: Gluing,
 }
 
@@ -19,15 +23,14 @@ impl Builder<'_> {
             return;
         }
         let copies = self.decomposition.copies(node as usize);
-        let (used, factor) = match self.rule {
-            RowRule::Orthonormal => (copies.len(), 1.0 / (copies.len() as f64).sqrt()),
-            RowRule::Chained => (1, 1.0),
-        };
-        let vector = vector.map(|v| v * factor);
-        let entries = copies.iter().take(used).map(|c| CopyEntry {
+        match self.rule {
+            RowRule::Orthonormal => self.stiffness.unit_shares(copies, &mut self.shares),
+            RowRule::Chained => self.shares.splice(.., [1.0]).for_each(drop),
+        }
+        let entries = copies.iter().zip(&self.shares).map(|(c, share)| CopyEntry {
             subdomain: c.subdomain,
             local: c.local,
-            vector,
+            vector: vector.map(|v| v * share),
         });
         self.gluing.row_entries.extend(entries);
     }
@@ -176,7 +179,8 @@ impl Builder<'_> {
         for fixed in &merged.nodes {
             let scale = match self.rule {
                 RowRule::Orthonormal => {
-                    (self.decomposition.copies(fixed.node as usize).len() as f64).sqrt()
+                    let copies = self.decomposition.copies(fixed.node as usize);
+                    self.stiffness.squares(copies).sqrt().recip()
                 }
                 RowRule::Chained => 1.0,
             };

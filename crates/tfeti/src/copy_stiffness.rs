@@ -1,0 +1,74 @@
+//! Stiffness of the copies of a node where a body has several materials.
+
+use crate::class::Classes;
+use crate::matrices::ClassBase;
+use signorini_fem_mesh::{Decomposition, NodeCopy};
+
+/// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
+///
+/// Rows that act on a node of several subdomains take the mean of its copies with these weights. Between a stiff and a
+/// soft subdomain they so follow the stiff one, to which gluing takes the soft copy, and the errors of gluing, large in the
+/// soft one, stay out of them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CopyStiffness {
+    /// First node of each subdomain in torn order.
+    first: Vec<usize>,
+    /// In torn order; empty where all copies of a node count alike.
+    values: Vec<f64>,
+}
+
+impl CopyStiffness {
+    pub(crate) fn new(
+        decomposition: &Decomposition,
+        classes: &Classes,
+        bases: &[ClassBase],
+    ) -> Self {
+        let (mut first, mut values) = (Vec::new(), Vec::new());
+        for s in 0..decomposition.subdomains().len() {
+            let stiffness = &bases[classes.place(s).0].stiffness;
+            first.push(values.len());
+            values.extend((0..stiffness.dim / 3).map(|node| {
+                let diagonal = (3 * node..3 * node + 3).filter_map(|i| stiffness.find(i, i));
+                let mean = diagonal.map(|k| stiffness.values[k]).sum::<f64>() / 3.0;
+                mean.max(f64::MIN_POSITIVE)
+            }));
+        }
+        Self { first, values }
+    }
+
+    /// Whether all copies of a node count alike.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// What the copy `k` in torn order counts in the mean of its node; only ratios matter.
+    pub(crate) fn weight(&self, k: usize) -> f64 {
+        self.values.get(k).copied().unwrap_or(1.0)
+    }
+
+    fn of(&self, copy: &NodeCopy) -> f64 {
+        self.weight(self.first[copy.subdomain as usize] + copy.local as usize)
+    }
+
+    /// Sum of the squared shares of the copies in their mean.
+    pub(crate) fn squares(&self, copies: &[NodeCopy]) -> f64 {
+        if self.is_plain() || copies.len() < 2 {
+            return 1.0 / copies.len() as f64;
+        }
+        let sum: f64 = copies.iter().map(|c| self.of(c)).sum();
+        copies.iter().map(|c| (self.of(c) / sum).powi(2)).sum()
+    }
+
+    /// Shares of the copies in their mean, scaled to length 1.
+    pub(crate) fn unit_shares(&self, copies: &[NodeCopy], out: &mut Vec<f64>) {
+        out.clear();
+        if self.is_plain() || copies.len() < 2 {
+            out.resize(copies.len(), 1.0 / (copies.len() as f64).sqrt());
+            return;
+        }
+        let largest = copies.iter().map(|c| self.of(c)).fold(0.0, f64::max);
+        out.extend(copies.iter().map(|c| self.of(c) / largest));
+        let length = out.iter().map(|v| v * v).sum::<f64>().sqrt();
+        out.iter_mut().for_each(|v| *v /= length);
+    }
+}
