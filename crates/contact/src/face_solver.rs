@@ -87,6 +87,10 @@ impl FaceSolver {
             .with_tolerance(settings.tolerance * SAFETY)
             .with_least(REST * level.peak.multipliers);
         let coulomb = is_coulomb(model);
+        if coulomb {
+            let slopes = model.slip_slopes(|k| level.coefficients[k]);
+            self.work.set_slopes(&slopes);
+        }
         let mut updates = 0;
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             if coulomb {

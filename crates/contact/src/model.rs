@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::scene::{Contact, ContactNormal, Gap, Scene};
 use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface, assemble_load};
-use signorini_qp::{ProductSet, Segment};
+use signorini_qp::{ProductSet, RadiusSlope, Segment};
 use signorini_tfeti as tfeti;
 use signorini_tfeti::{
     ContactNodes, ContactPoint, Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder,
@@ -232,6 +232,21 @@ impl Model {
                 }
             }
         }
+    }
+
+    /// How the slip bounds that [`set_slip_bounds`](Self::set_slip_bounds) writes to discs follow the normal rows, for a
+    /// bound of `coefficient(point)` times the normal force.
+    pub(crate) fn slip_slopes(&self, coefficient: impl Fn(usize) -> f64) -> Vec<RadiusSlope> {
+        let slope = |(k, point): (usize, &TouchPoint)| match point.tangential {
+            Tangential::Plane { row, scale } => Some(RadiusSlope {
+                disc: row,
+                component: point.row,
+                // normal multipliers are negative where pressed
+                slope: -coefficient(k) * point.scale / scale,
+            }),
+            Tangential::None | Tangential::Line { .. } => None,
+        };
+        self.points.iter().enumerate().filter_map(slope).collect()
     }
 }
 

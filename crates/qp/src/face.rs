@@ -22,6 +22,9 @@
 //! The move to the next face and the next conjugate gradient step share one product: the step is taken with the length of
 //! the last one, and conjugate gradients start anew from the exact residual.
 //!
+//! Where the caller tells how the set follows the solution ([`FaceWorkspace::set_slopes`]), conjugate gradients take it
+//! along once the hook has been called.
+//!
 //! | local | meaning |
 //! |---|---|
 //! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a face |
@@ -107,6 +110,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     let mut report = FaceReport::new();
     let constrained = constrained_length(set);
     work.resize(constrained);
+    work.coupling.start(set, problem.rhs.len());
 
     // start: a feasible point that satisfies G x = e
     vector::copy(x, &mut work.t);
@@ -143,6 +147,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     // error estimate after the last face
     let mut left = (f64::INFINITY, f64::INFINITY);
     let mut guard: Option<Guard> = None;
+    // whether the hook was called at the last move, and the constrained error that the last face began with
+    let (mut followed, mut begun) = (false, f64::INFINITY);
     // with a guard: whether the set followed the last face, how far x moved then, and very short steps in a row
     let (mut current, mut drift, mut held_up) = (true, f64::INFINITY, 0);
     loop {
@@ -235,6 +241,9 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         if let Some(guard) = &mut guard {
             guard.enter(x, ax, &work.residual);
         }
+        work.coupling.on = followed && guard.is_none() && apart && !work.coupling.failed;
+        let goal = work.coupling.forcing(forcing, last_jump, begun);
+        begun = errors.1;
         let step = conjugate_gradients(
             problem,
             coarse,
@@ -243,7 +252,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             ax,
             rho,
             settings.max_products,
-            forcing,
+            goal,
             &limits,
             (
                 MAGNIFIED * (last_jump + left.0),
@@ -278,6 +287,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         let few = (settings.settled * work.face.free_bounds as f64).max(2.0);
         let call = (guard.is_none() || solved) && work.face.changed as f64 <= few;
         current = guard.is_none() || call;
+        followed = call;
         if call {
             hook(x, set);
             set.validate()?;

@@ -1,14 +1,16 @@
 //! Projected preconditioned conjugate gradients on one face.
 //!
 //! The face restricts constrained components only. The residual on the face is therefore the vector `residual` with its
-//! leading part replaced by `face_residual`, which also carries the curvature of the discs; no second long vector is kept.
+//! leading part replaced by `face_residual`; no second long vector is kept. Curvature enters before the projection: the
+//! rigid amplitudes are fitted to the residual on the face, else the projected matrix is not symmetric.
 //!
 //! | local | meaning |
 //! |---|---|
-//! | `residual` | `P_Wᵀ (A x - b)` |
-//! | `face_residual` | its constrained part, restricted to the face, with the curvature of the steps so far |
-//! | `z` | `P_W R D M D R` of the residual on the face; `R` restricts, `D` damps sliding discs |
-//! | `p`, `ap` | direction, and `A p`, then `P_Wᵀ A p` |
+//! | `residual` | `P_Wᵀ (A x - b + kappa s)`, `s` the steps so far |
+//! | `face_residual` | its constrained part, restricted to the face |
+//! | `z` | `P_W R (D M D + T) R` of the residual on the face; `R` restricts, `D` and `T` account for the curvature |
+//! | `p`, `ap` | direction, and `A p + kappa p`, then `P_Wᵀ` of it, then restricted |
+//! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`face_coupling`](crate::face_coupling)) |
 //! | `rho` | residual on the face times `z` |
 
 use crate::coarse_space::CoarseSpace;
@@ -84,6 +86,7 @@ pub(crate) fn precondition<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOpe
     let part = &mut z[..constrained];
     face.restrict(set, part);
     face.damp(set, part);
+    face.add_own(set, face_residual, part);
     coarse.project(z);
     report.preconditionings += 1;
     residual[..constrained].copy_from_slice(face_residual);
@@ -117,9 +120,10 @@ pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: Symme
     // not by a factor of zero: what an earlier solve has left need not be finite
     vector::copy(&work.z, &mut work.p);
     vector::scale(-1.0, &mut work.p);
-    let start = estimate(work);
-    let start = (start.0.min(expected.0), start.1.min(expected.1));
+    let first = estimate(work);
+    let start = (first.0.min(expected.0), first.1.min(expected.1));
     let last = max_products.min(report.products() + MOST_STEPS);
+    let mut steps = 0;
     // below a third of the limits further steps buy nothing
     let goal = |(all, part): (f64, f64)| {
         all <= (forcing * start.0).max(0.3 * limits.all)
@@ -129,10 +133,18 @@ pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: Symme
         if report.products() >= last || rho <= 0.0 {
             return Ok(0.0);
         }
-        problem
-            .operator
-            .apply(&work.p, &mut work.ap, &mut work.operator);
+        let coupled = work.coupling.on;
+        if coupled {
+            work.coupling.extend(coarse, set, &work.face, &work.p);
+        }
+        let q = if coupled {
+            &work.coupling.step
+        } else {
+            &work.p
+        };
+        problem.operator.apply(q, &mut work.ap, &mut work.operator);
         report.cg_steps += 1;
+        steps += 1;
         let plain = vector::dot(&work.p, &work.ap);
         let curvature = plain + work.face.curvature(set, &work.p);
         if !curvature.is_finite() {
@@ -140,6 +152,10 @@ pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: Symme
                 quantity: "the curvature",
                 products: report.products(),
             });
+        }
+        if curvature <= 0.0 && coupled {
+            work.coupling.failed = true;
+            return Ok(0.0);
         }
         if curvature <= 0.0 {
             let pp = vector::dot(&work.p, &work.p);
@@ -152,22 +168,31 @@ pub(crate) fn conjugate_gradients<A: SymmetricOperator, C: CoarseSpace, M: Symme
             return Ok(0.0);
         }
         let step = rho / curvature;
-        vector::axpy(step, &work.p, x);
+        vector::axpy(step, q, x);
         vector::axpy(step, &work.ap, ax);
+        let constrained = work.face_residual.len();
+        work.face
+            .add_curvature(set, &work.p, &mut work.ap[..constrained]);
         coarse.project_transpose(&mut work.ap);
         vector::axpy(step, &work.ap, &mut work.residual);
-        let constrained = work.face_residual.len();
         let part = &mut work.ap[..constrained];
         work.face.restrict(set, part);
-        work.face.add_curvature(set, &work.p, part);
         vector::axpy(step, part, &mut work.face_residual);
         let next = precondition(problem, coarse, set, work, report);
         let errors = estimate(work);
-        vector::axpby(-1.0, &work.z, next / rho, &mut work.p);
+        let beta = if coupled {
+            vector::dot(&work.z, &work.ap) / curvature
+        } else {
+            next / rho
+        };
+        vector::axpby(-1.0, &work.z, beta, &mut work.p);
         rho = next;
         if goal(errors) {
             let more = errors.0 > limits.all || errors.1 > limits.constrained;
             return Ok(if more { step } else { 0.0 });
+        }
+        if work.coupling.too_strong(steps, first.0, errors.0) {
+            return Ok(0.0);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::coarse_space::Line;
 use crate::error::QpError;
+use crate::face_coupling::{Coupling, RadiusSlope};
 use crate::operator::SymmetricOperator;
 use crate::report::Status;
 
@@ -225,7 +226,8 @@ impl FaceReport {
     }
 }
 
-/// Vectors of the face method: six of the length of `x`, three of its constrained part and the classification of the blocks.
+/// Vectors of the face method: six of the length of `x`, a seventh where radii follow other components, three of its
+/// constrained part and the classification of the blocks.
 #[derive(Debug)]
 pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) operator: A::Scratch,
@@ -246,6 +248,7 @@ pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) lines: Vec<Line>,
     pub(crate) t: Vec<f64>,
     pub(crate) face: crate::face_state::Face,
+    pub(crate) coupling: Coupling,
 }
 
 impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
@@ -268,7 +271,15 @@ impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
             lines: Vec::new(),
             t: v(),
             face: crate::face_state::Face::default(),
+            coupling: Coupling::default(),
         }
+    }
+
+    /// Tells how the hook moves the radii, for the solves to come: conjugate gradients then take this along instead of
+    /// meeting it at each change of face. Optional; a disc without a slope is moved by the hook alone. The solution does not
+    /// depend on it. Slopes in the order of the discs are found fastest.
+    pub fn set_slopes(&mut self, slopes: &[RadiusSlope]) {
+        self.coupling.set(slopes);
     }
 
     /// Makes room for `constrained` leading components with constraints.

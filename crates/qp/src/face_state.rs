@@ -17,12 +17,14 @@ pub(crate) enum Disc {
     Fixed,
     /// Both components free.
     Free,
-    /// On the circle: free along `tau` only, with extra curvature `kappa`; `damp` scales the
-    /// preconditioner for it.
+    /// On the circle: free along `tau` only, with extra curvature `kappa`.
     Sliding {
         tau: [f64; 2],
         kappa: f64,
+        /// `1 / (1 + kappa m)`, `m` the scale: share of the preconditioner that the curvature leaves.
         damp: f64,
+        /// `kappa (m damp)^2`: what it adds on its own.
+        own: f64,
         /// `-g·n`.
         slip: f64,
     },
@@ -127,7 +129,7 @@ impl Face {
                     lines.push(Line {
                         first,
                         direction: tau,
-                        weight: damp * damp,
+                        weight: damp,
                     });
                 }
             },
@@ -316,12 +318,33 @@ impl Face {
         });
     }
 
-    /// Scales sliding components by the square root that keeps the preconditioner symmetric.
+    /// Scales sliding components by the share of the preconditioner that the curvature leaves; see
+    /// [`add_own`](Self::add_own).
     pub(crate) fn damp(&self, set: &ProductSet, v: &mut [f64]) {
         self.for_sliding(set, |i, _, damp| {
             v[i] *= damp;
             v[i + 1] *= damp;
         });
+    }
+
+    /// Adds what the preconditioner has on sliding components besides the damped one: `v += own r`.
+    ///
+    /// Let `M` approximate the inverse of `A`. The inverse of `A + kappa` is then the parallel sum of `M` and `1/kappa`,
+    /// `rᵀ X r = min over y of (r - y)ᵀ M (r - y) + yᵀ y / kappa`. The minimum for a diagonal `M`, `y = kappa m damp r`,
+    /// bounds it from above for every `M`, and gives `damp M damp + own`: exact for small and for large curvatures.
+    /// Scaling `M` by the square root of `damp` on both sides has the right diagonal only, and puts small
+    /// eigenvalues where the curvature is large.
+    pub(crate) fn add_own(&self, set: &ProductSet, r: &[f64], v: &mut [f64]) {
+        visit(
+            set,
+            |_, _, _, _| {},
+            |i, k, _| {
+                if let Disc::Sliding { own, .. } = self.discs[k] {
+                    v[i] += own * r[i];
+                    v[i + 1] += own * r[i + 1];
+                }
+            },
+        );
     }
 
     fn for_sliding(&self, set: &ProductSet, mut f: impl FnMut(usize, f64, f64)) {
@@ -410,10 +433,12 @@ fn along_circle(x: [f64; 2], radius: f64) -> Disc {
 /// Sliding with outward normal `n`.
 fn slides(n: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
     let kappa = slip / radius;
+    let damp = 1.0 / (1.0 + kappa * scale);
     Disc::Sliding {
         tau: [-n[1], n[0]],
         kappa,
-        damp: (1.0 / (1.0 + kappa * scale)).sqrt(),
+        damp,
+        own: (kappa * scale * damp) * (scale * damp),
         slip,
     }
 }

@@ -1,0 +1,126 @@
+//! Radii that follow other components, inside conjugate gradients.
+//!
+//! A hook moves the radii of the set between faces. Where the caller tells how (Coulomb friction: the radius of a disc is
+//! a coefficient times the normal force), conjugate gradients take it along: a step `p` on the face becomes `q = E p`, in
+//! which a sliding disc also grows along its normal by `slope * p`, and unconstrained components restore `G q = 0`. The
+//! matrix of the face is then `A E` instead of `A`, not symmetric, but by a small part only: lengths of steps
+//! are those that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière).
+//! What is left for the move to the next face is of second order, so that nearly nothing is lost by it.
+
+use crate::coarse_space::CoarseSpace;
+use crate::face_state::{Disc, Face, visit};
+use crate::product::ProductSet;
+use crate::vector;
+
+/// The radius of a disc changes by `slope` times the change of another component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RadiusSlope {
+    /// First component of the disc.
+    pub disc: usize,
+    /// Component that its radius follows.
+    pub component: usize,
+    /// Derivative of the radius.
+    pub slope: f64,
+}
+
+/// The slopes of one problem, and memory for the coupled step.
+#[derive(Debug, Default)]
+pub(crate) struct Coupling {
+    slopes: Vec<RadiusSlope>,
+    /// Slope and component by disc, in the order of the set; rebuilt when a solve starts.
+    by_disc: Vec<Option<(usize, f64)>>,
+    /// `q`.
+    pub(crate) step: Vec<f64>,
+    zero: Vec<f64>,
+    /// Whether conjugate gradients use it now.
+    pub(crate) on: bool,
+    /// Whether they got on badly with it in this solve.
+    pub(crate) failed: bool,
+}
+
+/// Coupled steps on one face, and growth of the error estimate, from which on the coupling is too strong.
+const MOST_STEPS: usize = 40;
+const GROWTH: f64 = 2.0;
+
+/// Decrease of the error estimate on a coupled face: this many times the part of the last face's first error that the
+/// move after it brought back, but never less than the other number.
+const LOST: f64 = 10.0;
+const LEAST: f64 = 0.03;
+
+impl Coupling {
+    pub(crate) fn set(&mut self, slopes: &[RadiusSlope]) {
+        self.slopes.clear();
+        self.slopes.extend_from_slice(slopes);
+    }
+
+    /// Makes ready for a solve with `n` components and `rows` rows of `G`.
+    pub(crate) fn start(&mut self, set: &ProductSet, rows: usize) {
+        (self.on, self.failed) = (false, self.slopes.is_empty());
+        if self.failed {
+            return;
+        }
+        let n = crate::set::ConvexSet::dim(set);
+        self.step.resize(n, 0.0);
+        self.zero.resize(rows, 0.0);
+        self.by_disc.clear();
+        // slopes usually come in the order of the discs
+        let mut next = 0;
+        let (slopes, by_disc) = (&self.slopes, &mut self.by_disc);
+        visit(
+            set,
+            |_, _, _, _| {},
+            |first, _, _| {
+                let found = match slopes.get(next) {
+                    Some(slope) if slope.disc == first => Some(next),
+                    _ => slopes.iter().position(|s| s.disc == first),
+                };
+                by_disc.push(found.and_then(|k| {
+                    next = k + 1;
+                    let s = &slopes[k];
+                    (s.component < n && s.slope.is_finite()).then_some((s.component, s.slope))
+                }));
+            },
+        );
+    }
+
+    /// `step = E p`.
+    pub(crate) fn extend<C: CoarseSpace>(
+        &mut self,
+        coarse: &mut C,
+        set: &ProductSet,
+        face: &Face,
+        p: &[f64],
+    ) {
+        vector::copy(p, &mut self.step);
+        let (step, by_disc) = (&mut self.step, &self.by_disc);
+        visit(
+            set,
+            |_, _, _, _| {},
+            |i, k, _| {
+                if let (Disc::Sliding { tau, .. }, Some((component, slope))) =
+                    (face.discs[k], by_disc[k])
+                {
+                    let growth = slope * p[component];
+                    step[i] += growth * tau[1];
+                    step[i + 1] -= growth * tau[0];
+                }
+            },
+        );
+        coarse.repair(&mut self.step, &self.zero);
+    }
+
+    /// Whether the iteration goes badly after that many steps: the estimate was `start` and is `now`.
+    pub(crate) fn too_strong(&mut self, steps: usize, start: f64, now: f64) -> bool {
+        self.failed |= self.on && (steps >= MOST_STEPS || now.is_nan() || now > GROWTH * start);
+        self.on && self.failed
+    }
+
+    /// The decrease asked for on this face: as far as the move after it lets the error fall. That move is of second
+    /// order, so what it brought back of the error `begun` of the last face bounds what it will bring back now.
+    pub(crate) fn forcing(&self, forcing: f64, jump: f64, begun: f64) -> f64 {
+        if !self.on {
+            return forcing;
+        }
+        (LOST * jump / begun).max(LEAST).min(forcing)
+    }
+}
