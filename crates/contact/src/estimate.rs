@@ -15,16 +15,16 @@
 //! | effect | c | w0 | w1 | w without extrapolation |
 //! |---|---|---|---|---|
 //! | no contact | 0 | 0 | 1.5 | 1 |
-//! | contact without friction | 14 | 0.8 | 2.4 | 1.8 |
-//! | given friction, Coulomb | 20 | 1 | 3.4 | 2.8 |
+//! | contact without friction | 14 | 0.6 | 1.8 | 1 |
+//! | given friction, Coulomb | 17 | 0.9 | 1.4 | 1.25 |
 //!
-//! The paper's methods need 9 times as many products, its one inexact loop 7.5 times, both 7 times with given friction.
+//! The paper's methods need 13 times as many products, its one inexact loop 11 times, both 10 times with given friction.
 //!
 //! **Digits.** With [`Accuracy::Tolerance`] those of the setting; with `Relative(x)` those of `x / sqrt(L)`, the share of a level, and with
 //! `Balanced` those of `0.1 fraction / sqrt(L)` (a discretisation error of a tenth), both at least the three with which such levels begin.
 //!
-//! **Range.** The numbers are fitted to the benchmark (n = 1 and 2, H/h = 2 to 8, 10 to 200 levels, tolerances 1e-3 to 1e-10) and to
-//! thirteen other scenes (`examples/src/effects/shapes.rs`). In these the truth was 0.29 to 1.9 times the likely figure wherever the face
+//! **Range.** The numbers are fitted to the benchmark (n = 1 to 3, 10 and 50 levels, tolerances 1e-4 to 1e-10; the dependence on H/h, 2 to 9,
+//! and on m is older) and compared with thirteen other scenes (`examples/src/effects/shapes.rs`). In these the truth was 0.33 to 1.7 times the likely figure wherever the face
 //! method did not give up, so [`Estimate::fewest_products`] is 0.25 times and [`Estimate::most_products`] 2.2 times it. Nothing in a plan tells whether a level falls back to
 //! SMALSE; one that does needs some hundreds to ten thousand products more.
 //!
@@ -182,16 +182,16 @@ fn likely_products(effects: &Effects, settings: &Settings, levels: usize, sizes:
     let count = levels as f64;
     let (cold, rough, smooth, plain) = match (effects.contact, effects.friction) {
         (false, _) => (0.0, 0.0, 1.5, 1.0),
-        (true, FrictionKind::None) => (14.0, 0.8, 2.4, 1.8),
-        (true, _) => (20.0, 1.0, 3.4, 2.8),
+        (true, FrictionKind::None) => (14.0, 0.6, 1.8, 1.0),
+        (true, _) => (17.0, 0.9, 1.4, 1.25),
     };
     let given = effects.friction == FrictionKind::Given;
     let method = match settings.method {
         _ if !effects.contact => 1.0,
         Method::Face(_) => 1.0,
-        Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } if given => 7.0,
-        Method::SuccessiveApproximations { .. } => 9.0,
-        Method::OneLoop { .. } => 7.5,
+        Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } if given => 10.0,
+        Method::SuccessiveApproximations { .. } => 13.0,
+        Method::OneLoop { .. } => 11.0,
     };
     let share = if effects.history { count.sqrt() } else { 1.0 };
     let tolerance = match settings.accuracy {
