@@ -97,6 +97,19 @@ fn the_whole_benchmark_of_the_smallest_brick_stays_below_the_papers_products() {
     }
 }
 
+/// The default method on the second brick: bands of an eighth around what was measured.
+#[test]
+fn products_of_the_second_brick_stay_in_their_bands() {
+    let (outcomes, _) = run("brick --n 2 --quiet --strict");
+    for (outcome, measured) in outcomes.iter().zip([753, 805]) {
+        let found = outcome.record.n_m;
+        assert!(
+            found.abs_diff(measured) <= measured / 8,
+            "{found}, not {measured}"
+        );
+    }
+}
+
 #[test]
 fn the_json_has_the_names_of_the_benchmark_and_reads_back() {
     let folder = tempfile::tempdir().expect("folder");

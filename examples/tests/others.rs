@@ -20,7 +20,7 @@ fn frictionless_touches_where_the_reference_does_with_fewer_products() {
         let r = &outcome.record;
         let same = |k: &&frictionless::Known| k.n == r.n && k.traction == 2.5e8;
         let known = frictionless::KNOWN.iter().find(same).expect("known");
-        assert!(r.n_m <= known.products, "n = {}: {}", r.n, r.n_m);
+        assert!(4 * r.n_m <= known.products, "n = {}: {}", r.n, r.n_m);
         assert!(r.largest_certificate < 1e-6 && r.steps.len() == 1);
         // no friction: no tangential rows, no tangential forces
         assert_eq!(r.steps[0].tangential_force, [0.0; 2]);
