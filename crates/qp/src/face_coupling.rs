@@ -42,6 +42,11 @@ pub(crate) struct Coupling {
 const MOST_STEPS: usize = 40;
 const GROWTH: f64 = 2.0;
 
+/// Largest error relative to the constrained part of the solution with which a coupled face begins (before that the set
+/// still changes too much), and coupled faces without progress after which it is given up.
+const NEAR: f64 = 0.1;
+const WAITED: usize = 2;
+
 /// Decrease of the error estimate on a coupled face: this many times the part of the last face's first error that the
 /// move after it brought back, but never less than the other number.
 const LOST: f64 = 10.0;
@@ -109,6 +114,12 @@ impl Coupling {
         coarse.repair(&mut self.step, &self.zero);
     }
 
+    /// Decides for the next face, if it is `free` to couple: its relative `error`, and faces without progress so far.
+    pub(crate) fn begin(&mut self, free: bool, error: f64, waited: usize) {
+        self.failed |= self.on && waited >= WAITED;
+        self.on = free && error <= NEAR && !self.failed;
+    }
+
     /// Whether the iteration goes badly after that many steps: the estimate was `start` and is `now`.
     pub(crate) fn too_strong(&mut self, steps: usize, start: f64, now: f64) -> bool {
         self.failed |= self.on && (steps >= MOST_STEPS || now.is_nan() || now > GROWTH * start);
@@ -122,5 +133,25 @@ impl Coupling {
             return forcing;
         }
         (LOST * jump / begun).max(LEAST).min(forcing)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn couples_near_the_solution_and_gives_up_where_it_does_not_help() {
+        let mut coupling = Coupling::default();
+        let mut begins = |free, error, waited| {
+            coupling.begin(free, error, waited);
+            coupling.on
+        };
+        assert!(!begins(true, 0.5, 0));
+        assert!(begins(true, 0.05, 0) && begins(true, 0.02, 1));
+        assert!(!begins(false, 0.01, 0));
+        // faces without progress count against it only where it was on
+        assert!(begins(true, 0.01, 2));
+        assert!(!begins(true, 0.01, 2) && !begins(true, 1e-9, 0));
     }
 }

@@ -38,22 +38,29 @@ impl PointRows {
         specials: Range<usize>,
         copy: impl Fn(u32, u32) -> [u32; 2],
     ) -> Self {
-        let mut numbers: HashMap<Vec<[u32; 2]>, usize> = HashMap::new();
+        let places = |special: usize| {
+            let entries = gluing.special(special).iter();
+            entries.map(|e| (e.subdomain, e.local))
+        };
+        // group of the last row with this first copy
+        let mut numbers: HashMap<Option<(u32, u32)>, usize> = HashMap::new();
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for special in specials.clone() {
-            let entries = gluing.special(special).iter();
-            let copies = entries.map(|e| copy(e.subdomain, e.local)).collect();
-            let number = *numbers.entry(copies).or_insert(groups.len());
-            if number == groups.len() {
-                groups.push(Vec::new());
+            let number = numbers
+                .entry(places(special).next())
+                .or_insert(groups.len());
+            match groups.get_mut(*number) {
+                Some(group) if places(group[0]).eq(places(special)) => group.push(special),
+                _ => {
+                    *number = groups.len();
+                    groups.push(vec![special]);
+                }
             }
-            groups[number].push(special);
         }
         let mut out = Self::default();
         for group in groups {
-            let entries = gluing.special(group[0]).iter();
-            out.copies
-                .extend(entries.map(|e| copy(e.subdomain, e.local)));
+            let copies = places(group[0]).map(|(subdomain, local)| copy(subdomain, local));
+            out.copies.extend(copies);
             for special in group {
                 out.rows.push((special - specials.start) as u32);
                 out.vectors

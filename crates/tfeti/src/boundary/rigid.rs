@@ -49,12 +49,17 @@ impl RigidTables {
             let class = class_of(subdomain);
             (class, &bases[class].kernel)
         };
+        let points = |specials| PointRows::new(gluing, specials, copy);
+        let (globs, (contact, supports)) = rayon::join(
+            || GlobTables::new(gluing, &map.column_of, kernel),
+            || (points(0..contact), points(contact..gluing.specials())),
+        );
         Self {
-            contact: PointRows::new(gluing, 0..contact, copy),
-            supports: PointRows::new(gluing, contact..gluing.specials(), copy),
-            globs: GlobTables::new(gluing, &map.column_of, kernel),
             arms,
             first,
+            contact,
+            supports,
+            globs,
         }
     }
 

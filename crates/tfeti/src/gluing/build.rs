@@ -133,13 +133,18 @@ impl Builder<'_> {
         let decomposition = self.decomposition;
         let copies = |node: u32| decomposition.copies(node as usize);
         let sharers = |node: u32| copies(node).iter().map(|c| c.subdomain);
-        let mut shared: Vec<u32> = (0..nodes as u32)
-            .filter(|&node| copies(node).len() > 1)
+        // number of copies and the first two subdomains, which tell most globs apart
+        let mut shared: Vec<([u32; 3], u32)> = (0..nodes as u32)
+            .filter_map(|node| match copies(node) {
+                all @ [a, b, ..] => Some(([all.len() as u32, a.subdomain, b.subdomain], node)),
+                _ => None,
+            })
             .collect();
-        shared.sort_unstable_by(|&a, &b| {
-            let by_kind = copies(a).len().cmp(&copies(b).len());
-            by_kind.then_with(|| sharers(a).cmp(sharers(b)).then(a.cmp(&b)))
+        shared.sort_unstable_by(|&(i, a), &(j, b)| {
+            let by_list = || sharers(a).cmp(sharers(b));
+            i.cmp(&j).then_with(by_list).then(a.cmp(&b))
         });
+        let shared: Vec<u32> = shared.into_iter().map(|(_, node)| node).collect();
         for glob in shared.chunk_by(|&a, &b| sharers(a).eq(sharers(b))) {
             let runs = copies(glob[0]).len() - 1;
             self.gluing.globs.push(Glob {
