@@ -36,16 +36,21 @@ pub(crate) struct Coupling {
     pub(crate) on: bool,
     /// Whether they got on badly with it in this solve.
     pub(crate) failed: bool,
+    /// Faces without progress when it was switched on.
+    from: usize,
 }
 
 /// Coupled steps on one face, and growth of the error estimate, from which on the coupling is too strong.
 const MOST_STEPS: usize = 40;
 const GROWTH: f64 = 2.0;
 
-/// Largest error relative to the constrained part of the solution with which a coupled face begins (before that the set
-/// still changes too much), and coupled faces without progress after which it is given up.
+/// Largest error relative to the constrained part of the solution with which a coupled face begins: before that the set
+/// still changes too much.
 const NEAR: f64 = 0.1;
-const WAITED: usize = 2;
+
+/// Faces without progress after which the other way is tried: coupled faces far from the solution, too, and none any more
+/// where they were coupled.
+const WAITED: usize = 4;
 
 /// Decrease of the error estimate on a coupled face: this many times the part of the last face's first error that the
 /// move after it brought back, but never less than the other number.
@@ -60,7 +65,7 @@ impl Coupling {
 
     /// Makes ready for a solve with `n` components and `rows` rows of `G`.
     pub(crate) fn start(&mut self, set: &ProductSet, rows: usize) {
-        (self.on, self.failed) = (false, self.slopes.is_empty());
+        (self.on, self.failed, self.from) = (false, self.slopes.is_empty(), 0);
         if self.failed {
             return;
         }
@@ -116,8 +121,14 @@ impl Coupling {
 
     /// Decides for the next face, if it is `free` to couple: its relative `error`, and faces without progress so far.
     pub(crate) fn begin(&mut self, free: bool, error: f64, waited: usize) {
-        self.failed |= self.on && waited >= WAITED;
-        self.on = free && error <= NEAR && !self.failed;
+        self.from = self.from.min(waited);
+        self.failed |= self.on && waited >= self.from + WAITED;
+        let near = error <= NEAR || waited >= WAITED;
+        let on = free && near && !self.failed;
+        if on && !self.on {
+            self.from = waited;
+        }
+        self.on = on;
     }
 
     /// Whether the iteration goes badly after that many steps: the estimate was `start` and is `now`.
@@ -141,17 +152,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn couples_near_the_solution_and_gives_up_where_it_does_not_help() {
+    fn couples_near_the_solution_and_changes_sides_where_faces_go_in_circles() {
         let mut coupling = Coupling::default();
         let mut begins = |free, error, waited| {
             coupling.begin(free, error, waited);
             coupling.on
         };
-        assert!(!begins(true, 0.5, 0));
-        assert!(begins(true, 0.05, 0) && begins(true, 0.02, 1));
-        assert!(!begins(false, 0.01, 0));
-        // faces without progress count against it only where it was on
-        assert!(begins(true, 0.01, 2));
-        assert!(!begins(true, 0.01, 2) && !begins(true, 1e-9, 0));
+        assert!(!begins(true, 0.5, 0) && !begins(true, 0.5, WAITED - 1));
+        assert!(begins(true, 0.5, WAITED), "far, but nothing else helps");
+        assert!(begins(true, 0.5, 2 * WAITED - 1));
+        assert!(begins(true, 0.05, 0) && !begins(false, 0.01, 0));
+        assert!(begins(true, 0.02, 1) && begins(true, 0.02, WAITED));
+        assert!(!begins(true, 0.02, WAITED + 1), "four faces since it began");
+        assert!(!begins(true, 1e-9, 0), "for the rest of the solve");
     }
 }
