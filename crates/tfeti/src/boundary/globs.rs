@@ -294,7 +294,7 @@ fn by_column(columns: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
 /// Numbers worked on at a time: whole nodes and whole vector registers.
 const CHUNK: usize = 12;
 /// Least work of a task: some microseconds.
-const TASK: u64 = 8192;
+const TASK: u64 = 4096;
 /// Sides of a glob whose shifted motions are kept.
 const KEPT: usize = 8;
 
