@@ -241,9 +241,8 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         if let Some(guard) = &mut guard {
             guard.enter(x, ax, &work.residual);
         }
-        let size = limits.constrained / settings.tolerance;
         let free = followed && guard.is_none() && apart;
-        work.coupling.begin(free, errors.1 / size, waited);
+        work.coupling.begin(free, report.constrained_error, waited);
         let goal = work.coupling.forcing(forcing, last_jump, begun);
         begun = errors.1;
         let step = conjugate_gradients(
