@@ -1,5 +1,6 @@
 //! Assembly of `G W G^T` in blocks of six.
 
+use crate::buckets::buckets;
 use crate::class::Classes;
 use crate::coarse_tree::CoarseTree;
 use crate::gluing::Gluing;
@@ -73,51 +74,48 @@ impl<'a> ModeTable<'a> {
     }
 }
 
-/// Rows of each subdomain: interface blocks, then others.
-struct Touching([(Vec<usize>, Vec<u32>); 2]);
+/// Rows of each subdomain, by their buckets.
+struct Touching {
+    starts: Vec<u32>,
+    rows: Vec<u32>,
+}
 
 impl Touching {
-    fn new(gluing: &Gluing, subdomains: usize) -> Self {
-        let blocks = (0..gluing.blocks()).flat_map(|b| {
+    /// From pairs of a subdomain and a row, in the order of the rows.
+    fn new(subdomains: usize, pairs: impl Iterator<Item = (u32, u32)>) -> Self {
+        let (keys, numbers): (Vec<u32>, Vec<u32>) = pairs.unzip();
+        let (starts, positions) = buckets(subdomains, &keys);
+        let rows = positions.into_iter().map(|k| numbers[k as usize]).collect();
+        Self { starts, rows }
+    }
+
+    fn blocks(gluing: &Gluing, subdomains: usize) -> Self {
+        let pairs = (0..gluing.blocks()).flat_map(|b| {
             let entries = gluing.block(b).iter();
             entries.map(move |e| (e.subdomain, b as u32))
         });
-        let specials = (0..gluing.specials()).flat_map(|k| {
+        Self::new(subdomains, pairs)
+    }
+
+    fn specials(gluing: &Gluing, subdomains: usize) -> Self {
+        let pairs = (0..gluing.specials()).flat_map(|k| {
             let entries = gluing.special(k).iter();
             entries.map(move |e| (e.subdomain, k as u32))
         });
-        Self([
-            by_subdomain(subdomains, &blocks.collect::<Vec<_>>()),
-            by_subdomain(subdomains, &specials.collect::<Vec<_>>()),
-        ])
+        Self::new(subdomains, pairs)
     }
 
-    fn of(&self, kind: usize, subdomain: usize) -> &[u32] {
-        let (pointers, rows) = &self.0[kind];
-        &rows[pointers[subdomain]..pointers[subdomain + 1]]
+    fn of(&self, subdomain: usize) -> &[u32] {
+        &self.rows[self.starts[subdomain] as usize..self.starts[subdomain + 1] as usize]
     }
-}
-
-/// Pointers and rows by subdomain from pairs in the order of the rows.
-fn by_subdomain(subdomains: usize, pairs: &[(u32, u32)]) -> (Vec<usize>, Vec<u32>) {
-    let mut pointers = vec![0; subdomains + 1];
-    for &(s, _) in pairs {
-        pointers[s as usize + 1] += 1;
-    }
-    for s in 0..subdomains {
-        pointers[s + 1] += pointers[s];
-    }
-    let (mut next, mut rows) = (pointers.clone(), vec![0; pairs.len()]);
-    for &(s, row) in pairs {
-        rows[next[s as usize]] = row;
-        next[s as usize] += 1;
-    }
-    (pointers, rows)
 }
 
 impl CoarseMatrix {
     pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>, subdomains: usize) -> Self {
-        let touching = Touching::new(gluing, subdomains);
+        let touching = [
+            Touching::blocks(gluing, subdomains),
+            Touching::specials(gluing, subdomains),
+        ];
         let columns: Vec<(Vec<u32>, Vec<f64>)> = (0..subdomains)
             .into_par_iter()
             .map(|s| block_column(gluing, modes, &touching, s))
@@ -338,13 +336,13 @@ impl Moments {
 fn block_column(
     gluing: &Gluing,
     modes: &ModeTable<'_>,
-    touching: &Touching,
+    [blocks, specials]: &[Touching; 2],
     subdomain: usize,
 ) -> (Vec<u32>, Vec<f64>) {
     let own = subdomain as u32;
     let kernel = modes.kernel(own);
     let mut moments: Vec<(u32, Moments)> = vec![(own, Moments::default())];
-    for &block in touching.of(0, subdomain) {
+    for &block in blocks.of(subdomain) {
         let entries = gluing.block(block as usize);
         for b in entries.iter().filter(|e| e.subdomain == own) {
             for a in entries.iter().filter(|e| e.subdomain >= own) {
@@ -363,7 +361,7 @@ fn block_column(
             }
         }
     }
-    for &special in touching.of(1, subdomain) {
+    for &special in specials.of(subdomain) {
         for e in gluing.special(special as usize) {
             if e.subdomain > own && moments.iter().all(|m| m.0 != e.subdomain) {
                 moments.push((e.subdomain, Moments::default()));

@@ -48,6 +48,7 @@
 
 mod block_rows;
 mod boundary;
+mod buckets;
 mod class;
 mod coarse;
 mod coarse_factor;

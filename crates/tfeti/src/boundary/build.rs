@@ -1,6 +1,7 @@
 //! Building the gather tables.
 
 use super::{BoundaryClass, BoundaryMap, LANES, Lane, Panel, Place};
+use crate::buckets::buckets;
 use crate::class::Classes;
 use crate::cost::PANEL;
 use crate::gluing::Gluing;
@@ -241,21 +242,11 @@ impl BoundaryMap {
 
 /// Transposes a table of rows: pointers by column, and for each entry its row and its position.
 fn transpose(pointers: &[u32], columns: &[u32], count: usize) -> (Vec<u32>, Vec<(u32, u32)>) {
-    let mut starts = vec![0_u32; count + 1];
-    for &column in columns {
-        starts[column as usize + 1] += 1;
-    }
-    for k in 0..count {
-        starts[k + 1] += starts[k];
-    }
-    let mut next = starts.clone();
-    let mut order = vec![(0, 0); columns.len()];
+    let mut row_of = Vec::with_capacity(columns.len());
     for (row, pair) in pointers.windows(2).enumerate() {
-        for entry in pair[0]..pair[1] {
-            let at = &mut next[columns[entry as usize] as usize];
-            order[*at as usize] = (row as u32, entry);
-            *at += 1;
-        }
+        row_of.extend((pair[0]..pair[1]).map(|_| row as u32));
     }
-    (starts, order)
+    let (starts, entries) = buckets(count, columns);
+    let order = entries.into_iter().map(|e| (row_of[e as usize], e));
+    (starts, order.collect())
 }

@@ -5,6 +5,7 @@
 //! shifted to the centres of the subdomains. Globs of one shape share their arms.
 
 use super::{LANES, over_lanes};
+use crate::buckets::buckets;
 use crate::gluing::{Glob, Gluing};
 use crate::kernel::{Kernel, add_wrench, displacement};
 use pulp::{Arch, Simd, WithSimd};
@@ -119,7 +120,7 @@ impl GlobTables {
             });
         }
         out.cut();
-        (out.side_pointers, out.sides) = by_column(&out.columns, column_of.len());
+        (out.side_pointers, out.sides) = buckets(column_of.len(), &out.columns);
         out
     }
 
@@ -271,24 +272,6 @@ fn push_coefficients(gluing: &Gluing, glob: &Glob, sides: &[Side], out: &mut Vec
             entry.map_or(0.0, |e| e.coefficient)
         }));
     }
-}
-
-/// Pointers and sides by column.
-fn by_column(columns: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut pointers = vec![0; count + 1];
-    for &column in columns {
-        pointers[column as usize + 1] += 1;
-    }
-    for k in 0..count {
-        pointers[k + 1] += pointers[k];
-    }
-    let (mut next, mut sides) = (pointers.clone(), vec![0; columns.len()]);
-    for (side, &column) in columns.iter().enumerate() {
-        let at = &mut next[column as usize];
-        sides[*at as usize] = side as u32;
-        *at += 1;
-    }
-    (pointers, sides)
 }
 
 /// Numbers worked on at a time: whole nodes and whole vector registers.

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// Consecutive rows, grouped by the copies on which they act.
 #[derive(Debug, Default)]
-pub(crate) struct PointRows {
+pub(crate) struct PointTables {
     points: Vec<Point>,
     /// Column and arm.
     copies: Vec<[u32; 2]>,
@@ -31,7 +31,7 @@ struct Point {
 /// Copies of a point whose displacements are kept.
 const KEPT: usize = 8;
 
-impl PointRows {
+impl PointTables {
     /// For the special rows `specials`; `copy` gives column and arm from subdomain and local node.
     pub(crate) fn new(
         gluing: &Gluing,

@@ -3,7 +3,7 @@
 //! Interface rows are worked on glob by glob, the others by the position of their node (its *arm*).
 
 use super::globs::{GlobTables, Wrench};
-use super::points::PointRows;
+use super::points::PointTables;
 use super::{BoundaryMap, Panel};
 use crate::class::Classes;
 use crate::gluing::Gluing;
@@ -16,8 +16,8 @@ pub(crate) struct RigidTables {
     arms: Vec<[f64; 3]>,
     /// First arm of each class.
     first: Vec<u32>,
-    contact: PointRows,
-    supports: PointRows,
+    contact: PointTables,
+    supports: PointTables,
     globs: GlobTables,
 }
 
@@ -49,7 +49,7 @@ impl RigidTables {
             let class = class_of(subdomain);
             (class, &bases[class].kernel)
         };
-        let points = |specials| PointRows::new(gluing, specials, copy);
+        let points = |specials| PointTables::new(gluing, specials, copy);
         let (globs, (contact, supports)) = rayon::join(
             || GlobTables::new(gluing, &map.column_of, kernel),
             || (points(0..contact), points(contact..gluing.specials())),
