@@ -57,10 +57,9 @@ use crate::contact_move::{Moved, dot};
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::Model;
-use rayon::prelude::*;
-use signorini_fem_mesh::Element;
-use signorini_qp::vector::norm;
-use signorini_tfeti::{CoarseFactor, RowWeights};
+use signorini_qp::vector;
+use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
+use std::sync::OnceLock;
 
 /// Relative imbalance that counts as rounding.
 const BALANCED: f64 = 1e-12;
@@ -92,56 +91,36 @@ impl AlgebraicError {
 /// Stiffnesses that weigh copies and contact nodes, computed once when first needed.
 #[derive(Debug)]
 pub(crate) struct Weights {
-    /// A measure of the stiffness of each node copy, torn order, N/m.
-    copies: Vec<f64>,
+    copies: CopyStiffness,
     /// Stiffness in the direction of the contact rows, N/m, by row.
     rows: Vec<f64>,
-    /// Coarse problem of gluing and supports alone; `None` if contact is needed to hold the body.
-    interior: Option<CoarseFactor>,
+    /// Made where a level needs it: solvers of the face method leave nothing to balance.
+    interior: OnceLock<Option<CoarseFactor>>,
 }
 
 impl Weights {
     pub(crate) fn new(model: &Model) -> Self {
-        let scene = &model.scene;
-        let part = |subdomain: &signorini_fem_mesh::Subdomain| {
-            let mut sum = vec![0.0; subdomain.nodes.len()];
-            for (nodes, &element) in subdomain.tets.iter().zip(&subdomain.elements) {
-                let element = element as usize;
-                let shape = Element::new(&scene.mesh.tet_points(element));
-                // regions were checked when the stiffness was assembled
-                let modulus = scene
-                    .materials
-                    .get(scene.mesh.regions()[element])
-                    .map_or(1.0, signorini_fem_mesh::Hooke::bound);
-                for (node, g) in nodes.iter().zip(shape.gradients) {
-                    let square: f64 = g.iter().map(|c| c * c).sum();
-                    sum[*node as usize] += modulus * shape.volume * square;
-                }
-            }
-            sum
-        };
-        let copies: Vec<Vec<f64>> = model
-            .decomposition
-            .subdomains()
-            .par_iter()
-            .map(part)
-            .collect();
         let contact = model.tfeti.gluing().ranges().contact().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
-        let mut weights = vec![1.0; model.tfeti.dual_dim()];
-        weights[..contact].fill(0.0);
-        let interior = model
-            .tfeti
-            .coarse()
-            .factor_weighted(RowWeights::diagonal(weights))
-            .ok()
-            .filter(|factor| factor.free_motions().is_empty());
         Self {
-            copies: copies.concat(),
+            copies: model.tfeti.all_copy_stiffness(),
             rows,
-            interior,
+            interior: OnceLock::new(),
         }
+    }
+
+    /// Coarse problem of gluing and supports alone; `None` if contact is needed to hold the body.
+    fn interior(&self, tfeti: &Tfeti) -> Option<&CoarseFactor> {
+        let factor = || {
+            let mut weights = vec![1.0; tfeti.dual_dim()];
+            weights[..self.rows.len()].fill(0.0);
+            let factor = tfeti
+                .coarse()
+                .factor_weighted(RowWeights::diagonal(weights));
+            factor.ok().filter(|f| f.free_motions().is_empty())
+        };
+        self.interior.get_or_init(factor).as_ref()
     }
 }
 
@@ -176,37 +155,34 @@ impl Solved<'_> {
             change += moved.change;
         }
         // torn difference and its energy
-        let balanced = weights.interior.as_ref().and_then(|c| self.balanced(c));
+        let balanced = self.balanced(weights);
         let torn = balanced.as_deref().unwrap_or(self.torn);
-        let subdomains = model.decomposition.subdomains();
-        let part = |(s, subdomain): (usize, &signorini_fem_mesh::Subdomain)| {
-            let own = &torn[model.tfeti.torn_range(s)];
-            let mut product = vec![0.0; own.len()];
-            model.tfeti.stiffness_times(s, own, &mut product);
-            let elastic: f64 = own.iter().zip(&product).map(|(a, b)| a * b).sum();
-            let mut difference = own.to_vec();
-            for (k, &node) in subdomain.nodes.iter().enumerate() {
-                for c in 0..3 {
-                    difference[3 * k + c] -= v[3 * node as usize + c];
-                }
-            }
-            model.tfeti.stiffness_times(s, &difference, &mut product);
-            let energy: f64 = difference.iter().zip(&product).map(|(a, b)| a * b).sum();
-            let square: f64 = difference.iter().map(|d| d * d).sum();
-            [elastic, energy, square]
-        };
-        let parts: Vec<[f64; 3]> = subdomains.par_iter().enumerate().map(part).collect();
-        let sum = |i: usize| parts.iter().map(|p| p[i]).sum::<f64>();
-        if balanced.is_none() && !self.is_balanced() {
-            terms += norm(self.residual) * sum(2).sqrt();
+        let tfeti = &model.tfeti;
+        let mut difference = torn.to_vec();
+        let nodes = model
+            .decomposition
+            .subdomains()
+            .iter()
+            .flat_map(|s| &s.nodes);
+        for (d, &node) in difference.chunks_exact_mut(3).zip(nodes) {
+            (0..3).for_each(|c| d[c] -= v[3 * node as usize + c]);
         }
-        let distance = 0.5 * sum(1).max(0.0);
+        let energy = |u: &[f64]| {
+            let mut force = vec![0.0; u.len()];
+            tfeti.stiffness_times(u, &mut force);
+            vector::dot(u, &force)
+        };
+        let (elastic, energy) = (energy(torn), energy(&difference));
+        if balanced.is_none() && !self.is_balanced() {
+            terms += vector::norm(self.residual) * vector::norm(&difference);
+        }
+        let distance = 0.5 * energy.max(0.0);
         let gap = distance + terms;
         AlgebraicError {
             // the square of the sum of two norms
             energy: gap + change + 2.0 * (gap * change).sqrt(),
             distance,
-            elastic: 0.5 * sum(0),
+            elastic: 0.5 * elastic,
         }
     }
 
@@ -215,11 +191,12 @@ impl Solved<'_> {
     }
 
     /// The torn displacement with rigid forces balanced by gluing and supports; `None` if they are balanced already.
-    fn balanced(&self, interior: &CoarseFactor) -> Option<Vec<f64>> {
+    fn balanced(&self, weights: &Weights) -> Option<Vec<f64>> {
         if self.is_balanced() {
             return None;
         }
         let tfeti = &self.model.tfeti;
+        let interior = weights.interior(tfeti)?;
         // Rᵀ (K u - f - Bᵀ lambda) = e - G lambda
         let missing: Vec<f64> = (0..tfeti.subdomains())
             .flat_map(|s| {
@@ -238,7 +215,7 @@ impl Solved<'_> {
         Some(u)
     }
 
-    fn mean(&self, weights: &[f64]) -> Vec<f64> {
+    fn mean(&self, weights: &CopyStiffness) -> Vec<f64> {
         let nodes = self.model.scene.mesh.points().len();
         let (mut v, mut total) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
         let copies = self
@@ -247,8 +224,8 @@ impl Solved<'_> {
             .subdomains()
             .iter()
             .flat_map(|s| s.nodes.iter().copied());
-        for ((node, weight), u) in copies.zip(weights).zip(self.torn.chunks_exact(3)) {
-            let node = node as usize;
+        for ((k, node), u) in copies.enumerate().zip(self.torn.chunks_exact(3)) {
+            let (node, weight) = (node as usize, weights.weight(k));
             total[node] += weight;
             (0..3).for_each(|c| v[3 * node + c] += weight * u[c]);
         }

@@ -9,15 +9,12 @@ use signorini_fem_mesh::{Decomposition, LoadDensity, TetMesh, assemble_load, bri
 /// Forces that the displacement of a level exerts on the nodes: K u, summed over the copies.
 fn internal_forces(simulation: &Simulation, torn: &[f64]) -> Vec<[f64; 3]> {
     let mut sum = vec![[0.0; 3]; simulation.scene().mesh().points().len()];
-    for (s, subdomain) in simulation.decomposition().subdomains().iter().enumerate() {
-        let range = simulation.tfeti().torn_range(s);
-        let mut force = vec![0.0; range.len()];
-        simulation
-            .tfeti()
-            .stiffness_times(s, &torn[range], &mut force);
-        for (&node, f) in subdomain.nodes.iter().zip(force.chunks_exact(3)) {
-            (0..3).for_each(|c| sum[node as usize][c] += f[c]);
-        }
+    let mut force = vec![0.0; torn.len()];
+    simulation.tfeti().stiffness_times(torn, &mut force);
+    let subdomains = simulation.decomposition().subdomains();
+    let nodes = subdomains.iter().flat_map(|s| &s.nodes);
+    for (&node, f) in nodes.zip(force.chunks_exact(3)) {
+        (0..3).for_each(|c| sum[node as usize][c] += f[c]);
     }
     sum
 }

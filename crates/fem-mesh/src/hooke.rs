@@ -196,7 +196,12 @@ impl Hooke {
     /// Stress of a strain, both in Voigt order, the strain with engineering shear.
     #[must_use]
     pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
-        std::array::from_fn(|i| (0..6).map(|j| self.voigt[i][j] * strain[j]).sum())
+        // column by column: symmetric, and all six sums side by side
+        let mut stress = [0.0; 6];
+        for (column, e) in self.voigt.iter().zip(strain) {
+            stress = std::array::from_fn(|i| stress[i] + column[i] * e);
+        }
+        stress
     }
 
     /// Elastic energy per volume, half of stress times strain.

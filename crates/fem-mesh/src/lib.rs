@@ -90,6 +90,7 @@ pub mod output;
 pub mod recovery;
 
 mod assembly;
+mod buckets;
 mod decomposition;
 mod element;
 mod history;
@@ -105,6 +106,7 @@ mod vec3;
 
 pub use assembly::{AssemblyError, assemble_stiffness, subdomain_stiffness};
 pub use brick::{Brick, BrickError};
+pub use buckets::buckets;
 pub use decomposition::{
     Decomposition, DecompositionError, NodeCopy, Subdomain, split_disconnected,
 };

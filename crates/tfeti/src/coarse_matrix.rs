@@ -1,6 +1,5 @@
 //! Assembly of `G W G^T` in blocks of six.
 
-use crate::buckets::buckets;
 use crate::class::Classes;
 use crate::coarse_tree::CoarseTree;
 use crate::gluing::Gluing;
@@ -9,6 +8,7 @@ use crate::matrices::ClassBase;
 use crate::row_weights::RowWeights;
 use crate::sparse::Columns;
 use rayon::prelude::*;
+use signorini_fem_mesh::buckets;
 
 /// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
 #[derive(Debug)]

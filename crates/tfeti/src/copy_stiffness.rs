@@ -2,7 +2,7 @@
 
 use crate::class::Classes;
 use crate::matrices::ClassBase;
-use signorini_fem_mesh::{Decomposition, NodeCopy};
+use signorini_fem_mesh::NodeCopy;
 
 /// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
 ///
@@ -18,20 +18,19 @@ pub struct CopyStiffness {
 }
 
 impl CopyStiffness {
-    pub(crate) fn new(
-        decomposition: &Decomposition,
-        classes: &Classes,
-        bases: &[ClassBase],
-    ) -> Self {
+    pub(crate) fn new(classes: &Classes, bases: &[ClassBase]) -> Self {
+        let by_class = |base: &ClassBase| -> Vec<f64> {
+            let mean = |node: usize| {
+                let diagonal = (3 * node..3 * node + 3).map(|i| base.stiffness.diagonal(i));
+                (diagonal.sum::<f64>() / 3.0).max(f64::MIN_POSITIVE)
+            };
+            (0..base.stiffness.dim / 3).map(mean).collect()
+        };
+        let by_class: Vec<Vec<f64>> = bases.iter().map(by_class).collect();
         let (mut first, mut values) = (Vec::new(), Vec::new());
-        for s in 0..decomposition.subdomains().len() {
-            let stiffness = &bases[classes.place(s).0].stiffness;
+        for s in 0..classes.subdomains() {
             first.push(values.len());
-            values.extend((0..stiffness.dim / 3).map(|node| {
-                let diagonal = (3 * node..3 * node + 3).filter_map(|i| stiffness.find(i, i));
-                let mean = diagonal.map(|k| stiffness.values[k]).sum::<f64>() / 3.0;
-                mean.max(f64::MIN_POSITIVE)
-            }));
+            values.extend(&by_class[classes.place(s).0]);
         }
         Self { first, values }
     }
@@ -42,7 +41,8 @@ impl CopyStiffness {
     }
 
     /// What the copy `k` in torn order counts in the mean of its node; only ratios matter.
-    pub(crate) fn weight(&self, k: usize) -> f64 {
+    #[must_use]
+    pub fn weight(&self, k: usize) -> f64 {
         self.values.get(k).copied().unwrap_or(1.0)
     }
 

@@ -201,10 +201,7 @@ fn remove_rigid(kernel: &Kernel, x: &mut [f64]) {
 
 /// Mean of the diagonal: the scale of the matrix.
 fn scale(stiffness: &Columns) -> f64 {
-    let trace: f64 = (0..stiffness.dim)
-        .filter_map(|i| stiffness.find(i, i))
-        .map(|k| stiffness.values[k])
-        .sum();
+    let trace: f64 = (0..stiffness.dim).map(|i| stiffness.diagonal(i)).sum();
     trace / stiffness.dim.max(1) as f64
 }
 

@@ -48,7 +48,6 @@
 
 mod block_rows;
 mod boundary;
-mod buckets;
 mod class;
 mod coarse;
 mod coarse_factor;
@@ -83,6 +82,7 @@ mod split_factor;
 mod supernodes;
 mod supports;
 mod system;
+mod torn;
 
 pub use class::{Class, Classes, Sharing};
 pub use coarse::{Coarse, CoarseScratch};

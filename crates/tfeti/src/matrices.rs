@@ -1,5 +1,6 @@
 //! The matrices of one class: stiffness, kernel and generalised inverse.
 
+use crate::block_rows::BlockRows;
 use crate::boundary::BoundaryMap;
 use crate::class::Classes;
 use crate::cost::{InverseSettings, Size, choose};
@@ -9,11 +10,14 @@ use crate::kernel::Kernel;
 use crate::sparse::{Columns, Symbolic};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh, assemble_stiffness};
+use std::sync::OnceLock;
 
 /// Stiffness and kernel of a class.
 #[derive(Debug)]
 pub(crate) struct ClassBase {
     pub(crate) stiffness: Columns,
+    /// The same for products with several members, made when first needed.
+    pub(crate) blocks: OnceLock<BlockRows>,
     pub(crate) kernel: Kernel,
 }
 
@@ -66,6 +70,7 @@ pub(crate) fn assemble(
                 .map_err(|e| material(e.to_string()))?;
             Ok(ClassBase {
                 stiffness: Columns::from_symmetric(&matrix),
+                blocks: OnceLock::new(),
                 kernel: Kernel::new(&points, s)?,
             })
         })

@@ -1,12 +1,9 @@
 //! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
 
 use crate::coarse::CoarseScratch;
-use crate::cost::PANEL;
 use crate::dual::DualScratch;
 use crate::error::TfetiError;
-use crate::sparse::SolveMemory;
 use crate::system::Tfeti;
-use rayon::prelude::*;
 use signorini_qp::SymmetricOperator;
 
 /// Response of the torn body to one load: what a time step needs to combine.
@@ -97,41 +94,6 @@ impl Tfeti {
             coarse,
             force,
         })
-    }
-
-    /// `u = K+ f` for torn vectors, class by class.
-    pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
-        let parts = &self.parts;
-        let mut targets: Vec<Option<&mut [f64]>> = Vec::with_capacity(self.subdomains());
-        let mut rest = u;
-        for s in 0..self.subdomains() {
-            let (own, tail) = std::mem::take(&mut rest).split_at_mut(self.torn_range(s).len());
-            targets.push(Some(own));
-            rest = tail;
-        }
-        let mut work = Vec::new();
-        for (class, list) in parts.classes.classes().iter().enumerate() {
-            for members in list.members.chunks(PANEL) {
-                let columns: Vec<&mut [f64]> = members
-                    .iter()
-                    .filter_map(|&s| targets[s as usize].take())
-                    .collect();
-                work.push((class, members, columns));
-            }
-        }
-        work.into_par_iter().for_each(|(class, members, columns)| {
-            let (base, inverse) = (&parts.bases[class], &parts.inverses[class].full);
-            let (dim, count) = (base.stiffness.dim, members.len());
-            let mut memory = SolveMemory::new(inverse.need(count));
-            let mut x = vec![0.0; dim * count];
-            for (&s, column) in members.iter().zip(x.chunks_exact_mut(dim)) {
-                column.copy_from_slice(&f[self.torn_range(s as usize)]);
-            }
-            inverse.apply(&base.kernel, &mut x, count, &mut memory);
-            for (column, target) in x.chunks_exact(dim).zip(columns) {
-                target.copy_from_slice(column);
-            }
-        });
     }
 
     /// `out = B u` for a torn vector.
@@ -297,20 +259,10 @@ impl Tfeti {
         self.check("multipliers", lambda, self.dual_dim())?;
         let mut known = force.to_vec();
         self.add_rows_transposed(lambda, &mut known);
-        let parts: Vec<Vec<f64>> = (0..self.subdomains())
-            .into_par_iter()
-            .map(|s| {
-                let range = self.torn_range(s);
-                let mut product = vec![0.0; range.len()];
-                self.stiffness_times(s, &u[range.clone()], &mut product);
-                product
-                    .iter_mut()
-                    .zip(&known[range])
-                    .for_each(|(p, f)| *p -= f);
-                product
-            })
-            .collect();
-        Ok(parts.concat())
+        let mut residual = vec![0.0; u.len()];
+        self.stiffness_times(u, &mut residual);
+        signorini_qp::vector::subtract(&known, &mut residual);
+        Ok(residual)
     }
 
     /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.

@@ -69,9 +69,7 @@ impl Tfeti {
                         }
                     }
                     Compliance::Sample(ratios) => {
-                        let stiffness = &parts.bases[class].stiffness;
-                        let diagonal = stiffness.find(dof, dof);
-                        let diagonal = diagonal.map_or(0.0, |k| stiffness.values[k]);
+                        let diagonal = parts.bases[class].stiffness.diagonal(dof);
                         if diagonal > 0.0 {
                             *target += value * value * ratios[dof % 3] / diagonal;
                         }
@@ -96,9 +94,7 @@ impl Tfeti {
                 x.fill(0.0);
                 x[dof] = 1.0;
                 inverse.apply(&base.kernel, &mut x, 1, &mut memory);
-                let diagonal = base.stiffness.find(dof, dof);
-                let diagonal = diagonal.map_or(0.0, |k| base.stiffness.values[k]);
-                *smallest = smallest.min(x[dof] * diagonal);
+                *smallest = smallest.min(x[dof] * base.stiffness.diagonal(dof));
             }
         }
         out
@@ -142,9 +138,7 @@ impl Tfeti {
         let parts = &self.parts;
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
             let stiffness = &parts.bases[parts.classes.place(subdomain).0].stiffness;
-            let diagonal = stiffness
-                .find(dof, dof)
-                .map_or(0.0, |k| stiffness.values[k]);
+            let diagonal = stiffness.diagonal(dof);
             if diagonal > 0.0 {
                 value * value / diagonal
             } else {

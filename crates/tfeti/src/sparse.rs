@@ -43,6 +43,11 @@ impl Columns {
             .map(|k| range.start + k)
     }
 
+    /// Diagonal entry; 0 if it is not stored.
+    pub(crate) fn diagonal(&self, i: usize) -> f64 {
+        self.find(i, i).map_or(0.0, |k| self.values[k])
+    }
+
     pub(crate) fn column(&self, j: usize) -> (&[usize], &[f64]) {
         let range = self.pointers[j]..self.pointers[j + 1];
         (&self.rows[range.clone()], &self.values[range])

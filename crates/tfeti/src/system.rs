@@ -147,7 +147,7 @@ impl<'a> TfetiBuilder<'a> {
         let assembly_seconds = clock.lap();
         let heterogeneous = has_several_laws(mesh, self.materials);
         let stiffness = if heterogeneous {
-            CopyStiffness::new(decomposition, &classes, &bases)
+            CopyStiffness::new(&classes, &bases)
         } else {
             CopyStiffness::default()
         };
@@ -301,6 +301,12 @@ impl Tfeti {
         &self.stiffness
     }
 
+    /// The stiffness of the copies of each node, whether or not they differ in their materials.
+    #[must_use]
+    pub fn all_copy_stiffness(&self) -> CopyStiffness {
+        CopyStiffness::new(&self.parts.classes, &self.parts.bases)
+    }
+
     /// The classes of subdomains.
     #[must_use]
     pub fn classes(&self) -> &Classes {
@@ -359,15 +365,5 @@ impl Tfeti {
     #[must_use]
     pub fn kernel(&self, subdomain: usize) -> &Kernel {
         &self.parts.bases[self.parts.classes.place(subdomain).0].kernel
-    }
-
-    /// `y = K_s x` for one subdomain.
-    pub fn stiffness_times(&self, subdomain: usize, x: &[f64], y: &mut [f64]) {
-        let stiffness = &self.parts.bases[self.parts.classes.place(subdomain).0].stiffness;
-        for (j, target) in y.iter_mut().enumerate() {
-            // Symmetric: column j is row j.
-            let (rows, values) = stiffness.column(j);
-            *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
-        }
     }
 }

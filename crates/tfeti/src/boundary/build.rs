@@ -1,10 +1,10 @@
 //! Building the gather tables.
 
 use super::{BoundaryClass, BoundaryMap, LANES, Lane, Panel, Place};
-use crate::buckets::buckets;
 use crate::class::Classes;
 use crate::cost::PANEL;
 use crate::gluing::Gluing;
+use signorini_fem_mesh::buckets;
 
 /// For each class: place of each node on the boundary, first panel, and first member of each panel.
 struct Numbering<'a> {

@@ -5,10 +5,10 @@
 //! shifted to the centres of the subdomains. Globs of one shape share their arms.
 
 use super::{LANES, over_lanes};
-use crate::buckets::buckets;
 use crate::gluing::{Glob, Gluing};
 use crate::kernel::{Kernel, add_wrench, displacement};
 use pulp::{Arch, Simd, WithSimd};
+use signorini_fem_mesh::buckets;
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::ops::Range;

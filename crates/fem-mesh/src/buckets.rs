@@ -2,7 +2,16 @@
 
 /// Sorts the positions of `keys`, which are below `count`, into one bucket for each key, ascending in each. Returns the
 /// start of each bucket (and the end of the last) and the positions.
-pub(crate) fn buckets(count: usize, keys: &[u32]) -> (Vec<u32>, Vec<u32>) {
+///
+/// ```
+/// let (starts, positions) = signorini_fem_mesh::buckets(3, &[2, 0, 2]);
+/// assert_eq!((starts, positions), (vec![0, 1, 1, 3], vec![1, 0, 2]));
+/// ```
+///
+/// # Panics
+/// If a key is not below `count`.
+#[must_use]
+pub fn buckets(count: usize, keys: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; count + 1];
     for &key in keys {
         starts[key as usize + 1] += 1;
