@@ -63,6 +63,16 @@ pub trait CoarseSpace {
     /// [`set_weights`](Self::set_weights) where those alone do not suffice) that restores `G x = e`.
     fn repair(&mut self, x: &mut [f64], e: &[f64]);
 
+    /// What [`repair`](Self::repair) adds to `x` after its leading components were changed by `change` with all others left as
+    /// they are. A space that can do this cheaper than by a projection says so here.
+    fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
+        let mut all = vec![0.0; x.len()];
+        all[..change.len()].copy_from_slice(change);
+        self.repair(&mut all, &vec![0.0; self.rows()]);
+        all.iter_mut().zip(change).for_each(|(a, c)| *a -= c);
+        x.iter_mut().zip(&all).for_each(|(x, a)| *x += a);
+    }
+
     /// Whether [`repair`](Self::repair) changes unconstrained components only.
     fn repairs_apart(&self) -> bool {
         true

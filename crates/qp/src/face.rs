@@ -110,7 +110,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     let mut report = FaceReport::new();
     let constrained = constrained_length(set);
     work.resize(constrained);
-    work.coupling.start(set, problem.rhs.len());
+    work.coupling.start(set, constrained);
 
     // start: a feasible point that satisfies G x = e
     vector::copy(x, &mut work.t);

@@ -31,7 +31,8 @@ pub(crate) struct Coupling {
     by_disc: Vec<Option<(usize, f64)>>,
     /// `q`.
     pub(crate) step: Vec<f64>,
-    zero: Vec<f64>,
+    /// What its constrained components have more than `p`.
+    growth: Vec<f64>,
     /// Whether conjugate gradients use it now.
     pub(crate) on: bool,
     /// Whether they got on badly with it in this solve.
@@ -63,15 +64,15 @@ impl Coupling {
         self.slopes.extend_from_slice(slopes);
     }
 
-    /// Makes ready for a solve with `n` components and `rows` rows of `G`.
-    pub(crate) fn start(&mut self, set: &ProductSet, rows: usize) {
+    /// Makes ready for a solve with so many `constrained` components.
+    pub(crate) fn start(&mut self, set: &ProductSet, constrained: usize) {
         (self.on, self.failed, self.from) = (false, self.slopes.is_empty(), 0);
         if self.failed {
             return;
         }
         let n = crate::set::ConvexSet::dim(set);
         self.step.resize(n, 0.0);
-        self.zero.resize(rows, 0.0);
+        self.growth.resize(constrained, 0.0);
         self.by_disc.clear();
         // slopes usually come in the order of the discs
         let mut next = 0;
@@ -101,8 +102,8 @@ impl Coupling {
         face: &Face,
         p: &[f64],
     ) {
-        vector::copy(p, &mut self.step);
-        let (step, by_disc) = (&mut self.step, &self.by_disc);
+        self.growth.fill(0.0);
+        let (growth, by_disc) = (&mut self.growth, &self.by_disc);
         visit(
             set,
             |_, _, _, _| {},
@@ -110,13 +111,18 @@ impl Coupling {
                 if let (Disc::Sliding { tau, .. }, Some((component, slope))) =
                     (face.discs[k], by_disc[k])
                 {
-                    let growth = slope * p[component];
-                    step[i] += growth * tau[1];
-                    step[i + 1] -= growth * tau[0];
+                    let radius = slope * p[component];
+                    growth[i] = radius * tau[1];
+                    growth[i + 1] = -radius * tau[0];
                 }
             },
         );
-        coarse.repair(&mut self.step, &self.zero);
+        vector::copy(p, &mut self.step);
+        self.step
+            .iter_mut()
+            .zip(&self.growth)
+            .for_each(|(q, g)| *q += g);
+        coarse.compensate(&self.growth, &mut self.step);
     }
 
     /// Decides for the next face, if it is `free` to couple: its relative `error`, and faces without progress so far.

@@ -196,9 +196,7 @@ impl Coarse {
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
         let free = data.free_motions(weights.as_ref());
         if !free.is_empty() {
-            let diagonal = (0..matrix.dim)
-                .filter_map(|i| matrix.find(i, i))
-                .map(|k| matrix.values[k]);
+            let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
             let strength = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
             let strength = if strength > 0.0 { strength } else { 1.0 };
             for (subdomain, spring) in data.mobility.springs(&free) {
@@ -270,9 +268,14 @@ impl CoarseData {
     ) {
         let map = &self.map;
         map.wrenches(&self.tables, &self.bases, x, weights, columns, sides);
-        for (&column, target) in map.column_of.iter().zip(out.chunks_exact_mut(6)) {
-            target.copy_from_slice(&columns[6 * column as usize..][..6]);
-        }
+        map.sort_columns(columns, out);
+    }
+
+    /// `out = G x` for a vector of which `contact` are the leading entries, the contact rows, and the others are zero.
+    pub(crate) fn contact_product(&self, contact: &[f64], out: &mut [f64], columns: &mut [f64]) {
+        let map = &self.map;
+        map.contact_wrenches(&self.tables, &self.bases, contact, columns);
+        map.sort_columns(columns, out);
     }
 
     /// Motions of the subdomains, by column, from amplitudes by subdomain.

@@ -109,12 +109,7 @@ impl CoarseFactor {
     fn solve_with(&self, y: &mut [f64], memory: &mut SolveMemory, split: &mut Vec<f64>) {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.solve(y, 1, memory),
-            Factor::Split(base, factor) => {
-                if split.len() < base.work() {
-                    split.resize(base.work(), 0.0);
-                }
-                base.solve(factor, y, split);
-            }
+            Factor::Split(base, factor) => base.solve(factor, y, reserved(base, split)),
         }
     }
 
@@ -141,6 +136,33 @@ impl CoarseFactor {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
         self.solve_with(&mut s.first, &mut s.memory, &mut s.split);
+        self.subtract_weighted(x, s);
+    }
+
+    /// `x = x - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
+    /// [`project`](Self::project) where these are the contact rows.
+    pub fn compensate(&self, change: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        let contact = change.len() == data.gluing.ranges().contact().end;
+        if contact {
+            data.contact_product(change, &mut s.first, &mut s.columns);
+        } else {
+            s.dual.fill(0.0);
+            s.dual[..change.len()].copy_from_slice(change);
+            data.product(&s.dual, None, &mut s.first, &mut s.columns, &mut s.sides);
+        }
+        match &self.0.factor {
+            Factor::Split(base, factor) if contact && base.rows() >= change.len() => {
+                base.solve_changing(factor, &mut s.first, reserved(base, &mut s.split));
+            }
+            _ => self.solve_with(&mut s.first, &mut s.memory, &mut s.split),
+        }
+        self.subtract_weighted(x, s);
+    }
+
+    /// `x = x - W G^T y`, `y` the first vector of the memory.
+    fn subtract_weighted(&self, x: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
         if self.0.plain {
             keep(self.lines(), x, &mut s.pairs);
             let weight = |row: usize| self.diagonal().map_or(1.0, |w| w[row]);
@@ -229,6 +251,14 @@ impl CoarseFactor {
         (self.0.weights.is_none() && self.0.free.is_empty() && self.sparse().is_some())
             .then(|| OrthonormalCoarse(self.clone()))
     }
+}
+
+/// The work memory, long enough.
+fn reserved<'m>(base: &SplitBase, memory: &'m mut Vec<f64>) -> &'m mut [f64] {
+    if memory.len() < base.work() {
+        memory.resize(base.work(), 0.0);
+    }
+    memory
 }
 
 /// Remembers the entries of the rows in lines.

@@ -285,6 +285,11 @@ impl CoarseSpace for FaceSpace {
         Ok(())
     }
 
+    fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
+        let factor = self.always.as_ref().unwrap_or(&self.face);
+        factor.compensate(change, x, &mut self.scratch);
+    }
+
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {
         let factor = self.always.as_ref().unwrap_or(&self.face);
         factor.project(x, Some(e), &mut self.scratch);

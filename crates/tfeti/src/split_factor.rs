@@ -24,6 +24,8 @@ pub(crate) struct SplitBase {
     /// Steady part of the columns of each node that changes; empty for the others.
     base: Vec<Vec<f64>>,
     contact: ContactFronts,
+    /// Leading rows whose weights change.
+    rows: usize,
     /// Pivots up to this size count as zero.
     threshold: f64,
 }
@@ -34,6 +36,8 @@ struct Piece {
     steady: Supernodes,
     tiles: Vec<Tile>,
     changing: Supernodes,
+    /// Whether nothing changes in the region and those within.
+    is_steady: bool,
     /// Length of its own work memory, behind that of the regions within.
     slot: usize,
     /// Length of the work memory with that of the regions within.
@@ -117,12 +121,12 @@ impl SplitBase {
         for region in &tree.regions {
             pieces.push(Piece::new(&tree, region, &pieces));
         }
-        let contact = ContactFronts::new(&tree, gluing, modes, contact);
         let mut out = Self {
             threshold: 0.0,
             base: Vec::new(),
             pieces,
-            contact,
+            contact: ContactFronts::new(&tree, gluing, modes, contact),
+            rows: contact,
             tree,
         };
         let mut fronts = vec![Front::default(); out.tree.nodes.len()];
@@ -154,6 +158,11 @@ impl SplitBase {
     /// Length of the work memory of a solve.
     pub(crate) fn work(&self) -> usize {
         self.tree.dim() + self.pieces.last().map_or(0, |p| p.work)
+    }
+
+    /// Leading rows whose weights change: others do not lead to blocks that change.
+    pub(crate) fn rows(&self) -> usize {
+        self.rows
     }
 
     /// Numbers stored.
@@ -208,6 +217,15 @@ impl SplitBase {
 
     /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least.
     pub(crate) fn solve(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
+        self.solve_from(factor, y, work, false);
+    }
+
+    /// The same for `y` that is zero but for blocks that change: nothing steady is read on the way up.
+    pub(crate) fn solve_changing(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
+        self.solve_from(factor, y, work, true);
+    }
+
+    fn solve_from(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64], changing: bool) {
         let Some(root) = self.pieces.len().checked_sub(1) else {
             return;
         };
@@ -216,27 +234,38 @@ impl SplitBase {
             x.copy_from_slice(&y[6 * block as usize..][..6]);
         }
         let rest = &mut rest[..self.pieces[root].work];
-        self.forward(root, factor, x, rest);
+        self.forward(root, factor, x, rest, changing);
         self.backward(root, factor, x, rest);
         for (x, &block) in x.chunks_exact(6).zip(&self.tree.blocks) {
             y[6 * block as usize..][..6].copy_from_slice(x);
         }
     }
 
-    /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory.
-    fn forward(&self, r: usize, factor: &SplitFactor, x: &mut [f64], work: &mut [f64]) {
+    /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If only
+    /// blocks that are `changing` differ from zero, steady ones are left out.
+    fn forward(
+        &self,
+        r: usize,
+        factor: &SplitFactor,
+        x: &mut [f64],
+        work: &mut [f64],
+        changing: bool,
+    ) {
         let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
         let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
         let (work, slot) = work.split_at_mut(piece.work - piece.slot);
         let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
         behind.fill(0.0);
+        if changing && piece.is_steady {
+            return;
+        }
         if let Some([left, right]) = region.region.children {
             let (x, y) = self.divide(left, x);
             let (a, b) = work.split_at_mut(self.pieces[left].work);
             self.both(
                 piece,
-                || self.forward(left, factor, x, a),
-                || self.forward(right, factor, y, b),
+                || self.forward(left, factor, x, a, changing),
+                || self.forward(right, factor, y, b, changing),
             );
             for (child, memory) in [(left, &*a), (right, &*b)] {
                 let sums = &memory[memory.len() - self.pieces[child].slot..];
@@ -253,7 +282,9 @@ impl SplitBase {
                 }
             }
         }
-        piece.steady.forward(&piece.tiles, own, behind, buffer);
+        if !changing {
+            piece.steady.forward(&piece.tiles, own, behind, buffer);
+        }
         piece
             .changing
             .forward(&factor.tiles[r], own, behind, buffer);
@@ -330,6 +361,7 @@ impl Piece {
         let slot = 6 * region.behind.len() + steady.buffer().max(changing.buffer());
         let own = tree.nodes[region.changing.clone()].iter();
         Self {
+            is_steady: region.changing.is_empty() && children().all(|c| c.is_steady),
             slot,
             work: slot + children().map(|c| c.work).sum::<usize>(),
             reads: Tile::NUMBERS * (steady.tiles() + changing.tiles())

@@ -35,7 +35,7 @@ fn face(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
 }
 
 /// All that a face space does, as one list of vectors.
-fn results(system: &Tfeti, space: &mut FaceSpace) -> [Vec<f64>; 4] {
+fn results(system: &Tfeti, space: &mut FaceSpace) -> [Vec<f64>; 6] {
     let (x, e) = (
         noise(system.dual_dim(), 5),
         noise(system.coarse().rows(), 6),
@@ -46,7 +46,22 @@ fn results(system: &Tfeti, space: &mut FaceSpace) -> [Vec<f64>; 4] {
     space.project_transpose(&mut t);
     space.multiplier(&x, &mut alpha);
     space.repair(&mut r, &e);
-    [p, t, alpha, r]
+    // the leading rows of x, zero behind them, brought back to the kernel of G
+    let contact = system.gluing().ranges().contact().end;
+    let mut parts = [contact, contact / 2].map(|count| {
+        let mut part = x.clone();
+        part[count..].fill(0.0);
+        space.compensate(&x[..count], &mut part);
+        part
+    });
+    for (part, count) in parts.iter().zip([contact, contact / 2]) {
+        let mut repaired = x.clone();
+        repaired[count..].fill(0.0);
+        space.repair(&mut repaired, &vec![0.0; e.len()]);
+        assert!(distance(part, &repaired) <= 1e-12 * norm(&repaired));
+    }
+    let [a, b] = parts.each_mut().map(std::mem::take);
+    [p, t, alpha, r, a, b]
 }
 
 fn compare(system: &Tfeti, a: &mut FaceSpace, b: &mut FaceSpace) {

@@ -4,7 +4,7 @@
 //! displacements are computed once for all of them.
 
 use crate::gluing::Gluing;
-use crate::kernel::displacement;
+use crate::kernel::{add_wrench, displacement};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -73,6 +73,28 @@ impl PointTables {
             });
         }
         out
+    }
+
+    /// Adds the wrenches of the rows `x` on the columns, about their means.
+    pub(crate) fn add_wrenches(&self, arms: &[[f64; 3]], x: &[f64], columns: &mut [[f64; 6]]) {
+        let mut start = Point::default();
+        for &end in &self.points {
+            let copies = &self.copies[start.copies..end.copies];
+            let rows = &self.rows[start.rows..end.rows];
+            let vectors = &self.vectors[start.vectors..end.vectors];
+            start = end;
+            if rows.iter().all(|&row| x[row as usize] == 0.0) {
+                continue;
+            }
+            for (k, &[column, arm]) in copies.iter().enumerate() {
+                let mut force = [0.0; 3];
+                let own = vectors.iter().skip(k).step_by(copies.len());
+                for (&row, v) in rows.iter().zip(own) {
+                    (0..3).for_each(|c| force[c] += v[c] * x[row as usize]);
+                }
+                add_wrench(&mut columns[column as usize], &arms[arm as usize], force);
+            }
+        }
     }
 
     /// Hands each row to `each(row, x, value)` with the displacement that the motions of the columns give it.

@@ -7,7 +7,7 @@ use super::points::PointTables;
 use super::{BoundaryMap, Panel};
 use crate::class::Classes;
 use crate::gluing::Gluing;
-use crate::kernel::add_wrench;
+use crate::kernel::{Kernel, add_wrench};
 use crate::matrices::ClassBase;
 
 /// Arms of the boundary nodes of all classes in metres, and the rows of `B` grouped by nodes.
@@ -96,13 +96,33 @@ impl BoundaryMap {
                 let arms = &tables.arms[tables.first[panel.class] as usize..];
                 self.row_wrenches(panel, arms, x, weights, own);
                 let kernel = &bases[panel.class].kernel;
-                for target in own.chunks_exact_mut(6) {
-                    let mut wrench: [f64; 6] = std::array::from_fn(|k| target[k]);
-                    wrench[3..].iter_mut().for_each(|m| *m /= kernel.radius());
-                    target.copy_from_slice(&kernel.project_wrench(&wrench));
+                for target in own.as_chunks_mut().0 {
+                    *target = on_modes(kernel, target);
                 }
             }
         });
+    }
+
+    /// The same for the contact rows `x` alone, where most are zero.
+    pub(crate) fn contact_wrenches(
+        &self,
+        tables: &RigidTables,
+        bases: &[ClassBase],
+        x: &[f64],
+        columns: &mut [f64],
+    ) {
+        let (columns, _) = columns.as_chunks_mut();
+        columns.fill([0.0; 6]);
+        tables.contact.add_wrenches(&tables.arms, x, columns);
+        let mut rest = columns;
+        for panel in &self.panels {
+            let (own, tail) = std::mem::take(&mut rest).split_at_mut(panel.columns.len());
+            rest = tail;
+            let kernel = &bases[panel.class].kernel;
+            for target in own.iter_mut().filter(|w| **w != [0.0; 6]) {
+                *target = on_modes(kernel, target);
+            }
+        }
     }
 
     /// Adds the wrenches of the rows that are no interface rows on the columns of a panel.
@@ -130,6 +150,13 @@ impl BoundaryMap {
             for (w, s) in out[6 * (copy % width)..][..6].iter_mut().zip(sum) {
                 *w += s;
             }
+        }
+    }
+
+    /// Six numbers a subdomain from six numbers a column.
+    pub(crate) fn sort_columns(&self, columns: &[f64], out: &mut [f64]) {
+        for (&column, target) in self.column_of.iter().zip(out.chunks_exact_mut(6)) {
+            target.copy_from_slice(&columns[6 * column as usize..][..6]);
         }
     }
 
@@ -174,4 +201,10 @@ impl BoundaryMap {
         let set = |_, x: &mut f64, v| *x = v;
         tables.contact.motions(motions, &tables.arms, contact, &set);
     }
+}
+
+/// `R^T` of a wrench in metres about the mean of the nodes.
+fn on_modes(kernel: &Kernel, wrench: &[f64; 6]) -> [f64; 6] {
+    let [.., x, y, z] = wrench.map(|m| m / kernel.radius());
+    kernel.project_wrench(&[wrench[0], wrench[1], wrench[2], x, y, z])
 }
