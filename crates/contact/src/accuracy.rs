@@ -4,10 +4,14 @@
 //! |---|---|---|
 //! | `Tolerance` (default) | the solver's relative tolerance is reached | none |
 //! | `Relative(x)` | the estimated algebraic error keeps it on the way to `x` in the energy norm | one duality gap a round |
-//! | `Balanced { fraction }` | it is at most `fraction` of the estimated discretisation error | the same, and one recovery of strains |
+//! | `Balanced { fraction }` | it is at most `fraction` of the estimated discretisation error | the same, and now and then a recovery of strains |
 //!
 //! The two that look at the result solve loosely, estimate, tighten the solver's tolerance by what is missing, and
 //! resume from the present iterate. The tolerance that was enough starts the next level. Everything is counted.
+//!
+//! The relative discretisation error belongs to the mesh and to where the body bends, and changes slowly. It is estimated again
+//! once the elastic energy has changed by a factor of four, and at every eighth level
+//! ([`AccuracyReport::estimated_at`]).
 //!
 //! Where levels inherit errors ([`accumulated`](crate::accumulated)) the target is meant for the error with all that earlier
 //! levels have left in it: each level gets an equal share of the squared error that is left, `target / sqrt(L)` with `L` levels of
@@ -85,6 +89,8 @@ pub struct AccuracyReport {
     pub accumulated: AccumulatedError,
     /// Estimated discretisation error relative to the displacement, in the energy norm, if it was asked for.
     pub discretisation: Option<f64>,
+    /// The level at which it was estimated: this one or one of the last seven.
+    pub estimated_at: Option<usize>,
     /// The relative algebraic error that was asked for.
     pub target: f64,
     /// The share of it that this level may have alone.
@@ -97,28 +103,51 @@ pub struct AccuracyReport {
     pub tolerance: f64,
 }
 
-/// Chooses the tolerances of the solves.
-#[derive(Debug, Clone, Copy)]
+/// An estimate of the discretisation error.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Discretisation {
+    /// Relative to the displacement, in the energy norm.
+    pub(crate) relative: f64,
+    /// The level it belongs to, and its elastic energy.
+    pub(crate) level: usize,
+    pub(crate) elastic: f64,
+}
+
+impl Discretisation {
+    /// Whether it will do for another level.
+    pub(crate) fn holds(&self, level: usize, elastic: f64) -> bool {
+        let range = self.elastic / CHANGED..=self.elastic * CHANGED;
+        self.elastic > 0.0 && range.contains(&elastic) && level.abs_diff(self.level) < EVERY
+    }
+}
+
+/// Levels after which the discretisation error is estimated again, and the factor in the elastic energy.
+const EVERY: usize = 8;
+const CHANGED: f64 = 4.0;
+
+/// Chooses the tolerances of the solves, and remembers the errors of the levels so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
     tolerance: f64,
+    /// Algebraic errors of the levels before.
+    pub(crate) errors: AccumulatedError,
+    /// Last estimate of the discretisation error.
+    pub(crate) discretisation: Discretisation,
 }
 
 impl Default for Controller {
     fn default() -> Self {
-        Self { tolerance: LOOSEST }
+        Self {
+            tolerance: LOOSEST,
+            errors: AccumulatedError::default(),
+            discretisation: Discretisation::default(),
+        }
     }
 }
 
 impl Controller {
-    /// Continues with a stored tolerance; 0 if none was stored.
-    pub(crate) fn resume(tolerance: f64) -> Self {
-        if tolerance > 0.0 {
-            Self { tolerance }
-        } else {
-            Self::default()
-        }
-    }
-
     /// Tolerance of the next solve.
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance
@@ -156,6 +185,20 @@ mod tests {
         ] {
             assert!(matches!(bad.validate(), Err(ContactError::Setting { .. })));
         }
+    }
+
+    #[test]
+    fn an_estimate_of_the_mesh_ages() {
+        let none = Discretisation::default();
+        assert!(!none.holds(0, 1.0) && !none.holds(0, 0.0));
+        let known = Discretisation {
+            relative: 0.1,
+            level: 3,
+            elastic: 2.0,
+        };
+        assert!(known.holds(3, 2.0) && known.holds(10, 8.0) && known.holds(4, 0.5));
+        assert!(!known.holds(11, 2.0) && !known.holds(4, 8.1) && !known.holds(4, 0.4));
+        assert!(!known.holds(4, f64::NAN));
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod model;
 mod observer;
 mod paper_solver;
 mod plan;
+mod pool;
 mod preconditioner;
 mod report;
 mod scene;

@@ -121,6 +121,7 @@ pub enum Preconditioner {
 /// | `preconditioner` | of the default method | | lumped | |
 /// | `max_fallback_products` | most products with F of one call of SMALSE's fall-back, after which a level ends as `IterationLimit` | >= 1 | 20,000 | |
 /// | `screening` | whether contact points that stay open leave the dual problem | [`Screening`] | off | |
+/// | `busy_waiting` | whether idle threads stay awake during a level | | false | |
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Settings {
@@ -146,6 +147,8 @@ pub struct Settings {
     pub max_fallback_products: usize,
     /// Whether contact points that stay open leave the dual problem.
     pub screening: Screening,
+    /// Whether the threads of the pool stay awake while a level is solved, see [`Settings::with_busy_waiting`].
+    pub busy_waiting: bool,
 }
 
 impl Default for Settings {
@@ -162,6 +165,7 @@ impl Default for Settings {
             preconditioner: Preconditioner::default(),
             max_fallback_products: 20_000,
             screening: Screening::default(),
+            busy_waiting: false,
         }
     }
 }
@@ -241,6 +245,15 @@ impl Settings {
     #[must_use]
     pub fn with_screening(mut self, screening: Screening) -> Self {
         self.screening = screening;
+        self
+    }
+
+    /// Sets whether the threads of the pool wait for their next part of a level awake. Parallel parts are short, and
+    /// waking a thread takes about as long as one of them in scenes of some ten thousand unknowns. For a pool that does
+    /// nothing else: all its processors are fully used, and a level waits for other work on the same pool.
+    #[must_use]
+    pub fn with_busy_waiting(mut self, on: bool) -> Self {
+        self.busy_waiting = on;
         self
     }
 

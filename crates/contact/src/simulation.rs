@@ -4,7 +4,6 @@ mod resume;
 mod rounds;
 mod screened;
 
-use crate::accumulated::AccumulatedError;
 use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, Violation, certify};
 use crate::error::ContactError;
@@ -14,6 +13,7 @@ use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
+use crate::pool::on_pool;
 use crate::report::{Counters, LevelReport};
 use crate::scene::Scene;
 use crate::screening::Screen;
@@ -63,8 +63,6 @@ pub struct Simulation {
     total: Counters,
     setup: Duration,
     controller: Controller,
-    /// Algebraic errors of the levels before, if they are estimated.
-    carried: AccumulatedError,
     /// With screening: all points, and which of them are in the model.
     screen: Option<Screen>,
     /// With screening: states of all points.
@@ -79,6 +77,10 @@ impl Simulation {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
+        on_pool(false, || Self::set_up(scene, settings))
+    }
+
+    fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let (model, screen) = screened::set_up(scene, &settings)?;
         crate::held::check(&model)?;
@@ -96,7 +98,6 @@ impl Simulation {
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
-            carried: AccumulatedError::default(),
             all: Vec::new(),
             rebuilt: 0,
             screen,
@@ -175,7 +176,8 @@ impl Simulation {
     pub fn step(&mut self) -> Result<Frame<'_>, ContactError> {
         let index = self.state.level();
         let state = std::mem::take(&mut self.state);
-        let outcome = self.solve_level(&state, index);
+        let busy = self.settings.busy_waiting;
+        let outcome = on_pool(busy, || self.solve_level(&state, index));
         self.state = state;
         let (mut report, lambda, rows) = outcome?;
         self.remember(lambda, rows, &mut report);
@@ -231,9 +233,7 @@ impl Simulation {
         state: &State,
         index: usize,
     ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
-        let (tolerance, errors) = state.accuracy();
-        self.controller = Controller::resume(tolerance);
-        self.carried = errors;
+        self.controller = state.controller();
         let expected = self.look_ahead(state)?;
         let mut view = self.view(state);
         self.level.prepare(&self.model, &view, index)?;
@@ -400,8 +400,8 @@ impl Simulation {
             sliding,
         );
         if let Some(accuracy) = &report.accuracy {
-            self.state
-                .set_accuracy(self.controller.tolerance(), accuracy.accumulated);
+            self.controller.errors = accuracy.accumulated;
+            self.state.set_controller(self.controller);
         }
         if let Some(screen) = &self.screen {
             self.state.set_active(screen.active());

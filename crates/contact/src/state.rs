@@ -1,6 +1,6 @@
 //! The state between time levels: one value, with feature `checkpoint` also as bytes.
 
-use crate::accumulated::AccumulatedError;
+use crate::accuracy::Controller;
 use crate::error::ContactError;
 
 /// What one level hands to the next.
@@ -27,10 +27,8 @@ pub struct State {
     active: Vec<bool>,
     /// With screening: gaps of all points at the last level and the one before, m.
     gaps: [Vec<f64>; 2],
-    /// Tolerance that starts the next level, if an estimate of the error chooses it.
-    tolerance: f64,
-    /// Algebraic errors of the levels so far, if they are estimated.
-    errors: AccumulatedError,
+    /// What chooses the tolerance of the next level by estimates of the error.
+    controller: Controller,
     /// Largest sizes at the levels so far.
     peak: Peak,
 }
@@ -63,7 +61,7 @@ impl Peak {
 
 /// Marks the format of stored states.
 #[cfg(feature = "checkpoint")]
-const MAGIC: u32 = 0x5349_4704;
+const MAGIC: u32 = 0x5349_4705;
 
 impl State {
     /// Levels solved so far.
@@ -176,8 +174,7 @@ impl State {
             sliding: pick(&self.sliding, points),
             active: Vec::new(),
             gaps: Default::default(),
-            tolerance: self.tolerance,
-            errors: self.errors,
+            controller: self.controller,
             peak: self.peak,
         }
     }
@@ -193,15 +190,14 @@ impl State {
         self.gaps[0] = gaps;
     }
 
-    /// Tolerance and errors so far of levels that end by an estimate.
-    pub(crate) fn accuracy(&self) -> (f64, AccumulatedError) {
-        (self.tolerance, self.errors)
+    /// What chooses tolerances by estimates.
+    pub(crate) fn controller(&self) -> Controller {
+        self.controller
     }
 
-    /// Notes them.
-    pub(crate) fn set_accuracy(&mut self, tolerance: f64, errors: AccumulatedError) {
-        self.tolerance = tolerance;
-        self.errors = errors;
+    /// Notes it.
+    pub(crate) fn set_controller(&mut self, controller: Controller) {
+        self.controller = controller;
     }
 
     pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {

@@ -100,6 +100,22 @@ fn a_relative_accuracy_is_reached_and_reported() {
 }
 
 #[test]
+fn the_error_of_the_mesh_is_estimated_now_and_then() {
+    let settings = Settings::default().with_accuracy(Accuracy::balanced());
+    let scene = small_benchmark(Friction::coulomb(0.3), 20);
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    let mut fresh = 0;
+    for (k, level) in common::rest(&mut simulation).iter().enumerate() {
+        let report = level.report.accuracy.expect("a report");
+        let at = report.estimated_at.expect("an estimate");
+        assert!(report.reached && at <= k && k - at < 8, "level {k}: {at}");
+        fresh += usize::from(at == k);
+    }
+    println!("{fresh} estimates in 20 levels");
+    assert!((3..=12).contains(&fresh));
+}
+
+#[test]
 fn a_target_out_of_reach_is_no_success() {
     let settings = Settings::default().with_accuracy(Accuracy::Relative(1e-11));
     let mut simulation =

@@ -13,6 +13,7 @@ fn a_stored_run_continues_bit_for_bit() {
         .to_vec();
     settings.push(Settings::default().with_screening(Screening::on()));
     settings.push(Settings::default().with_accuracy(Accuracy::Relative(1e-5)));
+    settings.push(Settings::default().with_accuracy(Accuracy::balanced()));
     for settings in settings {
         for law in [Friction::coulomb(0.3), weakening()] {
             let new = || {
@@ -31,6 +32,7 @@ fn a_stored_run_continues_bit_for_bit() {
                     .expect("resume");
                 for (a, b) in rest(&mut again).iter().zip(&levels[k..]) {
                     assert_eq!(bits(a), bits(b), "resumed after level {k}");
+                    assert_eq!(a.report.accuracy, b.report.accuracy);
                 }
                 assert_eq!(state_bits(again.state()), state_bits(simulation.state()));
             }

@@ -68,6 +68,20 @@ fn every_run_gives_the_same_bits() {
 }
 
 #[test]
+fn waiting_awake_changes_no_bit() {
+    let run = |busy, threads| {
+        let settings = settings(Method::default()).with_busy_waiting(busy);
+        with_threads(threads, || {
+            fingerprint(small_benchmark(weakening(), 6), settings)
+        })
+    };
+    let expected = run(false, 1);
+    for threads in 1..=3 {
+        assert!(run(true, threads) == expected, "{threads} threads");
+    }
+}
+
+#[test]
 fn a_restart_equals_the_uninterrupted_run_bit_by_bit() {
     let laws = [
         Friction::None,

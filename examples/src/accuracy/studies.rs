@@ -160,7 +160,7 @@ fn mesh(short: bool) -> Result<Vec<Curve>, ExampleError> {
     let variant = |n, cells| Variant {
         n,
         cells,
-        steps: 4,
+        steps: 10,
         formula: DifferenceFormula::BACKWARD_EULER,
         loading: Loading::B,
         floor: Floor::Coulomb,

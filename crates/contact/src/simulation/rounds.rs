@@ -1,7 +1,7 @@
 //! Solves of one level: one, or several until the certificate or an estimate of the error is small enough.
 
 use super::Simulation;
-use crate::accuracy::{Accuracy, AccuracyReport, ROUNDS};
+use crate::accuracy::{Accuracy, AccuracyReport, Discretisation, ROUNDS};
 use crate::error::ContactError;
 use crate::report::{LevelReport, LevelStatus};
 
@@ -27,12 +27,11 @@ impl Simulation {
             let tolerance = self.controller.tolerance();
             let (mut report, lambda, rows) = self.solve_once(tolerance)?;
             rounds += 1;
-            let frame = self.frame();
-            let algebraic = frame.algebraic_error();
+            let algebraic = self.frame().algebraic_error();
             let (discretisation, target) = match accuracy {
                 Accuracy::Balanced { fraction } => {
-                    let relative = frame.discretisation_error()?.relative();
-                    (Some(relative), fraction * relative)
+                    let known = self.discretisation(algebraic.elastic)?;
+                    (Some(known), fraction * known.relative)
                 }
                 Accuracy::Relative(x) => (None, x),
                 Accuracy::Tolerance => (None, f64::INFINITY),
@@ -42,15 +41,18 @@ impl Simulation {
             let history = plan.effects.history;
             let share = if history {
                 let left = plan.levels - self.level.index;
-                self.carried.share(&algebraic, target, left, plan.levels)
+                self.controller
+                    .errors
+                    .share(&algebraic, target, left, plan.levels)
             } else {
                 target
             };
             let reached = found <= share;
             report.accuracy = Some(AccuracyReport {
                 algebraic,
-                accumulated: self.carried.with(&algebraic, history),
-                discretisation,
+                accumulated: self.controller.errors.with(&algebraic, history),
+                discretisation: discretisation.map(|d| d.relative),
+                estimated_at: discretisation.map(|d| d.level),
                 target,
                 share,
                 reached,
@@ -75,6 +77,21 @@ impl Simulation {
             total = Some(report);
             self.iterate.lambda = lambda;
         }
+    }
+
+    /// The discretisation error of the level, or of an earlier one like it; `elastic` is the level's energy.
+    fn discretisation(&mut self, elastic: f64) -> Result<Discretisation, ContactError> {
+        let (known, level) = (self.controller.discretisation, self.level.index);
+        if known.holds(level, elastic) {
+            return Ok(known);
+        }
+        let relative = self.frame().discretisation_error()?.relative();
+        self.controller.discretisation = Discretisation {
+            relative,
+            level,
+            elastic,
+        };
+        Ok(self.controller.discretisation)
     }
 
     /// Solves with the tolerance of the settings. The certificate has the last word: where it is above the tolerance, the
