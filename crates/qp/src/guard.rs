@@ -182,3 +182,86 @@ pub(crate) fn restore<C: CoarseSpace>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dense_coarse::DenseCoarseSpace;
+    use crate::product::Segment;
+
+    /// At zero with the cost `1/2 |x|² - sum x` on the way to its minimum, all ones.
+    fn guard() -> Guard {
+        let mut guard = Guard::new(2);
+        guard.enter(&[0.0; 2], &[0.0; 2], &[-1.0; 2]);
+        assert!(!guard.leave(&[1.0; 2], &[1.0; 2]), "the first step tells nothing");
+        guard
+    }
+
+    fn half_space() -> ProductSet {
+        ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::Free(1)]).expect("a set")
+    }
+
+    #[test]
+    fn a_move_has_to_keep_a_part_of_the_decrease() {
+        let mut guard = guard();
+        assert_eq!(guard.full, -1.0);
+        assert!(guard.descends(&[1.0; 2], &[1.0; 2], 1.0));
+        assert!(!guard.descends(&[2.0; 2], &[2.0; 2], 1.0), "as high as the start");
+        let (mut x, mut ax) = ([9.0; 2], [9.0; 2]);
+        guard.shorten(0.25, &mut x, &mut ax);
+        assert_eq!((x, ax), ([0.25; 2], [0.25; 2]));
+        assert!(guard.descends(&x, &ax, 0.25));
+        guard.back(&mut x, &mut ax);
+        assert_eq!((x, ax), ([0.0; 2], [0.0; 2]));
+    }
+
+    #[test]
+    fn moves_between_feasible_points_are_judged_and_others_are_not() {
+        let (mut guard, set) = (guard(), half_space());
+        // to the other side: feasible, and the cost rises
+        let (x, ax) = ([-1.0, 0.0], [-1.0, 0.0]);
+        let (rises, reach) = guard.judge(&set, &x, &ax, 0.1);
+        assert!(rises && reach == REACH * 0.1 && guard.exact);
+        // out of the set: nothing is held, nothing taken back
+        let (rises, reach) = guard.judge(&set, &[1.0; 2], &[1.0; 2], 0.1);
+        assert!(!rises && reach == 0.0 && !guard.exact);
+    }
+
+    #[test]
+    fn less_to_gain_than_ever_is_progress() {
+        let (mut guard, set) = (guard(), half_space());
+        let mut step = |guard: &mut Guard, gain: f64| {
+            guard.judge(&set, &[0.0; 2], &[0.0; 2], 1.0);
+            guard.enter(&[0.0; 2], &[0.0; 2], &[0.0, -gain]);
+            guard.leave(&[0.0, 1.0], &[0.0; 2])
+        };
+        assert!(step(&mut guard, 4.0));
+        assert!(!step(&mut guard, 3.9), "hardly less");
+        assert!(step(&mut guard, 3.0) && !step(&mut guard, 5.0));
+    }
+
+    #[test]
+    fn blocked_blocks_are_released_where_the_problem_with_them_is_solved() {
+        let mut guard = guard();
+        assert!(!guard.releases(false, true, 1.0, 0.0), "there are none");
+        // points that are not feasible: as the caller says
+        assert!(guard.releases(true, true, 0.5, 0.0) && !guard.releases(true, false, 0.0, 1.0));
+        guard.judge(&half_space(), &[0.0; 2], &[0.0; 2], 1.0);
+        assert!(!guard.releases(true, true, 0.5, 0.0));
+        assert!(guard.releases(true, false, RELEASE, 0.0), "a hundredth of the error");
+        assert!(guard.releases(true, false, 0.5, 0.5), "within the limit");
+        guard.back(&mut [0.0; 2], &mut [0.0; 2]);
+        assert!(!guard.releases(true, true, 0.0, 1.0), "the point stays where it was");
+    }
+
+    #[test]
+    fn points_are_brought_back_to_set_and_equality() {
+        // x0 + x1 = 1 with x0 <= 0
+        let set = half_space();
+        let mut coarse = DenseCoarseSpace::new(1, 2, vec![1.0, 1.0]).expect("a row");
+        coarse.set_weights(&[1.0; 2]).expect("weights");
+        let mut x = [3.0, 5.0];
+        restore(&mut coarse, &set, &mut x, &[1.0], &[1.0; 2]).expect("restored");
+        assert!(set.violation(&x) == 0.0 && (x[0] + x[1] - 1.0).abs() < 1e-14);
+    }
+}
