@@ -4,7 +4,7 @@
 #![allow(missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use signorini::fem_mesh::{Hooke, assemble_stiffness};
+use signorini::fem_mesh::{Hooke, Materials, StrainRecovery, assemble_stiffness};
 use signorini::qp::{CoarseSpace, Equality, SymmetricOperator};
 use signorini::tfeti::{FaceFactor, FaceSpace, InverseKind, Sharing};
 use signorini_benches::{Body, Failure, wave};
@@ -118,14 +118,46 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
             group.bench_function(BenchmarkId::new(format!("projector, {name}"), n), |b| {
                 b.iter(|| space.project(black_box(&mut x)));
             });
+            let change = wave(contact);
+            group.bench_function(BenchmarkId::new(format!("compensation, {name}"), n), |b| {
+                b.iter(|| space.compensate(black_box(&change), &mut x));
+            });
         }
     }
     group.finish();
     Ok(())
 }
 
+fn once_a_level(c: &mut Criterion) -> Result<(), Failure> {
+    let mut group = c.benchmark_group("once a level");
+    group.sample_size(20);
+    let materials = Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?);
+    for n in SIZES {
+        let body = Body::new(n)?;
+        let system = body.system(Sharing::Translates, InverseKind::Auto)?;
+        let u = wave(system.torn_dim());
+        let mut f = u.clone();
+        group.bench_function(BenchmarkId::new("K u", n), |b| {
+            b.iter(|| system.stiffness_times(black_box(&u), &mut f));
+        });
+        group.bench_function(BenchmarkId::new("K+ f", n), |b| {
+            b.iter(|| system.generalised_inverse(black_box(&u), &mut f));
+        });
+        group.bench_function(BenchmarkId::new("recovery of strains, fits", n), |b| {
+            b.iter(|| StrainRecovery::new(black_box(&body.mesh)));
+        });
+        let recovery = StrainRecovery::new(&body.mesh);
+        let nodal = wave(3 * body.mesh.points().len());
+        group.bench_function(BenchmarkId::new("recovery of strains, error", n), |b| {
+            b.iter(|| recovery.error(&body.mesh, &materials, black_box(&nodal)));
+        });
+    }
+    group.finish();
+    Ok(())
+}
+
 fn all(c: &mut Criterion) {
-    for run in [set_up, products, coarse] {
+    for run in [set_up, products, coarse, once_a_level] {
         if let Err(error) = run(c) {
             panic!("{error}");
         }

@@ -193,7 +193,10 @@ mod tests {
     fn guard() -> Guard {
         let mut guard = Guard::new(2);
         guard.enter(&[0.0; 2], &[0.0; 2], &[-1.0; 2]);
-        assert!(!guard.leave(&[1.0; 2], &[1.0; 2]), "the first step tells nothing");
+        assert!(
+            !guard.leave(&[1.0; 2], &[1.0; 2]),
+            "the first step tells nothing"
+        );
         guard
     }
 
@@ -206,7 +209,10 @@ mod tests {
         let mut guard = guard();
         assert_eq!(guard.full, -1.0);
         assert!(guard.descends(&[1.0; 2], &[1.0; 2], 1.0));
-        assert!(!guard.descends(&[2.0; 2], &[2.0; 2], 1.0), "as high as the start");
+        assert!(
+            !guard.descends(&[2.0; 2], &[2.0; 2], 1.0),
+            "as high as the start"
+        );
         let (mut x, mut ax) = ([9.0; 2], [9.0; 2]);
         guard.shorten(0.25, &mut x, &mut ax);
         assert_eq!((x, ax), ([0.25; 2], [0.25; 2]));
@@ -248,10 +254,16 @@ mod tests {
         assert!(guard.releases(true, true, 0.5, 0.0) && !guard.releases(true, false, 0.0, 1.0));
         guard.judge(&half_space(), &[0.0; 2], &[0.0; 2], 1.0);
         assert!(!guard.releases(true, true, 0.5, 0.0));
-        assert!(guard.releases(true, false, RELEASE, 0.0), "a hundredth of the error");
+        assert!(
+            guard.releases(true, false, RELEASE, 0.0),
+            "a hundredth of the error"
+        );
         assert!(guard.releases(true, false, 0.5, 0.5), "within the limit");
         guard.back(&mut [0.0; 2], &mut [0.0; 2]);
-        assert!(!guard.releases(true, true, 0.0, 1.0), "the point stays where it was");
+        assert!(
+            !guard.releases(true, true, 0.0, 1.0),
+            "the point stays where it was"
+        );
     }
 
     #[test]
