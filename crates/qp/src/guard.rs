@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn less_to_gain_than_ever_is_progress() {
         let (mut guard, set) = (guard(), half_space());
-        let mut step = |guard: &mut Guard, gain: f64| {
+        let step = |guard: &mut Guard, gain: f64| {
             guard.judge(&set, &[0.0; 2], &[0.0; 2], 1.0);
             guard.enter(&[0.0; 2], &[0.0; 2], &[0.0, -gain]);
             guard.leave(&[0.0, 1.0], &[0.0; 2])
