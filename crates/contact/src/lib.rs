@@ -1,4 +1,72 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time levels, fixed-point loops and certificates.
+//!
+//! An elastic body, cut into subdomains or not, is loaded slowly and may touch a rigid foundation. A [`Scene`] says what there
+//! is, a [`Simulation`] solves it time level by time level, and a [`Frame`] holds what a level ended with. Only the effects
+//! that a scene has are set up: without friction there are no tangential rows, without history no traces.
+//!
+//! | you want | you use |
+//! |---|---|
+//! | a body on a foundation | [`Scene`], [`Support`], [`Load`], [`Contact`] with a [`Gap`] and a [`Friction`] law |
+//! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
+//! | time levels | [`Analysis`] with a [`DifferenceFormula`]; one level alone: [`Analysis::Static`] |
+//! | to know the cost before any work | [`Plan`], [`Estimate`] |
+//! | the solver | [`Settings`]; [`Method::Face`] is the default, [`Method::paper`] the paper's |
+//! | forces, states, stress | [`Frame`], [`PointState`], [`ContactSummary`] |
+//! | to know whether a result is right | [`Certificate`]; [`LevelStatus`] says whether and why not |
+//! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`Frame::discretisation_error`], [`StepDoubling`] |
+//! | to stop where more accuracy is useless | [`Accuracy`] |
+//! | less work where most of a surface stays open | [`Screening`] |
+//! | to follow or end a run | [`Observer`], [`Flow`] |
+//! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
+//!
+//! # Example
+//!
+//! A beam is pressed on a floor and its end pulled along it; the coefficient falls with the slip rate.
+//!
+//! ```
+//! use signorini_contact::{
+//!     Analysis, Coefficient, Contact, ContactState, Friction, Load, Scene, Settings, Simulation, Support,
+//! };
+//! use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+//!
+//! let mesh = Brick::new([3.0, 1.0, 1.0], [9, 3, 3]).build()?;
+//! let pull = History::table(vec![(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)])?;
+//! let law = Coefficient::Exponential { fixed: 0.3, kinetic: 0.1, decay: 0.05 };
+//! let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?))
+//!     .with_support(Support::fixed(brick::X_MIN))
+//!     .with_load(Load::pressure(brick::Z_MAX, 1e8).with_history(History::ramp(0.5, 1.0)?))
+//!     .with_load(Load::traction(brick::X_MAX, [5e8, 0.0, 0.0]).with_history(pull))
+//!     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::Coulomb(law)))
+//!     .with_boxes([3, 1, 1])
+//!     .with_analysis(Analysis::quasistatic(1.0, 8));
+//!
+//! let mut simulation = Simulation::new(scene, Settings::default())?;
+//! while !simulation.is_finished() {
+//!     let frame = simulation.step()?;
+//!     assert!(frame.report().status.converged());
+//!     assert!(frame.certificate().largest() < 1e-6);
+//! }
+//! let frame = simulation.frame();
+//! assert!(frame.points().iter().any(|point| point.state == ContactState::Slip));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! - SI units in names of this documentation; any consistent ones will do, and give the same digits.
+//! - Forces are those on the body. A normal force is at most zero: the foundation presses, it does not pull.
+//! - A level is a time `t_i`; levels count from 0, and before the first the body is at rest without forces.
+//!
+//! # What can go wrong
+//!
+//! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads that
+//! nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a level then ends
+//! with another [`LevelStatus`] than `Converged`, its frame holds the last iterate, and the certificate says how far it is.
+//!
+//! # Threads
+//!
+//! Work runs on the current [`rayon`] pool, and results have the same bits for any number of threads. For a pool that does
+//! nothing else see [`Settings::with_busy_waiting`].
 
 pub mod accumulated;
 pub mod accuracy;

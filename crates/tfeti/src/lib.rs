@@ -21,6 +21,8 @@
 //! Subdomains that are translations of one another share one matrix and are applied together ([`Classes`]); for others a
 //! cost model chooses between dense blocks and sparse factors ([`InverseSettings`]). Everything is immutable once built and
 //! applied without allocation with work memory that the caller owns; results have the same bits for any number of threads.
+//! Products run in parallel on the current rayon pool. An iteration is best run on one of its threads (`rayon::scope`): called from
+//! outside of it, each parallel part changes threads twice.
 //!
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};
