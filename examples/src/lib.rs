@@ -9,7 +9,9 @@
 //! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
 //! | `stability` | hard cases, what the library does with them, and what has to hold | [`stability::app::execute`] |
 //! | `effects` | one brick, its effects switched on one by one beside the plan's prediction; estimates, screening | [`effects::execute`] |
+//! | `performance` | from the paper's method to the default: products and time of each idea | [`performance::execute`] |
 //! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
+//! | `first` | the program of the README | |
 //!
 //! | module | holds |
 //! |---|---|
@@ -38,5 +40,10 @@ pub mod snapshot;
 pub mod stability;
 pub mod table;
 pub mod tresca;
+
+/// The pieces of code in the guide compile.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/guide.md")]
+pub struct Guide;
 
 pub use error::ExampleError;

@@ -1,7 +1,7 @@
 //! The default method: the face method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
 //!
-//! Where the face method makes no progress, the paper's method finishes the level from the last iterate; it is proved to
-//! solve every given-friction problem.
+//! Where the face method makes no progress, the paper's method solves the level: from the last iterate where a limit was
+//! reached, from the start of the level where the face method stagnated. It is proved to solve every given-friction problem.
 
 use crate::error::ContactError;
 use crate::level::Level;

@@ -74,7 +74,7 @@ fn paper_smalse() -> SmalseSettings {
 pub enum InnerAccuracy {
     /// The final tolerance each time.
     Fixed,
-    /// `factor` times the last relative change of the slip bounds, never looser than `loosest` and never tighter
+    /// `factor` times the last relative change of the normal multipliers, never looser than `loosest` and never tighter
     /// than the final tolerance.
     Adaptive {
         /// In (0, 1).
@@ -116,7 +116,7 @@ pub enum Preconditioner {
 /// | `max_fixed_point` | most evaluations of the Coulomb map a level | >= 1 | 200 | |
 /// | `extrapolate` | start a level from the line through the last two | | true | |
 /// | `row_rule` | scaling of the rows of B | | orthonormal | |
-/// | `sharing` | whether equal subdomains share factors | | automatic | |
+/// | `sharing` | whether equal subdomains share factors | | translates | |
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
 /// | `max_fallback_products` | most products with F of one call of SMALSE's fall-back, after which a level ends as `IterationLimit` | >= 1 | 20,000 | |

@@ -17,7 +17,7 @@
 //! that slide least are taken for sticking. The prediction is not monotone in general. After `patience` faces without
 //! progress the faces are solved more accurately, every move has to lower the cost, and the set follows the solution
 //! only where the problem with the present set is solved. [`Status::Stagnated`] tells that this did not help either;
-//! [`smalse`](crate::smalse()) then continues from `x` and is proved to converge.
+//! [`smalse`](crate::smalse()) can then continue and is proved to converge.
 //!
 //! The move to the next face and the next conjugate gradient step share one product: the step is taken with the length of
 //! the last one, and conjugate gradients start anew from the exact residual.

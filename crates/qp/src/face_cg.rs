@@ -8,7 +8,7 @@
 //! |---|---|
 //! | `residual` | `P_Wᵀ (A x - b + kappa s)`, `s` the steps so far |
 //! | `face_residual` | its constrained part, restricted to the face |
-//! | `z` | `P_W R (D M D + T) R` of the residual on the face; `R` restricts, `D` and `T` account for the curvature |
+//! | `z` | `P_W R (D M D + T) R` of the residual on the face; `R` restricts, `D = 1 / (1 + kappa m)` (`D²` in `docs/theory.md`) and `T` account for the curvature |
 //! | `p`, `ap` | direction, and `A p + kappa p`, then `P_Wᵀ` of it, then restricted |
 //! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`face_coupling`](crate::face_coupling)) |
 //! | `rho` | residual on the face times `z` |

@@ -78,7 +78,7 @@
 //!
 //! # Settings
 //!
-//! The tables are with [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
+//! The tables are with [`FaceSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
 //! default and the letter in the paper. All are dimensionless: a problem in other units needs the same
 //! settings and takes the same steps.
 //!
