@@ -44,6 +44,9 @@ pub enum ExampleError {
         /// What the system says.
         reason: String,
     },
+    /// A picture or table of a level before any is solved.
+    #[error("no time level is solved yet, or the last step failed; solve one first")]
+    NoLevel,
     /// With `--strict`: some levels did not reach the tolerance.
     #[error("{levels} time levels did not reach the tolerance (--strict)")]
     NotConverged {

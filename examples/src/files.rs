@@ -80,7 +80,8 @@ impl Sink for RunFiles {
 
 impl Series {
     fn write_body(&mut self, simulation: &Simulation) -> Result<(), ExampleError> {
-        let (frame, mesh) = (simulation.frame(), simulation.scene().mesh());
+        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+        let mesh = simulation.scene().mesh();
         let stress = frame.stress()?;
         let nodal = nodal_average(mesh, &stress)?;
         let points = [
@@ -99,7 +100,8 @@ impl Series {
     }
 
     fn write_contact(&mut self, simulation: &Simulation) -> Result<(), ExampleError> {
-        let (frame, mesh) = (simulation.frame(), simulation.scene().mesh());
+        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+        let mesh = simulation.scene().mesh();
         let patch = ContactPatch::new(&self.surface, mesh.points(), frame.points());
         let u = frame.displacement();
         let at = |node: &u32| &u[3 * *node as usize..3 * *node as usize + 3];

@@ -118,7 +118,7 @@ impl Snapshot {
         header: &Header,
     ) -> Result<Self, ExampleError> {
         let mesh = simulation.scene().mesh();
-        let frame = simulation.frame();
+        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
         let surface = Surface::new(mesh, &[brick::Z_MIN])?;
         let displacement = frame.displacement();
         Ok(Self {

@@ -53,8 +53,10 @@ pub enum ContactError {
         /// The broken rule.
         rule: &'static str,
     },
-    /// No time level.
-    #[error("the analysis has no time level; ask for at least one step")]
+    /// No time level, or more than can be meant.
+    #[error(
+        "the analysis has no time level or more than a hundred million; ask for at least one step"
+    )]
     NoLevels,
     /// A time level out of order or not finite.
     #[error(
@@ -107,6 +109,14 @@ pub enum ContactError {
         values: usize,
         /// Number of nodes.
         nodes: usize,
+    },
+    /// More than one contact surface.
+    #[error(
+        "with_contact was called {count} times, and a scene has one contact surface; put further tags with the same law in by Contact::and_tag, or take the other surface by replace_contact"
+    )]
+    SeveralContacts {
+        /// Calls.
+        count: usize,
     },
     /// A gap is not finite.
     #[error("contact at node {node}: the gap {value} m is not finite")]

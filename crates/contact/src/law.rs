@@ -1,6 +1,7 @@
 //! Friction laws: none, given (Tresca), and Coulomb with a coefficient that may depend on place and slip rate.
 
 use crate::error::ContactError;
+use crate::model::Model;
 use std::fmt;
 use std::sync::Arc;
 
@@ -247,6 +248,18 @@ fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
         (Some(p), None) | (None, Some(p)) => p.1,
         (None, None) => f64::NAN,
     }
+}
+
+/// Asks the law of friction at every touch point, at rest, so that what it cannot mean is said before any work.
+pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
+    for point in &model.points {
+        match model.friction() {
+            Friction::None => return Ok(()),
+            Friction::Given(bound) => bound.stress(point.node, point.position)?,
+            Friction::Coulomb(law) => law.value(point.node, point.position, 0.0)?,
+        };
+    }
+    Ok(())
 }
 
 #[cfg(test)]

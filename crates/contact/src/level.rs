@@ -104,12 +104,14 @@ impl Level {
         if !self.coefficients.is_empty() && !law.depends_on_rate() {
             return Ok(());
         }
+        // none where the law fails at a point: a later level must not take a part for all
         self.coefficients.clear();
-        for (k, point) in model.points.iter().enumerate() {
+        let value = |(k, point): (usize, &TouchPoint)| {
             let rate = state.rates().get(k).copied().unwrap_or(0.0);
-            self.coefficients
-                .push(law.value(point.node, point.position, rate)?);
-        }
+            law.value(point.node, point.position, rate)
+        };
+        let values: Result<Vec<f64>, _> = model.points.iter().enumerate().map(value).collect();
+        self.coefficients = values?;
         Ok(())
     }
 

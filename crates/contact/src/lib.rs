@@ -46,8 +46,9 @@
 //!     assert!(frame.report().status.converged());
 //!     assert!(frame.certificate().largest() < 1e-6);
 //! }
-//! let frame = simulation.frame();
-//! assert!(frame.points().iter().any(|point| point.state == ContactState::Slip));
+//! if let Some(frame) = simulation.frame() {
+//!     assert!(frame.points().iter().any(|point| point.state == ContactState::Slip));
+//! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

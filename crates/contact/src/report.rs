@@ -8,7 +8,7 @@ use signorini_qp::Steps;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum LevelStatus {
-    /// The tolerance was reached.
+    /// The solver reached the tolerance, and the certificate is at most thirty times that (usually a tenth).
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
     IterationLimit,

@@ -179,7 +179,8 @@ impl Contact {
 
     /// Contact with the half-space below a plane: gap and normal follow from the plane.
     ///
-    /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor).
+    /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor). A later
+    /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
     #[must_use]
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -190,7 +191,9 @@ impl Contact {
             .with_gap_field(gap)
     }
 
-    /// More facets of the same kind.
+    /// More facets of the same kind. Each node has one normal: where facets of two sides meet at an edge it is their mean, so
+    /// that nodes of an edge between floor and wall meet neither straight. Leave such edges out of one of the tags, or give
+    /// one direction for all by [`with_normal`](Self::with_normal).
     #[must_use]
     pub fn and_tag(mut self, tag: FacetTag) -> Self {
         self.tags.push(tag);
@@ -274,6 +277,8 @@ pub struct Scene {
     pub(crate) supports: Vec<Support>,
     pub(crate) loads: Vec<Load>,
     pub(crate) contact: Option<Contact>,
+    /// Contacts given; more than one are refused.
+    pub(crate) contacts: usize,
     pub(crate) cut: Cut,
     pub(crate) analysis: Analysis,
 }
@@ -288,6 +293,7 @@ impl Scene {
             supports: Vec::new(),
             loads: Vec::new(),
             contact: None,
+            contacts: 0,
             cut: Cut::Whole,
             analysis: Analysis::statics(),
         }
@@ -307,10 +313,20 @@ impl Scene {
         self
     }
 
-    /// Sets the contact surface.
+    /// Sets the contact surface. A scene has one, with one law; a second call is refused when the scene is used, because it
+    /// would drop the first surface. [`replace_contact`](Self::replace_contact) does that on purpose.
     #[must_use]
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contact = Some(contact);
+        self.contacts += 1;
+        self
+    }
+
+    /// Another contact surface in the place of the one there is; `None` for no contact.
+    #[must_use]
+    pub fn replace_contact(mut self, contact: Option<Contact>) -> Self {
+        self.contacts = usize::from(contact.is_some());
+        self.contact = contact;
         self
     }
 
@@ -449,6 +465,11 @@ impl Scene {
                     });
                 }
             }
+        }
+        if self.contacts > 1 {
+            return Err(ContactError::SeveralContacts {
+                count: self.contacts,
+            });
         }
         let Some(contact) = &self.contact else {
             return Ok(());

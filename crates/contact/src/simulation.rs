@@ -23,6 +23,7 @@ use crate::state::{Peak, State};
 use signorini_fem_mesh::Decomposition;
 use signorini_qp::vector;
 use signorini_tfeti::Tfeti;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A scene being simulated, level by level.
@@ -51,7 +52,9 @@ pub struct Simulation {
     model: Model,
     settings: Settings,
     solver: Solver,
-    state: State,
+    state: Arc<State>,
+    /// Whether the fields below belong to a level that was solved.
+    solved: bool,
     level: Level,
     iterate: Iterate,
     report: LevelReport,
@@ -83,10 +86,12 @@ impl Simulation {
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let (model, screen) = screened::set_up(scene, &settings)?;
+        crate::law::check(&model)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
         Ok(Self {
-            state: State::default(),
+            state: Arc::default(),
+            solved: false,
             level: Level::default(),
             iterate: Iterate::default(),
             report: LevelReport::new(),
@@ -175,22 +180,25 @@ impl Simulation {
     /// [`ContactError::Finished`] after the last level; a breakdown of a solver. The state is then unchanged.
     pub fn step(&mut self) -> Result<Frame<'_>, ContactError> {
         let index = self.state.level();
-        let state = std::mem::take(&mut self.state);
+        // not taken out: laws of the user may panic
+        let state = self.state.clone();
+        self.solved = false;
         let busy = self.settings.busy_waiting;
         let outcome = on_pool(busy, || self.solve_level(&state, index));
-        self.state = state;
+        drop(state);
         let (mut report, lambda, rows) = outcome?;
         self.remember(lambda, rows, &mut report);
         self.total += report.counters;
         self.report = report;
-        Ok(self.frame())
+        self.solved = true;
+        Ok(self.present())
     }
 
     /// Solves all levels that are left, telling the observer; ends early if it says so.
     ///
     /// # Errors
     /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
-    pub fn run(&mut self, observer: &mut impl Observer) -> Result<(), ContactError> {
+    pub fn run(&mut self, observer: &mut (impl Observer + ?Sized)) -> Result<(), ContactError> {
         let levels = self.model.scene.analysis.levels() - self.state.level();
         observer.started(&self.model.plan, levels);
         let (mut solved, mut failed) = (0, None);
@@ -211,9 +219,15 @@ impl Simulation {
         failed.map_or(Ok(()), Err)
     }
 
-    /// The frame of the last level solved.
+    /// The frame of the last level solved; `None` before the first one, after [`resume`](Self::resume) and after a step that
+    /// failed.
     #[must_use]
-    pub fn frame(&self) -> Frame<'_> {
+    pub fn frame(&self) -> Option<Frame<'_>> {
+        self.solved.then(|| self.present())
+    }
+
+    /// The frame of what was computed last.
+    pub(crate) fn present(&self) -> Frame<'_> {
         Frame {
             model: &self.model,
             level: &self.level,
@@ -376,7 +390,8 @@ impl Simulation {
             (Vec::new(), Vec::new(), Vec::new())
         };
         let largest = |v: &Violation| v.reference;
-        self.state.raise(Peak {
+        let state = Arc::make_mut(&mut self.state);
+        state.raise(Peak {
             multipliers: vector::norm(&lambda),
             force: largest(&self.certificate.sign),
             displacement: largest(&self.certificate.gap),
@@ -390,7 +405,7 @@ impl Simulation {
                 screen.fill_trace(&self.torn, &mut trace);
             }
         }
-        self.state.advance(
+        state.advance(
             self.settings.extrapolate,
             lambda,
             f_lambda,
@@ -401,12 +416,11 @@ impl Simulation {
         );
         if let Some(accuracy) = &report.accuracy {
             self.controller.errors = accuracy.accumulated;
-            self.state.set_controller(self.controller);
+            state.set_controller(self.controller);
         }
         if let Some(screen) = &self.screen {
-            self.state.set_active(screen.active());
-            self.state
-                .push_gaps(self.all.iter().map(|p| p.gap).collect());
+            state.set_active(screen.active());
+            state.push_gaps(self.all.iter().map(|p| p.gap).collect());
         }
     }
 }

@@ -241,14 +241,14 @@ impl StepDoubling {
             self.work[1] += self.half.step()?.summary().friction_work;
         }
         self.work[0] += self.whole.step()?.summary().friction_work;
-        let mut error = compare(&self.whole.frame(), &self.half.frame(), self.work)?;
+        let mut error = compare(&self.whole.present(), &self.half.present(), self.work)?;
         if let Some(quarter) = &mut self.quarter {
             for _ in 0..4 {
                 quarter.step()?;
             }
-            let quarter = quarter.frame();
-            let far = energy_of_difference(&self.whole.frame(), &quarter)?;
-            let near = energy_of_difference(&self.half.frame(), &quarter)?;
+            let quarter = quarter.present();
+            let far = energy_of_difference(&self.whole.present(), &quarter)?;
+            let near = energy_of_difference(&self.half.present(), &quarter)?;
             for (sum, energy) in self.differences.iter_mut().zip([error.energy, near]) {
                 *sum += ratio(energy, error.elastic);
             }

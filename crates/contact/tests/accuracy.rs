@@ -37,7 +37,7 @@ fn the_gap_bounds_the_error_and_is_not_far_above_it() {
                 let name = format!("{friction:?} {} {tolerance:e}", method.name());
                 let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
                 let level = step(&mut simulation);
-                let gap = simulation.frame().algebraic_error();
+                let gap = simulation.frame().expect("a level").algebraic_error();
                 let difference: Vec<f64> = level
                     .displacement
                     .iter()
@@ -144,7 +144,11 @@ fn balanced_saves_products_and_keeps_the_error() {
             &level.displacement,
         )
         .expect("energy");
-        let estimate = simulation.frame().discretisation_error().expect("estimate");
+        let estimate = simulation
+            .frame()
+            .expect("a level")
+            .discretisation_error()
+            .expect("estimate");
         let truth = (energy / estimate.elastic_energy()).sqrt();
         (
             truth,
@@ -233,9 +237,12 @@ fn local_doubling_restarts_from_the_whole_step() {
     while !doubling.is_finished() {
         let error = doubling.step().expect("step");
         let level = step(&mut plain);
-        assert_eq!(level.displacement, doubling.whole().frame().displacement());
+        assert_eq!(
+            level.displacement,
+            doubling.whole().frame().expect("a level").displacement()
+        );
         let off = distance(
-            &forces(doubling.half().frame().points()),
+            &forces(doubling.half().frame().expect("a level").points()),
             &forces(&level.points),
         );
         assert!(off <= 2.0 * error.force() + 1e-12);

@@ -137,3 +137,35 @@ fn a_cut_step_retried_equals_the_small_steps() {
         assert!(bits(&rejected) != expected[3], "{}", method.name());
     }
 }
+
+/// A law that fails in the middle of a run: the error comes every time, and the run can go on once the law is well.
+#[test]
+fn a_law_that_fails_or_panics_leaves_the_run_as_it_was() {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    let mode = Arc::new(AtomicUsize::new(0));
+    let inner = mode.clone();
+    let law = signorini_contact::Coefficient::rate_field(move |_, _| {
+        match inner.load(Ordering::Relaxed) {
+            0 => 0.3,
+            1 => f64::NAN,
+            _ => panic!("a law of the user"),
+        }
+    });
+    let scene = small_benchmark(Friction::Coulomb(law), 4);
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    assert!(simulation.frame().is_none(), "before the first level");
+    step(&mut simulation);
+    let before = state_bits(simulation.state());
+    for kind in [1, 1, 2, 2] {
+        mode.store(kind, Ordering::Relaxed);
+        let outcome = catch_unwind(AssertUnwindSafe(|| simulation.step().is_err()));
+        assert!(outcome.is_err() == (kind == 2) && outcome.unwrap_or(true));
+        assert!(simulation.frame().is_none() && state_bits(simulation.state()) == before);
+    }
+    mode.store(0, Ordering::Relaxed);
+    assert_eq!(rest(&mut simulation).len(), 3);
+    assert!(simulation.frame().is_some());
+}

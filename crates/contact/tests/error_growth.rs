@@ -121,7 +121,7 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
             let mut last = None;
             for k in 0..steps {
                 let error = doubling.step().expect("step");
-                let u = doubling.whole().frame().displacement();
+                let u = doubling.whole().frame().expect("a level").displacement();
                 let level = &exact[(k + 1) * most / steps - 1];
                 truth += distance(&scene, &u, &level.displacement).powi(2);
                 plain += error.displacement().powi(2);

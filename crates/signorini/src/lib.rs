@@ -50,11 +50,12 @@ pub use error::Error;
 pub mod prelude {
     pub use crate::Error;
     pub use signorini_contact::{
-        Analysis, Certificate, Coefficient, Contact, ContactError, ContactState, DifferenceFormula,
-        Directions, Flow, Frame, Friction, Gap, LevelStatus, Load, Method, Observer, Place, Plan,
-        PointState, Preconditioner, Scene, Settings, Silent, Simulation, SlipBound, State, Support,
+        Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactState,
+        DifferenceFormula, Directions, Flow, Frame, Friction, Gap, LevelStatus, Load, Method,
+        Observer, Place, Plan, PointState, Preconditioner, Scene, Screening, Settings, Silent,
+        Simulation, SlipBound, State, Support,
     };
     pub use signorini_fem_mesh::{
-        Brick, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,
+        Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,
     };
 }

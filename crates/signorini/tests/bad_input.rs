@@ -54,11 +54,15 @@ fn quasistatic(times: &[f64], formula: DifferenceFormula) -> Scene {
 }
 
 fn given(bound: SlipBound) -> Scene {
-    good().with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::Given(bound)))
+    good().replace_contact(Some(
+        Contact::rigid(brick::Z_MIN).with_friction(Friction::Given(bound)),
+    ))
 }
 
 fn coulomb(coefficient: Coefficient) -> Scene {
-    good().with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::Coulomb(coefficient)))
+    good().replace_contact(Some(
+        Contact::rigid(brick::Z_MIN).with_friction(Friction::Coulomb(coefficient)),
+    ))
 }
 
 /// Name, result, the variant it must be, and what the message must contain.
@@ -209,12 +213,13 @@ fn decompositions_supports_and_loads() {
 fn contact_and_friction() {
     let nan = f64::NAN;
     let count = check(cases! {
-        "contact on an unknown tag": attempt(good().with_contact(Contact::rigid(FacetTag(9)))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact", "tag 9";
-        "a contact tag twice": attempt(good().with_contact(Contact::rigid(brick::Z_MIN).and_tag(brick::Z_MIN))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
-        "a normal of length zero": attempt(good().with_contact(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3]))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
-        "a half-space without a direction": attempt(good().with_contact(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3]))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal";
-        "a gap that is NaN": attempt(good().with_contact(Contact::rigid(brick::Z_MIN).with_gap(nan))) => Error::Contact(ContactError::Gap { .. }), "node", "gap";
-        "a gap field that is infinite": attempt(good().with_contact(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 1.0 / x[2]))) => Error::Contact(ContactError::Gap { .. }), "node";
+        "contact on an unknown tag": attempt(good().replace_contact(Some(Contact::rigid(FacetTag(9))))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact", "tag 9";
+        "two contact surfaces": attempt(good().with_contact(Contact::rigid(brick::X_MAX))) => Error::Contact(ContactError::SeveralContacts { count: 2 }), "2 times", "and_tag", "replace_contact";
+        "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).and_tag(brick::Z_MIN)))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
+        "a normal of length zero": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
+        "a half-space without a direction": attempt(good().replace_contact(Some(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal";
+        "a gap that is NaN": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(nan)))) => Error::Contact(ContactError::Gap { .. }), "node", "gap";
+        "a gap field that is infinite": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 1.0 / x[2])))) => Error::Contact(ContactError::Gap { .. }), "node";
         "a negative coefficient": attempt(coulomb(Coefficient::Constant(-0.3))) => Error::Contact(ContactError::Coefficient { .. }), "coefficient", "-0.3";
         "a coefficient that is NaN": attempt(coulomb(Coefficient::Constant(nan))) => Error::Contact(ContactError::Coefficient { .. }), "coefficient", "NaN";
         "a field of negative coefficients": attempt(coulomb(Coefficient::field(|x| 1.0 - x[0]))) => Error::Contact(ContactError::CoefficientAt { .. }), "node", "coefficient";
@@ -240,7 +245,7 @@ fn contact_and_friction() {
                 .with_analysis(Analysis::quasistatic(1.0, 4))
         ) => Error::Contact(ContactError::NotHeld { level: 2, .. }), "level 2";
     });
-    assert_eq!(count, 20);
+    assert_eq!(count, 21);
 }
 
 #[test]
@@ -362,8 +367,9 @@ fn flipped_bits_of_a_checkpoint_do_not_panic() {
 /// A contact surface that is fixed entirely has nothing to decide: it is left out, not an error.
 #[test]
 fn a_contact_surface_that_is_fixed_is_left_out() {
-    let scene =
-        good().with_contact(Contact::rigid(brick::X_MIN).with_friction(Friction::coulomb(0.3)));
+    let scene = good().replace_contact(Some(
+        Contact::rigid(brick::X_MIN).with_friction(Friction::coulomb(0.3)),
+    ));
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
     assert!(simulation.touch_points().is_empty());
     let removed = simulation.tfeti().gluing().removed();

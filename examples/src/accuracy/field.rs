@@ -21,7 +21,7 @@ pub(super) fn write(path: &Path, short: bool) -> Result<(), ExampleError> {
     };
     let mut simulation = Simulation::new(variant.scene()?, Settings::default())?;
     simulation.run(&mut Silent)?;
-    let frame = simulation.frame();
+    let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
     let error = frame.discretisation_error()?;
     let scene = simulation.scene();
     let stress = error.stress_errors(scene.mesh(), scene.materials())?;

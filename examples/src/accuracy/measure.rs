@@ -80,7 +80,7 @@ fn once(scene: &Scene, settings: &Settings) -> Result<Solution, ExampleError> {
         certificate = certificate.max(frame.certificate().largest());
         unconverged += usize::from(!frame.report().status.converged());
     }
-    let frame = simulation.frame();
+    let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
     let forces = frame
         .points()
         .iter()

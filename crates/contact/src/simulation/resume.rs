@@ -5,6 +5,7 @@ use crate::error::ContactError;
 use crate::screening::Screen;
 use crate::state::State;
 use signorini_qp::{SymmetricOperator, vector};
+use std::sync::Arc;
 
 /// Relative error of a stored `F lambda` above which it belongs to another scene.
 const FOREIGN: f64 = 1e-6;
@@ -39,7 +40,8 @@ impl Simulation {
             state.forget_products();
             state.set_active(&[]);
         }
-        self.state = state;
+        self.solved = false;
+        self.state = Arc::new(state);
         self.check_products();
         Ok(())
     }
@@ -62,11 +64,11 @@ impl Simulation {
             let view = screen.view(&self.state);
             let pairs = view.lambda().iter().zip(view.f_lambda());
             if pairs.filter_map(|(l, f)| foreign(l, f)).next().is_some() {
-                self.state.forget_products();
+                Arc::make_mut(&mut self.state).forget_products();
             }
             return;
         }
-        for (lambda, f_lambda) in self.state.products_mut() {
+        for (lambda, f_lambda) in Arc::make_mut(&mut self.state).products_mut() {
             if let Some(product) = foreign(lambda, f_lambda) {
                 *f_lambda = product;
             }

@@ -27,7 +27,7 @@ impl Simulation {
             let tolerance = self.controller.tolerance();
             let (mut report, lambda, rows) = self.solve_once(tolerance)?;
             rounds += 1;
-            let algebraic = self.frame().algebraic_error();
+            let algebraic = self.present().algebraic_error();
             let (discretisation, target) = match accuracy {
                 Accuracy::Balanced { fraction } => {
                     let known = self.discretisation(algebraic.elastic)?;
@@ -85,7 +85,7 @@ impl Simulation {
         if known.holds(level, elastic) {
             return Ok(known);
         }
-        let relative = self.frame().discretisation_error()?.relative();
+        let relative = self.present().discretisation_error()?.relative();
         self.controller.discretisation = Discretisation {
             relative,
             level,
