@@ -249,7 +249,7 @@ impl Contact {
 pub enum Cut {
     /// Not at all.
     Whole,
-    /// Into boxes of the bounding box, by element centroids.
+    /// Into boxes of the bounding box, by element centroids (see [`Decomposition::boxes`]).
     Boxes([usize; 3]),
     /// By the given part number of every element.
     Parts(Vec<u32>),
@@ -330,7 +330,8 @@ impl Scene {
         self
     }
 
-    /// Cuts the body into boxes.
+    /// Cuts the body into boxes. Empty boxes are dropped and disconnected ones split (see
+    /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
     #[must_use]
     pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {
         self.cut = Cut::Boxes(boxes);

@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_fem_mesh::{Brick, Decomposition, split_disconnected};
+use signorini_fem_mesh::{Brick, Decomposition, TetMesh, split_disconnected};
 
-fn brick(n: usize) -> (signorini_fem_mesh::TetMesh, Decomposition) {
+fn brick(n: usize) -> (TetMesh, Decomposition) {
     let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n])
         .build()
         .unwrap();
@@ -86,6 +86,57 @@ fn parts_by_number_agree_with_boxes() {
         Decomposition::from_parts(&mesh, boxes.parts()).unwrap(),
         boxes
     );
+}
+
+/// Two towers of the same boxes, apart in y, beside a gap in x: towers[0] at x in (0, 1),
+/// towers[1] at x in (3, 4).
+fn towers() -> TetMesh {
+    let tower = Brick::new([1.0, 1.0, 2.0], [2, 2, 4]).build().unwrap();
+    let at = |x, y| tower.map_points(|p| [p[0] + x, p[1] + y, p[2]]).unwrap();
+    at(0.0, 0.0)
+        .append(&at(0.0, 2.0))
+        .and_then(|m| m.append(&at(3.0, 0.0)))
+        .unwrap()
+}
+
+#[test]
+fn empty_boxes_are_dropped_and_disconnected_ones_split() {
+    let mesh = towers();
+    let tower = mesh.tets().len() / 3;
+    // along x: towers 0 and 1, nothing, nothing, tower 2; along z: two storeys
+    let parts = Decomposition::boxes(&mesh, [4, 1, 2]).unwrap();
+    let expected = (0..3 * tower).map(|tet| {
+        let storey = mesh.tet_points(tet).iter().map(|p| p[2]).sum::<f64>() > 4.0;
+        (tet / tower) as u32 + 3 * u32::from(storey)
+    });
+    assert_eq!(parts.parts(), expected.collect::<Vec<_>>());
+    assert_eq!(parts.subdomains().len(), 6);
+    assert_eq!(
+        Decomposition::from_parts(&mesh, parts.parts()).unwrap(),
+        parts
+    );
+}
+
+/// Boxes that cut cells apart, more boxes than tetrahedra, and products that overflow.
+#[test]
+fn any_counts_give_connected_subdomains() {
+    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().unwrap();
+    for counts in [[4, 1, 1], [9, 1, 1], [5, 3, 7], [100; 3], [usize::MAX; 3]] {
+        let parts = Decomposition::boxes(&mesh, counts).unwrap();
+        assert_eq!(
+            Decomposition::from_parts(&mesh, parts.parts()).unwrap(),
+            parts,
+            "{counts:?}"
+        );
+        // the pieces of any numbers are the same sets
+        let split = split_disconnected(&mesh, parts.parts()).unwrap();
+        assert_eq!(
+            split.iter().max(),
+            Some(&(parts.subdomains().len() as u32 - 1))
+        );
+    }
+    let all = Decomposition::boxes(&mesh, [usize::MAX; 3]).unwrap();
+    assert_eq!(all.subdomains().len(), mesh.tets().len());
 }
 
 proptest! {
