@@ -149,6 +149,32 @@ pub enum OutputError {
         /// The time before, minus infinity at the start.
         before: f64,
     },
+    /// The list of a series to continue cannot be read.
+    #[error(
+        "cannot read {}: {source}; to continue a series its list must be there, PvdSeries::create starts a new one",
+        path.display()
+    )]
+    NoSeries {
+        /// The list.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The list of a series to continue is not as [`PvdSeries`] writes it.
+    #[error(
+        "line {line} of {} is {found:?}, but {expected} is needed; only lists written by PvdSeries under their name can be continued, so restore the file or start a new series with PvdSeries::create",
+        path.display()
+    )]
+    BrokenSeries {
+        /// The list.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// The line, empty beyond the end of the file.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
     /// The file system refuses.
     #[error("cannot write {}: {source}", path.display())]
     Io {

@@ -160,6 +160,95 @@ fn series() {
 }
 
 #[test]
+fn a_series_is_continued() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mesh, path) = (mesh(), folder.path());
+    let write = |series: &mut PvdSeries, time: f64| {
+        let field = Field::scalar("time", vec![time; mesh.points().len()]);
+        series.write(time, &mesh, &[field], &[]).unwrap();
+    };
+    let written = |step: usize| {
+        let file = path.join(format!("a&b_{step:04}.vtu"));
+        values(&pieces(&file)[0].data.point, "time")[0]
+    };
+    // times whose decimals do not end, and a small one
+    let times = [-1.0, 1e-300, 0.1 + 0.2, 1.0 / 3.0];
+    let mut series = PvdSeries::create(path, "a&b").unwrap();
+    times.iter().for_each(|&t| write(&mut series, t));
+    let list = std::fs::read_to_string(series.path()).unwrap();
+
+    let mut series = PvdSeries::open(path, "a&b").unwrap();
+    assert_eq!(series.times(), times);
+    let error = series.write(times[3], &mesh, &[], &[]).unwrap_err();
+    assert!(matches!(error, OutputError::Time { .. }));
+    write(&mut series, 2.0);
+    assert_eq!((written(0), written(4)), (-1.0, 2.0));
+    assert_eq!(
+        PvdSeries::open(path, "a&b").unwrap().times(),
+        series.times()
+    );
+
+    // the third time again, computed otherwise
+    let mut series = PvdSeries::open_before(path, "a&b", 0.3).unwrap();
+    assert_eq!(series.times(), &times[..2]);
+    for time in [0.3, 1.0 / 3.0] {
+        write(&mut series, time);
+    }
+    assert_eq!((written(1), written(2)), (times[1], 0.3));
+    let rewritten = std::fs::read_to_string(series.path()).unwrap();
+    assert_eq!(rewritten, list.replace("0.30000000000000004", "0.3"));
+    let opened = |time| PvdSeries::open_before(path, "a&b", time);
+    assert_eq!(opened(9.0).unwrap().times(), series.times());
+    assert!(opened(-1.0).unwrap().times().is_empty());
+    assert!(matches!(opened(f64::NAN), Err(OutputError::Time { .. })));
+}
+
+#[test]
+fn broken_lists_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let open = || PvdSeries::open(folder.path(), "block").unwrap_err();
+    let error = open();
+    assert!(matches!(error, OutputError::NoSeries { .. }));
+    let text = error.to_string();
+    assert!(text.contains("block.pvd") && text.contains("PvdSeries::create"));
+    assert!(matches!(
+        PvdSeries::open(folder.path(), "a/b"),
+        Err(OutputError::SeriesName { .. })
+    ));
+
+    let mut series = PvdSeries::create(folder.path(), "block").unwrap();
+    for time in [0.0, 1.0] {
+        series.write(time, &mesh(), &[], &[]).unwrap();
+    }
+    let good = std::fs::read_to_string(series.path()).unwrap();
+    let end = good.find("</VTKFile>").unwrap();
+    for (list, at) in [
+        (String::new(), 1),
+        (good[..end - 5].into(), 6),
+        (good[..end].into(), 7),
+        (format!("{good}more"), 8),
+        (good.replace("\"1\"", "\"0\""), 5),
+        (good.replace("\"1\"", "\"one\""), 5),
+        (good.replace("\"1\"", "\"NaN\""), 5),
+        (good.replace("_0001", "_0002"), 5),
+        (good.replace("LittleEndian", "BigEndian"), 2),
+    ] {
+        std::fs::write(series.path(), &list).unwrap();
+        let error = open();
+        assert!(
+            matches!(error, OutputError::BrokenSeries { line, .. } if line == at),
+            "{error}"
+        );
+        let text = error.to_string();
+        assert!(text.contains("block.pvd") && text.contains("PvdSeries::create"));
+    }
+    // the ends of lines that an editor may leave
+    std::fs::write(series.path(), good.replace('\n', "\r\n")).unwrap();
+    let opened = PvdSeries::open(folder.path(), "block").unwrap();
+    assert_eq!(opened.times(), [0.0, 1.0]);
+}
+
+#[test]
 fn series_of_a_surface() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = mesh();

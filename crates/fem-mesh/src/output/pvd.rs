@@ -9,10 +9,41 @@ use crate::decomposition::Decomposition;
 use crate::mesh::TetMesh;
 use crate::surface::Surface;
 
+const HEAD: [&str; 3] = [
+    "<?xml version=\"1.0\"?>",
+    "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">",
+    "  <Collection>",
+];
+const FOOT: [&str; 2] = ["  </Collection>", "</VTKFile>"];
+
+/// Relative distance within which two times are the same.
+const SAME_TIME: f64 = 1e-9;
+
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
 ///
 /// The list is written anew after every step, so that it is complete at any moment, also when the
 /// computation stops half way.
+///
+/// A run that is resumed continues its series with [`PvdSeries::open`] or
+/// [`PvdSeries::open_before`]:
+///
+/// ```
+/// use signorini_fem_mesh::Brick;
+/// use signorini_fem_mesh::output::PvdSeries;
+///
+/// # let directory = tempfile::tempdir()?;
+/// # let folder = directory.path();
+/// let mesh = Brick::new([1.0; 3], [2, 2, 2]).build()?;
+/// let mut series = PvdSeries::create(folder, "block")?;
+/// for time in [0.0, 0.1, 0.2] {
+///     series.write(time, &mesh, &[], &[])?;
+/// }
+/// // later, from a state saved after time 0.1
+/// let mut series = PvdSeries::open_before(folder, "block", 0.2)?;
+/// assert_eq!(series.times(), [0.0, 0.1]);
+/// series.write(0.2, &mesh, &[], &[])?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct PvdSeries {
     folder: PathBuf,
@@ -21,21 +52,63 @@ pub struct PvdSeries {
 }
 
 impl PvdSeries {
-    /// Starts a series and creates the folder if it does not exist.
+    /// Starts a series and creates the folder if it does not exist. A series of this name that is
+    /// there is overwritten, file by file from number 0; [`PvdSeries::open`] continues it.
     ///
     /// # Errors
     /// [`OutputError`] if the name is not a plain file name or the folder cannot be created.
     pub fn create(folder: impl AsRef<Path>, name: &str) -> Result<Self, OutputError> {
-        let folder = folder.as_ref().to_path_buf();
+        let series = Self::new(folder.as_ref(), name)?;
+        fs::create_dir_all(&series.folder).map_err(|source| OutputError::Io {
+            path: series.folder.clone(),
+            source,
+        })?;
+        Ok(series)
+    }
+
+    /// Continues the series that is in the folder: reads the times from its list, and the next
+    /// step gets the next number.
+    ///
+    /// # Errors
+    /// [`OutputError`] if the name is not a plain file name, or the list is missing or not as this
+    /// type writes it.
+    pub fn open(folder: impl AsRef<Path>, name: &str) -> Result<Self, OutputError> {
+        let mut series = Self::new(folder.as_ref(), name)?;
+        let path = series.path();
+        let list =
+            fs::read_to_string(&path).map_err(|source| OutputError::NoSeries { path, source })?;
+        series.read(&list)?;
+        Ok(series)
+    }
+
+    /// As [`PvdSeries::open`], without the steps at `time` and later (times that agree to a
+    /// relative 1e-9 count as the same), for a run that is resumed from an earlier state and
+    /// writes them again. The list and the files stay as they are until the next step is written.
+    /// Then the list ends with that step, and files of dropped steps are overwritten one by one.
+    ///
+    /// # Errors
+    /// [`OutputError`] as [`PvdSeries::open`], and if `time` is not finite.
+    pub fn open_before(
+        folder: impl AsRef<Path>,
+        name: &str,
+        time: f64,
+    ) -> Result<Self, OutputError> {
+        let mut series = Self::open(folder, name)?;
+        if !time.is_finite() {
+            let before = series.last();
+            return Err(OutputError::Time { time, before });
+        }
+        let limit = time - SAME_TIME * time.abs();
+        series.times.retain(|&t| t < limit);
+        Ok(series)
+    }
+
+    fn new(folder: &Path, name: &str) -> Result<Self, OutputError> {
         if Path::new(name).file_name().is_none_or(|file| file != name) || name.contains('\\') {
             return Err(OutputError::SeriesName { name: name.into() });
         }
-        fs::create_dir_all(&folder).map_err(|source| OutputError::Io {
-            path: folder.clone(),
-            source,
-        })?;
         Ok(Self {
-            folder,
+            folder: folder.to_path_buf(),
             name: name.into(),
             times: Vec::new(),
         })
@@ -103,19 +176,23 @@ impl PvdSeries {
         self.folder.join(format!("{}.pvd", self.name))
     }
 
-    /// Times of the steps written so far.
+    /// Times of the steps written so far, with those that an opened series had.
     #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
     fn check(&self, time: f64) -> Result<(), OutputError> {
-        let before = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
+        let before = self.last();
         if time.is_finite() && time > before {
             Ok(())
         } else {
             Err(OutputError::Time { time, before })
         }
+    }
+
+    fn last(&self) -> f64 {
+        self.times.last().copied().unwrap_or(f64::NEG_INFINITY)
     }
 
     fn file_name(&self, step: usize) -> String {
@@ -128,23 +205,76 @@ impl PvdSeries {
 
     fn list(&mut self, time: f64) -> Result<(), OutputError> {
         self.times.push(time);
-        let mut xml = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
-             byte_order=\"LittleEndian\">\n  <Collection>\n",
-        );
+        let mut xml = HEAD.join("\n");
         for (step, time) in self.times.iter().enumerate() {
-            let file = escape(&self.file_name(step));
+            let [before, after] = self.entry(step);
             // Writing to a string cannot fail.
-            let _ = writeln!(
-                xml,
-                "    <DataSet timestep=\"{time}\" group=\"\" part=\"0\" file=\"{file}\"/>"
-            );
+            let _ = write!(xml, "\n{before}{time}{after}");
         }
-        xml.push_str("  </Collection>\n</VTKFile>\n");
+        for line in FOOT {
+            let _ = write!(xml, "\n{line}");
+        }
+        xml.push('\n');
         fs::write(self.path(), xml).map_err(|source| OutputError::Io {
             path: self.path(),
             source,
         })
+    }
+
+    /// The line of a step in the list, before and after its time.
+    fn entry(&self, step: usize) -> [String; 2] {
+        let file = escape(&self.file_name(step));
+        [
+            "    <DataSet timestep=\"".into(),
+            format!("\" group=\"\" part=\"0\" file=\"{file}\"/>"),
+        ]
+    }
+
+    /// Takes the times of a list that `list` wrote.
+    fn read(&mut self, list: &str) -> Result<(), OutputError> {
+        let lines: Vec<&str> = list.lines().collect();
+        let broken = |line: usize, expected: String| OutputError::BrokenSeries {
+            path: self.path(),
+            line: line + 1,
+            found: lines.get(line).copied().unwrap_or_default().into(),
+            expected,
+        };
+        let same = |line: usize, expected: &str| match lines.get(line) {
+            Some(found) if *found == expected => Ok(()),
+            _ => Err(broken(line, format!("{expected:?}"))),
+        };
+        for (line, expected) in HEAD.into_iter().enumerate() {
+            same(line, expected)?;
+        }
+        let mut times: Vec<f64> = Vec::new();
+        loop {
+            let line = HEAD.len() + times.len();
+            if lines.get(line) == Some(&FOOT[0]) {
+                break;
+            }
+            let [before, after] = self.entry(times.len());
+            let time = lines
+                .get(line)
+                .and_then(|found| found.strip_prefix(&*before)?.strip_suffix(&*after))
+                .and_then(|time| time.parse().ok())
+                .filter(|&t: &f64| t.is_finite() && times.last().is_none_or(|&last| t > last));
+            let Some(time) = time else {
+                let expected = format!(
+                    "a line {:?} with a time later than the one before, or {:?},",
+                    format!("{before}...{after}"),
+                    FOOT[0]
+                );
+                return Err(broken(line, expected));
+            };
+            times.push(time);
+        }
+        let end = HEAD.len() + times.len() + FOOT.len();
+        same(end - 1, FOOT[1])?;
+        if lines.len() > end {
+            return Err(broken(end, "the end of the file".into()));
+        }
+        self.times = times;
+        Ok(())
     }
 }
 
