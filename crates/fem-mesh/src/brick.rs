@@ -39,6 +39,11 @@ pub const MAX_PERTURBATION: f64 = 0.15;
 /// i + j + k is even, so the faces of neighbouring cells match, and boxes of cells that are
 /// translates by an even number of cells are cut in the same way. Nodes are numbered with x
 /// fastest, then y, then z; cells likewise, and the tetrahedra of a cell one after the other.
+///
+/// With an even number of cells in a direction (equal cells, no perturbation) the mesh is
+/// symmetric about its middle plane in that direction. With an odd number it is not: a cell and
+/// its mirror image are cut differently, so that a symmetric scene has slightly different results
+/// on both sides, by the discretisation error.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
