@@ -81,13 +81,13 @@ pub enum ContactError {
         first: f64,
     },
     /// A tag of a support or contact surface is on no facet.
-    #[error("{what}: no facet has the tag {tag}; the mesh has the tags {known}")]
+    #[error("{what}: no facet has the tag {tag}; the mesh has {known}")]
     UnknownTag {
         /// What referred to it.
         what: &'static str,
         /// The tag.
         tag: u32,
-        /// Tags of the mesh.
+        /// Tags of the mesh in words: `"the tags 1, 2"` or `"no tags"`.
         known: String,
     },
     /// A node number beyond the mesh.

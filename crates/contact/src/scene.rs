@@ -379,7 +379,8 @@ impl Scene {
     /// The decomposition that the scene asks for.
     ///
     /// # Errors
-    /// [`ContactError::Decomposition`] for empty or disconnected parts.
+    /// [`ContactError::Decomposition`] for a zero count of boxes, and for part numbers with gaps or
+    /// disconnected parts.
     pub fn decompose(&self) -> Result<Decomposition, ContactError> {
         Ok(match &self.cut {
             Cut::Whole => Decomposition::whole(&self.mesh),
@@ -421,7 +422,10 @@ impl Scene {
         ContactError::UnknownTag {
             what,
             tag: tag.0,
-            known: known.join(", "),
+            known: match &known[..] {
+                [] => "no tags".into(),
+                known => format!("the tags {}", known.join(", ")),
+            },
         }
     }
 

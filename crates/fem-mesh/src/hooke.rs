@@ -19,9 +19,10 @@ pub enum HookeError {
     /// Young's modulus is not a positive number.
     #[error("Young's modulus is {0}; it must be positive and finite")]
     Young(f64),
-    /// Poisson's ratio is outside of its range.
+    /// Poisson's ratio is outside of its range, or so close to an end of it that the tensor is
+    /// elliptic only up to rounding.
     #[error(
-        "Poisson's ratio is {0}; it must lie between -1 and 1/2, both excluded (nearly incompressible bodies need another element)"
+        "Poisson's ratio is {0}; it must lie between -1 and 1/2, both excluded and not closer than about 1e-12 (nearly incompressible bodies need another element)"
     )]
     Poisson(f64),
     /// An entry of the tensor is NaN or infinite.
@@ -77,7 +78,8 @@ impl Hooke {
     /// The isotropic law with Young's modulus and Poisson's ratio.
     ///
     /// # Errors
-    /// [`HookeError::Young`] unless 0 < young, [`HookeError::Poisson`] unless -1 < poisson < 1/2.
+    /// [`HookeError::Young`] unless 0 < young, [`HookeError::Poisson`] unless -1 < poisson < 1/2,
+    /// by more than about 1e-12.
     pub fn isotropic(young: f64, poisson: f64) -> Result<Self, HookeError> {
         if !(young > 0.0 && young.is_finite()) {
             return Err(HookeError::Young(young));
@@ -95,7 +97,16 @@ impl Hooke {
             c[i][i] += 2.0 * shear;
             c[3 + i][3 + i] = shear;
         }
-        Self::from_voigt(&c)
+        // The eigenvalues are 2 mu and 3 K; their ratio tells whether Poisson's ratio is to blame.
+        let ratio = (1.0 - 2.0 * poisson) / (1.0 + poisson);
+        let extreme = ratio.min(1.0 / ratio) < 2.0 * ELLIPTICITY;
+        Self::from_voigt(&c).map_err(|error| {
+            if extreme {
+                HookeError::Poisson(poisson)
+            } else {
+                error
+            }
+        })
     }
 
     /// A general law from c_ijkl; see (2.8) for the conditions.

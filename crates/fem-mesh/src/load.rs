@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::decomposition::Decomposition;
-use crate::mesh::{FacetTag, TetMesh, facet_area_vector};
+use crate::mesh::{FacetTag, TetMesh, facet_area_vector, tag_list};
 use crate::quadrature;
 use crate::vec3::{add, is_finite, norm, scale};
 
@@ -133,7 +133,10 @@ pub enum LoadError {
         meshed: usize,
     },
     /// No facet has the tag.
-    #[error("a load is given on {tag}, but no facet has it; the mesh has {known:?}")]
+    #[error(
+        "a load is given on {tag}, but no facet has it; the mesh has {}",
+        tag_list(known)
+    )]
     UnknownTag {
         /// The tag.
         tag: FacetTag,

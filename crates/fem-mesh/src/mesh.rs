@@ -23,6 +23,15 @@ impl std::fmt::Display for FacetTag {
     }
 }
 
+/// The tags of a mesh in the words of an error: "the tags 1, 2" or "no tags".
+pub(crate) fn tag_list(tags: &[FacetTag]) -> String {
+    if tags.is_empty() {
+        return "no tags".into();
+    }
+    let numbers: Vec<String> = tags.iter().map(|tag| tag.0.to_string()).collect();
+    format!("the tags {}", numbers.join(", "))
+}
+
 /// A tagged triangle of the boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

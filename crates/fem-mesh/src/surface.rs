@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::mesh::{FacetTag, TetMesh, facet_area_vector};
+use crate::mesh::{FacetTag, TetMesh, facet_area_vector, tag_list};
 use crate::vec3::{self, add, cross, dot, norm, scale, sub};
 
 /// Sine of the angle between normal and x axis below which the y axis is projected instead.
@@ -86,7 +86,7 @@ pub enum SurfaceError {
     #[error("the surface has no tag; name at least one part of the boundary")]
     NoTags,
     /// No facet has the tag.
-    #[error("no facet has {tag}; the mesh has {known:?}")]
+    #[error("no facet has {tag}; the mesh has {}", tag_list(known))]
     UnknownTag {
         /// The tag.
         tag: FacetTag,

@@ -236,6 +236,15 @@ fn materials() {
         Hooke::isotropic(1.0, f64::NAN),
         Err(HookeError::Poisson(_))
     ));
+    for ratio in [0.5 - 1e-14, 0.5 - 1e-13, -1.0 + 1e-14] {
+        for young in [1e-300, 1.0, 1e300] {
+            let error = Hooke::isotropic(young, ratio).unwrap_err();
+            assert_eq!(error, HookeError::Poisson(ratio));
+        }
+    }
+    for ratio in [0.5 - 1e-11, -1.0 + 1e-11] {
+        assert!(Hooke::isotropic(1.0, ratio).is_ok());
+    }
     let good = Hooke::isotropic(1.0, 0.3).unwrap();
     let changed = |i: usize, j: usize, value: f64| {
         let mut c = *good.voigt();
@@ -382,6 +391,10 @@ fn surfaces() {
         SurfaceError::UnknownTag { .. }
     ));
     assert_eq!(
+        error(&[FacetTag(99)]).to_string(),
+        "no facet has tag 99; the mesh has the tags 1, 2, 3, 4, 5, 6"
+    );
+    assert_eq!(
         error(&[Z_MIN, Z_MIN]),
         SurfaceError::RepeatedTag { tag: Z_MIN }
     );
@@ -421,6 +434,14 @@ fn loads() {
             ..
         }
     ));
+    let bare = TetMesh::new(mesh.points().to_vec(), mesh.tets().to_vec(), vec![]).unwrap();
+    for (mesh, tags) in [(&mesh, "the tags 1, 2, 3, 4, 5, 6"), (&bare, "no tags")] {
+        let load = LoadDensity::pressure(FacetTag(77), 1.0);
+        assert_eq!(
+            assemble_load(mesh, &parts, &load).unwrap_err().to_string(),
+            format!("a load is given on tag 77, but no facet has it; the mesh has {tags}")
+        );
+    }
     let nowhere = LoadDensity::nodal_forces(vec![(99, [1.0; 3])]);
     assert_eq!(
         error(nowhere),
