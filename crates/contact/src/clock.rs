@@ -123,7 +123,9 @@ impl Analysis {
         Self::Static { time: 1.0 }
     }
 
-    /// `steps` equal steps up to `end` seconds, with the paper's formula.
+    /// `steps` equal steps up to `end` seconds, with the paper's formula 3/2, -2, 1/2. It remembers the step before the last:
+    /// points that slid creep on where loads are held, and the first step sees one and a half times the slip rate. Use
+    /// [`BACKWARD_EULER`](DifferenceFormula::BACKWARD_EULER) unless you compare with the paper.
     #[must_use]
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         // none, which is refused when the scene is used
