@@ -73,7 +73,7 @@ impl Contraction {
                 at = k;
             }
         }
-        self.changes.len() > at + patience
+        self.changes.len() > at.saturating_add(patience)
     }
 
     /// Number of recorded changes.

@@ -61,7 +61,10 @@ impl PaperSolver {
         let factor = model.tfeti.coarse_factor();
         let coarse = orthonormal_coarse(model)?;
         let operator = model.tfeti.dual();
-        let estimate = norm_estimate(&Projected::new(operator, &coarse), &NormSettings::default())?;
+        let estimate = norm_estimate(
+            &Projected::new(operator, &coarse)?,
+            &NormSettings::default(),
+        )?;
         Ok(Self {
             coarse_scratch: factor.scratch(),
             work: SmalseWorkspace::new(operator, &coarse),

@@ -64,7 +64,7 @@ pub trait CoarseSpace {
     fn repair(&mut self, x: &mut [f64], e: &[f64]);
 
     /// What [`repair`](Self::repair) adds to `x` after its leading components were changed by `change` with all others left as
-    /// they are. A space that can do this cheaper than by a projection says so here.
+    /// they are. This default allocates; a space that iterates should have its own.
     fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
         let mut all = vec![0.0; x.len()];
         all[..change.len()].copy_from_slice(change);
@@ -128,4 +128,5 @@ impl CoarseSpace for NoCoarseSpace {
     fn project_transpose(&mut self, _g: &mut [f64]) {}
     fn multiplier(&mut self, _g: &[f64], _out: &mut [f64]) {}
     fn repair(&mut self, _x: &mut [f64], _e: &[f64]) {}
+    fn compensate(&mut self, _change: &[f64], _x: &mut [f64]) {}
 }

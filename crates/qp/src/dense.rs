@@ -18,7 +18,7 @@ impl DenseOperator {
     /// [`QpError`] for a wrong length, NaN, or entries that differ from their transposes by more than
     /// 1e-12 of the largest entry.
     pub fn new(n: usize, a: Vec<f64>) -> Result<Self, QpError> {
-        expect_length("the matrix", a.len(), n * n)?;
+        expect_length("the matrix", a.len(), n.saturating_mul(n))?;
         expect_finite("the matrix", &a)?;
         let largest = vector::max_abs(&a);
         for row in 0..n {
@@ -90,8 +90,14 @@ impl DenseEquality {
     /// [`QpError::DependentRow`] naming the first row that depends on those before it (a zero row
     /// included); wrong length; NaN.
     pub fn orthonormal(rows: usize, n: usize, g: &[f64]) -> Result<Self, QpError> {
-        expect_length("the equality matrix", g.len(), rows * n)?;
+        expect_length("the equality matrix", g.len(), rows.saturating_mul(n))?;
         expect_finite("the equality matrix", g)?;
+        if n < rows {
+            return Err(QpError::DependentRow {
+                row: n,
+                remainder: 0.0,
+            });
+        }
         let mut c = g.to_vec();
         let mut l = vec![0.0; rows * rows];
         for row in 0..rows {

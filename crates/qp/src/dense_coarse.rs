@@ -36,7 +36,7 @@ impl DenseCoarseSpace {
     /// # Errors
     /// [`QpError::Length`], [`QpError::Input`] for NaN, [`QpError::CoarseDeficient`] for dependent rows.
     pub fn new(rows: usize, dim: usize, g: Vec<f64>) -> Result<Self, QpError> {
-        expect_length("the matrix G", g.len(), rows * dim)?;
+        expect_length("the matrix G", g.len(), rows.saturating_mul(dim))?;
         crate::error::expect_finite("the matrix G", &g)?;
         let mut space = Self {
             rows,
@@ -96,6 +96,7 @@ impl CoarseSpace for DenseCoarseSpace {
 
     fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
         expect_length("the weights", w.len(), self.dim)?;
+        crate::error::expect_finite("the weights", w)?;
         if self.w == w {
             return Ok(false);
         }
@@ -147,6 +148,16 @@ impl CoarseSpace for DenseCoarseSpace {
         self.times(g, true, out);
         self.solve(out);
         out.iter_mut().for_each(|v| *v = -*v);
+    }
+
+    fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
+        let mut small = std::mem::take(&mut self.small);
+        for (i, s) in small.iter_mut().enumerate() {
+            *s = self.row(i).iter().zip(change).map(|(g, c)| g * c).sum();
+        }
+        self.solve(&mut small);
+        self.add_transpose(-1.0, &small, true, x);
+        self.small = small;
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {

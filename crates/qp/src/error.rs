@@ -42,6 +42,14 @@ pub enum SetError {
         /// Its radius.
         radius: f64,
     },
+    /// More components than can be counted.
+    #[error(
+        "segment {segment}: with it the set has more components than can be counted; make it shorter"
+    )]
+    TooLong {
+        /// Segment of the product.
+        segment: usize,
+    },
     /// Radii or bounds asked of a segment that has none.
     #[error("segment {segment} is missing or has no {wanted}; ask for a segment of that kind")]
     Kind {

@@ -33,7 +33,7 @@
 //! | `constrained` | components up to the last constrained one; only these differ between a vector and its part on the face |
 
 use crate::coarse_space::CoarseSpace;
-use crate::error::{QpError, expect_finite, expect_length};
+use crate::error::{QpError, SetError, expect_finite, expect_length};
 use crate::face_cg::{Limits, conjugate_gradients, estimate, precondition, start_residual};
 use crate::face_hold::{hold, set_face};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
@@ -109,6 +109,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
 
     let mut report = FaceReport::new();
     let constrained = constrained_length(set);
+    let shapes: Vec<(u8, usize)> = set.segments().iter().map(shape).collect();
     work.resize(constrained);
     work.coupling.start(set, constrained);
 
@@ -229,11 +230,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
                 continue;
             }
         }
-        if waited >= LONGER * settings.patience || held_up >= HELD_UP {
+        if waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
             report.status = Status::Stagnated;
             return Ok(report);
         }
-        let faces = if guard.is_some() { LONGER } else { 1 } * settings.max_faces;
+        let longer = if guard.is_some() { LONGER } else { 1 };
+        let faces = settings.max_faces.saturating_mul(longer);
         if report.faces >= faces || report.products() >= settings.max_products {
             report.status = Status::IterationLimit;
             return Ok(report);
@@ -292,6 +294,15 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         if call {
             hook(x, set);
             set.validate()?;
+            if !set.segments().iter().map(shape).eq(shapes.iter().copied()) {
+                // data of segments may change, not the segments
+                expect_length("the set after the hook", set.dim(), n)?;
+                return Err(SetError::Kind {
+                    segment: 0,
+                    wanted: "the segments it had before the hook",
+                }
+                .into());
+            }
             report.hook_calls += 1;
             // held components go with bounds that moved
             work.face
@@ -378,6 +389,16 @@ fn constrained_length(set: &ProductSet) -> usize {
         }
     }
     constrained
+}
+
+/// Kind and length of a segment.
+fn shape(segment: &Segment) -> (u8, usize) {
+    let kind = match segment {
+        Segment::Free(_) => 0,
+        Segment::Bounds { .. } => 1,
+        Segment::Discs { .. } => 2,
+    };
+    (kind, segment.len())
 }
 
 fn ratio(a: f64, b: f64) -> f64 {

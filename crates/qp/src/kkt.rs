@@ -8,7 +8,7 @@
 //! The loops here are written out again on purpose: nothing is shared with the solvers but the traits of
 //! the operators and the data of the set.
 
-use crate::error::{QpError, expect_length};
+use crate::error::{QpError, expect_finite, expect_length, expect_setting};
 use crate::operator::{Equality, SymmetricOperator};
 use crate::product::{ProductSet, Segment};
 
@@ -37,13 +37,18 @@ pub struct Kkt {
 
 impl Kkt {
     /// The largest of the relative figures: infeasibility and equality over `|x|`, stationarity over
-    /// `|b|` (a zero denominator counts as 1).
+    /// `|b|` (a zero denominator counts as 1). Not a number if one of them is none.
     #[must_use]
     pub fn relative(&self) -> f64 {
         let over = |v: f64, d: f64| if d > 0.0 { v / d } else { v };
-        over(self.infeasibility, self.x_norm)
-            .max(over(self.equality, self.x_norm))
-            .max(over(self.stationarity, self.b_norm))
+        // `f64::max` would hide what is not a number
+        let worse = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
+        [
+            over(self.equality, self.x_norm),
+            over(self.stationarity, self.b_norm),
+        ]
+        .into_iter()
+        .fold(over(self.infeasibility, self.x_norm), worse)
     }
 }
 
@@ -61,7 +66,8 @@ pub struct EqualityPart<'a, C> {
 /// [`check_with`] without equality constraints.
 ///
 /// # Errors
-/// [`QpError::Length`] for lengths that do not fit.
+/// [`QpError::Length`] for lengths that do not fit, [`QpError::Input`] for what is not finite, [`QpError::Setting`] for a scale
+/// that is not positive.
 pub fn check<A: SymmetricOperator>(
     a: &A,
     b: &[f64],
@@ -83,7 +89,8 @@ pub fn check<A: SymmetricOperator>(
 /// and turns gradients into steps. Allocates.
 ///
 /// # Errors
-/// [`QpError::Length`] for lengths that do not fit.
+/// [`QpError::Length`] for lengths that do not fit, [`QpError::Input`] for what is not finite, [`QpError::Setting`] for a scale
+/// that is not positive.
 pub fn check_with<A: SymmetricOperator, C: Equality>(
     a: &A,
     b: &[f64],
@@ -96,6 +103,9 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     expect_length("the right side b", b.len(), n)?;
     expect_length("the point x", x.len(), n)?;
     expect_length("the set", set.segments().iter().map(Segment::len).sum(), n)?;
+    expect_finite("the right side b", b)?;
+    expect_finite("the point x", x)?;
+    expect_setting("scale", scale, "(0, inf)", scale > 0.0 && scale.is_finite())?;
     let mut r = vec![0.0; n];
     a.apply(x, &mut r, &mut a.scratch());
     for i in 0..n {
@@ -106,6 +116,8 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
         expect_length("the right side e", e.len(), c.rows())?;
         expect_length("the multiplier", multiplier.len(), c.rows())?;
         expect_length("the equality matrix", c.dim(), n)?;
+        expect_finite("the right side e", e)?;
+        expect_finite("the multiplier", multiplier)?;
         let (mut cx, mut t) = (vec![0.0; c.rows()], vec![0.0; n]);
         let mut scratch = c.scratch();
         c.apply(x, &mut cx, &mut scratch);

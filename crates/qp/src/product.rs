@@ -143,7 +143,7 @@ impl ProductSet {
         offsets.push(0);
         for (i, s) in segments.iter().enumerate() {
             s.validate(i)?;
-            end += s.len();
+            end = usize::checked_add(end, s.len()).ok_or(SetError::TooLong { segment: i })?;
             offsets.push(end);
         }
         Ok(Self { segments, offsets })

@@ -1,5 +1,6 @@
 //! The projected operator `P A P` with `P = I - CᵀC`.
 
+use crate::error::{QpError, expect_length};
 use crate::operator::{Equality, SymmetricOperator};
 use crate::vector;
 
@@ -13,11 +14,13 @@ pub struct Projected<'a, A, C> {
 }
 
 impl<'a, A: SymmetricOperator, C: Equality> Projected<'a, A, C> {
-    /// `P A P`; the two operators must have the same dimension.
-    #[must_use]
-    pub fn new(a: &'a A, c: &'a C) -> Self {
-        debug_assert_eq!(a.dim(), c.dim());
-        Self { a, c }
+    /// `P A P`.
+    ///
+    /// # Errors
+    /// [`QpError::Length`] if the two operators differ in dimension.
+    pub fn new(a: &'a A, c: &'a C) -> Result<Self, QpError> {
+        expect_length("the equality matrix", c.dim(), a.dim())?;
+        Ok(Self { a, c })
     }
 }
 

@@ -169,6 +169,12 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
             products: products.total(),
         };
         let action = hook.after_step(&step, set);
+        if action == HookAction::SetChanged {
+            set.validate()?;
+            expect_length("the set after the hook", set.dim(), x.len())?;
+            vector::copy(x, &mut v.p);
+            set.project(x);
+        }
         // Step 2: done?
         if action == HookAction::Stop {
             break Status::Stopped;
@@ -220,9 +226,6 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
             before = None;
         }
         if action == HookAction::SetChanged {
-            set.validate()?;
-            vector::copy(x, &mut v.p);
-            set.project(x);
             if vector::distance_squared(x, &v.p) > 0.0 {
                 o.gradient(x, &mut v.g);
                 v.stale = 0;

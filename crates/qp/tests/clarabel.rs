@@ -160,9 +160,12 @@ fn equalities_agree_with_clarabel() {
         let (a, _) = common::spd(n, 1.5, &mut r);
         let (c, e) = common::equality(n, 1 + n / 6, &set, &mut r);
         let b = r.vector(n);
-        let norm = norm_estimate(&Projected::new(&a, &c), &Default::default())
-            .expect("norm")
-            .upper;
+        let norm = norm_estimate(
+            &Projected::new(&a, &c).expect("dimensions"),
+            &Default::default(),
+        )
+        .expect("norm")
+        .upper;
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; c.rows()]);
         let mut work = SmalseWorkspace::new(&a, &c);
         let settings = SmalseSettings::default()

@@ -372,3 +372,26 @@ fn a_face_that_slides_is_solved_to_any_accuracy() {
         assert!(report.products() <= 15 * report.faces, "seed {seed}");
     }
 }
+
+#[test]
+fn what_is_not_a_number_is_no_optimum() {
+    use signorini_qp::{DenseOperator, ProductSet, kkt};
+    let a = DenseOperator::new(1, vec![1.0]).expect("operator");
+    let set = ProductSet::free(1);
+    assert!(kkt::check(&a, &[1.0], &set, &[f64::NAN], 1.0).is_err());
+    assert!(kkt::check(&a, &[f64::INFINITY], &set, &[1.0], 1.0).is_err());
+    assert!(kkt::check(&a, &[1.0], &set, &[1.0], 0.0).is_err());
+    let mut found = kkt::check(&a, &[1.0], &set, &[1.0], 1.0).expect("figures");
+    assert_eq!(found.relative(), 0.0);
+    found.stationarity = f64::NAN;
+    assert!(found.relative().is_nan());
+}
+
+#[test]
+fn sizes_that_cannot_be_counted_are_refused() {
+    use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment};
+    assert!(DenseOperator::new(1 << 32, Vec::new()).is_err());
+    assert!(DenseEquality::orthonormal(1 << 20, 0, &[]).is_err());
+    let long = vec![Segment::Free(usize::MAX), Segment::Free(2)];
+    assert!(ProductSet::new(long).is_err());
+}

@@ -38,7 +38,11 @@ fn problem(seed: u64) -> Problem {
     let rows = if n == 0 { 0 } else { r.below(1 + n / 3) };
     let (c, e) = common::equality(n, rows, &set, &mut r);
     let b = r.vector(n);
-    let estimate = norm_estimate(&Projected::new(&a, &c), &Default::default()).expect("norm");
+    let estimate = norm_estimate(
+        &Projected::new(&a, &c).expect("dimensions"),
+        &Default::default(),
+    )
+    .expect("norm");
     Problem {
         a,
         b,
@@ -169,9 +173,12 @@ fn equalities_alone() {
     let mut set = ProductSet::free(n);
     let (c, e) = common::equality(n, 3, &set, &mut r);
     let b = r.vector(n);
-    let norm = norm_estimate(&Projected::new(&a, &c), &Default::default())
-        .expect("norm")
-        .upper;
+    let norm = norm_estimate(
+        &Projected::new(&a, &c).expect("dimensions"),
+        &Default::default(),
+    )
+    .expect("norm")
+    .upper;
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; 3]);
     let mut work = SmalseWorkspace::new(&a, &c);
     let report = smalse(
@@ -215,9 +222,12 @@ fn the_hook_may_change_radii() {
     let mut set = start();
     let (c, _) = common::equality(n, 2, &set, &mut r);
     let (b, e) = (r.vector(n), vec![0.1, -0.2]);
-    let norm = norm_estimate(&Projected::new(&a, &c), &Default::default())
-        .expect("norm")
-        .upper;
+    let norm = norm_estimate(
+        &Projected::new(&a, &c).expect("dimensions"),
+        &Default::default(),
+    )
+    .expect("norm")
+    .upper;
     let friction = 0.3;
     let mut changes = 0;
     let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
@@ -428,9 +438,12 @@ fn products_stay_within_a_band() {
         Segment::Free(n - 3 * m),
     ])
     .expect("set");
-    let norm = norm_estimate(&Projected::new(&a, &c), &Default::default())
-        .expect("norm")
-        .upper;
+    let norm = norm_estimate(
+        &Projected::new(&a, &c).expect("dimensions"),
+        &Default::default(),
+    )
+    .expect("norm")
+    .upper;
     let count = |penalty: f64, release: Release| {
         let mut set = set.clone();
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; rows]);
