@@ -126,6 +126,22 @@ pub enum ContactError {
         /// The gap.
         value: f64,
     },
+    /// A support holds a contact node inside the obstacle, where no contact force can stop it.
+    #[error(
+        "support at node {node}: at time {time} s it holds this contact node {depth} m inside the obstacle (normal displacement {displacement} m, gap {gap} m); shorten the motion of the support, correct the gap or the place of the obstacle, or leave the node free along the normal"
+    )]
+    SupportInObstacle {
+        /// Mesh node, the deepest one.
+        node: u32,
+        /// How far the node is inside the obstacle, m.
+        depth: f64,
+        /// Time in s, the first at which a node is inside.
+        time: f64,
+        /// Prescribed displacement along the normal into the obstacle, m.
+        displacement: f64,
+        /// Initial distance to the obstacle, m.
+        gap: f64,
+    },
     /// An obstacle has no usable normal.
     #[error("contact: the obstacle's normal {normal:?} must be finite and not zero")]
     ObstacleNormal {

@@ -76,6 +76,7 @@ mod certificate;
 mod clock;
 mod cone;
 mod contact_move;
+mod driven;
 mod error;
 mod estimate;
 mod face_solver;

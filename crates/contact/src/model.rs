@@ -1,9 +1,10 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
+use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::plan::Plan;
-use crate::scene::{Contact, ContactNormal, Gap, Scene};
+use crate::scene::{Contact, ContactNormal, Scene};
 use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface, assemble_load};
 use signorini_qp::{ProductSet, RadiusSlope, Segment};
@@ -135,6 +136,9 @@ impl Model {
             (Some(contact), Some(surface)) => Some(contact_nodes(contact, surface)?),
             _ => None,
         };
+        if let (Some(contact), Some(nodes), None) = (&scene.contact, &nodes, earlier) {
+            driven::check(&scene, contact, nodes, &supports, &motions)?;
+        }
         if let (Some(nodes), Some(kept)) = (&mut nodes, kept) {
             nodes.points.retain(|p| kept.binary_search(&p.node).is_ok());
         }
@@ -304,17 +308,7 @@ pub(crate) fn touch_points(
     let mut points = Vec::with_capacity(gluing.contact().len());
     for info in gluing.contact() {
         let position = scene.mesh.points()[info.node as usize];
-        let gap = match &contact.gap {
-            Gap::None => 0.0,
-            Gap::Constant(value) => *value,
-            Gap::Field(field) => field(position),
-        };
-        if !gap.is_finite() {
-            return Err(ContactError::Gap {
-                node: info.node,
-                value: gap,
-            });
-        }
+        let gap = contact.gap_at(info.node, position)?;
         let tangential = match info.tangential {
             TangentialRows::Disc { row, scale } => Tangential::Plane { row, scale },
             TangentialRows::Interval {

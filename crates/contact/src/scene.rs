@@ -66,6 +66,9 @@ impl Support {
     }
 
     /// The fixed directions follow `history(t) * displacement` (m) instead of staying at zero.
+    ///
+    /// A support that fixes the normal displacement of a contact node must keep it outside the obstacle at all time
+    /// levels: no contact force can stop it there, and the scene is refused.
     #[must_use]
     pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((vec![displacement], history));
@@ -240,6 +243,20 @@ impl Contact {
     #[must_use]
     pub fn friction(&self) -> &Friction {
         &self.friction
+    }
+
+    /// The gap at a node, m, checked.
+    pub(crate) fn gap_at(&self, node: u32, position: [f64; 3]) -> Result<f64, ContactError> {
+        let value = match &self.gap {
+            Gap::None => 0.0,
+            Gap::Constant(value) => *value,
+            Gap::Field(field) => field(position),
+        };
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(ContactError::Gap { node, value })
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::rows::{RemovalReason, RemovedRow, RowKind, RowRule};
-use crate::supports::{FixedNode, MergedSupports, dot};
+use crate::supports::{FixedNode, MergedSupports, Support, dot};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::Frame;
 
@@ -42,6 +42,35 @@ impl ContactNodes {
     }
 }
 
+/// A contact point whose normal displacement is fixed by supports, so that it has no normal row.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct HeldPoint {
+    /// Position in the list of contact points.
+    pub point: usize,
+    /// Mesh node.
+    pub node: u32,
+    /// `(case, relative normal displacement in metres)`: what supports prescribe for a factor of one, cases ascending.
+    pub normal: Vec<(u32, f64)>,
+}
+
+/// The contact points whose normal displacement supports fix, in the order of the points.
+///
+/// No contact force acts on them. Whether they stay outside the obstacle is to be judged by whoever knows the gap: the
+/// normal displacement at a time is the sum over cases of `factor(case, t) * value`.
+///
+/// # Errors
+/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong supports, unknown nodes, wrong frames.
+pub fn held_points(
+    contact: &ContactNodes,
+    supports: &[Support],
+    nodes: usize,
+) -> Result<Vec<HeldPoint>, TfetiError> {
+    let merged = MergedSupports::new(supports, nodes)?;
+    let all = contact_rows(contact, &merged, RowRule::Chained, nodes, |_| 1.0)?;
+    Ok(all.held)
+}
+
 /// One contact row: what it does to the mean displacements of the node and its opponent.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactRow {
@@ -65,10 +94,18 @@ pub(crate) struct PointRows {
     pub(crate) prescribed: Vec<(u32, [f64; 3])>,
 }
 
+/// Rows of all points, what was left out, and the points without normal row.
+#[derive(Debug, Default)]
+pub(crate) struct ContactRows {
+    pub(crate) rows: Vec<PointRows>,
+    pub(crate) removed: Vec<RemovedRow>,
+    pub(crate) held: Vec<HeldPoint>,
+}
+
 /// Below this share of a direction that can move, the direction counts as fixed.
 const FIXED: f64 = 1e-8;
 
-/// Rows of all points and what was left out. `squares(node)` is the sum of the squared
+/// Rows of all points. `squares(node)` is the sum of the squared
 /// shares of the copies of a node in their mean: one over their number where all count alike.
 pub(crate) fn contact_rows(
     contact: &ContactNodes,
@@ -76,10 +113,12 @@ pub(crate) fn contact_rows(
     rule: RowRule,
     nodes: usize,
     squares: impl Fn(u32) -> f64,
-) -> Result<(Vec<PointRows>, Vec<RemovedRow>), TfetiError> {
+) -> Result<ContactRows, TfetiError> {
     let mut used = vec![false; nodes];
-    let mut rows = Vec::with_capacity(contact.points.len());
-    let mut removed = Vec::new();
+    let mut out = ContactRows {
+        rows: Vec::with_capacity(contact.points.len()),
+        ..ContactRows::default()
+    };
     for (index, point) in contact.points.iter().enumerate() {
         for node in std::iter::once(point.node).chain(point.opponent) {
             match used.get_mut(node as usize) {
@@ -111,17 +150,9 @@ pub(crate) fn contact_rows(
             alpha,
             beta,
         );
-        reduce(
-            index,
-            point,
-            contact.friction,
-            &space,
-            scale,
-            &mut rows,
-            &mut removed,
-        );
+        reduce(index, point, contact.friction, &space, scale, &mut out);
     }
-    Ok((rows, removed))
+    Ok(out)
 }
 
 fn check_frame(index: usize, point: &ContactPoint) -> Result<(), TfetiError> {
@@ -207,8 +238,7 @@ fn reduce(
     friction: bool,
     space: &Space,
     scale: f64,
-    rows: &mut Vec<PointRows>,
-    removed: &mut Vec<RemovedRow>,
+    out: &mut ContactRows,
 ) {
     let normal = Vector3::from(point.frame.normal);
     let tangents = point.frame.tangents.map(Vector3::from);
@@ -222,7 +252,7 @@ fn reduce(
         .map(|k| eigen.eigenvectors.column(k).into())
         .collect();
     let mut drop = |kind, reason| {
-        removed.push(RemovedRow {
+        out.removed.push(RemovedRow {
             node: point.node,
             kind,
             reason,
@@ -244,6 +274,12 @@ fn reduce(
             drop(RowKind::Tangential, reason);
             drop(RowKind::Tangential, reason);
         }
+        let value = |(case, v): &(u32, [f64; 3])| (*case, dot(v, &point.frame.normal));
+        out.held.push(HeldPoint {
+            point: index,
+            node: point.node,
+            normal: space.prescribed.iter().map(value).collect(),
+        });
         return;
     }
     // With all three directions free the rows keep one common scale, so that the friction disc stays a disc.
@@ -267,7 +303,7 @@ fn reduce(
         }
     }
     let normal = space.unit_row(normal, scale, unit);
-    rows.push(PointRows {
+    out.rows.push(PointRows {
         point: index,
         normal,
         tangential,

@@ -126,7 +126,7 @@ impl Gluing {
         let none = ContactNodes::default();
         let contact_nodes = contact.unwrap_or(&none);
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
-        let (points, dropped) = contact_rows(contact_nodes, &merged, rule, nodes, squares)?;
+        let found = contact_rows(contact_nodes, &merged, rule, nodes, squares)?;
         let mut builder = Builder {
             decomposition,
             rule,
@@ -134,11 +134,12 @@ impl Gluing {
             shares: Vec::new(),
             gluing: Self::empty(rule, merged.cases, stiffness.is_plain()),
         };
-        builder.gluing.removed = dropped
+        builder.gluing.removed = found
+            .removed
             .into_iter()
             .chain(merged.removed.iter().copied())
             .collect();
-        builder.contact(contact_nodes, &points);
+        builder.contact(contact_nodes, &found.rows);
         builder.interface(nodes);
         builder.dirichlet(&merged);
         let mut gluing = builder.gluing;

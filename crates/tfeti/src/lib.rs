@@ -89,7 +89,7 @@ mod torn;
 pub use class::{Class, Classes, Sharing};
 pub use coarse::{Coarse, CoarseScratch};
 pub use coarse_factor::{CoarseFactor, OrthonormalCoarse};
-pub use contact::{ContactNodes, ContactPoint};
+pub use contact::{ContactNodes, ContactPoint, HeldPoint, held_points};
 pub use copy_stiffness::CopyStiffness;
 pub use cost::{InverseKind, InverseSettings};
 pub use dual::{DualOperator, DualScratch};

@@ -1,0 +1,65 @@
+//! Contact nodes whose normal displacement is prescribed by supports.
+//!
+//! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
+//! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
+
+use crate::error::ContactError;
+use crate::scene::{Contact, Scene};
+use signorini_fem_mesh::History;
+use signorini_tfeti::{ContactNodes, HeldPoint, Support, held_points};
+
+/// Depth above this share of the displacement or the gap counts.
+const RELATIVE: f64 = 1e-9;
+
+/// Depth below this share of the largest coordinate is rounding of a gap that was computed from coordinates.
+const ROUNDING: f64 = 1e-12;
+
+/// Refuses supports that hold contact nodes inside the obstacle at some time level.
+pub(crate) fn check(
+    scene: &Scene,
+    contact: &Contact,
+    nodes: &ContactNodes,
+    supports: &[Support],
+    motions: &[History],
+) -> Result<(), ContactError> {
+    let points = scene.mesh.points();
+    let held = held_points(nodes, supports, points.len())?
+        .into_iter()
+        .map(|point| {
+            let gap = contact.gap_at(point.node, points[point.node as usize])?;
+            Ok((point, gap))
+        })
+        .collect::<Result<Vec<(HeldPoint, f64)>, ContactError>>()?;
+    if held.is_empty() {
+        return Ok(());
+    }
+    let largest = |m: f64, v: &f64| m.max(v.abs());
+    let rounding = ROUNDING * points.iter().flatten().fold(0.0, largest);
+    let times = (0..scene.analysis.levels()).filter_map(|level| scene.analysis.time(level));
+    for time in times {
+        let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
+        let mut deepest: Option<(f64, u32, f64, f64)> = None;
+        for (point, gap) in &held {
+            let displacement: f64 = point
+                .normal
+                .iter()
+                .map(|&(case, value)| factors[case as usize] * value)
+                .sum();
+            let depth = displacement - gap;
+            let allowed = rounding + RELATIVE * gap.abs().max(displacement.abs());
+            if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
+                deepest = Some((depth, point.node, displacement, *gap));
+            }
+        }
+        if let Some((depth, node, displacement, gap)) = deepest {
+            return Err(ContactError::SupportInObstacle {
+                node,
+                depth,
+                time,
+                displacement,
+                gap,
+            });
+        }
+    }
+    Ok(())
+}

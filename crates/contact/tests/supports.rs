@@ -1,0 +1,134 @@
+//! Supports beside a contact surface: what cannot be meant is refused, what can be meant is accepted.
+
+mod common;
+
+use common::{block, steel};
+use signorini_contact::{
+    Analysis, Contact, ContactError, DifferenceFormula, Load, Scene, Screening, Settings,
+    Simulation, Support,
+};
+use signorini_fem_mesh::{History, brick};
+
+fn ramp() -> History {
+    History::ramp(1.0, 1.0).expect("ramp")
+}
+
+fn beam(support: Support, contact: Contact) -> Scene {
+    Scene::new(block([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+        .with_support(support)
+        .with_contact(contact)
+        .with_analysis(
+            Analysis::quasistatic(1.0, 4).with_formula(DifferenceFormula::BACKWARD_EULER),
+        )
+}
+
+fn floor(gap: f64) -> Contact {
+    Contact::rigid(brick::Z_MIN).with_gap(gap)
+}
+
+fn refused(scene: &Scene, settings: &Settings) -> ContactError {
+    match Simulation::new(scene.clone(), settings.clone()) {
+        Err(error) => error,
+        Ok(_) => panic!("accepted"),
+    }
+}
+
+/// A clamp that goes down 0.2 m above a floor 0.1 m below: at the third of four levels it is 0.05 m inside.
+#[test]
+fn a_support_that_pushes_a_contact_edge_through_the_floor_is_refused() {
+    let support = Support::fixed(brick::X_MIN).moved([0.0, 0.0, -0.2], ramp());
+    let scene = beam(support, floor(0.1));
+    for settings in [
+        Settings::default(),
+        Settings::default().with_screening(Screening::on()),
+    ] {
+        let error = refused(&scene, &settings);
+        let text = error.to_string();
+        let ContactError::SupportInObstacle {
+            node,
+            depth,
+            time,
+            displacement,
+            gap,
+        } = error
+        else {
+            panic!("{text}");
+        };
+        let place = scene.mesh().points()[node as usize];
+        assert_eq!((place[0], place[2]), (0.0, 0.0));
+        assert_eq!((time, gap), (0.75, 0.1));
+        assert!((depth - 0.05).abs() < 1e-15 && (displacement - 0.15).abs() < 1e-15);
+        assert!(
+            text.contains(&format!("node {node}")) && text.contains("0.75 s"),
+            "{text}"
+        );
+        assert!(text.contains("shorten the motion"), "{text}");
+    }
+}
+
+#[test]
+fn a_clamp_that_starts_inside_the_obstacle_is_refused() {
+    let up = [0.0, 0.0, 1.0];
+    let inside = [
+        (Contact::half_space(brick::Z_MIN, [0.0, 0.0, 0.1], up), 0.1),
+        (floor(-1e-3), 1e-3),
+    ];
+    for (contact, expected) in inside {
+        let scene = beam(Support::fixed(brick::X_MIN), contact).with_analysis(Analysis::statics());
+        match refused(&scene, &Settings::default()) {
+            ContactError::SupportInObstacle {
+                depth,
+                displacement,
+                ..
+            } => {
+                assert!((depth - expected).abs() < 1e-15, "{depth}");
+                assert_eq!(displacement, 0.0);
+            }
+            other => panic!("{other}"),
+        }
+    }
+}
+
+/// A support along the plane or away from it, and one that ends exactly on it, leave nothing to refuse.
+#[test]
+fn supports_that_touch_or_stay_outside_are_accepted() {
+    let down = |d: f64| Support::fixed(brick::X_MIN).moved([0.0, 0.0, -d], ramp());
+    let tilt = 0.37_f64;
+    // a plane through the lower edge of the clamp, far from the origin of its coordinates
+    let (up, along) = (
+        [-tilt.sin(), 0.0, tilt.cos()],
+        [tilt.cos(), 0.0, tilt.sin()],
+    );
+    let slope = Contact::half_space(brick::Z_MIN, along.map(|c| -70.0 * c), up);
+    for scene in [
+        beam(down(0.1), floor(0.1)),
+        beam(down(0.1), floor(0.1 * (1.0 - 1e-12))),
+        beam(down(-0.1), floor(0.0)),
+        beam(Support::fixed(brick::X_MIN), floor(0.0)),
+        beam(
+            Support::fixed(brick::X_MIN).moved([1e-3, 0.0, 0.0], ramp()),
+            floor(0.0),
+        ),
+        beam(Support::fixed(brick::X_MIN), slope),
+        // not fixed along the normal: the contact row holds it
+        beam(
+            Support::components(brick::X_MIN, [true, true, false]),
+            floor(-1e-3),
+        )
+        .with_support(Support::components(vec![62], [true, true, false])),
+    ] {
+        Simulation::new(
+            scene.with_load(Load::pressure(brick::Z_MAX, 1e5)),
+            Settings::default(),
+        )
+        .expect("accepted");
+    }
+    let error = refused(
+        &beam(down(0.1), floor(0.1 * (1.0 - 1e-8))),
+        &Settings::default(),
+    );
+    assert!(
+        matches!(error, ContactError::SupportInObstacle { time: 1.0, .. }),
+        "{error}"
+    );
+}
