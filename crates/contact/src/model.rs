@@ -254,18 +254,26 @@ impl Model {
     }
 }
 
+/// The supports, and the history of each displacement case. Equal histories are one case, so that equal displacements of
+/// a node that two supports share are recognised as equal.
 pub(crate) fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), ContactError> {
-    let mut motions = Vec::new();
+    let mut motions: Vec<History> = Vec::new();
     let mut out = Vec::with_capacity(scene.supports.len());
     for support in &scene.supports {
         let nodes = scene.nodes("support", &support.place)?;
         let mut one = tfeti::Support::partial(nodes, support.directions.clone());
         if let Some((values, history)) = &support.motion {
+            let case = match motions.iter().position(|known| known == history) {
+                Some(case) => case,
+                None => {
+                    motions.push(history.clone());
+                    motions.len() - 1
+                }
+            };
             one = one.with_motion(tfeti::Motion {
-                case: motions.len() as u32,
+                case: case as u32,
                 values: values.clone(),
             });
-            motions.push(history.clone());
         }
         out.push(one);
     }

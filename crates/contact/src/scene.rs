@@ -69,6 +69,9 @@ impl Support {
     ///
     /// A support that fixes the normal displacement of a contact node must keep it outside the obstacle at all time
     /// levels: no contact force can stop it there, and the scene is refused.
+    ///
+    /// Supports that share nodes must move them alike: equal displacements with equal histories, which are equal tables
+    /// or clones of one function.
     #[must_use]
     pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((vec![displacement], history));

@@ -8,6 +8,7 @@ use signorini_contact::{
     Simulation, Support,
 };
 use signorini_fem_mesh::{History, brick};
+use signorini_tfeti::TfetiError;
 
 fn ramp() -> History {
     History::ramp(1.0, 1.0).expect("ramp")
@@ -131,4 +132,70 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
         matches!(error, ContactError::SupportInObstacle { time: 1.0, .. }),
         "{error}"
     );
+}
+
+/// A block that is moved on two adjacent sides, the second with history `h`.
+fn two_sides(second: [f64; 3], first_history: &History, second_history: &History) -> Scene {
+    Scene::new(block([1.0; 3], [2, 2, 2]), steel())
+        .with_support(Support::fixed(brick::Z_MAX).moved([1e-3, 0.0, -1e-3], first_history.clone()))
+        .with_support(Support::fixed(brick::X_MAX).moved(second, second_history.clone()))
+        .with_load(Load::pressure(brick::X_MIN, 1e7))
+        .with_analysis(
+            Analysis::quasistatic(1.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER),
+        )
+}
+
+/// Supports with one motion agree at the nodes they share, and move them.
+#[test]
+fn adjacent_supports_with_one_motion_agree() {
+    let way = [1e-3, 0.0, -1e-3];
+    let function = History::function(|t| t * t);
+    for (first, second) in [
+        (ramp(), ramp()),
+        (function.clone(), function.clone()),
+        (History::constant(0.25), History::constant(0.25)),
+    ] {
+        let mut simulation = Simulation::new(two_sides(way, &first, &second), Settings::default())
+            .expect("accepted");
+        while !simulation.is_finished() {
+            let frame = simulation.step().expect("level");
+            let status = frame.report().status;
+            assert!(status.converged(), "{status:?}");
+            let factor = first.value(frame.time());
+            for tag in [brick::Z_MAX, brick::X_MAX] {
+                for node in frame.scene().mesh().nodes_on(tag) {
+                    let u = &frame.displacement()[3 * node as usize..][..3];
+                    for (u, d) in u.iter().zip(&way) {
+                        assert!((u - factor * d).abs() < 1e-12, "node {node}: {u}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn adjacent_supports_with_other_motions_are_contradictory() {
+    let way = [1e-3, 0.0, -1e-3];
+    let function = || History::function(|t| t);
+    let longer = History::ramp(2.0, 1.0).expect("ramp");
+    for scene in [
+        two_sides(way, &ramp(), &longer),
+        two_sides(way, &function(), &function()),
+        two_sides(way, &ramp(), &function()),
+        two_sides([1e-3, 0.0, 0.0], &ramp(), &ramp()),
+    ] {
+        let error = refused(&scene, &Settings::default());
+        assert!(
+            matches!(
+                error,
+                ContactError::Tfeti(TfetiError::ContradictorySupports {
+                    first: 0,
+                    second: 1,
+                    ..
+                })
+            ),
+            "{error}"
+        );
+    }
 }

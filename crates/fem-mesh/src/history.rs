@@ -129,6 +129,17 @@ impl History {
     }
 }
 
+/// Equal tables are equal; a function is equal to its clones only, since functions cannot be compared.
+impl PartialEq for History {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Kind::Table(a), Kind::Table(b)) => a == b,
+            (Kind::Function(a), Kind::Function(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
 impl std::fmt::Debug for History {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match &self.0 {
