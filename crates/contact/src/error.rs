@@ -148,6 +148,16 @@ pub enum ContactError {
         /// The normal.
         normal: [f64; 3],
     },
+    /// The direction into the obstacle points into the body.
+    #[error(
+        "contact: the direction into the obstacle {direction:?} is not on the outer side of the body at any of its {nodes} contact nodes, so the body would pass through; turn the direction round (a half-space needs the normal that points out of the obstacle, up for a floor)"
+    )]
+    ObstacleSide {
+        /// The direction given.
+        direction: [f64; 3],
+        /// Number of nodes of the contact surface.
+        nodes: usize,
+    },
     /// A load or support history gave a value that is not finite.
     #[error("{what} {index}: its history gives {value} at time {time} s")]
     HistoryValue {

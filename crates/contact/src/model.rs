@@ -67,6 +67,9 @@ pub(crate) const DISCS: usize = 1;
 /// Intervals of points with one tangential direction.
 pub(crate) const INTERVALS: usize = 2;
 
+/// Cosine to the outward normal below which a direction counts as along the surface.
+const ALONG: f64 = 1e-9;
+
 /// Everything that is computed once.
 #[derive(Debug)]
 pub(crate) struct Model {
@@ -287,7 +290,16 @@ pub(crate) fn contact_nodes(
     let fixed = match contact.normal {
         ContactNormal::Body => None,
         ContactNormal::Fixed(normal) => {
-            Some(Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal { normal })?)
+            let frame =
+                Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal { normal })?;
+            let outside = |own: &Frame| frame.normal_part(own.normal) > ALONG;
+            if !surface.frames().iter().any(outside) {
+                return Err(ContactError::ObstacleSide {
+                    direction: normal,
+                    nodes: surface.nodes().len(),
+                });
+            }
+            Some(frame)
         }
     };
     let point = |(&node, &frame): (&u32, &Frame)| ContactPoint {

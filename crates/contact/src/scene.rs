@@ -224,7 +224,7 @@ impl Contact {
         self
     }
 
-    /// One direction of contact for all nodes, pointing into the obstacle.
+    /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at least.
     #[must_use]
     pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
         self.normal = ContactNormal::Fixed(into_obstacle);

@@ -1,0 +1,61 @@
+//! The direction into the obstacle must point out of the body somewhere on the contact surface.
+
+mod common;
+
+use common::{block, steel};
+use signorini_contact::{
+    Contact, ContactError, Load, Scene, Screening, Settings, Simulation, Support,
+};
+use signorini_fem_mesh::brick;
+
+fn result(contact: Contact, settings: Settings) -> Result<Simulation, ContactError> {
+    let scene = Scene::new(block([1.0; 3], [2, 2, 2]), steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::pressure(brick::Z_MAX, 1e9))
+        .with_contact(contact);
+    Simulation::new(scene, settings)
+}
+
+#[test]
+fn a_direction_into_the_body_or_along_its_surface_is_refused() {
+    let floor = || Contact::rigid(brick::Z_MIN);
+    let plane = |up| Contact::half_space(brick::Z_MIN, [0.0; 3], up);
+    for (contact, expected) in [
+        (floor().with_normal([0.0, 0.0, 2.0]), [0.0, 0.0, 2.0]),
+        (floor().with_normal([1.0, 0.0, 0.5]), [1.0, 0.0, 0.5]),
+        (floor().with_normal([0.0, 1.0, 0.0]), [0.0, 1.0, 0.0]),
+        (plane([0.0, 0.0, -3.0]), [0.0, 0.0, 1.0]),
+    ] {
+        for screening in [Screening::Off, Screening::on()] {
+            let settings = Settings::default().with_screening(screening);
+            let error = result(contact.clone(), settings).expect_err("refused");
+            let text = error.to_string();
+            assert!(
+                text.starts_with("contact:") && text.contains("turn the direction round"),
+                "{text}"
+            );
+            match error {
+                ContactError::ObstacleSide { direction, nodes } => {
+                    assert_eq!(direction.map(|c| c + 0.0), expected);
+                    assert_eq!(nodes, 9);
+                }
+                other => panic!("{other}"),
+            }
+        }
+    }
+}
+
+/// One node on the outer side is enough: a wall under a body with two sides in contact.
+#[test]
+fn a_direction_out_of_the_body_somewhere_is_accepted() {
+    for contact in [
+        Contact::rigid(brick::Z_MIN).with_normal([0.0, 0.0, -1.0]),
+        Contact::rigid(brick::Z_MIN).with_normal([0.99, 0.0, -0.01]),
+        Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]),
+        Contact::rigid(brick::Z_MIN)
+            .and_tag(brick::X_MAX)
+            .with_normal([1.0, 0.0, 0.2]),
+    ] {
+        result(contact, Settings::default()).expect("accepted");
+    }
+}
