@@ -65,7 +65,11 @@ impl Cone {
             if length <= RESIDUAL {
                 return None;
             }
-            let (gain, column) = self.best(&r)?;
+            let Some((gain, column)) = self.best(&r) else {
+                // no contact force at all: every load separates
+                r.iter_mut().for_each(|v| *v /= length);
+                return Some(r);
+            };
             // no force needed: the residual separates, unless enormous forces could still close it
             if LEVERAGE * gain.max(0.0) <= length * length * self.largest {
                 r.iter_mut().for_each(|v| *v /= length);
@@ -80,7 +84,7 @@ impl Cone {
         None
     }
 
-    /// The generator with the largest product with `r`.
+    /// The generator with the largest product with `r`; `None` if there is none.
     fn best(&self, r: &[f64]) -> Option<(f64, Vec<f64>)> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let mut offer = |gain: f64, column: &dyn Fn() -> Vec<f64>| {
@@ -214,6 +218,12 @@ mod tests {
         }
         assert!(held(&mut cone, [1.0, 100.0, 0.0]));
         assert!(!held(&mut cone, [-1.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn without_contact_points_nothing_is_held() {
+        let mut cone = Cone::new(2, Vec::new());
+        assert_eq!(cone.separates(&[0.6, -0.8]), Some(vec![0.6, -0.8]));
     }
 
     #[test]

@@ -172,17 +172,30 @@ pub enum ContactError {
     },
     /// Loads that nothing can balance.
     #[error(
-        "level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push it with {force:e} (N or N m); add a support, contact or friction, or balance the loads"
+        "level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push along it with {force:.3e} N; add a support, contact or friction, or balance the loads"
     )]
     NotHeld {
         /// Time level, from 0.
         level: usize,
         /// The body (connected component of the mesh).
         body: usize,
-        /// The rigid motion, in words.
+        /// The rigid motion, in words: translation of the centre of the body, and rotation in metres at its radius.
         mode: String,
-        /// Generalised force along it.
+        /// Work of the loads per metre of the motion, N. For a translation it is the force along it, for a rotation the
+        /// moment divided by the radius.
         force: f64,
+    },
+    /// Loads in balance, or none, on a body that nothing holds.
+    #[error(
+        "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are held neither by supports nor by contact ({motions}); add supports that stop them"
+    )]
+    NotDetermined {
+        /// The first such body (connected component of the mesh).
+        body: usize,
+        /// Number of free rigid motions of all bodies.
+        count: usize,
+        /// The motions, in words.
+        motions: String,
     },
     /// A setting is out of range.
     #[error("setting {name} = {value} is outside its range {range}")]

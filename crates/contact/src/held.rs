@@ -10,7 +10,7 @@ use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::Model;
 use signorini_qp::vector;
-use signorini_tfeti::{FreeMotion, OrthonormalCoarse, RowWeights};
+use signorini_tfeti::{BodyMotion, FreeMotion, OrthonormalCoarse, RowWeights};
 
 /// Work on a free motion above this fraction of the size of the loads counts.
 const WORK: f64 = 1e-9;
@@ -62,12 +62,12 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
             // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
             let force = length * vector::dot(&motion, &b);
             let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-            let (body, mode) = describe(&motions, &motion);
+            let Described { body, mode, share } = describe(&motions, &motion);
             return Err(ContactError::NotHeld {
                 level,
                 body,
                 mode,
-                force,
+                force: force * share,
             });
         }
         approved = Some(b);
@@ -112,15 +112,25 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
     out
 }
 
-/// The body that moves most, and the motion in words.
-fn describe(motions: &[FreeMotion], factors: &[f64]) -> (usize, String) {
-    let mut bodies: Vec<(usize, [f64; 6])> = Vec::new();
+/// What a message says of a motion.
+struct Described {
+    /// The body that moves most.
+    body: usize,
+    /// Its motion in words, of length one.
+    mode: String,
+    /// Its share of the motion of all bodies, of length one. Supports and obstacles act on each body alone, so its part
+    /// is a free motion of its own, on which the loads do this share of the work per length.
+    share: f64,
+}
+
+fn describe(motions: &[FreeMotion], factors: &[f64]) -> Described {
+    let mut bodies: Vec<(BodyMotion, [f64; 6])> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
         for body in &motion.bodies {
-            let at = match bodies.iter().position(|b| b.0 == body.body) {
+            let at = match bodies.iter().position(|b| b.0.body == body.body) {
                 Some(at) => at,
                 None => {
-                    bodies.push((body.body, [0.0; 6]));
+                    bodies.push((*body, [0.0; 6]));
                     bodies.len() - 1
                 }
             };
@@ -131,31 +141,43 @@ fn describe(motions: &[FreeMotion], factors: &[f64]) -> (usize, String) {
         }
     }
     let size = |m: &[f64; 6]| m.iter().map(|v| v * v).sum::<f64>();
-    let Some(&(body, m)) = bodies
+    let Some((body, m)) = bodies
         .iter()
         .max_by(|a, b| size(&a.1).total_cmp(&size(&b.1)))
     else {
-        return (0, String::new());
+        return Described {
+            body: 0,
+            mode: "a rigid motion".to_owned(),
+            share: 1.0,
+        };
     };
-    let unit = 1.0 / size(&m).sqrt();
-    let m = m.map(|v| {
-        if (v * unit).abs() < 5e-4 {
-            0.0
-        } else {
-            v * unit
-        }
-    });
-    let mode = format!(
-        "its translation ({:.3}, {:.3}, {:.3}) with rotation ({:.3}, {:.3}, {:.3})",
-        m[0], m[1], m[2], m[3], m[4], m[5]
-    );
-    (body, mode)
+    let share = size(m).sqrt();
+    let rounded = |v: &f64| {
+        let v = v / share;
+        if v.abs() < 5e-4 { 0.0 } else { v }
+    };
+    let words = |name: &str, v: &[f64]| {
+        let v: Vec<f64> = v.iter().map(rounded).collect();
+        let moves = v.iter().any(|v| *v != 0.0);
+        moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
+    };
+    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {:.3e} m", body.radius));
+    let parts: Vec<String> = words("translation", &m[..3])
+        .into_iter()
+        .chain(turn)
+        .collect();
+    Described {
+        body: body.body,
+        mode: format!("its {}", parts.join(" with ")),
+        share,
+    }
 }
 
 /// The orthonormal coarse rows that the linear solver and the paper's methods need.
 ///
 /// # Errors
-/// [`ContactError::NotHeld`] if no row stops some rigid motion, even if the loads do not push along it.
+/// [`ContactError::NotDetermined`] if no row stops some rigid motion. [`check`] has found before that the loads do not
+/// push along it.
 pub(crate) fn orthonormal_coarse(model: &Model) -> Result<OrthonormalCoarse, ContactError> {
     let factor = model.tfeti.coarse_factor();
     factor.orthonormal().ok_or_else(|| {
@@ -165,11 +187,10 @@ pub(crate) fn orthonormal_coarse(model: &Model) -> Result<OrthonormalCoarse, Con
             .first()
             .and_then(|m| m.bodies.first())
             .map_or(0, |b| b.body);
-        ContactError::NotHeld {
-            level: 0,
+        ContactError::NotDetermined {
             body,
-            mode: words.join("; "),
-            force: 0.0,
+            count: motions.len(),
+            motions: words.join("; "),
         }
     })
 }

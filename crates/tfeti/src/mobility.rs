@@ -34,6 +34,8 @@ pub struct BodyMotion {
     pub translation: [f64; 3],
     /// Rotation about the centre, times the radius of the body.
     pub rotation: [f64; 3],
+    /// Radius of the body, m: root mean square distance of its nodes from the centre (mean over subdomains).
+    pub radius: f64,
 }
 
 impl fmt::Display for FreeMotion {
@@ -234,6 +236,7 @@ impl Mobility {
                 subdomain,
                 translation: [a, b, c],
                 rotation: [d, e, f],
+                radius: self.bodies[body].radius,
             }
         });
         let mut amplitudes = Vec::with_capacity(6 * self.body_of.len());
