@@ -391,11 +391,14 @@ impl Simulation {
         };
         let largest = |v: &Violation| v.reference;
         let state = Arc::make_mut(&mut self.state);
-        state.raise(Peak {
-            multipliers: vector::norm(&lambda),
-            force: largest(&self.certificate.sign),
-            displacement: largest(&self.certificate.gap),
-        });
+        if report.status.converged() {
+            // what did not converge is no scale for later levels
+            state.raise(Peak {
+                multipliers: vector::norm(&lambda),
+                force: largest(&self.certificate.sign),
+                displacement: largest(&self.certificate.gap),
+            });
+        }
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();
             report.counters.factorisations = std::mem::take(&mut self.rebuilt);

@@ -7,7 +7,7 @@ use signorini_contact::{
     Analysis, Contact, ContactError, DifferenceFormula, Load, Scene, Screening, Settings,
     Simulation, Support,
 };
-use signorini_fem_mesh::{History, brick};
+use signorini_fem_mesh::{History, LoadDensity, brick};
 use signorini_tfeti::TfetiError;
 
 fn ramp() -> History {
@@ -196,6 +196,61 @@ fn adjacent_supports_with_other_motions_are_contradictory() {
                 })
             ),
             "{error}"
+        );
+    }
+}
+
+/// Displacements alone: no loads, no contact, forces from gluing and supports only.
+#[test]
+fn a_body_stretched_by_its_supports_is_certified() {
+    let ramp = History::ramp(1.0, 1.0).expect("ramp");
+    let scene = Scene::new(block([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(Support::fixed(brick::X_MAX).moved([1e-3, 0.0, 0.0], ramp))
+        .with_boxes([3, 1, 1])
+        .with_analysis(Analysis::quasistatic(1.0, 2));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    while !simulation.is_finished() {
+        let frame = simulation.step().expect("step");
+        let (status, certificate) = (frame.report().status, frame.certificate());
+        assert!(status.converged(), "{status:?} {certificate:?}");
+        assert!(certificate.largest() < 1e-6, "{certificate:?}");
+    }
+}
+
+/// A thin plate glued to the ground: its torn subdomains bend by far more than the plate moves, and are no scale for it.
+#[test]
+fn the_certificate_of_a_thin_bedded_plate_tells_its_error() {
+    let scene = || {
+        Scene::new(block([1.0, 0.2, 0.003], [20, 4, 2]), steel())
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_load(Load::new(LoadDensity::traction_field(
+                brick::Z_MAX,
+                |x: [f64; 3], _| [0.0, 0.0, -1e6 * f64::sin(7.0 * x[0])],
+            )))
+            .with_boxes([5, 1, 1])
+            .with_analysis(Analysis::Static { time: 1.0 })
+    };
+    let solve = |tolerance: f64| {
+        let settings = Settings::default().with_tolerance(tolerance);
+        let mut simulation = Simulation::new(scene(), settings).expect("set-up");
+        let frame = simulation.step().expect("step");
+        (
+            frame.displacement(),
+            frame.certificate().largest(),
+            frame.report().status,
+        )
+    };
+    let (exact, _, _) = solve(1e-10);
+    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
+    let size = norm(&mut exact.iter().copied());
+    for tolerance in [1e-2, 1e-4, 1e-6] {
+        let (u, certificate, status) = solve(tolerance);
+        let off = norm(&mut u.iter().zip(&exact).map(|(a, b)| a - b)) / size;
+        println!("{tolerance:e}: error {off:.1e}, certificate {certificate:.1e}, {status:?}");
+        assert!(
+            !status.converged() || off < 30.0 * tolerance,
+            "{tolerance:e}: {off:e}"
         );
     }
 }

@@ -123,9 +123,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         work.face.free_all();
         set_face(coarse, set, work, &mut report, false)?;
         coarse.repair(x, problem.rhs);
-        hook(x, set);
-        set.validate()?;
-        report.hook_calls += 1;
+        follow(hook, x, set, &shapes, &mut report)?;
         set.project(x);
         work.face.guess(set, x);
         if let Err(QpError::CoarseDeficient { .. }) =
@@ -203,7 +201,26 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             work.face.blocked.clear();
             continue;
         }
-        if errors.0 <= limits.all && errors.1 <= limits.constrained && settled {
+        let small = errors.0 <= limits.all && errors.1 <= limits.constrained;
+        // held bounds are judged again by the residual of this face, which the last classification did not have
+        if small
+            && settled
+            && set.violation(x) <= limits.constrained
+            && !work.face.contradicted(
+                set,
+                x,
+                &work.residual,
+                problem.scale,
+                settings.natural_step,
+                limits.constrained,
+            )
+        {
+            if !followed {
+                // the set may never have followed the solution
+                follow(hook, x, set, &shapes, &mut report)?;
+                followed = true;
+                continue;
+            }
             report.status = Status::Converged;
             return Ok(report);
         }
@@ -292,18 +309,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         current = guard.is_none() || call;
         followed = call;
         if call {
-            hook(x, set);
-            set.validate()?;
-            if !set.segments().iter().map(shape).eq(shapes.iter().copied()) {
-                // data of segments may change, not the segments
-                expect_length("the set after the hook", set.dim(), n)?;
-                return Err(SetError::Kind {
-                    segment: 0,
-                    wanted: "the segments it had before the hook",
-                }
-                .into());
-            }
-            report.hook_calls += 1;
+            follow(hook, x, set, &shapes, &mut report)?;
             // held components go with bounds that moved
             work.face
                 .settle_bounds(set, x, &work.residual, problem.scale, natural);
@@ -389,6 +395,25 @@ fn constrained_length(set: &ProductSet) -> usize {
         }
     }
     constrained
+}
+
+/// Calls the hook, which may change the data of segments but not the segments.
+fn follow(
+    hook: &mut FaceHook<'_>,
+    x: &[f64],
+    set: &mut ProductSet,
+    shapes: &[(u8, usize)],
+    report: &mut FaceReport,
+) -> Result<(), QpError> {
+    hook(x, set);
+    report.hook_calls += 1;
+    set.validate()?;
+    if set.segments().iter().map(shape).eq(shapes.iter().copied()) {
+        Ok(())
+    } else {
+        let wanted = "the segments that it had before the hook";
+        Err(SetError::Kind { segment: 0, wanted }.into())
+    }
 }
 
 /// Kind and length of a segment.

@@ -4,6 +4,7 @@ use crate::coarse_space::CoarseSpace;
 use crate::error::QpError;
 use crate::face::FaceProblem;
 use crate::face_settings::{FaceReport, FaceWorkspace};
+use crate::face_state::{Face, visit};
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 
@@ -72,4 +73,30 @@ pub(crate) fn hold<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator>(
     }
     work.face.free_all();
     Ok(set_face(coarse, set, work, report, false)? || factored)
+}
+
+impl Face {
+    /// Whether the natural map would free a held bound, and move it by more than `limit`.
+    pub(crate) fn contradicted(
+        &self,
+        set: &ProductSet,
+        x: &[f64],
+        g: &[f64],
+        scale: &[f64],
+        step: f64,
+        limit: f64,
+    ) -> bool {
+        let mut found = false;
+        visit(
+            set,
+            |i, k, lower, upper| {
+                if !self.free[k] && lower < upper {
+                    let moved = (x[i] - step * scale[i] * g[i]).clamp(lower, upper);
+                    found |= (moved - x[i]).abs() > limit;
+                }
+            },
+            |_, _, _| {},
+        );
+        found
+    }
 }

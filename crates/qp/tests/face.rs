@@ -395,3 +395,82 @@ fn sizes_that_cannot_be_counted_are_refused() {
     let long = vec![Segment::Free(usize::MAX), Segment::Free(2)];
     assert!(ProductSet::new(long).is_err());
 }
+
+/// `x0 + x1 = 3` in the unit square: no point, and no convergence.
+#[test]
+fn a_point_outside_the_set_is_no_solution() {
+    use signorini_qp::DenseCoarseSpace;
+    let a = DenseOperator::new(2, vec![1.0, 0.0, 0.0, 1.0]).expect("operator");
+    let mut coarse = DenseCoarseSpace::new(1, 2, vec![1.0, 1.0]).expect("G");
+    let mut set = ProductSet::new(vec![Segment::bounds(vec![0.0; 2], vec![1.0; 2])]).expect("set");
+    let preconditioner = Identity(2);
+    let problem = FaceProblem {
+        operator: &a,
+        preconditioner: &preconditioner,
+        scale: &[1.0; 2],
+        linear: &[0.0; 2],
+        rhs: &[3.0],
+    };
+    let mut work = FaceWorkspace::new(&a, &preconditioner);
+    let (mut x, mut ax) = ([0.0; 2], [0.0; 2]);
+    let report = face(
+        &problem,
+        &mut coarse,
+        &mut set,
+        &mut x,
+        &mut ax,
+        false,
+        &FaceSettings::default(),
+        &mut work,
+        &mut |_, _| {},
+    );
+    assert!(report.is_err() || report.is_ok_and(|r| r.status != Status::Converged));
+}
+
+/// Radii that are 0.3 times other components, none of which is known at the start.
+#[test]
+fn the_set_has_followed_before_convergence() {
+    let a = DenseOperator::new(
+        9,
+        (0..81).map(|k| f64::from(u8::from(k % 10 == 0))).collect(),
+    )
+    .expect("operator");
+    let bounds = Segment::upper(vec![0.0; 3]);
+    let mut set = ProductSet::new(vec![bounds, Segment::discs(vec![0.0; 3])]).expect("set");
+    let preconditioner = Identity(9);
+    let linear = [-1.0, -2.0, -3.0, 1.0, 0.0, 2.0, 0.0, 3.0, 0.0];
+    let problem = FaceProblem {
+        operator: &a,
+        preconditioner: &preconditioner,
+        scale: &[1.0; 9],
+        linear: &linear,
+        rhs: &[],
+    };
+    let mut work = FaceWorkspace::new(&a, &preconditioner);
+    let (mut x, mut ax) = ([0.0; 9], [0.0; 9]);
+    let report = face(
+        &problem,
+        &mut NoCoarseSpace::new(9),
+        &mut set,
+        &mut x,
+        &mut ax,
+        false,
+        &FaceSettings::default(),
+        &mut work,
+        &mut |x, set| {
+            let radii = [0, 1, 2].map(|k: usize| 0.3 * x[k].abs());
+            *set = ProductSet::new(vec![
+                Segment::upper(vec![0.0; 3]),
+                Segment::discs(radii.to_vec()),
+            ])
+            .expect("set");
+        },
+    )
+    .expect("a report");
+    assert_eq!(report.status, Status::Converged);
+    assert!(report.hook_calls > 0);
+    for k in 0..3 {
+        let friction = x[3 + 2 * k].hypot(x[4 + 2 * k]);
+        assert!((friction - 0.3 * x[k].abs()).abs() < 1e-5, "{x:?}");
+    }
+}

@@ -104,7 +104,7 @@ impl Block {
             .with_gap(self.gap * self.metre)
             .with_friction(self.friction.clone());
         let mut setup = Setup {
-            scene: scene.with_contact(contact),
+            scene: scene.replace_contact(Some(contact)),
             settings: self.settings.clone(),
             loads: Vec::new(),
             start: None,

@@ -240,7 +240,7 @@ pub fn supports() -> Vec<Case> {
                     top: [1e9, -1e9, -3e9],
                     ..block
                 };
-                Ok(block.setup()?.map(|s| s.with_contact(contact)))
+                Ok(block.setup()?.map(|s| s.replace_contact(Some(contact))))
             },
         ),
         Case::new(

@@ -100,7 +100,9 @@ fn with_gap(gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Result<Set
     let contact = Contact::rigid(brick::Z_MIN)
         .with_gap_field(gap)
         .with_friction(block.friction.clone());
-    Ok(block.setup()?.map(|scene| scene.with_contact(contact)))
+    Ok(block
+        .setup()?
+        .map(|scene| scene.replace_contact(Some(contact))))
 }
 
 /// All nodes, one node, no node in contact.
