@@ -249,11 +249,6 @@ impl BoundaryMap {
         }
     }
 
-    /// `out = B y` on the contact rows only.
-    pub(crate) fn collect_contact(&self, y: &[f64], out: &mut [f64]) {
-        self.collect_rows(y, 0, &mut out[..self.interface.start]);
-    }
-
     /// Runs `task` on every lane with its work memory and its part of a boundary vector.
     pub(crate) fn for_lanes<W: Send>(
         &self,

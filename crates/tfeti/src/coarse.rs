@@ -142,13 +142,6 @@ impl Coarse {
         self.0.product_transpose(y, out, &mut s.motions);
     }
 
-    /// `out = G^T y` on the contact rows only (the leading part of `out`).
-    pub fn apply_transpose_contact(&self, y: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0;
-        data.motions(y, &mut s.motions);
-        data.map.contact_motions(&data.tables, &s.motions, out);
-    }
-
     /// Row `row` of `G^T`, for inspection: `(subdomain, six coefficients)`.
     #[must_use]
     pub fn column(&self, row: usize) -> Vec<(usize, [f64; 6])> {

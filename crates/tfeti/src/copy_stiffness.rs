@@ -1,8 +1,9 @@
 //! Stiffness of the copies of a node where a body has several materials.
 
 use crate::class::Classes;
+use crate::error::TfetiError;
 use crate::matrices::ClassBase;
-use signorini_fem_mesh::NodeCopy;
+use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 /// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
 ///
@@ -33,6 +34,29 @@ impl CopyStiffness {
             values.extend(&by_class[classes.place(s).0]);
         }
         Self { first, values }
+    }
+
+    /// Checks that it has a value for each copy in each subdomain, unless all copies of a node count alike.
+    pub(crate) fn check(&self, decomposition: &Decomposition) -> Result<(), TfetiError> {
+        let subdomains = decomposition.subdomains();
+        if self.is_plain() {
+            return Ok(());
+        }
+        for subdomain in 0..subdomains.len().max(self.first.len()) {
+            let expected = subdomains.get(subdomain).map_or(0, |s| s.nodes.len());
+            let found = self.first.get(subdomain).map_or(0, |first| {
+                let end = self.first.get(subdomain + 1).copied();
+                end.unwrap_or(self.values.len()) - first
+            });
+            if found != expected {
+                return Err(TfetiError::ForeignStiffness {
+                    subdomain,
+                    found,
+                    expected,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Whether all copies of a node count alike.

@@ -113,12 +113,6 @@ impl DualOperator {
             },
         );
     }
-
-    /// `B K+ B^T x` on the contact rows only (the leading part of `y`), for traces without a full product's gather.
-    pub fn apply_contact(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
-        self.boundary_product(x, s);
-        self.map.collect_contact(&s.boundary, y);
-    }
 }
 
 /// Floating-point operations in the dense or sparse kernels.

@@ -69,6 +69,18 @@ pub enum TfetiError {
         /// Number of nodes of the support.
         nodes: usize,
     },
+    /// A displacement case beyond the number of supports.
+    #[error(
+        "support {support}: displacement case {case} is too large for {supports} supports; number the cases from 0 without gaps"
+    )]
+    CaseNumber {
+        /// Position in the list of supports.
+        support: usize,
+        /// The number of the case.
+        case: u32,
+        /// Number of supports.
+        supports: usize,
+    },
     /// A prescribed displacement that is not finite.
     #[error("support {support}, node {node}: the prescribed displacement is not finite")]
     BadMotion {
@@ -110,14 +122,30 @@ pub enum TfetiError {
         /// Mesh node.
         node: u32,
     },
-    /// The decomposition was made for another mesh.
-    #[error("the decomposition has {found} {what}, the mesh has {expected}; decompose this mesh")]
+    /// The decomposition was made for another mesh, or a system of another decomposition is to be reused.
+    #[error(
+        "the decomposition has {found} {what}, the mesh or the system to reuse has {expected}; \
+         decompose this mesh, and reuse a system of this decomposition only"
+    )]
     DecompositionMismatch {
-        /// `"nodes"` or `"elements"`.
+        /// What was counted, for example `"nodes"` or `"elements"`.
         what: &'static str,
         /// Number in the decomposition.
         found: usize,
-        /// Number in the mesh.
+        /// Number in the mesh or in the system to reuse.
+        expected: usize,
+    },
+    /// The stiffness of the copies was taken from a system of another decomposition.
+    #[error(
+        "copy stiffness: it has {found} nodes in subdomain {subdomain}, the decomposition has {expected}; \
+         take it from a system of this decomposition"
+    )]
+    ForeignStiffness {
+        /// First subdomain that differs.
+        subdomain: usize,
+        /// Number of its nodes in the stiffness; 0 if it has no such subdomain.
+        found: usize,
+        /// Number of its nodes in the decomposition; 0 if it has no such subdomain.
         expected: usize,
     },
     /// A vector of the wrong length.
@@ -166,6 +194,15 @@ pub enum TfetiError {
     CoarseSingular {
         /// Elimination step at which the pivot vanished.
         pivot: usize,
+    },
+    /// The pattern of a subdomain factor cannot be analysed.
+    #[error(
+        "subdomain {subdomain}: the pattern of its factor cannot be analysed, it is too large to be stored or numbered; \
+         use smaller subdomains"
+    )]
+    FactorPattern {
+        /// Subdomain number.
+        subdomain: usize,
     },
     /// More unknowns than 32-bit tables can number.
     #[error("{what} = {count} is more than the 32-bit tables can number")]

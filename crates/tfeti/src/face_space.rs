@@ -59,7 +59,8 @@ impl FaceSpace {
     /// `metric` gives free rows another weight than 1, see [`Tfeti::row_weights`](crate::Tfeti::row_weights).
     ///
     /// # Errors
-    /// [`TfetiError`] if a factorisation fails.
+    /// [`TfetiError::Setting`] if there are fewer contact rows or a weight is not usable, [`TfetiError::Length`] if
+    /// `metric` is not as long as dual vectors, others if a factorisation fails.
     pub fn new(
         coarse: &Coarse,
         contact_rows: usize,
@@ -71,13 +72,32 @@ impl FaceSpace {
     /// The same with a given kind of factor.
     ///
     /// # Errors
-    /// [`TfetiError`] if a factorisation fails.
+    /// [`TfetiError::Setting`] if there are fewer contact rows or a weight is not usable, [`TfetiError::Length`] if
+    /// `metric` is not as long as dual vectors, others if a factorisation fails.
     pub fn with_factor(
         coarse: &Coarse,
         contact_rows: usize,
         metric: Option<Vec<f64>>,
         kind: FaceFactor,
     ) -> Result<Self, TfetiError> {
+        let most = coarse.0.gluing.ranges().contact().end;
+        if contact_rows > most {
+            return Err(TfetiError::Setting {
+                name: "contact rows of a face space",
+                value: contact_rows as f64,
+                range: "at most the contact rows of the system",
+            });
+        }
+        if let Some(metric) = &metric {
+            if metric.len() != coarse.dim() {
+                return Err(TfetiError::Length {
+                    what: "metric of a face space",
+                    expected: coarse.dim(),
+                    found: metric.len(),
+                });
+            }
+            RowWeights::diagonal(metric.clone()).validate(coarse.0.gluing.ranges())?;
+        }
         let mut weights = vec![1.0; coarse.dim()];
         weights[..contact_rows].fill(0.0);
         let split = match kind {
@@ -121,6 +141,9 @@ impl FaceSpace {
 
     /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e` does
     /// no work on them.
+    ///
+    /// # Panics
+    /// If `e` does not have one entry for each row of `G`.
     pub fn set_rhs(&mut self, e: &[f64]) {
         self.rhs.copy_from_slice(e);
     }
@@ -156,6 +179,7 @@ fn factor(
     fronts: &mut Fronts,
     contact: &mut ContactWeights,
 ) -> Result<CoarseFactor, TfetiError> {
+    weights.validate(coarse.0.gluing.ranges())?;
     let usable = |base: &&Arc<SplitBase>| {
         base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty()
     };
@@ -207,8 +231,19 @@ impl CoarseSpace for FaceSpace {
                 None => Ok(false),
             };
         }
+        let (expected, found) = (self.coarse.dim(), w.len());
+        if found != expected {
+            return Err(QpError::Length {
+                what: "the weights of a face",
+                found,
+                expected,
+            });
+        }
         let mut weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
-        let metric = |row: usize| self.metric.as_ref().map_or(1.0, |m| m[row]);
+        let metric = |row: usize| {
+            let metric = self.metric.as_ref();
+            metric.and_then(|m| m.get(row)).copied().unwrap_or(1.0)
+        };
         weights.lines.extend(lines.iter().map(|line| LineWeight {
             row: line.first,
             direction: line.direction,

@@ -113,7 +113,10 @@ pub struct Gluing {
 
 impl Gluing {
     /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
-    /// orthonormal contact and support rows, its default all alike.
+    /// orthonormal contact and support rows, its default all alike. `nodes` is the number of mesh nodes.
+    ///
+    /// # Errors
+    /// [`TfetiError`] for bad supports or contact points, and where `nodes` or `stiffness` belong to another decomposition.
     pub fn new(
         decomposition: &Decomposition,
         nodes: usize,
@@ -122,6 +125,14 @@ impl Gluing {
         rule: RowRule,
         stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
+        if decomposition.nodes() != nodes {
+            return Err(TfetiError::DecompositionMismatch {
+                what: "nodes",
+                found: decomposition.nodes(),
+                expected: nodes,
+            });
+        }
+        stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
         let none = ContactNodes::default();
         let contact_nodes = contact.unwrap_or(&none);

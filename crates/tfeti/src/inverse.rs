@@ -279,10 +279,7 @@ pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
 pub(crate) fn pattern_error(error: FactorError, subdomain: usize) -> TfetiError {
     match error {
         FactorError::Pivot(pivot) => TfetiError::Singular { subdomain, pivot },
-        FactorError::Pattern => TfetiError::TooLarge {
-            what: "entries of a subdomain factor",
-            count: subdomain,
-        },
+        FactorError::Pattern => TfetiError::FactorPattern { subdomain },
     }
 }
 
@@ -343,6 +340,12 @@ mod tests {
         x[7] = 1.0;
         inverse.apply(&kernel, &mut x, 1, &mut memory);
         assert!(close(&x, &block[7 * n..8 * n]));
+    }
+
+    #[test]
+    fn a_pattern_error_names_the_subdomain() {
+        let text = pattern_error(FactorError::Pattern, 7).to_string();
+        assert!(text.starts_with("subdomain 7: "), "{text}");
     }
 
     #[test]

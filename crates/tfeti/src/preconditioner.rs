@@ -83,7 +83,7 @@ impl Tfeti {
     /// costly as a product with `F`. Classes whose interior is not held by their boundary use the lumped block.
     ///
     /// # Errors
-    /// [`TfetiError::TooLarge`] if a factor cannot be numbered.
+    /// [`TfetiError::FactorPattern`] if a factor is too large.
     pub fn dirichlet(&self) -> Result<Preconditioner, TfetiError> {
         Preconditioner::new(self, Kind::Dirichlet)
     }

@@ -12,12 +12,15 @@ pub struct RowWeights {
     pub lines: Vec<LineWeight>,
 }
 
+/// Largest error of the length of a direction.
+const UNIT: f64 = 1e-10;
+
 /// Weight `weight * c c^T` on the rows `row, row + 1`, `c` the unit `direction`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineWeight {
     /// First of the two rows.
     pub row: usize,
-    /// Unit vector.
+    /// Unit vector, of length 1 within `1e-10`.
     pub direction: [f64; 2],
     /// Non-negative weight.
     pub weight: f64,
@@ -53,7 +56,7 @@ impl RowWeights {
         next > 0 && row - self.lines[next - 1].row < 2
     }
 
-    /// Checks lengths, signs and the order of the lines against the rows of `B`.
+    /// Checks lengths, signs, and order and directions of the lines against the rows of `B`.
     pub(crate) fn validate(&self, ranges: &RowRanges) -> Result<(), TfetiError> {
         let (expected, found) = (ranges.total(), self.diagonal.len());
         if found != expected {
@@ -78,7 +81,7 @@ impl RowWeights {
             });
         }
         for (k, line) in self.lines.iter().enumerate() {
-            let inside = line.row >= ranges.discs.start && line.row + 1 < ranges.discs.end;
+            let inside = ranges.discs.contains(&line.row) && line.row < ranges.discs.end - 1;
             let ordered = k == 0 || self.lines[k - 1].row + 1 < line.row;
             if !(inside && ordered) {
                 let range = "a pair of tangential rows, each pair once, ascending";
@@ -86,6 +89,17 @@ impl RowWeights {
                     name: "line row",
                     value: line.row as f64,
                     range,
+                });
+            }
+            let [c, d] = line.direction;
+            let length = c.hypot(d);
+            // False for NaN.
+            let unit = (length - 1.0).abs() <= UNIT;
+            if !unit {
+                return Err(TfetiError::Setting {
+                    name: "length of a line direction",
+                    value: length,
+                    range: "1 within 1e-10",
                 });
             }
         }

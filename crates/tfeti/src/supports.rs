@@ -32,7 +32,8 @@ impl Directions {
 /// fixed directions counts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// Number of the displacement case. Cases are numbered from 0; several supports may belong to one case.
+    /// Number of the displacement case. Cases are numbered from 0, below the number of supports; several supports may belong to
+    /// one case.
     pub case: u32,
     /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
     pub values: Vec<[f64; 3]>,
@@ -154,6 +155,13 @@ impl MergedSupports {
                         support: s,
                         found,
                         nodes,
+                    });
+                }
+                if motion.case as usize >= supports.len() {
+                    return Err(TfetiError::CaseNumber {
+                        support: s,
+                        case: motion.case,
+                        supports: supports.len(),
                     });
                 }
                 merged.cases = merged.cases.max(motion.case as usize + 1);

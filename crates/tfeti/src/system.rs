@@ -56,7 +56,7 @@ impl<'a> TfetiBuilder<'a> {
 
     /// Takes classes, stiffness and factors of the subdomains from another system of the same mesh, decomposition, materials and
     /// sharing: only the rows differ, and what depends on them is made anew. The result is that of a build from nothing, bit
-    /// for bit. Sizes are checked, values are not.
+    /// for bit. The sizes of the subdomains are checked, values are not.
     #[must_use]
     pub fn reuse(mut self, earlier: &'a Tfeti) -> Self {
         self.earlier = Some(earlier);
@@ -130,6 +130,10 @@ impl<'a> TfetiBuilder<'a> {
                     decomposition.torn_dofs(),
                     earlier.torn_dim(),
                 )?;
+                for (s, subdomain) in decomposition.subdomains().iter().enumerate() {
+                    let expected = earlier.torn_range(s).len() / 3;
+                    check("nodes in a subdomain", subdomain.nodes.len(), expected)?;
+                }
                 earlier.parts.classes.clone()
             }
             None => Arc::new(Classes::find(

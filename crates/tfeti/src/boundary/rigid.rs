@@ -189,18 +189,6 @@ impl BoundaryMap {
             others(contact, dirichlet);
         }
     }
-
-    /// Sets the contact rows (the leading part of `out`) to `B R alpha`.
-    pub(crate) fn contact_motions(
-        &self,
-        tables: &RigidTables,
-        motions: &[[f64; 6]],
-        out: &mut [f64],
-    ) {
-        let contact = &mut out[..self.interface.start];
-        let set = |_, x: &mut f64, v| *x = v;
-        tables.contact.motions(motions, &tables.arms, contact, &set);
-    }
 }
 
 /// `R^T` of a wrench in metres about the mean of the nodes.
