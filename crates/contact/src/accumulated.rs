@@ -72,6 +72,11 @@ impl AccumulatedError {
         }
     }
 
+    /// All that it holds, to be checked.
+    pub(crate) fn numbers(&self) -> [f64; 3] {
+        [self.sum, self.energy, self.elastic]
+    }
+
     /// What the last level may have of a total error `target` (relative, likely) if all levels are to have the same share of
     /// what is left; `left` levels of `levels` are to be solved, this one with them.
     pub(crate) fn share(

@@ -148,6 +148,16 @@ impl Default for Controller {
 }
 
 impl Controller {
+    /// All that it holds, to be checked.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let Discretisation {
+            relative, elastic, ..
+        } = self.discretisation;
+        [self.tolerance, relative, elastic]
+            .into_iter()
+            .chain(self.errors.numbers())
+    }
+
     /// Tolerance of the next solve.
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance

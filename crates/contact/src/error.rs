@@ -19,6 +19,16 @@ pub enum ContactError {
         /// Its value.
         value: f64,
     },
+    /// A slip rate of a table of coefficients is not finite or not larger than the one before.
+    #[error(
+        "friction: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is not finite or out of order; give finite slip rates, each larger than the one before"
+    )]
+    TableRate {
+        /// Place in the table, from 0.
+        entry: usize,
+        /// The slip rate, m/s.
+        rate: f64,
+    },
     /// A law gave an inadmissible coefficient.
     #[error(
         "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite and not negative"

@@ -182,15 +182,17 @@ impl Coefficient {
                 if points.is_empty() {
                     return bad("length of the table", 0.0);
                 }
-                for pair in points.windows(2) {
-                    if pair[0].0.partial_cmp(&pair[1].0) != Some(std::cmp::Ordering::Less) {
-                        return bad("slip rate out of order in the table", pair[1].0);
+                let mut before = f64::NEG_INFINITY;
+                for (entry, &(rate, value)) in points.iter().enumerate() {
+                    if !(rate.is_finite() && rate > before) {
+                        return Err(ContactError::TableRate { entry, rate });
                     }
+                    if !good(value) {
+                        return bad("coefficient in the table", value);
+                    }
+                    before = rate;
                 }
-                match points.iter().find(|p| !(p.0.is_finite() && good(p.1))) {
-                    Some(point) => bad("coefficient in the table", point.1),
-                    None => Ok(()),
-                }
+                Ok(())
             }
             _ => Ok(()),
         }
@@ -314,6 +316,18 @@ mod tests {
             Coefficient::Table(vec![(0.0, f64::INFINITY)]),
         ] {
             assert!(law.validate().is_err(), "{law:?}");
+        }
+        for (rates, at) in [
+            ([f64::NAN, 1.0, 2.0], 0),
+            ([0.0, f64::NAN, 2.0], 1),
+            ([0.0, 1.0, f64::INFINITY], 2),
+            ([0.0, 2.0, 1.0], 2),
+        ] {
+            let error = Coefficient::Table(rates.map(|r| (r, 0.3)).to_vec()).validate();
+            assert!(
+                matches!(error, Err(ContactError::TableRate { entry, .. }) if entry == at),
+                "{error:?}"
+            );
         }
         let field = Coefficient::field(|x| -x[0]);
         assert!(matches!(

@@ -61,7 +61,15 @@ impl Peak {
 
 /// Marks the format of stored states.
 #[cfg(feature = "checkpoint")]
-const MAGIC: u32 = 0x5349_4705;
+const MAGIC: u32 = 0x5349_4706;
+
+/// FNV-1a of 64 bits: any one changed byte changes it.
+#[cfg(feature = "checkpoint")]
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
 
 impl State {
     /// Levels solved so far.
@@ -89,30 +97,52 @@ impl State {
         8 * numbers + self.sliding.len() + self.active.len()
     }
 
-    /// Writes the state as bytes (postcard; feature `checkpoint`).
+    /// Writes the state as bytes (feature `checkpoint`): a number for the format (4 bytes) and a checksum of the rest (8 bytes,
+    /// FNV-1a), both little-endian, then the state in the encoding of postcard.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the encoder fails.
     #[cfg(feature = "checkpoint")]
     pub fn to_bytes(&self) -> Result<Vec<u8>, ContactError> {
-        postcard::to_stdvec(&(MAGIC, self)).map_err(|e| ContactError::Checkpoint {
-            reason: e.to_string(),
-        })
+        let payload = postcard::to_stdvec(self).map_err(|e| ContactError::Checkpoint {
+            reason: format!("the state cannot be encoded ({e})"),
+        })?;
+        let mut bytes = MAGIC.to_le_bytes().to_vec();
+        bytes.extend(checksum(&payload).to_le_bytes());
+        bytes.extend(payload);
+        Ok(bytes)
     }
 
-    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`).
+    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`). The checksum finds damage by chance; it is no
+    /// protection against bytes made on purpose.
     ///
     /// # Errors
-    /// [`ContactError::Checkpoint`] if the bytes are damaged or of another format.
+    /// [`ContactError::Checkpoint`] if the bytes are of another format, cut, changed, or followed by others.
     #[cfg(feature = "checkpoint")]
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
         let error = |reason: String| ContactError::Checkpoint { reason };
-        let (magic, state): (u32, Self) = postcard::from_bytes(bytes)
-            .map_err(|e| error(format!("the bytes are damaged ({e})")))?;
-        if magic == MAGIC {
+        let damaged = |how: &str| {
+            error(format!(
+                "the bytes are damaged ({how}); use an earlier checkpoint or start anew"
+            ))
+        };
+        let (magic, rest) = bytes.split_first_chunk().ok_or_else(|| damaged("cut"))?;
+        if u32::from_le_bytes(*magic) != MAGIC {
+            return Err(error(
+                "another format or version; read it with the version that wrote it, or start anew"
+                    .to_owned(),
+            ));
+        }
+        let (sum, payload) = rest.split_first_chunk().ok_or_else(|| damaged("cut"))?;
+        if u64::from_le_bytes(*sum) != checksum(payload) {
+            return Err(damaged("their checksum differs"));
+        }
+        let (state, rest) =
+            postcard::take_from_bytes(payload).map_err(|e| damaged(&e.to_string()))?;
+        if rest.is_empty() {
             Ok(state)
         } else {
-            Err(error("another format or version".to_owned()))
+            Err(damaged("more follows the state"))
         }
     }
 
@@ -313,6 +343,19 @@ impl State {
                 reason: "it contains NaN or infinity".to_owned(),
             });
         }
+        let sizes = [
+            self.peak.multipliers,
+            self.peak.force,
+            self.peak.displacement,
+        ];
+        let mut sizes = sizes.into_iter().chain(self.controller.numbers());
+        if !sizes.all(|v| v.is_finite() && v >= 0.0) {
+            return Err(ContactError::Checkpoint {
+                reason: "an error, a tolerance or a size of earlier levels in it is negative, NaN or infinite; use an \
+                         earlier checkpoint or start anew"
+                    .to_owned(),
+            });
+        }
         Ok(())
     }
 }
@@ -353,6 +396,28 @@ mod tests {
             Err(ContactError::Checkpoint { .. })
         ));
         assert!(State::from_bytes(&[0; 40]).is_err());
+        for at in 0..8 * bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[at / 8] ^= 1 << (at % 8);
+            assert!(State::from_bytes(&damaged).is_err(), "bit {at}");
+        }
+        // bytes behind it, first as they are, then with the checksum that belongs to them
+        let mut longer = bytes.clone();
+        longer.push(0);
+        let text = |bytes: &[u8]| State::from_bytes(bytes).unwrap_err().to_string();
+        assert!(text(&longer).contains("checksum"));
+        let sum = checksum(&longer[12..]);
+        longer[4..12].copy_from_slice(&sum.to_le_bytes());
+        assert!(text(&longer).contains("more follows"));
+    }
+
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn the_checksum_is_fnv_1a() {
+        // published values
+        assert_eq!(checksum(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(checksum(b"a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(checksum(b"foobar"), 0x8594_4171_f739_67e8);
     }
 
     #[test]
@@ -360,6 +425,14 @@ mod tests {
         let mut state = state();
         assert!(state.fits(2, 6, 1, 1).is_ok());
         assert!(state.fits(3, 6, 1, 1).is_err());
+        for bad in [-1.0, f64::NAN, f64::INFINITY] {
+            let mut other = state.clone();
+            other.peak.displacement = bad;
+            assert!(other.fits(2, 6, 1, 1).is_err(), "peak {bad}");
+            let mut other = state.clone();
+            other.controller.discretisation.relative = bad;
+            assert!(other.fits(2, 6, 1, 1).is_err(), "controller {bad}");
+        }
         state.advance(
             true,
             vec![f64::NAN, 0.0],

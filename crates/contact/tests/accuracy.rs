@@ -117,15 +117,23 @@ fn the_error_of_the_mesh_is_estimated_now_and_then() {
 
 #[test]
 fn a_target_out_of_reach_is_no_success() {
-    let settings = Settings::default().with_accuracy(Accuracy::Relative(1e-11));
-    let mut simulation =
-        Simulation::new(pressed(3, Friction::coulomb(0.3)), settings).expect("set-up");
-    let level = step(&mut simulation);
-    let report = level.report.accuracy.expect("a report");
-    assert_eq!(report.reached, level.report.status.converged());
-    if !report.reached {
-        assert_ne!(level.report.status, LevelStatus::Converged);
-    }
+    let solved = |accuracy| {
+        let settings = Settings::default().with_accuracy(accuracy);
+        let mut simulation =
+            Simulation::new(pressed(3, Friction::coulomb(0.3)), settings).expect("set-up");
+        let report = step(&mut simulation).report;
+        (report.status, report.accuracy.expect("a report"))
+    };
+    // the smallest relative target is within reach
+    let (status, report) = solved(Accuracy::Relative(1e-11));
+    assert!(report.reached && status == LevelStatus::Converged);
+    // far below the rounding of doubles
+    let (status, report) = solved(Accuracy::Balanced { fraction: 1e-20 });
+    assert!(!report.reached, "{report:?}");
+    assert!(report.algebraic.relative() > report.share);
+    assert_eq!(status, LevelStatus::Stagnated);
+    // what was reached is given all the same
+    assert!(report.algebraic.relative() < 1e-10, "{report:?}");
 }
 
 #[test]

@@ -30,7 +30,8 @@ pub enum AssemblyError {
         /// Number of nodes.
         nodes: usize,
     },
-    /// The subdomain names a tetrahedron or node that the mesh lacks.
+    /// The subdomain names a tetrahedron or node that the mesh lacks, or its tables of tetrahedra
+    /// differ in length.
     #[error("the subdomain does not belong to this mesh; decompose the mesh that is assembled")]
     ForeignSubdomain,
     /// A region has no material.
@@ -110,6 +111,9 @@ pub fn subdomain_stiffness(
     subdomain: &Subdomain,
     materials: &Materials,
 ) -> Result<CsMat<f64>, AssemblyError> {
+    if subdomain.elements.len() != subdomain.tets.len() {
+        return Err(AssemblyError::ForeignSubdomain);
+    }
     let region = |&tet: &u32| mesh.regions().get(tet as usize).copied();
     let regions: Option<Vec<u32>> = subdomain.elements.iter().map(region).collect();
     let regions = regions.ok_or(AssemblyError::ForeignSubdomain)?;

@@ -73,12 +73,21 @@ impl DiscretisationError {
     /// energy per volume times 2 E with E the bound of the material's tensor. Pa.
     ///
     /// # Errors
-    /// [`FieldError`] if a region has no material.
+    /// [`FieldError::Length`] if the mesh has another number of tetrahedra, [`FieldError`] if a region
+    /// has no material.
     pub fn stress_errors(
         &self,
         mesh: &TetMesh,
         materials: &Materials,
     ) -> Result<Vec<f64>, FieldError> {
+        let (given, expected) = (self.energies.len(), mesh.tets().len());
+        if given != expected {
+            return Err(FieldError::Length {
+                what: "table of tetrahedra",
+                given,
+                expected,
+            });
+        }
         let laws = materials.of_tets(mesh.regions())?;
         let value = |(tet, energy): (usize, &f64)| {
             (2.0 * laws[tet].bound() * energy / mesh.volume(tet)).sqrt()
@@ -279,7 +288,8 @@ impl StrainRecovery {
     /// Estimates the discretisation error of a displacement of the mesh for which this was made.
     ///
     /// # Errors
-    /// As [`discretisation_error`]; [`FieldError::Length`] also for another mesh.
+    /// As [`discretisation_error`]; [`FieldError::Length`] also for a mesh with another number of
+    /// tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
     pub fn error(
         &self,
         mesh: &TetMesh,

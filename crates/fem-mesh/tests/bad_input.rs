@@ -5,8 +5,8 @@ use signorini_fem_mesh::fields::{FieldError, nodal_average, strains, stresses};
 use signorini_fem_mesh::{
     AssemblyError, Decomposition, DecompositionError, Facet, FacetTag, History, HistoryError,
     Hooke, HookeError, LoadDensity, LoadError, MaterialError, Materials, MeshError, Surface,
-    SurfaceError, TetMesh, assemble_load, assemble_stiffness, drop_unused_nodes, orient_tets,
-    split_disconnected, subdomain_stiffness,
+    SurfaceError, TetMesh, assemble_load, assemble_stiffness, discretisation_error,
+    drop_unused_nodes, orient_tets, split_disconnected, subdomain_stiffness,
 };
 
 const UNIT: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -312,6 +312,17 @@ fn assembly_and_fields() {
     let small = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     let foreign = subdomain_stiffness(&small, &parts.subdomains()[0], &law.into());
     assert_eq!(foreign.unwrap_err(), AssemblyError::ForeignSubdomain);
+    let mut short = parts.subdomains()[0].clone();
+    short.elements.pop();
+    let error = subdomain_stiffness(&mesh, &short, &law.into()).unwrap_err();
+    assert_eq!(error, AssemblyError::ForeignSubdomain);
+    let rest = vec![0.0; 3 * mesh.points().len()];
+    let estimate = discretisation_error(&mesh, &law.into(), &rest).unwrap();
+    assert!(matches!(
+        estimate.stress_errors(&small, &law.into()),
+        Err(FieldError::Length { what: "table of tetrahedra", given, expected })
+            if (given, expected) == (mesh.tets().len(), small.tets().len())
+    ));
     let elsewhere = Materials::new(vec![(9, law)]).unwrap();
     let error = subdomain_stiffness(&mesh, &parts.subdomains()[0], &elsewhere).unwrap_err();
     assert!(matches!(

@@ -204,6 +204,26 @@ fn a_series_is_continued() {
 }
 
 #[test]
+fn a_step_whose_list_failed_is_written_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut series = PvdSeries::create(folder.path(), "block").unwrap();
+    series.write(0.0, &mesh(), &[], &[]).unwrap();
+    let before = std::fs::read_to_string(series.path()).unwrap();
+    // the list cannot be written, and the old one stays whole
+    let beside = folder.path().join("block.pvd.tmp");
+    std::fs::create_dir(&beside).unwrap();
+    let error = series.write(1.0, &mesh(), &[], &[]).unwrap_err();
+    assert!(matches!(error, OutputError::Io { path, .. } if path == beside));
+    assert_eq!(series.times(), [0.0]);
+    assert_eq!(std::fs::read_to_string(series.path()).unwrap(), before);
+    std::fs::remove_dir(&beside).unwrap();
+    series.write(1.0, &mesh(), &[], &[]).unwrap();
+    let opened = PvdSeries::open(folder.path(), "block").unwrap();
+    assert_eq!(opened.times(), [0.0, 1.0]);
+    assert!(!beside.exists() && !folder.path().join("block_0002.vtu").exists());
+}
+
+#[test]
 fn broken_lists_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let open = || PvdSeries::open(folder.path(), "block").unwrap_err();

@@ -21,8 +21,9 @@ const SAME_TIME: f64 = 1e-9;
 
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
 ///
-/// The list is written anew after every step, so that it is complete at any moment, also when the
-/// computation stops half way.
+/// The list is written anew after every step, first to `name.pvd.tmp`, which then takes its place. It
+/// is therefore complete at any moment, also when the computation stops half way. A step whose
+/// writing failed does not count and can be written again.
 ///
 /// A run that is resumed continues its series with [`PvdSeries::open`] or
 /// [`PvdSeries::open_before`]:
@@ -204,9 +205,8 @@ impl PvdSeries {
     }
 
     fn list(&mut self, time: f64) -> Result<(), OutputError> {
-        self.times.push(time);
         let mut xml = HEAD.join("\n");
-        for (step, time) in self.times.iter().enumerate() {
+        for (step, time) in self.times.iter().chain([&time]).enumerate() {
             let [before, after] = self.entry(step);
             // Writing to a string cannot fail.
             let _ = write!(xml, "\n{before}{time}{after}");
@@ -215,10 +215,16 @@ impl PvdSeries {
             let _ = write!(xml, "\n{line}");
         }
         xml.push('\n');
-        fs::write(self.path(), xml).map_err(|source| OutputError::Io {
-            path: self.path(),
+        let list = self.path();
+        let beside = self.folder.join(format!("{}.pvd.tmp", self.name));
+        let failed = |path: &Path, source| OutputError::Io {
+            path: path.to_path_buf(),
             source,
-        })
+        };
+        fs::write(&beside, xml).map_err(|source| failed(&beside, source))?;
+        fs::rename(&beside, &list).map_err(|source| failed(&list, source))?;
+        self.times.push(time);
+        Ok(())
     }
 
     /// The line of a step in the list, before and after its time.
