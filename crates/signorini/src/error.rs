@@ -23,6 +23,9 @@ pub enum Error {
     /// Table of materials.
     #[error(transparent)]
     Material(#[from] fem::MaterialError),
+    /// Stiffness.
+    #[error(transparent)]
+    Assembly(#[from] fem::AssemblyError),
     /// Decomposition.
     #[error(transparent)]
     Decomposition(#[from] fem::DecompositionError),
@@ -41,6 +44,9 @@ pub enum Error {
     /// Domain decomposition.
     #[error(transparent)]
     Tfeti(#[from] signorini_tfeti::TfetiError),
+    /// Convex sets.
+    #[error(transparent)]
+    Set(#[from] signorini_qp::SetError),
     /// Quadratic programming.
     #[error(transparent)]
     Qp(#[from] signorini_qp::QpError),
