@@ -11,8 +11,8 @@
 //! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
 //! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force times largest displacement |
 //!
-//! The largest displacement is that of the body or, if it is larger, a millionth of that of the torn subdomains under the loads
-//! alone (`B K+ f`), so that a body that does not move has a scale too.
+//! The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
+//! held, so that a body that does not move has a scale too.
 //!
 //! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
@@ -106,10 +106,6 @@ pub(crate) struct Measured<'a> {
     pub(crate) residual: &'a [f64],
 }
 
-/// Part of the displacement of the torn subdomains under the loads alone that a body at rest is measured against. Thin
-/// subdomains bend a hundred thousand times as much as the body that they are glued to.
-const AT_REST: f64 = 1e-6;
-
 /// Part of all forces that a vanishing contact force is measured against.
 const SMALL_PART: f64 = 1e-4;
 
@@ -120,9 +116,16 @@ pub(crate) fn certify(
     m: &Measured<'_>,
 ) -> Certificate {
     let ranges = model.tfeti.gluing().ranges();
-    // where nothing moves, what the loads would do to the torn subdomains is the scale
+    // where nothing moves, what its load would do to a single node is the scale
+    let copies = model
+        .copies
+        .get_or_init(|| model.tfeti.all_copy_stiffness());
+    let alone = m.force.chunks_exact(3).enumerate().map(|(k, f)| {
+        let largest = f.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        largest / copies.weight(k)
+    });
     let displacement = vector::max_abs(m.u)
-        .max(AT_REST * vector::max_abs(&level.load))
+        .max(alone.fold(0.0, f64::max))
         .max(REST * level.peak.displacement);
     let mut contact_force = 0.0_f64;
     let mut total = vector::dot(m.force, m.force);

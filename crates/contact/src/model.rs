@@ -87,6 +87,8 @@ pub(crate) struct Model {
     pub(crate) set: ProductSet,
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
     pub(crate) weights: std::sync::OnceLock<crate::algebraic::Weights>,
+    /// Stiffness of the copies of each node, made with the first certificate.
+    pub(crate) copies: std::sync::OnceLock<signorini_tfeti::CopyStiffness>,
     /// Patches of the estimate of the discretisation error; made when it is first asked for.
     pub(crate) recovery: std::sync::OnceLock<StrainRecovery>,
 }
@@ -191,6 +193,7 @@ impl Model {
             surface,
             set,
             weights: std::sync::OnceLock::new(),
+            copies: std::sync::OnceLock::new(),
             recovery: std::sync::OnceLock::new(),
         })
     }

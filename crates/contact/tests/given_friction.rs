@@ -258,7 +258,7 @@ fn a_zero_bound_is_no_friction() {
     let mut case = case(1);
     case.bound = 0.0;
     let with = common::solve(scene(&case), common::tight());
-    let bare = scene(&case).with_contact(Contact::rigid(brick::Z_MIN).with_gap(GAP));
+    let bare = scene(&case).replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(GAP)));
     let without = common::solve(bare, common::tight());
     assert_close(
         &with.displacement,

@@ -217,9 +217,14 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
         {
             if !followed {
                 // the set may never have followed the solution
+                work.face.radii(set, &mut work.before);
                 follow(hook, x, set, &shapes, &mut report)?;
                 followed = true;
-                continue;
+                if set.violation(x) > limits.constrained
+                    || work.face.grew(set, &work.before, limits.constrained)
+                {
+                    continue;
+                }
             }
             report.status = Status::Converged;
             return Ok(report);

@@ -4,7 +4,7 @@ use crate::coarse_space::CoarseSpace;
 use crate::error::QpError;
 use crate::face::FaceProblem;
 use crate::face_settings::{FaceReport, FaceWorkspace};
-use crate::face_state::{Face, visit};
+use crate::face_state::{Disc, Face, visit};
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 
@@ -96,6 +96,25 @@ impl Face {
                 }
             },
             |_, _, _| {},
+        );
+        found
+    }
+
+    /// Notes the radii of all discs in the first entries of `out`.
+    pub(crate) fn radii(&self, set: &ProductSet, out: &mut [f64]) {
+        visit(set, |_, _, _, _| {}, |_, k, radius| out[k] = radius);
+    }
+
+    /// Whether a disc on whose circle a point slides, or which holds it, has grown by more than `limit` since its radius was noted.
+    pub(crate) fn grew(&self, set: &ProductSet, radii: &[f64], limit: f64) -> bool {
+        let mut found = false;
+        visit(
+            set,
+            |_, _, _, _| {},
+            |_, k, radius| {
+                let bound = !matches!(self.discs[k], Disc::Free);
+                found |= bound && radius - radii[k] > limit;
+            },
         );
         found
     }

@@ -40,11 +40,8 @@ pub(super) fn four_sides(scene: Scene) -> Scene {
     let contact = [brick::Z_MAX, brick::Y_MIN, brick::Y_MAX]
         .into_iter()
         .fold(Contact::rigid(brick::Z_MIN), Contact::and_tag);
-    scene.with_contact(
-        contact
-            .with_gap(GAP)
-            .with_friction(friction.unwrap_or_default()),
-    )
+    let contact = contact.with_gap(GAP);
+    scene.replace_contact(Some(contact.with_friction(friction.unwrap_or_default())))
 }
 
 /// The brick of the benchmark with `cells` cells along the edge of each of three subdomains, and `steps` steps where it has a

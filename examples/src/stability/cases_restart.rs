@@ -27,9 +27,13 @@ fn resumed(scene: &Block, other: &Block, levels: usize) -> Result<Setup, Failure
     Ok(setup)
 }
 
-/// Reads and writes the numbers of a stored state: postcard keeps lengths as varints and numbers as eight bytes.
+/// Format number and checksum before the state.
+const HEAD: usize = 12;
+
+/// Reads and writes the numbers of a stored state: postcard keeps lengths as varints and numbers as eight bytes. The checksum
+/// (FNV-1a) is made to fit what was written.
 pub fn garble(bytes: &mut [u8], vectors: usize, mut value: impl FnMut(f64) -> f64) {
-    let mut at = 0;
+    let mut at = HEAD;
     let varint = |bytes: &[u8], at: &mut usize| {
         let (mut out, mut shift) = (0_usize, 0);
         while let Some(&byte) = bytes.get(*at) {
@@ -42,19 +46,27 @@ pub fn garble(bytes: &mut [u8], vectors: usize, mut value: impl FnMut(f64) -> f6
         }
         out
     };
-    let _magic = varint(bytes, &mut at);
     let _level = varint(bytes, &mut at);
     for _ in 0..vectors {
         let length = varint(bytes, &mut at);
         for _ in 0..length {
             let Some(chunk) = bytes.get_mut(at..at + 8) else {
-                return;
+                break;
             };
             let mut raw = [0; 8];
             raw.copy_from_slice(chunk);
             chunk.copy_from_slice(&value(f64::from_le_bytes(raw)).to_le_bytes());
             at += 8;
         }
+    }
+    let sum = bytes
+        .iter()
+        .skip(HEAD)
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+    if let Some(place) = bytes.get_mut(4..HEAD) {
+        place.copy_from_slice(&sum.to_le_bytes());
     }
 }
 
