@@ -3,8 +3,9 @@
 //! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
 //! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
+use crate::contact_surface::Contact;
 use crate::error::ContactError;
-use crate::scene::{Contact, Scene};
+use crate::scene::Scene;
 use signorini_fem_mesh::History;
 use signorini_tfeti::{ContactNodes, HeldPoint, Support, held_points};
 

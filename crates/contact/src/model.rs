@@ -1,10 +1,11 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
+use crate::contact_surface::{Contact, ContactNormal};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::plan::Plan;
-use crate::scene::{Contact, ContactNormal, Scene};
+use crate::scene::Scene;
 use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface, assemble_load};
 use signorini_qp::{ProductSet, RadiusSlope, Segment};

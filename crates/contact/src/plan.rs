@@ -1,10 +1,11 @@
 //! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
 
 use crate::clock::Analysis;
+use crate::contact_surface::Gap;
 use crate::error::ContactError;
 use crate::estimate::{Estimate, Sizes, stiffness_ratio};
 use crate::law::Friction;
-use crate::scene::{Gap, Scene};
+use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use signorini_fem_mesh::Decomposition;
 use signorini_tfeti::{Directions, Forecast, Rate};

@@ -1,12 +1,11 @@
 //! The scene: plain data that say what is to be simulated.
 
 use crate::clock::Analysis;
+use crate::contact_surface::{Contact, ContactNormal};
 use crate::error::ContactError;
-use crate::law::{Friction, PlaceField};
+use crate::law::Friction;
 use signorini_fem_mesh::{Decomposition, FacetTag, History, LoadDensity, Materials, TetMesh};
 use signorini_tfeti::Directions;
-use std::fmt;
-use std::sync::Arc;
 
 /// Where a support acts.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,140 +125,6 @@ impl Load {
     pub fn with_history(mut self, history: History) -> Self {
         self.history = history;
         self
-    }
-}
-
-/// The distance between the contact surface and the obstacle, measured along the outward normal.
-#[derive(Clone)]
-#[non_exhaustive]
-pub enum Gap {
-    /// The surfaces touch: the offset vector stays zero.
-    None,
-    /// The same distance at every node, m.
-    Constant(f64),
-    /// Distance at a point, m; negative values mean that the body starts inside the obstacle.
-    Field(PlaceField),
-}
-
-impl fmt::Debug for Gap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::None => f.write_str("None"),
-            Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
-            Self::Field(_) => f.write_str("Field(..)"),
-        }
-    }
-}
-
-/// Direction in which the contact surface meets the obstacle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum ContactNormal {
-    /// The body's own outward normal at each node.
-    Body,
-    /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
-    /// under a curved body.
-    Fixed([f64; 3]),
-}
-
-/// A part of the boundary that may touch a rigid obstacle.
-#[derive(Debug, Clone)]
-pub struct Contact {
-    pub(crate) tags: Vec<FacetTag>,
-    pub(crate) gap: Gap,
-    pub(crate) normal: ContactNormal,
-    pub(crate) friction: Friction,
-}
-
-impl Contact {
-    /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.
-    #[must_use]
-    pub fn rigid(tag: FacetTag) -> Self {
-        Self {
-            tags: vec![tag],
-            gap: Gap::None,
-            normal: ContactNormal::Body,
-            friction: Friction::None,
-        }
-    }
-
-    /// Contact with the half-space below a plane: gap and normal follow from the plane.
-    ///
-    /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor). A later
-    /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
-    #[must_use]
-    pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
-        let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let unit = outward.map(|c| c / length);
-        let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
-        Self::rigid(tag)
-            .with_normal(unit.map(|c| -c))
-            .with_gap_field(gap)
-    }
-
-    /// More facets of the same kind. Each node has one normal: where facets of two sides meet at an edge it is their mean, so
-    /// that nodes of an edge between floor and wall meet neither straight. Leave such edges out of one of the tags, or give
-    /// one direction for all by [`with_normal`](Self::with_normal).
-    #[must_use]
-    pub fn and_tag(mut self, tag: FacetTag) -> Self {
-        self.tags.push(tag);
-        self
-    }
-
-    /// A constant gap in m.
-    #[must_use]
-    pub fn with_gap(mut self, gap: f64) -> Self {
-        self.gap = if gap == 0.0 {
-            Gap::None
-        } else {
-            Gap::Constant(gap)
-        };
-        self
-    }
-
-    /// A gap in m that depends on the place.
-    #[must_use]
-    pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
-        self.gap = Gap::Field(Arc::new(gap));
-        self
-    }
-
-    /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at least.
-    #[must_use]
-    pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
-        self.normal = ContactNormal::Fixed(into_obstacle);
-        self
-    }
-
-    /// The friction law. A bound or coefficient that is zero everywhere is no friction.
-    #[must_use]
-    pub fn with_friction(mut self, friction: Friction) -> Self {
-        self.friction = if friction.is_zero() {
-            Friction::None
-        } else {
-            friction
-        };
-        self
-    }
-
-    /// The friction law.
-    #[must_use]
-    pub fn friction(&self) -> &Friction {
-        &self.friction
-    }
-
-    /// The gap at a node, m, checked.
-    pub(crate) fn gap_at(&self, node: u32, position: [f64; 3]) -> Result<f64, ContactError> {
-        let value = match &self.gap {
-            Gap::None => 0.0,
-            Gap::Constant(value) => *value,
-            Gap::Field(field) => field(position),
-        };
-        if value.is_finite() {
-            Ok(value)
-        } else {
-            Err(ContactError::Gap { node, value })
-        }
     }
 }
 

@@ -14,12 +14,13 @@
 //! Screening is not used where points act while open or are needed before anything is known: with given friction, whose
 //! bounds do not vanish with the pressure, and for bodies that contact must hold.
 
+use crate::contact_surface::Contact;
 use crate::error::ContactError;
 use crate::frame::{PointState, Rows, point_state};
 use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint, contact_nodes, supports, touch_points};
-use crate::scene::{Contact, Scene};
+use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::state::State;
 use signorini_tfeti::Gluing;
