@@ -88,10 +88,9 @@ impl AlgebraicError {
     }
 }
 
-/// Stiffnesses that weigh copies and contact nodes, computed once when first needed.
+/// Stiffnesses that weigh contact nodes, computed once when first needed.
 #[derive(Debug)]
 pub(crate) struct Weights {
-    copies: CopyStiffness,
     /// Stiffness in the direction of the contact rows, N/m, by row.
     rows: Vec<f64>,
     /// Made where a level needs it: solvers of the face method leave nothing to balance.
@@ -104,7 +103,6 @@ impl Weights {
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
         Self {
-            copies: model.tfeti.all_copy_stiffness(),
             rows,
             interior: OnceLock::new(),
         }
@@ -139,7 +137,7 @@ impl Solved<'_> {
     pub(crate) fn algebraic_error(&self) -> AlgebraicError {
         let model = self.model;
         let weights = model.weights.get_or_init(|| Weights::new(model));
-        let mut v = self.mean(&weights.copies);
+        let mut v = self.mean(model.copies());
         let pairs = || self.points.iter().zip(&model.points);
         let moved: Vec<Moved> = pairs()
             .map(|(point, touch)| {

@@ -117,9 +117,7 @@ pub(crate) fn certify(
 ) -> Certificate {
     let ranges = model.tfeti.gluing().ranges();
     // where nothing moves, what its load would do to a single node is the scale
-    let copies = model
-        .copies
-        .get_or_init(|| model.tfeti.all_copy_stiffness());
+    let copies = model.copies();
     let alone = m.force.chunks_exact(3).enumerate().map(|(k, f)| {
         let largest = f.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         largest / copies.weight(k)

@@ -89,12 +89,17 @@ pub(crate) struct Model {
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
     pub(crate) weights: std::sync::OnceLock<crate::algebraic::Weights>,
     /// Stiffness of the copies of each node, made with the first certificate.
-    pub(crate) copies: std::sync::OnceLock<signorini_tfeti::CopyStiffness>,
+    copies: std::sync::OnceLock<signorini_tfeti::CopyStiffness>,
     /// Patches of the estimate of the discretisation error; made when it is first asked for.
     pub(crate) recovery: std::sync::OnceLock<StrainRecovery>,
 }
 
 impl Model {
+    /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales certificates.
+    pub(crate) fn copies(&self) -> &signorini_tfeti::CopyStiffness {
+        self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
+    }
+
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
         Self::build(scene, settings, None, None)
     }
