@@ -93,7 +93,7 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
             continue;
         }
         if run.is_solved(&place) {
-            if run.set_agrees(&place)? {
+            if run.is_balanced(&place) && run.set_agrees(&place)? {
                 break Status::Converged;
             }
             continue;

@@ -143,7 +143,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
         let constrained = work.face_residual.len();
         work.face
             .add_curvature(self.set, &work.p, &mut work.ap[..constrained]);
-        self.coarse.project_transpose(&mut work.ap);
+        self.coarse.project_step_transpose(&mut work.ap);
         vector::axpy(length, &work.ap, &mut work.residual);
         let part = &mut work.ap[..constrained];
         work.face.restrict(self.set, part);

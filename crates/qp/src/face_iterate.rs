@@ -7,7 +7,7 @@ use crate::face_settings::{FaceReport, FaceWorkspace};
 use crate::guard::restore;
 use crate::natural_map::NaturalMap;
 use crate::operator::SymmetricOperator;
-use crate::product::ProductSet;
+use crate::product::{ProductSet, Segment};
 use crate::set::ConvexSet;
 use crate::vector;
 
@@ -127,7 +127,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
         face.restrict(set, part);
         face.damp(set, part);
         face.add_own(set, face_residual, part);
-        self.coarse.project(z);
+        self.coarse.project_step(z);
         self.report.preconditionings += 1;
         residual[..constrained].copy_from_slice(face_residual);
         let (rho, square) = vector::dot_and_square(residual, z);
@@ -176,4 +176,27 @@ pub(crate) fn natural_map<'a, A, M>(
         scale: problem.scale,
         step,
     }
+}
+
+/// Components up to the last constrained one.
+pub(crate) fn constrained_length(set: &ProductSet) -> usize {
+    let mut end = 0;
+    let mut constrained = 0;
+    for segment in set.segments() {
+        end += segment.len();
+        if !matches!(segment, Segment::Free(_)) {
+            constrained = end;
+        }
+    }
+    constrained
+}
+
+/// Kind and length of a segment.
+pub(crate) fn shape(segment: &Segment) -> (u8, usize) {
+    let kind = match segment {
+        Segment::Free(_) => 0,
+        Segment::Bounds { .. } => 1,
+        Segment::Discs { .. } => 2,
+    };
+    (kind, segment.len())
 }

@@ -4,13 +4,13 @@ use crate::coarse_space::CoarseSpace;
 use crate::error::{QpError, SetError};
 use crate::face::{FaceHook, FaceProblem};
 use crate::face_cg::Goal;
-use crate::face_iterate::{Iterate, Lengths, natural_map};
+use crate::face_iterate::{Iterate, Lengths, constrained_length, natural_map, shape};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
 use crate::face_view::{FacePreconditioner, FaceView};
 use crate::guard::{Guard, SHORT, SHORTEST, restore};
 use crate::natural_map::settle_bounds;
 use crate::operator::SymmetricOperator;
-use crate::product::{ProductSet, Segment};
+use crate::product::ProductSet;
 use crate::report::Status;
 use crate::set::ConvexSet;
 use crate::vector;
@@ -31,6 +31,9 @@ const VERY_SHORT: f64 = 16.0;
 
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
+
+/// Part of the limits that `x` may be off the equality, after steps that round.
+const DRIFT: f64 = 0.03;
 
 /// Decrease of the error, over the smallest so far, that counts as progress.
 const LESS: f64 = 0.9;
@@ -75,6 +78,8 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     begun: f64,
     /// Whether the hook was called at the last move.
     followed: bool,
+    /// Whether steps that round have been made since `G x = e` was restored.
+    drifted: bool,
     /// Once predictions ran in circles.
     guard: Option<Guard>,
 }
@@ -107,6 +112,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             left: Lengths::INFINITE,
             begun: f64::INFINITY,
             followed: false,
+            drifted: false,
             guard: None,
             at: Iterate {
                 problem,
@@ -233,6 +239,24 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             && !at.work.face.contradicted(at.set, at.x, &map, limit)
     }
 
+    /// Whether `G x = e` holds as exactly as `x` is known, after steps that round. It does afterwards.
+    pub(crate) fn is_balanced(&mut self, place: &Place) -> bool {
+        if !self.drifted {
+            return true;
+        }
+        self.drifted = false;
+        let at = &mut self.at;
+        at.mark();
+        at.coarse.repair(at.x, at.problem.rhs);
+        let drift = vector::distance(at.x, &at.work.t);
+        if drift <= DRIFT * place.limits.all {
+            vector::copy(&at.work.t, at.x);
+            return true;
+        }
+        at.correct();
+        false
+    }
+
     /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes.
     pub(crate) fn set_agrees(&mut self, place: &Place) -> Result<bool, QpError> {
         if self.followed {
@@ -320,6 +344,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         };
         self.begun = place.errors.constrained;
         let length = at.conjugate_gradients(place.rho, &goal)?;
+        self.drifted = at.coarse.rounds_steps();
         self.left = at.errors();
         at.report.faces += 1;
         if let Some(guard) = &mut self.guard
@@ -392,8 +417,9 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
                 return Ok(());
             }
         }
-        if self.jump > 0.0 {
+        if self.jump > 0.0 || joint && self.drifted {
             at.coarse.repair(at.x, at.problem.rhs);
+            self.drifted = false;
         }
         if self.jump > 0.0 || joint {
             at.correct();
@@ -456,29 +482,6 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         self.at.report.status = status;
         self.at.report
     }
-}
-
-/// Components up to the last constrained one.
-fn constrained_length(set: &ProductSet) -> usize {
-    let mut end = 0;
-    let mut constrained = 0;
-    for segment in set.segments() {
-        end += segment.len();
-        if !matches!(segment, Segment::Free(_)) {
-            constrained = end;
-        }
-    }
-    constrained
-}
-
-/// Kind and length of a segment.
-fn shape(segment: &Segment) -> (u8, usize) {
-    let kind = match segment {
-        Segment::Free(_) => 0,
-        Segment::Bounds { .. } => 1,
-        Segment::Discs { .. } => 2,
-    };
-    (kind, segment.len())
 }
 
 fn ratio(a: f64, b: f64) -> f64 {
