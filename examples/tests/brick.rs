@@ -139,6 +139,12 @@ fn the_json_has_the_names_of_the_benchmark_and_reads_back() {
     assert_eq!(value[0]["steps"][2]["step"], 3);
     assert_eq!(value[0]["steps"][2]["t"], 1.0);
     assert_eq!(value[1]["loading"], "c");
+    // only where it says something
+    assert!(value[0]["steps"][2].get("unconverged_history").is_none());
+    let mut step = back[0].steps[2].clone();
+    step.unconverged_history = Some(1);
+    let step = serde_json::to_value(&step).expect("json");
+    assert_eq!(step["unconverged_history"], 1);
 }
 
 #[test]
@@ -271,7 +277,12 @@ fn levels_that_did_not_converge_are_loud() {
         verdict,
         Err(ExampleError::NotConverged { levels: 1 })
     ));
-    assert!(signorini_examples::table::warnings(&[record]).contains("DID NOT REACH"));
+    record.steps[1].unconverged_history = Some(1);
+    let text = signorini_examples::table::warnings(&[record]);
+    assert!(
+        text.contains("DID NOT REACH") && text.contains("1 later steps depends on step 1"),
+        "{text}"
+    );
 }
 
 #[test]

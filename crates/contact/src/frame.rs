@@ -132,6 +132,24 @@ impl Frame<'_> {
         self.report
     }
 
+    /// The first earlier level that did not converge and on whose displacement this one depends
+    /// ([`LevelReport::unconverged_history`]).
+    #[must_use]
+    pub fn unconverged_history(&self) -> Option<usize> {
+        self.report.unconverged_history
+    }
+
+    /// For those who want every level to converge: an error unless this one did, and the earlier ones on whose displacement
+    /// it depends.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
+    pub fn require_converged(&self) -> Result<(), ContactError> {
+        let certificate = self.certificate.largest();
+        self.report
+            .require(self.level.index, self.level.time, certificate)
+    }
+
     /// How well all conditions hold.
     #[must_use]
     pub fn certificate(&self) -> &Certificate {

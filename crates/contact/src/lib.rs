@@ -63,6 +63,8 @@
 //! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads that
 //! nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a level then ends
 //! with another [`LevelStatus`] than `Converged`, its frame holds the last iterate, and the certificate says how far it is.
+//! Later levels whose friction depends on its slip name it ([`Frame::unconverged_history`]). Who wants errors instead asks
+//! [`RunReport::require_converged`] or [`Frame::require_converged`].
 //!
 //! # Threads
 //!
@@ -115,7 +117,7 @@ pub use law::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use model::TouchPoint;
 pub use observer::{Flow, Observer, Silent};
 pub use plan::{Effects, FrictionKind, Plan};
-pub use report::{Counters, LevelReport, LevelStatus};
+pub use report::{Counters, LevelFailure, LevelReport, LevelStatus, RunReport};
 pub use scene::{Cut, Load, Place, Scene, Support};
 pub use screening::Screening;
 pub use settings::{InnerAccuracy, Method, Preconditioner, Settings};

@@ -2,6 +2,7 @@
 
 mod resume;
 mod rounds;
+mod run;
 mod screened;
 
 use crate::accuracy::Controller;
@@ -11,7 +12,6 @@ use crate::face_solver::restore_sliding;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
-use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
 use crate::pool::on_pool;
 use crate::report::{Counters, LevelReport};
@@ -187,36 +187,12 @@ impl Simulation {
         let outcome = on_pool(busy, || self.solve_level(&state, index));
         drop(state);
         let (mut report, lambda, rows) = outcome?;
+        report.unconverged_history = self.state.unconverged_history();
         self.remember(lambda, rows, &mut report);
         self.total += report.counters;
         self.report = report;
         self.solved = true;
         Ok(self.present())
-    }
-
-    /// Solves all levels that are left, telling the observer; ends early if it says so.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
-    pub fn run(&mut self, observer: &mut (impl Observer + ?Sized)) -> Result<(), ContactError> {
-        let levels = self.model.scene.analysis.levels() - self.state.level();
-        observer.started(&self.model.plan, levels);
-        let (mut solved, mut failed) = (0, None);
-        while !self.is_finished() {
-            let frame = self.step()?;
-            solved += 1;
-            match observer.level(&frame) {
-                Flow::Continue => {}
-                Flow::Stop => break,
-                Flow::Fail(source) => {
-                    let level = frame.level();
-                    failed = Some(ContactError::Observer { level, source });
-                    break;
-                }
-            }
-        }
-        observer.finished(solved);
-        failed.map_or(Ok(()), Err)
     }
 
     /// The frame of the last level solved; `None` before the first one, after [`resume`](Self::resume) and after a step that
@@ -398,6 +374,8 @@ impl Simulation {
                 force: largest(&self.certificate.sign),
                 displacement: largest(&self.certificate.gap),
             });
+        } else if effects.history {
+            state.note_unconverged();
         }
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();

@@ -303,7 +303,8 @@ fn checkpoints_and_the_end() {
     };
     let set_up = |cells| Simulation::new(scene(cells), Settings::default()).expect("set-up");
     let mut first = set_up(3);
-    first.run(&mut Silent).expect("run");
+    let report = first.run(&mut Silent).expect("run");
+    assert!(report.converged());
     let state = first.state().clone();
     let mut short = Simulation::new(
         scene(3).with_analysis(Analysis::quasistatic(1.0, 2)),

@@ -54,11 +54,11 @@ fn an_observer_sees_every_level_and_may_stop_the_run() -> Result<(), Error> {
         stop_after: Some(2),
         ..Diary::default()
     };
-    simulation.run(&mut diary)?;
+    simulation.run(&mut diary)?.require_converged()?;
     assert_eq!((diary.started, diary.finished), (Some(4), Some(2)));
     assert!(!simulation.is_finished());
     let mut rest = Diary::default();
-    simulation.run(&mut rest)?;
+    simulation.run(&mut rest)?.require_converged()?;
     assert_eq!((rest.started, rest.finished), (Some(2), Some(2)));
     diary.times.extend(rest.times);
     assert_eq!(diary.times, [0.25, 0.5, 0.75, 1.0]);
@@ -70,10 +70,11 @@ fn an_observer_sees_every_level_and_may_stop_the_run() -> Result<(), Error> {
 fn a_closure_is_an_observer() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
     let mut touching = Vec::new();
-    simulation.run(&mut |frame: &Frame<'_>| {
+    let report = simulation.run(&mut |frame: &Frame<'_>| {
         touching.push(frame.summary().active);
         Flow::Continue
     })?;
+    assert!(report.converged() && report.levels == 3);
     assert_eq!(touching.len(), 3);
     assert!(touching.last() > Some(&0));
     Ok(())
@@ -99,7 +100,7 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
         "observer, after level 1: the disk is full"
     );
     assert_eq!(simulation.state().level(), 2);
-    simulation.run(&mut Silent)?;
+    simulation.run(&mut Silent)?.require_converged()?;
     assert!(simulation.is_finished());
     Ok(())
 }
