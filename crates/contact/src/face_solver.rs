@@ -11,7 +11,6 @@ use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
 use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
-use crate::state::REST;
 use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face};
 use signorini_tfeti::{DualOperator, FaceSpace};
 
@@ -85,7 +84,7 @@ impl FaceSolver {
             .settings
             .clone()
             .with_tolerance(settings.tolerance * SAFETY)
-            .with_least(REST * level.peak.multipliers);
+            .with_least(level.least());
         let coulomb = is_coulomb(model);
         if coulomb {
             let slopes = model.slip_slopes(|k| level.coefficients[k]);

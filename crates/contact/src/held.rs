@@ -8,9 +8,9 @@
 use crate::cone::{Cone, Generators};
 use crate::error::ContactError;
 use crate::law::Friction;
-use crate::model::Model;
+use crate::model::{Model, TouchPoint};
 use signorini_qp::vector;
-use signorini_tfeti::{BodyMotion, FreeMotion, OrthonormalCoarse, RowWeights};
+use signorini_tfeti::{FreeMotion, OrthonormalCoarse, RowWeights};
 
 /// Work on a free motion above this fraction of the size of the loads counts.
 const WORK: f64 = 1e-9;
@@ -24,15 +24,57 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
     if motions.is_empty() {
         return Ok(());
     }
-    let mut cone = Cone::new(motions.len(), generators(model, &motions));
+    // no row joins bodies: each is judged alone, by its own loads
+    let mut worst: Option<Escape> = None;
+    for body in 0..model.bodies.count() {
+        let own = |m: &&FreeMotion| m.bodies.iter().any(|b| b.body == body);
+        let motions: Vec<&FreeMotion> = motions.iter().filter(own).collect();
+        if motions.is_empty() {
+            continue;
+        }
+        if let Some(escape) = escapes(model, body, &motions) {
+            let first = |w: &Escape| {
+                escape.level < w.level || escape.level == w.level && escape.force > w.force
+            };
+            if worst.as_ref().is_none_or(first) {
+                worst = Some(escape);
+            }
+        }
+    }
+    worst.map_or(Ok(()), |w| {
+        Err(ContactError::NotHeld {
+            level: w.level,
+            body: w.body,
+            mode: w.mode,
+            force: w.force,
+        })
+    })
+}
+
+/// Where and how a body gets away.
+struct Escape {
+    level: usize,
+    body: usize,
+    mode: String,
+    force: f64,
+}
+
+/// The first level at which nothing can hold a body.
+fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Option<Escape> {
+    let mut cone = Cone::new(motions.len(), generators(model, body, motions));
+    let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
+    let largest = largest.fold(0.0, f64::max);
     let loads: Vec<(Vec<f64>, f64)> = model
         .loads
         .iter()
         .map(|response| {
-            let work = |m: &FreeMotion| vector::dot(&m.amplitudes, &response.coarse);
-            let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
-            let size = vector::norm(&response.coarse) * largest.fold(0.0, f64::max);
-            (motions.iter().map(work).collect(), size)
+            let work = |m: &&FreeMotion| vector::dot(&m.amplitudes, &response.coarse);
+            let subdomains = response.coarse.chunks_exact(6).enumerate();
+            let square: f64 = subdomains
+                .filter(|(s, _)| model.bodies.of_subdomain(*s) == body)
+                .map(|(_, e)| e.iter().map(|v| v * v).sum::<f64>())
+                .sum();
+            (motions.iter().map(work).collect(), square.sqrt() * largest)
         })
         .collect();
     let analysis = &model.scene.analysis;
@@ -62,8 +104,8 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
             // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
             let force = length * vector::dot(&motion, &b);
             let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-            let Described { body, mode, share } = describe(&motions, &motion);
-            return Err(ContactError::NotHeld {
+            let (mode, share) = describe(body, motions, &motion);
+            return Some(Escape {
                 level,
                 body,
                 mode,
@@ -72,11 +114,11 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
         }
         approved = Some(b);
     }
-    Ok(())
+    None
 }
 
 /// What a force at each touch point does on the motions: newtons to work.
-fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
+fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Vec<Generators> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
     let columns: Vec<Vec<f64>> = motions
@@ -89,8 +131,9 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
         .collect();
     let along =
         |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
-    let mut out = Vec::with_capacity(model.points.len());
-    for point in &model.points {
+    let mut out = Vec::new();
+    let own = |point: &&TouchPoint| model.bodies.of_row(point.row) == body;
+    for point in model.points.iter().filter(own) {
         let tangents = point
             .tangential
             .rows()
@@ -112,48 +155,22 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
     out
 }
 
-/// What a message says of a motion.
-struct Described {
-    /// The body that moves most.
-    body: usize,
-    /// Its motion in words, of length one.
-    mode: String,
-    /// Its share of the motion of all bodies, of length one. Supports and obstacles act on each body alone, so its part
-    /// is a free motion of its own, on which the loads do this share of the work per length.
-    share: f64,
-}
-
-fn describe(motions: &[FreeMotion], factors: &[f64]) -> Described {
-    let mut bodies: Vec<(BodyMotion, [f64; 6])> = Vec::new();
+/// What a message says of the motion of a body: the motion in words, of length one, and its length.
+fn describe(body: usize, motions: &[&FreeMotion], factors: &[f64]) -> (String, f64) {
+    let mut m = [0.0; 6];
+    let mut radius = 1.0;
     for (motion, factor) in motions.iter().zip(factors) {
-        for body in &motion.bodies {
-            let at = match bodies.iter().position(|b| b.0.body == body.body) {
-                Some(at) => at,
-                None => {
-                    bodies.push((*body, [0.0; 6]));
-                    bodies.len() - 1
-                }
-            };
+        for part in motion.bodies.iter().filter(|b| b.body == body) {
+            radius = part.radius;
             for c in 0..3 {
-                bodies[at].1[c] += factor * body.translation[c];
-                bodies[at].1[3 + c] += factor * body.rotation[c];
+                m[c] += factor * part.translation[c];
+                m[3 + c] += factor * part.rotation[c];
             }
         }
     }
-    let size = |m: &[f64; 6]| m.iter().map(|v| v * v).sum::<f64>();
-    let Some((body, m)) = bodies
-        .iter()
-        .max_by(|a, b| size(&a.1).total_cmp(&size(&b.1)))
-    else {
-        return Described {
-            body: 0,
-            mode: "a rigid motion".to_owned(),
-            share: 1.0,
-        };
-    };
-    let share = size(m).sqrt();
+    let length = vector::norm(&m);
     let rounded = |v: &f64| {
-        let v = v / share;
+        let v = v / length;
         if v.abs() < 5e-4 { 0.0 } else { v }
     };
     let words = |name: &str, v: &[f64]| {
@@ -161,16 +178,12 @@ fn describe(motions: &[FreeMotion], factors: &[f64]) -> Described {
         let moves = v.iter().any(|v| *v != 0.0);
         moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
     };
-    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {:.3e} m", body.radius));
+    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e} m"));
     let parts: Vec<String> = words("translation", &m[..3])
         .into_iter()
         .chain(turn)
         .collect();
-    Described {
-        body: body.body,
-        mode: format!("its {}", parts.join(" with ")),
-        share,
-    }
+    (format!("its {}", parts.join(" with ")), length)
 }
 
 /// The orthonormal coarse rows that the linear solver and the paper's methods need.

@@ -3,11 +3,11 @@
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
-use crate::state::{Peak, State};
+use crate::state::{Peak, REST, State};
 use signorini_qp::{ProductSet, vector};
 
 /// Data of one level; vectors are allocated once and rewritten.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Level {
     /// Position in the analysis, from 0.
     pub(crate) index: usize,
@@ -25,10 +25,12 @@ pub(crate) struct Level {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
-    /// Largest sizes at earlier levels.
-    pub(crate) peak: Peak,
+    /// Largest sizes of each body at earlier levels.
+    pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point; empty unless Coulomb.
     pub(crate) coefficients: Vec<f64>,
+    /// Unit of force of each point, N; empty if it is 1 N everywhere.
+    pub(crate) units: Vec<f64>,
 }
 
 impl Level {
@@ -47,7 +49,10 @@ impl Level {
         self.index = index;
         self.time = time;
         self.step = analysis.step(index);
-        self.peak = state.peak();
+        self.peaks.clear();
+        self.peaks.extend_from_slice(state.peaks());
+        self.peaks
+            .resize(model.bodies.count().max(1), Peak::default());
         self.factors.clear();
         self.factors.extend(
             model
@@ -96,6 +101,25 @@ impl Level {
         self.friction(model, state)
     }
 
+    /// What vanishing multipliers of a body are measured against, N.
+    pub(crate) fn rest(&self, body: usize) -> f64 {
+        self.peaks.get(body).map_or(0.0, |p| REST * p.multipliers)
+    }
+
+    /// What vanishing multipliers are measured against, N.
+    pub(crate) fn least(&self) -> f64 {
+        match self.peaks.len() {
+            0 | 1 => self.rest(0),
+            n => (0..n).map(|b| self.rest(b).powi(2)).sum::<f64>().sqrt(),
+        }
+    }
+
+    /// The torn load, N.
+    pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
+        let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
+        model.tfeti.combine_forces(&loads)
+    }
+
     fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
         let Friction::Coulomb(law) = model.friction() else {
             self.coefficients.clear();
@@ -129,7 +153,8 @@ impl Level {
                 for point in &model.points {
                     values.push(bound.stress(point.node, point.position)? * point.area);
                 }
-                model.set_slip_bounds(set, |k, _| values[k]);
+                let unit = |k: usize| self.units.get(k).copied().unwrap_or(1.0);
+                model.set_slip_bounds(set, |k, _| values[k] / unit(k));
             }
             Friction::Coulomb(_) => self.coulomb_bounds(model, lambda, set),
         }

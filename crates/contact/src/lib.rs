@@ -74,6 +74,7 @@
 pub mod accumulated;
 pub mod accuracy;
 pub mod algebraic;
+mod bodies;
 mod certificate;
 mod clock;
 mod cone;

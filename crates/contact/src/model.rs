@@ -1,5 +1,6 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
+use crate::bodies::Bodies;
 use crate::contact_surface::{Contact, ContactNormal};
 use crate::driven;
 use crate::error::ContactError;
@@ -78,6 +79,7 @@ pub(crate) struct Model {
     pub(crate) plan: Plan,
     pub(crate) decomposition: Decomposition,
     pub(crate) tfeti: Tfeti,
+    pub(crate) bodies: Bodies,
     pub(crate) loads: Vec<LoadResponse>,
     /// History of each displacement case.
     pub(crate) motions: Vec<History>,
@@ -192,6 +194,7 @@ impl Model {
             scene,
             plan,
             decomposition,
+            bodies: Bodies::new(&tfeti),
             tfeti,
             loads,
             motions,

@@ -6,7 +6,7 @@ mod run;
 mod screened;
 
 use crate::accuracy::Controller;
-use crate::certificate::{Certificate, Measured, Violation, certify};
+use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
@@ -47,7 +47,6 @@ use std::time::{Duration, Instant};
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
 pub struct Simulation {
     model: Model,
     settings: Settings,
@@ -59,6 +58,8 @@ pub struct Simulation {
     iterate: Iterate,
     report: LevelReport,
     certificate: Certificate,
+    /// Sizes of the bodies at the level.
+    sizes: Vec<Sizes>,
     points: Vec<PointState>,
     summary: ContactSummary,
     torn: Vec<f64>,
@@ -72,6 +73,17 @@ pub struct Simulation {
     all: Vec<PointState>,
     /// Factorisations of the set-ups that screening has made in this level.
     rebuilt: usize,
+}
+
+/// The plan and how far it is; not the megabytes of tables and vectors.
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Simulation")
+            .field("plan", &self.model.plan)
+            .field("levels_solved", &self.state.level())
+            .field("total", &self.total)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Simulation {
@@ -96,6 +108,7 @@ impl Simulation {
             iterate: Iterate::default(),
             report: LevelReport::new(),
             certificate: Certificate::default(),
+            sizes: Vec::new(),
             points: Vec::new(),
             summary: ContactSummary::default(),
             torn: Vec::new(),
@@ -262,7 +275,7 @@ impl Simulation {
             .solve(model, &self.level, settings, &mut self.iterate)?;
         // recovery: u, and from it everything that is reported
         let tfeti = &model.tfeti;
-        let force = combine(model, &self.level);
+        let force = self.level.forces(model);
         let lambda = std::mem::take(&mut self.iterate.lambda);
         self.torn = tfeti.recover(&force, &lambda, &self.iterate.alpha)?;
         report.counters.products += 1;
@@ -275,7 +288,8 @@ impl Simulation {
             force: &force,
             residual: &self.residual,
         };
-        self.certificate = certify(model, &self.level, &lambda, &measured);
+        self.sizes = sizes(model, &self.level, &lambda, &measured);
+        self.certificate = certify(model, &self.level, &lambda, &measured, &self.sizes);
         self.points = point_states(model, &self.level, &lambda, &rows);
         Ok((report, lambda, rows))
     }
@@ -365,15 +379,11 @@ impl Simulation {
         } else {
             (Vec::new(), Vec::new(), Vec::new())
         };
-        let largest = |v: &Violation| v.reference;
         let state = Arc::make_mut(&mut self.state);
         if report.status.converged() {
             // what did not converge is no scale for later levels
-            state.raise(Peak {
-                multipliers: vector::norm(&lambda),
-                force: largest(&self.certificate.sign),
-                displacement: largest(&self.certificate.gap),
-            });
+            let peaks: Vec<Peak> = self.sizes.iter().map(Sizes::peak).collect();
+            state.raise(&peaks);
         } else if effects.history {
             state.note_unconverged();
         }
@@ -404,9 +414,4 @@ impl Simulation {
             state.push_gaps(self.all.iter().map(|p| p.gap).collect());
         }
     }
-}
-
-fn combine(model: &Model, level: &Level) -> Vec<f64> {
-    let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();
-    model.tfeti.combine_forces(&loads)
 }

@@ -32,13 +32,13 @@ pub struct State {
     gaps: [Vec<f64>; 2],
     /// What chooses the tolerance of the next level by estimates of the error.
     controller: Controller,
-    /// Largest sizes at the levels so far.
-    peak: Peak,
+    /// Largest sizes of each body at the levels so far.
+    peaks: Vec<Peak>,
     /// With history: the first level that did not converge.
     unconverged: Option<usize>,
 }
 
-/// Largest sizes at earlier levels: what a level where forces and displacements vanish is measured against.
+/// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Peak {
@@ -152,7 +152,7 @@ impl State {
             active: Vec::new(),
             gaps: Default::default(),
             controller: self.controller,
-            peak: self.peak,
+            peaks: self.peaks.clone(),
             unconverged: self.unconverged,
         }
     }
@@ -250,14 +250,17 @@ impl State {
         self.level += 1;
     }
 
-    /// Largest sizes at the levels so far.
-    pub(crate) fn peak(&self) -> Peak {
-        self.peak
+    /// Largest sizes of each body at the levels so far; empty before the first.
+    pub(crate) fn peaks(&self) -> &[Peak] {
+        &self.peaks
     }
 
-    /// Takes the sizes of a level into account.
-    pub(crate) fn raise(&mut self, peak: Peak) {
-        self.peak = self.peak.or(peak);
+    /// Takes the sizes of a level into account, one a body.
+    pub(crate) fn raise(&mut self, sizes: &[Peak]) {
+        self.peaks.resize(sizes.len(), Peak::default());
+        for (peak, size) in self.peaks.iter_mut().zip(sizes) {
+            *peak = peak.or(*size);
+        }
     }
 
     /// Checks that the state fits a model of these sizes.
@@ -310,12 +313,9 @@ impl State {
                     .to_owned(),
             });
         }
-        let sizes = [
-            self.peak.multipliers,
-            self.peak.force,
-            self.peak.displacement,
-        ];
-        let mut sizes = sizes.into_iter().chain(self.controller.numbers());
+        let peaks = self.peaks.iter();
+        let sizes = peaks.flat_map(|p| [p.multipliers, p.force, p.displacement]);
+        let mut sizes = sizes.chain(self.controller.numbers());
         if !sizes.all(|v| v.is_finite() && v >= 0.0) {
             return Err(ContactError::Checkpoint {
                 reason: "an error, a tolerance or a size of earlier levels in it is negative, NaN or infinite; use an \
@@ -375,7 +375,10 @@ pub(crate) mod tests {
         assert!(state.fits(3, 6, 1, 1).is_err());
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             let mut other = state.clone();
-            other.peak.displacement = bad;
+            other.peaks = vec![Peak {
+                displacement: bad,
+                ..Peak::default()
+            }];
             assert!(other.fits(2, 6, 1, 1).is_err(), "peak {bad}");
             let mut other = state.clone();
             other.controller.discretisation.relative = bad;

@@ -109,6 +109,12 @@ impl Coarse {
         self.0.mobility.bodies()
     }
 
+    /// The body of each subdomain; bodies are numbered by their first subdomains.
+    #[must_use]
+    pub fn body_of(&self) -> &[u32] {
+        self.0.mobility.body_of()
+    }
+
     /// Numbers stored for a factor of `G W G^T`.
     #[must_use]
     pub fn factor_size(&self) -> usize {

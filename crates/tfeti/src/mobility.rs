@@ -65,6 +65,13 @@ pub(crate) struct Mobility {
     bases: Arc<Vec<ClassBase>>,
 }
 
+/// Bodies that rows join, and the Gram matrix of the actions of the rows on them.
+#[derive(Debug, Default)]
+struct Group {
+    bodies: Vec<usize>,
+    gram: DMatrix<f64>,
+}
+
 #[derive(Debug)]
 struct Body {
     centre: [f64; 3],
@@ -145,6 +152,11 @@ impl Mobility {
         self.bodies.len()
     }
 
+    /// Body of each subdomain.
+    pub(crate) fn body_of(&self) -> &[u32] {
+        &self.body_of
+    }
+
     fn kernel(&self, subdomain: usize) -> &Kernel {
         &self.bases[self.classes.place(subdomain).0].kernel
     }
@@ -191,38 +203,66 @@ impl Mobility {
     }
 
     /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.
+    ///
+    /// Bodies that no row joins are judged one by one: what is little is little for a body, not for all of them.
     pub(crate) fn free(
         &self,
         rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>,
     ) -> Vec<FreeMotion> {
-        let dim = 6 * self.bodies.len();
-        let mut gram = DMatrix::<f64>::zeros(dim, dim);
-        for row in rows {
-            for (a, ga) in &row {
-                for (b, gb) in &row {
+        let rows: Vec<_> = rows.collect();
+        let mut parent: Vec<u32> = (0..self.bodies.len() as u32).collect();
+        for row in &rows {
+            for pair in row.windows(2) {
+                let (a, b) = (
+                    root(&mut parent, pair[0].0 as u32),
+                    root(&mut parent, pair[1].0 as u32),
+                );
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut groups: Vec<Group> = (0..self.bodies.len()).map(|_| Group::default()).collect();
+        let mut place = vec![0; self.bodies.len()];
+        for body in 0..self.bodies.len() {
+            let group = &mut groups[root(&mut parent, body as u32) as usize];
+            place[body] = group.bodies.len();
+            group.bodies.push(body);
+        }
+        groups.retain(|group| !group.bodies.is_empty());
+        let mut of = vec![0; self.bodies.len()];
+        for (k, group) in groups.iter_mut().enumerate() {
+            let dim = 6 * group.bodies.len();
+            group.gram = DMatrix::zeros(dim, dim);
+            for &body in &group.bodies {
+                of[body] = k;
+            }
+        }
+        for row in &rows {
+            for (a, ga) in row {
+                let gram = &mut groups[of[*a]].gram;
+                for (b, gb) in row {
                     for i in 0..6 {
                         for j in 0..6 {
-                            gram[(6 * a + i, 6 * b + j)] += ga[i] * gb[j];
+                            gram[(6 * place[*a] + i, 6 * place[*b] + j)] += ga[i] * gb[j];
                         }
                     }
                 }
             }
         }
-        let eigen = SymmetricEigen::new(gram);
-        let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
-        (0..dim)
-            .filter(|&k| eigen.eigenvalues[k] <= FREE * largest)
-            .map(|k| {
-                self.describe(
-                    &eigen
-                        .eigenvectors
-                        .column(k)
-                        .iter()
-                        .copied()
-                        .collect::<Vec<_>>(),
-                )
-            })
-            .collect()
+        let mut out = Vec::new();
+        for group in groups {
+            let eigen = SymmetricEigen::new(group.gram);
+            let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
+            for (k, value) in eigen.eigenvalues.iter().enumerate() {
+                if *value <= FREE * largest {
+                    let mut vector = vec![0.0; 6 * self.bodies.len()];
+                    for (c, v) in eigen.eigenvectors.column(k).iter().enumerate() {
+                        vector[6 * group.bodies[c / 6] + c % 6] = *v;
+                    }
+                    out.push(self.describe(&vector));
+                }
+            }
+        }
+        out
     }
 
     fn describe(&self, vector: &[f64]) -> FreeMotion {
