@@ -190,6 +190,38 @@ fn files_and_pictures_are_written() {
 }
 
 #[test]
+fn reactions_are_printed_and_written_when_asked_for() {
+    let folder = tempfile::tempdir().expect("folder");
+    let body = |options: &str| {
+        let out = folder.path().join("out");
+        let line = format!(
+            "brick --n 1 --steps 2 --cells 3 --loading b --quiet {options} --out {}",
+            out.display()
+        );
+        let (_, text) = run(&line);
+        let piece = out.join("n1-b/body_0001.vtu");
+        let written = std::fs::read(&piece).expect("body");
+        let field = b"Name=\"reaction\"";
+        (text, written.windows(field.len()).any(|w| w == field))
+    };
+    let (text, written) = body("");
+    assert!(!text.contains("support 0") && !written);
+    let (text, written) = body("--reactions");
+    assert!(written);
+    let force = |name: &str| {
+        let line = text.lines().find(|l| l.trim_start().starts_with(name));
+        let numbers = line.expect("a line").trim_start()[name.len()..].split_whitespace();
+        let numbers: Vec<f64> = numbers.map(|v| v.parse().expect("a number")).collect();
+        assert_eq!(numbers.len(), 6, "{text}");
+        numbers
+    };
+    // 3 m2 under 3e9 Pa and 1 m2 under (9e8, 0, -15e8) Pa
+    let (loads, sum) = (force("loads"), force("sum"));
+    assert_eq!(loads[..3], [9e8, 0.0, -10.5e9]);
+    assert!(sum.iter().all(|v| v.abs() < 1e-5 * 10.5e9), "{text}");
+}
+
+#[test]
 fn a_perturbed_brick_shares_no_matrices() {
     let count = |perturb: bool| {
         let mut benchmark = Benchmark {

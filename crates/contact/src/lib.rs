@@ -12,6 +12,7 @@
 //! | to know the cost before any work | [`Plan`], [`Estimate`] |
 //! | the solver | [`Settings`]; [`Method::Face`] is the default, [`Method::paper`] the paper's |
 //! | forces, states, stress | [`Frame`], [`PointState`], [`ContactSummary`] |
+//! | reactions of supports | [`Frame::reactions`] |
 //! | to know whether a result is right | [`Certificate`]; [`LevelStatus`] says whether and why not |
 //! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`Frame::discretisation_error`], [`StepDoubling`] |
 //! | to stop where more accuracy is useless | [`Accuracy`] |
@@ -96,6 +97,7 @@ mod paper_solver;
 mod plan;
 mod pool;
 mod preconditioner;
+mod reactions;
 mod report;
 mod scene;
 mod screening;
@@ -118,6 +120,7 @@ pub use law::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use model::TouchPoint;
 pub use observer::{Flow, Observer, Silent};
 pub use plan::{Effects, FrictionKind, Plan};
+pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
 pub use report::{Counters, LevelFailure, LevelReport, LevelStatus, RunReport};
 pub use scene::{Cut, Load, Place, Scene, Support};
 pub use screening::Screening;

@@ -64,6 +64,8 @@ pub struct Simulation {
     summary: ContactSummary,
     torn: Vec<f64>,
     residual: Vec<f64>,
+    /// Multipliers of the support rows.
+    held: Vec<f64>,
     total: Counters,
     setup: Duration,
     controller: Controller,
@@ -113,6 +115,7 @@ impl Simulation {
             summary: ContactSummary::default(),
             torn: Vec::new(),
             residual: Vec::new(),
+            held: Vec::new(),
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
@@ -227,6 +230,7 @@ impl Simulation {
             points: self.states(),
             torn: &self.torn,
             residual: &self.residual,
+            held: &self.held,
         }
     }
 
@@ -291,6 +295,9 @@ impl Simulation {
         self.sizes = sizes(model, &self.level, &lambda, &measured);
         self.certificate = certify(model, &self.level, &lambda, &measured, &self.sizes);
         self.points = point_states(model, &self.level, &lambda, &rows);
+        let supports = tfeti.gluing().ranges().dirichlet.clone();
+        self.held.clear();
+        self.held.extend_from_slice(&lambda[supports]);
         Ok((report, lambda, rows))
     }
 
