@@ -85,6 +85,7 @@ mod driven;
 mod error;
 mod estimate;
 mod face_solver;
+mod fingerprint;
 pub mod fixed_point;
 mod frame;
 mod held;

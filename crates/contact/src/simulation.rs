@@ -9,6 +9,7 @@ use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
+use crate::fingerprint::Fingerprint;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
@@ -52,6 +53,8 @@ pub struct Simulation {
     settings: Settings,
     solver: Solver,
     state: Arc<State>,
+    /// What numbers of states refer to.
+    origin: Fingerprint,
     /// Whether the fields below belong to a level that was solved.
     solved: bool,
     level: Level,
@@ -103,8 +106,18 @@ impl Simulation {
         crate::law::check(&model)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
+        let origin = Fingerprint::new(
+            &model.scene.mesh,
+            &model.scene.analysis,
+            &model.decomposition,
+            model.tfeti.gluing(),
+            screen.as_ref().map_or(&model.points, Screen::points),
+        );
+        let mut state = State::default();
+        state.set_origin(origin);
         Ok(Self {
-            state: Arc::default(),
+            state: Arc::new(state),
+            origin,
             solved: false,
             level: Level::default(),
             iterate: Iterate::default(),
@@ -387,6 +400,7 @@ impl Simulation {
             (Vec::new(), Vec::new(), Vec::new())
         };
         let state = Arc::make_mut(&mut self.state);
+        state.pass(self.level.time);
         if report.status.converged() {
             // what did not converge is no scale for later levels
             let peaks: Vec<Peak> = self.sizes.iter().map(Sizes::peak).collect();

@@ -2,6 +2,7 @@
 
 use crate::accuracy::Controller;
 use crate::error::ContactError;
+use crate::fingerprint::Fingerprint;
 
 #[cfg(feature = "checkpoint")]
 mod bytes;
@@ -36,6 +37,8 @@ pub struct State {
     peaks: Vec<Peak>,
     /// With history: the first level that did not converge.
     unconverged: Option<usize>,
+    /// What its numbers refer to; `None` if that is not to be compared.
+    origin: Option<Fingerprint>,
 }
 
 /// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
@@ -95,6 +98,7 @@ impl State {
     pub(crate) fn rebased(&self, level: usize) -> Self {
         let mut state = self.clone();
         state.level = level;
+        state.origin = None;
         // a level here ends where its last part does there
         let parts = level.checked_div(self.level).unwrap_or(1);
         state.unconverged = self.unconverged.map(|k| (k + 1) * parts - 1);
@@ -107,6 +111,32 @@ impl State {
             pair[1] = Vec::new();
         }
         state
+    }
+
+    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume) then compares
+    /// sizes only. Multipliers are start values there; tangential displacements and slip rates are taken for those of the
+    /// points with the same numbers.
+    #[must_use]
+    pub fn without_origin(mut self) -> Self {
+        self.origin = None;
+        self
+    }
+
+    /// What its numbers refer to.
+    pub(crate) fn origin(&self) -> Option<Fingerprint> {
+        self.origin
+    }
+
+    /// Notes what its numbers refer to.
+    pub(crate) fn set_origin(&mut self, origin: Fingerprint) {
+        self.origin = Some(origin);
+    }
+
+    /// Notes the time of the level that is being taken over.
+    pub(crate) fn pass(&mut self, time: f64) {
+        if let Some(origin) = &mut self.origin {
+            origin.pass(time);
+        }
     }
 
     /// With screening, which points were in the dual problem at the last level; empty without.
@@ -154,6 +184,7 @@ impl State {
             controller: self.controller,
             peaks: self.peaks.clone(),
             unconverged: self.unconverged,
+            origin: self.origin,
         }
     }
 
