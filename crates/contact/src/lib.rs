@@ -97,6 +97,7 @@ mod observer;
 mod paper_solver;
 mod plan;
 mod pool;
+mod precheck;
 mod preconditioner;
 mod reactions;
 mod report;

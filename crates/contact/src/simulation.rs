@@ -103,7 +103,10 @@ impl Simulation {
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let (model, screen) = screened::set_up(scene, &settings)?;
-        crate::law::check(&model)?;
+        // with screening the model has no points yet
+        let points = screen.as_ref().map_or(&model.points[..], Screen::points);
+        let places = points.iter().map(|p| (p.node, p.position));
+        crate::law::check(model.friction(), places)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
         let origin = Fingerprint::new(
@@ -111,7 +114,7 @@ impl Simulation {
             &model.scene.analysis,
             &model.decomposition,
             model.tfeti.gluing(),
-            screen.as_ref().map_or(&model.points, Screen::points),
+            points,
         );
         let mut state = State::default();
         state.set_origin(origin);

@@ -42,7 +42,20 @@ fn attempt(scene: Scene) -> Checked {
 }
 
 fn attempt_with(scene: Scene, settings: Settings) -> Checked {
-    Simulation::new(scene, settings)?.step()?;
+    let plan = Plan::new(&scene, &settings).map(|_| ());
+    let set_up = Simulation::new(scene, settings);
+    // a plan says the same, but for what only a set-up can know
+    match &set_up {
+        Err(ContactError::NotHeld { .. } | ContactError::NotDetermined { .. }) => {
+            plan.expect("nothing that a plan sees");
+        }
+        Err(error) => assert_eq!(
+            plan.expect_err("refused by the plan").to_string(),
+            error.to_string()
+        ),
+        Ok(_) => plan.expect("accepted by the plan"),
+    }
+    set_up?.step()?;
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! A program that knows the facade only.
 
+use signorini::contact::{ContactNormal, Cut};
 use signorini::prelude::*;
 
 fn scene(levels: usize) -> Result<Scene, Error> {
@@ -132,5 +133,36 @@ fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
     for part in ["Coulomb", "with gap", "4 levels", "face"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
+    Ok(())
+}
+
+#[test]
+fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
+    let pull = History::ramp(2.0, 1.0)?;
+    let scene = scene(2)?
+        .with_support(
+            Support::components(vec![3, 5], [true, false, false])
+                .moved([1e-3, 0.0, 0.0], pull.clone()),
+        )
+        .with_load(Load::body([0.0, 0.0, -1.0]).with_history(pull.clone()));
+    let [clamp, moved] = scene.supports() else {
+        panic!("two supports")
+    };
+    assert_eq!(clamp.place(), &Place::Tag(brick::X_MIN));
+    assert_eq!(clamp.directions(), &Directions::All);
+    assert!(clamp.motion().is_none());
+    assert_eq!(moved.place(), &Place::Nodes(vec![3, 5]));
+    assert_eq!(moved.directions().vectors(), [[1.0, 0.0, 0.0]]);
+    assert_eq!(moved.motion(), Some((&[[1e-3, 0.0, 0.0]][..], &pull)));
+    let [_, weight] = scene.loads() else {
+        panic!("two loads")
+    };
+    assert!(matches!(weight.density(), LoadDensity::Body([_, _, z]) if *z == -1.0));
+    assert_eq!(weight.history(), &pull);
+    assert_eq!(scene.cut(), &Cut::Boxes([3, 1, 1]));
+    let contact = scene.contact().expect("contact");
+    assert_eq!(contact.tags(), [brick::Z_MIN]);
+    assert!(matches!(contact.gap(), Gap::Constant(gap) if *gap == 0.1));
+    assert_eq!(contact.normal(), ContactNormal::Body);
     Ok(())
 }
