@@ -4,8 +4,8 @@ mod common;
 
 use common::{block, methods, uniform};
 use signorini_contact::{
-    Analysis, Contact, ContactError, DifferenceFormula, Friction, LevelStatus, Load, Method, Scene,
-    Screening, Settings, Silent, Simulation, Support,
+    Analysis, Contact, ContactError, DifferenceFormula, Flow, Frame, Friction, LevelStatus, Load,
+    Method, Scene, Screening, Settings, Silent, Simulation, Support,
 };
 use signorini_fem_mesh::{History, brick};
 use signorini_qp::FaceSettings;
@@ -90,6 +90,16 @@ fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
     ] {
         assert!(text.contains(part), "{text}");
     }
+}
+
+#[test]
+fn an_observer_can_end_a_run_at_the_first_such_level() {
+    let mut simulation = rough();
+    let outcome = simulation.run(&mut |frame: &Frame<'_>| Flow::from(frame.require_converged()));
+    let error = outcome.expect_err("not converged");
+    assert!(matches!(error, ContactError::Observer { level: 0, .. }));
+    assert!(error.to_string().contains("not contractive"), "{error}");
+    assert_eq!(simulation.state().level(), 1);
 }
 
 #[test]
