@@ -237,6 +237,29 @@ pub enum ContactError {
         /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// A level did not converge, where that was required.
+    #[error(
+        "level {level}, at {time} s, did not converge ({status}, certificate {certificate:.1e}); {}",
+        status.remedy()
+    )]
+    NotConverged {
+        /// The level, from 0.
+        level: usize,
+        /// Its time in s.
+        time: f64,
+        /// How it ended.
+        status: crate::report::LevelStatus,
+        /// The largest relative violation of its certificate.
+        certificate: f64,
+    },
+    /// An earlier level did not converge, on whose displacement later ones depend, where that was required.
+    #[error(
+        "level {level} did not converge, and the slip of later levels depends on it; continue from a state before it, with smaller steps or other settings"
+    )]
+    UnconvergedHistory {
+        /// The level, from 0.
+        level: usize,
+    },
     /// A checkpoint does not belong to this scene or is damaged.
     #[error("checkpoint: {reason}")]
     Checkpoint {

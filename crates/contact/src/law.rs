@@ -1,7 +1,6 @@
 //! Friction laws: none, given (Tresca), and Coulomb with a coefficient that may depend on place and slip rate.
 
 use crate::error::ContactError;
-use crate::model::Model;
 use std::fmt;
 use std::sync::Arc;
 
@@ -252,13 +251,16 @@ fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
     }
 }
 
-/// Asks the law of friction at every touch point, at rest, so that what it cannot mean is said before any work.
-pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
-    for point in &model.points {
-        match model.friction() {
+/// Asks the law of friction at points (node, place), at rest, so that what it cannot mean is said before any work.
+pub(crate) fn check(
+    friction: &Friction,
+    points: impl IntoIterator<Item = (u32, [f64; 3])>,
+) -> Result<(), ContactError> {
+    for (node, place) in points {
+        match friction {
             Friction::None => return Ok(()),
-            Friction::Given(bound) => bound.stress(point.node, point.position)?,
-            Friction::Coulomb(law) => law.value(point.node, point.position, 0.0)?,
+            Friction::Given(bound) => bound.stress(node, place)?,
+            Friction::Coulomb(law) => law.value(node, place, 0.0)?,
         };
     }
     Ok(())

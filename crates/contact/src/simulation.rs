@@ -2,16 +2,17 @@
 
 mod resume;
 mod rounds;
+mod run;
 mod screened;
 
 use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
+use crate::fingerprint::Fingerprint;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
-use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
 use crate::pool::on_pool;
 use crate::report::{Counters, LevelReport};
@@ -52,6 +53,8 @@ pub struct Simulation {
     settings: Settings,
     solver: Solver,
     state: Arc<State>,
+    /// What numbers of states refer to.
+    origin: Fingerprint,
     /// Whether the fields below belong to a level that was solved.
     solved: bool,
     level: Level,
@@ -64,6 +67,8 @@ pub struct Simulation {
     summary: ContactSummary,
     torn: Vec<f64>,
     residual: Vec<f64>,
+    /// Multipliers of the support rows.
+    held: Vec<f64>,
     total: Counters,
     setup: Duration,
     controller: Controller,
@@ -98,11 +103,24 @@ impl Simulation {
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let (model, screen) = screened::set_up(scene, &settings)?;
-        crate::law::check(&model)?;
+        // with screening the model has no points yet
+        let points = screen.as_ref().map_or(&model.points[..], Screen::points);
+        let places = points.iter().map(|p| (p.node, p.position));
+        crate::law::check(model.friction(), places)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
+        let origin = Fingerprint::new(
+            &model.scene.mesh,
+            &model.scene.analysis,
+            &model.decomposition,
+            model.tfeti.gluing(),
+            points,
+        );
+        let mut state = State::default();
+        state.set_origin(origin);
         Ok(Self {
-            state: Arc::default(),
+            state: Arc::new(state),
+            origin,
             solved: false,
             level: Level::default(),
             iterate: Iterate::default(),
@@ -113,6 +131,7 @@ impl Simulation {
             summary: ContactSummary::default(),
             torn: Vec::new(),
             residual: Vec::new(),
+            held: Vec::new(),
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
@@ -200,36 +219,12 @@ impl Simulation {
         let outcome = on_pool(busy, || self.solve_level(&state, index));
         drop(state);
         let (mut report, lambda, rows) = outcome?;
+        report.unconverged_history = self.state.unconverged_history();
         self.remember(lambda, rows, &mut report);
         self.total += report.counters;
         self.report = report;
         self.solved = true;
         Ok(self.present())
-    }
-
-    /// Solves all levels that are left, telling the observer; ends early if it says so.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
-    pub fn run(&mut self, observer: &mut (impl Observer + ?Sized)) -> Result<(), ContactError> {
-        let levels = self.model.scene.analysis.levels() - self.state.level();
-        observer.started(&self.model.plan, levels);
-        let (mut solved, mut failed) = (0, None);
-        while !self.is_finished() {
-            let frame = self.step()?;
-            solved += 1;
-            match observer.level(&frame) {
-                Flow::Continue => {}
-                Flow::Stop => break,
-                Flow::Fail(source) => {
-                    let level = frame.level();
-                    failed = Some(ContactError::Observer { level, source });
-                    break;
-                }
-            }
-        }
-        observer.finished(solved);
-        failed.map_or(Ok(()), Err)
     }
 
     /// The frame of the last level solved; `None` before the first one, after [`resume`](Self::resume) and after a step that
@@ -251,6 +246,7 @@ impl Simulation {
             points: self.states(),
             torn: &self.torn,
             residual: &self.residual,
+            held: &self.held,
         }
     }
 
@@ -315,6 +311,9 @@ impl Simulation {
         self.sizes = sizes(model, &self.level, &lambda, &measured);
         self.certificate = certify(model, &self.level, &lambda, &measured, &self.sizes);
         self.points = point_states(model, &self.level, &lambda, &rows);
+        let supports = tfeti.gluing().ranges().dirichlet.clone();
+        self.held.clear();
+        self.held.extend_from_slice(&lambda[supports]);
         Ok((report, lambda, rows))
     }
 
@@ -404,10 +403,13 @@ impl Simulation {
             (Vec::new(), Vec::new(), Vec::new())
         };
         let state = Arc::make_mut(&mut self.state);
+        state.pass(self.level.time);
         if report.status.converged() {
             // what did not converge is no scale for later levels
             let peaks: Vec<Peak> = self.sizes.iter().map(Sizes::peak).collect();
             state.raise(&peaks);
+        } else if effects.history {
+            state.note_unconverged();
         }
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();
