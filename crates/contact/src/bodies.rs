@@ -119,6 +119,7 @@ impl Bodies {
         divide(&mut scaled.rhs, &units.coarse);
         for (peak, unit) in scaled.peaks.iter_mut().zip(own) {
             peak.multipliers /= unit;
+            peak.force /= unit;
         }
         scaled.units = model.points.iter().map(|p| units.rows[p.row]).collect();
         divide(&mut iterate.lambda, &units.rows);

@@ -80,11 +80,13 @@ impl FaceSolver {
             linear: &level.linear,
             rhs: &level.rhs,
         };
+        let [least, least_contact] = level.least();
         let face_settings = self
             .settings
             .clone()
             .with_tolerance(settings.tolerance * SAFETY)
-            .with_least(level.least());
+            .with_least(least)
+            .with_least_constrained(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
             let slopes = model.slip_slopes(|k| level.coefficients[k]);

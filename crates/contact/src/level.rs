@@ -106,12 +106,18 @@ impl Level {
         self.peaks.get(body).map_or(0.0, |p| REST * p.multipliers)
     }
 
-    /// What vanishing multipliers are measured against, N.
-    pub(crate) fn least(&self) -> f64 {
-        match self.peaks.len() {
-            0 | 1 => self.rest(0),
-            n => (0..n).map(|b| self.rest(b).powi(2)).sum::<f64>().sqrt(),
-        }
+    /// What vanishing multipliers are measured against, N: all, and those of contact.
+    pub(crate) fn least(&self) -> [f64; 2] {
+        let sizes = |of: fn(&Peak) -> f64| match &self.peaks[..] {
+            [] => 0.0,
+            [peak] => REST * of(peak),
+            peaks => peaks
+                .iter()
+                .map(|p| (REST * of(p)).powi(2))
+                .sum::<f64>()
+                .sqrt(),
+        };
+        [sizes(|p| p.multipliers), sizes(|p| p.force)]
     }
 
     /// The torn load, N.

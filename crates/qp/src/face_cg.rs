@@ -25,6 +25,9 @@ const MOST_STEPS: usize = 500;
 /// Part of the limits below which further steps buy nothing.
 const ENOUGH: f64 = 0.3;
 
+/// Decrease of the error on one face that steps which round can make.
+const ROUNDED: f64 = 1e-5;
+
 /// Negative curvature, relative to the lengths of `p` and `A p`, up to which it is put down to rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -45,8 +48,16 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
     pub(crate) fn conjugate_gradients(&mut self, rho: f64, goal: &Goal) -> Result<f64, QpError> {
         let first = self.errors();
         let start = first.zip(goal.expected, f64::min);
+        // further than that, steps that round move the equality more than the iterate
+        let digits = if self.coarse.rounds_steps() {
+            ROUNDED
+        } else {
+            0.0
+        };
         let enough = start.zip(goal.limits, |start, limit| {
-            (goal.forcing * start).max(ENOUGH * limit)
+            (goal.forcing * start)
+                .max(ENOUGH * limit)
+                .max(digits * first.all)
         });
         let last = goal.max_products.min(self.report.products() + MOST_STEPS);
         self.first_direction();

@@ -50,6 +50,8 @@ pub(crate) struct Place {
     /// What it is to fall below.
     limits: Lengths,
     x_norm: f64,
+    /// Whether the constrained part is so small that directions in it mean nothing.
+    vanishes: bool,
     /// Whether the problem with the present set is solved, as far as the set moves.
     solved: bool,
 }
@@ -177,10 +179,12 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         at.start_residual();
         let rho = at.precondition();
         let errors = at.errors();
-        // a vanishing solution is measured against `least`, and its constrained part against a small part of that
+        // what vanishes is measured against `least`, and its constrained part against a small part of that at least
         let x_norm = vector::norm(at.x);
         let all = x_norm.max(settings.least);
-        let part = vector::norm(&at.x[..at.constrained()]).max(SMALL_PART * all);
+        let part = vector::norm(&at.x[..at.constrained()]);
+        let vanishes = part < settings.least_constrained;
+        let part = part.max(SMALL_PART * all).max(settings.least_constrained);
         let limits = Lengths {
             all: settings.tolerance * all,
             constrained: settings.tolerance * part,
@@ -197,6 +201,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             errors,
             limits,
             x_norm,
+            vanishes,
             solved: errors.constrained <= (FOLLOW * drift).max(limits.constrained),
         }))
     }
@@ -327,7 +332,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if let Some(guard) = &mut self.guard {
             guard.enter(at.x, at.ax, &at.work.residual);
         }
-        let free = self.followed && self.guard.is_none() && self.apart;
+        let free = self.followed && self.guard.is_none() && self.apart && !place.vanishes;
         let error = at.report.constrained_error;
         at.work.coupling.begin(free, error, self.waited);
         let goal = Goal {
