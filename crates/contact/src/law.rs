@@ -1,6 +1,7 @@
 //! Friction laws: none, given (Tresca), and Coulomb with a coefficient that may depend on place and slip rate.
 
 use crate::error::ContactError;
+use signorini_fem_mesh::interpolate;
 use std::fmt;
 use std::sync::Arc;
 
@@ -236,18 +237,6 @@ impl fmt::Debug for Coefficient {
             Self::Table(points) => f.debug_tuple("Table").field(points).finish(),
             Self::RateField(_) => f.write_str("RateField(..)"),
         }
-    }
-}
-
-fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
-    let after = points.partition_point(|p| p.0 <= x);
-    match (
-        after.checked_sub(1).and_then(|i| points.get(i)),
-        points.get(after),
-    ) {
-        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)),
-        (Some(p), None) | (None, Some(p)) => p.1,
-        (None, None) => f64::NAN,
     }
 }
 

@@ -153,6 +153,9 @@ impl CoarseFactor {
     }
 
     /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
         self.project_to(Digits::Double, x, e, s);
     }
@@ -175,6 +178,9 @@ impl CoarseFactor {
 
     /// `x = x - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
     /// [`project`](Self::project) where these are the contact rows.
+    ///
+    /// # Panics
+    /// If `change` or `x` is too long, or `x` too short.
     pub fn compensate(&self, change: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
         self.compensate_to(Digits::Double, change, x, s);
     }
@@ -232,6 +238,9 @@ impl CoarseFactor {
 
     /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
     /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         self.project_transpose_to(Digits::Double, r, alpha, s);
     }
@@ -262,6 +271,9 @@ impl CoarseFactor {
     /// Rigid amplitudes that make the rows residual `r + G^T alpha` smallest in the metric of `W`:
     /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
     /// equality (open contact, sliding).
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         self.amplitudes_to(Digits::Double, r, alpha, s);
     }
@@ -294,6 +306,9 @@ impl CoarseFactor {
     }
 
     /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
         s.first.copy_from_slice(e);
@@ -356,6 +371,9 @@ impl OrthonormalCoarse {
 
     /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
     /// `G^T alpha = C^T beta`.
+    ///
+    /// # Panics
+    /// If `beta` or `alpha` does not have one entry for each row.
     pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(beta);
         self.half_solve_transpose(&mut s.first, alpha, &mut s.memory);

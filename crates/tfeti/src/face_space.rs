@@ -95,13 +95,6 @@ impl FaceSpace {
             });
         }
         if let Some(metric) = &metric {
-            if metric.len() != coarse.dim() {
-                return Err(TfetiError::Length {
-                    what: "metric of a face space",
-                    expected: coarse.dim(),
-                    found: metric.len(),
-                });
-            }
             RowWeights::diagonal(metric.clone()).validate(coarse.0.gluing.ranges())?;
         }
         let mut weights = vec![1.0; coarse.dim()];

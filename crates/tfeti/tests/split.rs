@@ -172,6 +172,8 @@ fn bits_do_not_depend_on_the_number_of_threads() {
         pool.install(|| {
             let mut space = space(&system, FaceFactor::Split, None);
             space.set_weights(&face(&system, 0.5, 3)).unwrap();
+            // both sides of the first cut read enough for a thread each
+            assert!(space.factor().stored() >= 8 * 25_000);
             results(&system, &mut space)
         })
     };

@@ -6,7 +6,8 @@ use signorini_fem_mesh::{
 };
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::{
-    ContactNodes, InverseKind, InverseSettings, RowRule, Sharing, Support, Tfeti, TfetiBuilder,
+    ContactNodes, CopyStiffness, Gluing, InverseKind, InverseSettings, RowRule, Sharing, Support,
+    Tfeti, TfetiBuilder, TfetiError,
 };
 
 pub(crate) struct Brick {
@@ -112,6 +113,43 @@ pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowRul
         .inverse(InverseSettings::default().with_kind(kind))
         .build()
         .unwrap()
+}
+
+/// `B` alone.
+pub(crate) fn gluing(
+    b: &Brick,
+    supports: &[Support],
+    contact: Option<&ContactNodes>,
+    rule: RowRule,
+) -> Result<Gluing, TfetiError> {
+    Gluing::new(
+        &b.decomposition,
+        b.mesh.points().len(),
+        supports,
+        contact,
+        rule,
+        &CopyStiffness::default(),
+    )
+}
+
+/// Dense `B B^T` of all rows.
+pub(crate) fn gram(g: &Gluing) -> Vec<Vec<f64>> {
+    let rows: Vec<std::collections::BTreeMap<(usize, usize), f64>> = (0..g.rows_full_rank())
+        .map(|r| {
+            let mut map = std::collections::BTreeMap::new();
+            g.row(r)
+                .into_iter()
+                .for_each(|(s, d, v)| *map.entry((s, d)).or_insert(0.0) += v);
+            map
+        })
+        .collect();
+    rows.iter()
+        .map(|a| {
+            rows.iter()
+                .map(|b| a.iter().filter_map(|(k, v)| b.get(k).map(|w| v * w)).sum())
+                .collect()
+        })
+        .collect()
 }
 
 /// `F x`.
