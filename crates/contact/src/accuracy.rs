@@ -11,11 +11,12 @@
 //!
 //! **The certificate is asked, too.** An error in the energy norm is a mean: a few points may miss their slip bound, their direction or the
 //! obstacle by much and weigh little in it. A level is accepted only if the largest relative violation of the contact conditions (gap, sign,
-//! complementarity, cone, direction) in the [`Certificate`] is at most ten times the target as well, and 1e-2 in any case (not below
+//! complementarity, cone, direction) in the [`Certificate`] is at most five times the target as well, and 1e-2 in any case (not below
 //! 1e-8, [`AccuracyReport::certificate_limit`]). Equilibrium and continuity are in the estimate itself. This costs nothing where it
 //! holds; where it does not, the tolerance is tightened by what is missing, and a level that cannot reach it ends as
-//! [`NotCertified`](crate::LevelStatus::NotCertified). Tolerances from 1e-3 on rarely leave more: in 600 levels of random scenes it was
-//! at most twice a target of 1e-4, a tenth of one of 1e-2.
+//! [`NotCertified`](crate::LevelStatus::NotCertified). In 600 levels of random
+//! scenes the face method left at most twice a target of 1e-4 and a tenth of one of 1e-2; successive approximations left seven times a target of
+//! 1e-4 at points that are pressed weakly beside a strong pull.
 //!
 //! **No scale, no mesh.** Errors of a body at rest are relative to [`AlgebraicError::scale`](crate::AlgebraicError::scale). A discretisation error below 1e-6 (a
 //! body strained evenly) counts as 1e-6, so that `Balanced` does not ask for less than rounding allows.
@@ -163,7 +164,7 @@ pub(crate) fn certificate_limit(target: f64) -> f64 {
 }
 
 /// Violation of the certificate over the target, and the range of what is asked for.
-const CERTIFIED: f64 = 10.0;
+const CERTIFIED: f64 = 5.0;
 const FINEST: f64 = 1e-8;
 const LOOSE: f64 = 1e-2;
 
@@ -272,7 +273,7 @@ mod tests {
     #[test]
     fn the_certificate_that_goes_with_a_target() {
         assert_eq!(certificate_limit(0.3), 1e-2);
-        assert_eq!(certificate_limit(1e-5), 1e-4);
+        assert_eq!(certificate_limit(1e-5), 5e-5);
         assert_eq!(certificate_limit(1e-11), 1e-8);
         let mut certificate = Certificate::default();
         certificate.cone.value = 1.0;
