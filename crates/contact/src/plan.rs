@@ -271,7 +271,8 @@ impl fmt::Display for Plan {
                 "              large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
             )?;
         }
-        if e.contact && self.slenderness > SLENDER {
+        // the estimate of a brick of 3 : 1 has no part for bending
+        if e.contact && self.slenderness > 1.2 * SLENDER {
             writeln!(
                 f,
                 "              slender ones, {:.0} : 1: such as are as long as thick need far fewer products",
