@@ -5,6 +5,7 @@ use crate::contact_surface::{Contact, ContactNormal};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
+use crate::magnitude;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -135,6 +136,7 @@ impl Model {
             None => {
                 scene.validate()?;
                 settings.validate()?;
+                magnitude::check_motions(&scene)?;
                 let decomposition = scene.decompose()?;
                 let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
                 (decomposition, plan)
@@ -149,7 +151,10 @@ impl Model {
             (Some(contact), Some(surface)) => Some(contact_nodes(contact, surface)?),
             _ => None,
         };
-        if let (Some(contact), Some(nodes), None) = (&scene.contact, &nodes, earlier) {
+        if let (Some(contact), Some(surface), Some(nodes), None) =
+            (&scene.contact, &surface, &nodes, earlier)
+        {
+            magnitude::check_gaps(&scene, contact, surface)?;
             driven::check(&scene, contact, nodes, &supports, &motions)?;
         }
         if let (Some(nodes), Some(kept)) = (&mut nodes, kept) {
@@ -173,6 +178,7 @@ impl Model {
                 .map_err(|source| ContactError::Load { index, source })?;
             loads.push(tfeti.load_response(&local)?);
         }
+        magnitude::check_loads(&scene, &loads)?;
         let points = match (&scene.contact, &surface) {
             (Some(contact), Some(surface)) => {
                 touch_points(&scene, contact, surface, tfeti.gluing())?
