@@ -78,24 +78,12 @@ impl Bodies {
             loads[self.of_subdomain(subdomain)] += signorini_qp::vector::dot(own, own);
         }
         let known = |b: usize| squares[b].max(loads[b]).sqrt().max(level.rest(b));
-        let mut units: Vec<f64> = (0..self.count).map(known).collect();
-        if units.contains(&0.0) {
-            // moved only: what the supports would do to nodes with all others held
-            let rows = model.tfeti.gluing().ranges().dirichlet.clone();
-            let mut stiffness = vec![0.0; rows.len()];
-            model.tfeti.row_stiffness(rows.clone(), &mut stiffness);
-            let mut moved = vec![0.0_f64; self.count];
-            for (row, k) in rows.zip(stiffness) {
-                let body = self.of_row(row);
-                moved[body] = moved[body].max((k * level.offset[row]).abs());
-            }
-            for (unit, moved) in units.iter_mut().zip(moved) {
-                if *unit == 0.0 {
-                    *unit = moved;
-                }
-            }
-        }
-        units.into_iter().map(power_of_two).collect()
+        let unit = |b: usize| match known(b) {
+            // moved only
+            0.0 => level.driven.get(b).copied().unwrap_or(0.0),
+            size => size,
+        };
+        (0..self.count).map(|b| power_of_two(unit(b))).collect()
     }
 
     /// The level and the iterate in units of the bodies, and the units of all rows; `None` for one body.
@@ -117,10 +105,11 @@ impl Bodies {
         let mut scaled = level.clone();
         divide(&mut scaled.linear, &units.rows);
         divide(&mut scaled.rhs, &units.coarse);
-        for (peak, unit) in scaled.peaks.iter_mut().zip(own) {
+        for (peak, unit) in scaled.peaks.iter_mut().zip(&own) {
             peak.multipliers /= unit;
             peak.force /= unit;
         }
+        divide(&mut scaled.driven, &own);
         scaled.units = model.points.iter().map(|p| units.rows[p.row]).collect();
         divide(&mut iterate.lambda, &units.rows);
         divide(&mut iterate.f_lambda, &units.rows);

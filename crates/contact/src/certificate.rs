@@ -18,7 +18,7 @@
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
 
 use crate::law::Friction;
-use crate::level::{Level, normal_force};
+use crate::level::{Level, ROUNDED, normal_force};
 use crate::model::{Model, Tangential};
 use crate::state::{Peak, REST};
 use signorini_qp::vector;
@@ -131,6 +131,8 @@ pub(crate) struct Sizes {
     multipliers: f64,
     /// Norm of the residual of the equilibrium, N.
     residual: f64,
+    /// Norm of the displacements times the stiffness of their nodes, N.
+    stiff: f64,
 }
 
 impl Sizes {
@@ -156,6 +158,10 @@ pub(crate) fn sizes(model: &Model, level: &Level, lambda: &[f64], m: &Measured<'
         for (k, f) in m.force[range.clone()].chunks_exact(3).enumerate() {
             let alone = vector::max_abs(f) / copies.weight(range.start / 3 + k);
             own.displacement = own.displacement.max(alone);
+        }
+        for (k, u) in m.u[range.clone()].chunks_exact(3).enumerate() {
+            let stiffness = copies.weight(range.start / 3 + k);
+            own.stiff += stiffness * stiffness * vector::dot(u, u);
         }
         own.displacement = own.displacement.max(vector::max_abs(&m.u[range.clone()]));
         own.residual += vector::dot(&m.residual[range.clone()], &m.residual[range.clone()]);
@@ -183,10 +189,13 @@ pub(crate) fn sizes(model: &Model, level: &Level, lambda: &[f64], m: &Measured<'
         own.residual = own.residual.sqrt();
         own.displacement = own.displacement.max(REST * peak.displacement);
         // likewise where no force acts, or next to none on the contact surface
-        let outer = own.forces.sqrt().max(REST * peak.multipliers);
+        // and where displacements leave nothing of a force but rounding errors
+        let rounding = ROUNDED * own.stiff.sqrt();
+        let outer = own.forces.sqrt().max(REST * peak.multipliers).max(rounding);
         own.contact_force = own
             .contact_force
             .max(REST * peak.force)
+            .max(rounding)
             .max(SMALL_PART * outer);
         own.forces = outer.hypot(inner[body].sqrt());
     }

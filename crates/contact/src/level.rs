@@ -6,6 +6,9 @@ use crate::model::{Model, TouchPoint};
 use crate::state::{Peak, REST, State};
 use signorini_qp::{ProductSet, vector};
 
+/// Part of a displacement times stiffness up to which forces are rounding errors, times a tolerance.
+pub(crate) const ROUNDED: f64 = 1e-8;
+
 /// Data of one level; vectors are allocated once and rewritten.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Level {
@@ -29,6 +32,8 @@ pub(crate) struct Level {
     pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point; empty unless Coulomb.
     pub(crate) coefficients: Vec<f64>,
+    /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if none moves.
+    pub(crate) driven: Vec<f64>,
     /// Unit of force of each point, N; empty if it is 1 N everywhere.
     pub(crate) units: Vec<f64>,
 }
@@ -77,6 +82,7 @@ impl Level {
             .enumerate()
             .collect();
         self.offset = model.tfeti.prescribed_offsets(&cases);
+        self.driven = model.driven(&self.offset);
         if model.plan.effects.gap {
             for point in &model.points {
                 self.offset[point.row] += point.scale * point.gap;
@@ -101,19 +107,23 @@ impl Level {
         self.friction(model, state)
     }
 
-    /// What vanishing multipliers of a body are measured against, N.
+    /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its motion.
     pub(crate) fn rest(&self, body: usize) -> f64 {
-        self.peaks.get(body).map_or(0.0, |p| REST * p.multipliers)
+        self.at_rest(body, |p| p.multipliers)
+    }
+
+    fn at_rest(&self, body: usize, size: fn(&Peak) -> f64) -> f64 {
+        let earlier = self.peaks.get(body).map_or(0.0, |p| REST * size(p));
+        let driven = self.driven.get(body).map_or(0.0, |f| ROUNDED * f);
+        earlier.max(driven)
     }
 
     /// What vanishing multipliers are measured against, N: all, and those of contact.
     pub(crate) fn least(&self) -> [f64; 2] {
-        let sizes = |of: fn(&Peak) -> f64| match &self.peaks[..] {
-            [] => 0.0,
-            [peak] => REST * of(peak),
-            peaks => peaks
-                .iter()
-                .map(|p| (REST * of(p)).powi(2))
+        let sizes = |of: fn(&Peak) -> f64| match self.peaks.len() {
+            0 | 1 => self.at_rest(0, of),
+            n => (0..n)
+                .map(|b| self.at_rest(b, of).powi(2))
                 .sum::<f64>()
                 .sqrt(),
         };

@@ -91,6 +91,8 @@ pub(crate) struct Model {
     pub(crate) set: ProductSet,
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
     pub(crate) weights: std::sync::OnceLock<crate::algebraic::Weights>,
+    /// Stiffness of the support rows, made if supports move.
+    support_stiffness: std::sync::OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
     copies: std::sync::OnceLock<signorini_tfeti::CopyStiffness>,
     /// Patches of the estimate of the discretisation error; made when it is first asked for.
@@ -98,6 +100,26 @@ pub(crate) struct Model {
 }
 
 impl Model {
+    /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each body the
+    /// norm of these forces, N. Empty if no support moves.
+    pub(crate) fn driven(&self, offset: &[f64]) -> Vec<f64> {
+        if self.motions.is_empty() {
+            return Vec::new();
+        }
+        let rows = self.tfeti.gluing().ranges().dirichlet.clone();
+        let stiffness = self.support_stiffness.get_or_init(|| {
+            let mut out = vec![0.0; rows.len()];
+            self.tfeti.row_stiffness(rows.clone(), &mut out);
+            out
+        });
+        let mut out = vec![0.0; self.bodies.count().max(1)];
+        for (row, k) in rows.zip(stiffness) {
+            out[self.bodies.of_row(row)] += (k * offset[row]).powi(2);
+        }
+        out.iter_mut().for_each(|v| *v = v.sqrt());
+        out
+    }
+
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales certificates.
     pub(crate) fn copies(&self) -> &signorini_tfeti::CopyStiffness {
         self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
@@ -208,6 +230,7 @@ impl Model {
             surface,
             set,
             weights: std::sync::OnceLock::new(),
+            support_stiffness: std::sync::OnceLock::new(),
             copies: std::sync::OnceLock::new(),
             recovery: std::sync::OnceLock::new(),
         })

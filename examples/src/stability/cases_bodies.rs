@@ -205,6 +205,25 @@ pub fn free() -> Vec<Case> {
         ),
         Case::new(
             GROUP,
+            "lowered by its support",
+            "no load at all: a rigid motion down to the floor, forces from there on",
+            || {
+                let block = Block {
+                    boxes: [2, 2, 1],
+                    gap: 1e-3,
+                    top: [0.0; 3],
+                    end: [0.0; 3],
+                    clamped: false,
+                    steps: 10,
+                    ..Block::default()
+                };
+                let down = History::ramp(1.0, 1.0)?;
+                let support = Support::fixed(brick::Z_MAX).moved([2e-4, 0.0, -2e-3], down);
+                Ok(block.setup()?.map(|s| s.with_support(support.clone())))
+            },
+        ),
+        Case::new(
+            GROUP,
             "two bodies, one loose",
             "one brick clamped, one that only lies on the floor",
             || pair(1.0),
