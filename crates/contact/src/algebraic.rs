@@ -53,13 +53,16 @@
 //!   [`AccumulatedError`](crate::AccumulatedError) adds them up.
 
 use crate::certificate::Certificate;
-use crate::contact_move::{Moved, dot};
+use crate::contact_move::{Moved, dot, push_out};
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::Model;
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
 use std::sync::OnceLock;
+
+/// Moves out of one obstacle after another, for nodes in edges; one is enough between perpendicular ones.
+const SWEEPS: usize = 10;
 
 /// Relative imbalance that counts as rounding.
 const BALANCED: f64 = 1e-12;
@@ -145,6 +148,7 @@ impl Solved<'_> {
                 Moved::new(self.level, touch, point, &weights.rows, value)
             })
             .collect();
+        self.outside(&mut v);
         self.support(&mut v);
         let (mut terms, mut change) = (0.0, 0.0);
         for ((point, touch), moved) in pairs().zip(&moved) {
@@ -231,6 +235,18 @@ impl Solved<'_> {
             value.iter_mut().for_each(|x| *x /= total);
         }
         v
+    }
+
+    /// Moves nodes with several contact points out of all their obstacles: the move for one of them may go into another.
+    fn outside(&self, v: &mut [f64]) {
+        let gluing = self.model.tfeti.gluing();
+        for _ in 0..SWEEPS {
+            let points = self.model.points.iter();
+            for touch in points.filter(|t| gluing.is_dependent(t.node)) {
+                let value = &mut v[3 * touch.node as usize..][..3];
+                push_out(self.level, touch, value);
+            }
+        }
     }
 
     /// Sets supported directions to their prescribed values.

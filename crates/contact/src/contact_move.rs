@@ -134,6 +134,12 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// Moves a node out of the obstacle of a point, if it is inside.
+pub(crate) fn push_out(level: &Level, touch: &TouchPoint, value: &mut [f64]) {
+    let depth = normal_offset(level, touch, value).max(0.0);
+    shift(value, &touch.frame.normal, -depth);
+}
+
 /// `v_nu - g`, m.
 fn normal_offset(level: &Level, touch: &TouchPoint, value: &[f64]) -> f64 {
     dot(&touch.frame.normal, value) - level.offset[touch.row] / touch.scale

@@ -46,7 +46,12 @@ pub struct Contact {
     pub(crate) gap: Gap,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
+    /// Angle of a crease, degrees.
+    pub(crate) crease: f64,
 }
+
+/// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
+const CREASE: f64 = 60.0;
 
 impl Contact {
     /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.
@@ -57,6 +62,7 @@ impl Contact {
             gap: Gap::None,
             normal: ContactNormal::Body,
             friction: Friction::None,
+            crease: CREASE,
         }
     }
 
@@ -74,9 +80,8 @@ impl Contact {
             .with_gap_field(gap)
     }
 
-    /// More facets of the same kind. Each node has one normal: where facets of two sides meet at an edge it is their mean, so
-    /// that nodes of an edge between floor and wall meet neither straight. Leave such edges out of one of the tags, or give
-    /// one direction for all by [`with_normal`](Self::with_normal).
+    /// More facets of the same kind. For another gap, direction or friction give a scene another contact
+    /// ([`Scene::with_contact`](crate::Scene::with_contact)).
     #[must_use]
     pub fn and_tag(mut self, tag: FacetTag) -> Self {
         self.tags.push(tag);
@@ -105,6 +110,16 @@ impl Contact {
     #[must_use]
     pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
         self.normal = ContactNormal::Fixed(into_obstacle);
+        self
+    }
+
+    /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
+    /// default; in (0, 180], 180 for none). A node has one contact point with the mean normal of its facets; at a crease it
+    /// has one for each side, so that an edge between floor and wall meets both. Ordinary meshes of curved surfaces have
+    /// smaller angles (45 with 8 facets around a cylinder). Without effect with [`with_normal`](Self::with_normal).
+    #[must_use]
+    pub fn with_crease(mut self, degrees: f64) -> Self {
+        self.crease = degrees;
         self
     }
 

@@ -3,11 +3,11 @@
 //! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
 //! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
-use crate::contact_surface::Contact;
+use crate::candidates::{Candidate, contact_nodes};
 use crate::error::ContactError;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
-use signorini_tfeti::{ContactNodes, HeldPoint, Support, held_points};
+use signorini_tfeti::{HeldPoint, Support, held_points};
 
 /// Depth above this share of the displacement or the gap counts.
 const RELATIVE: f64 = 1e-9;
@@ -18,19 +18,19 @@ const ROUNDING: f64 = 1e-12;
 /// Refuses supports that hold contact nodes inside the obstacle at some time level.
 pub(crate) fn check(
     scene: &Scene,
-    contact: &Contact,
-    nodes: &ContactNodes,
+    candidates: &[Candidate],
     supports: &[Support],
     motions: &[History],
 ) -> Result<(), ContactError> {
     let points = scene.mesh.points();
-    let held = held_points(nodes, supports, points.len())?
+    let nodes = contact_nodes(scene, candidates.iter());
+    let held: Vec<(HeldPoint, f64)> = held_points(&nodes, supports, points.len())?
         .into_iter()
         .map(|point| {
-            let gap = contact.gap_at(point.node, points[point.node as usize])?;
-            Ok((point, gap))
+            let gap = candidates[point.point].gap;
+            (point, gap)
         })
-        .collect::<Result<Vec<(HeldPoint, f64)>, ContactError>>()?;
+        .collect();
     if held.is_empty() {
         return Ok(());
     }

@@ -120,14 +120,6 @@ pub enum ContactError {
         /// Number of nodes.
         nodes: usize,
     },
-    /// More than one contact surface.
-    #[error(
-        "with_contact was called {count} times, and a scene has one contact surface; put further tags with the same law in by Contact::and_tag, or take the other surface by replace_contact"
-    )]
-    SeveralContacts {
-        /// Calls.
-        count: usize,
-    },
     /// A gap is not finite.
     #[error("contact at node {node}: the gap {value} m is not finite")]
     Gap {

@@ -25,8 +25,10 @@ pub enum ContactState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
-    /// Mesh node.
+    /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
     pub node: u32,
+    /// Position of the contact surface in [`Scene::contacts`].
+    pub surface: usize,
     /// What it does.
     pub state: ContactState,
     /// Normal force on the body `lambda_nu`, N, not positive.
@@ -120,10 +122,16 @@ impl Frame<'_> {
         &self.model.decomposition
     }
 
-    /// The contact surface with all its nodes, fixed ones included; `None` without contact.
+    /// The first contact surface with all its nodes, fixed ones included; `None` without contact.
     #[must_use]
     pub fn surface(&self) -> Option<&Surface> {
-        self.model.surface.as_ref()
+        self.model.surfaces.first()
+    }
+
+    /// All contact surfaces, in the order of [`Scene::contacts`].
+    #[must_use]
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.model.surfaces
     }
 
     /// How the level was solved.
@@ -297,6 +305,7 @@ pub(crate) fn point_state(
     let slip = difference[0].hypot(difference[1]);
     PointState {
         node: point.node,
+        surface: point.surface,
         state,
         normal_force,
         friction_force: space(friction),

@@ -97,7 +97,7 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
             .map_or_else(Vec::new, |(row, count, scale)| {
                 (row..row + count).map(|k| along(k, 1.0 / scale)).collect()
             });
-        let coefficient = match model.friction() {
+        let coefficient = match model.law(point) {
             Friction::None => Some(0.0),
             // bounds do not follow the pressure: what they cannot hold shows in the solution
             Friction::Given(_) => None,

@@ -255,8 +255,8 @@ fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
 /// Asks the law of friction at every touch point, at rest, so that what it cannot mean is said before any work.
 pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
     for point in &model.points {
-        match model.friction() {
-            Friction::None => return Ok(()),
+        match model.law(point) {
+            Friction::None => continue,
             Friction::Given(bound) => bound.stress(point.node, point.position)?,
             Friction::Coulomb(law) => law.value(point.node, point.position, 0.0)?,
         };

@@ -27,8 +27,10 @@ pub(crate) struct Level {
     pub(crate) rhs: Vec<f64>,
     /// Largest sizes at earlier levels.
     pub(crate) peak: Peak,
-    /// Coefficient of friction at each point; empty unless Coulomb.
+    /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
+    /// Given slip bound at each point, N, 0 without.
+    pub(crate) given: Vec<f64>,
 }
 
 impl Level {
@@ -97,50 +99,40 @@ impl Level {
     }
 
     fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
-        let Friction::Coulomb(law) = model.friction() else {
-            self.coefficients.clear();
-            return Ok(());
-        };
-        if !self.coefficients.is_empty() && !law.depends_on_rate() {
+        if !model.any_law(Friction::is_some)
+            || (!self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate))
+        {
             return Ok(());
         }
         // none where the law fails at a point: a later level must not take a part for all
         self.coefficients.clear();
-        let value = |(k, point): (usize, &TouchPoint)| {
-            let rate = state.rates().get(k).copied().unwrap_or(0.0);
-            law.value(point.node, point.position, rate)
+        let value = |(k, point): (usize, &TouchPoint)| match model.law(point) {
+            Friction::None => Ok((0.0, 0.0)),
+            Friction::Given(bound) => {
+                Ok((0.0, bound.stress(point.node, point.position)? * point.area))
+            }
+            Friction::Coulomb(law) => {
+                let rate = state.rates().get(k).copied().unwrap_or(0.0);
+                Ok((law.value(point.node, point.position, rate)?, 0.0))
+            }
         };
-        let values: Result<Vec<f64>, _> = model.points.iter().enumerate().map(value).collect();
-        self.coefficients = values?;
+        let values: Result<Vec<_>, ContactError> =
+            model.points.iter().enumerate().map(value).collect();
+        (self.coefficients, self.given) = values?.into_iter().unzip();
         Ok(())
     }
 
     /// Writes the slip bounds into the set: given ones, or the coefficients times the normal forces in `lambda`.
-    pub(crate) fn slip_bounds(
-        &self,
-        model: &Model,
-        lambda: &[f64],
-        set: &mut ProductSet,
-    ) -> Result<(), ContactError> {
-        match model.friction() {
-            Friction::None => {}
-            Friction::Given(bound) => {
-                let mut values = Vec::with_capacity(model.points.len());
-                for point in &model.points {
-                    values.push(bound.stress(point.node, point.position)? * point.area);
-                }
-                model.set_slip_bounds(set, |k, _| values[k]);
-            }
-            Friction::Coulomb(_) => self.coulomb_bounds(model, lambda, set),
-        }
-        Ok(())
+    pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
+        model.set_slip_bounds(set, |k, point| self.bound(k, point, lambda));
     }
 
-    /// Coulomb slip bounds `-F_i lambda_nu,i` in newtons.
-    pub(crate) fn coulomb_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
-        let force =
-            |k: usize, point: &TouchPoint| self.coefficients[k] * normal_force(point, lambda);
-        model.set_slip_bounds(set, force);
+    /// Slip bound of a point in newtons, `-F_i lambda_nu,i` or the given one; 0 without friction.
+    pub(crate) fn bound(&self, k: usize, point: &TouchPoint, lambda: &[f64]) -> f64 {
+        match (self.given.get(k), self.coefficients.get(k)) {
+            (Some(given), Some(coefficient)) => given + coefficient * normal_force(point, lambda),
+            _ => 0.0,
+        }
     }
 }
 

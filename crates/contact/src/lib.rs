@@ -72,6 +72,7 @@
 pub mod accumulated;
 pub mod accuracy;
 pub mod algebraic;
+mod candidates;
 mod certificate;
 mod clock;
 mod cone;

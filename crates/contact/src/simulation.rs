@@ -9,6 +9,7 @@ use crate::certificate::{Certificate, Measured, Violation, certify};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
+use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::observer::{Flow, Observer};
@@ -339,7 +340,7 @@ impl Simulation {
             let old = self.iterate.lambda.clone();
             let mut set = self.model.set.clone();
             self.level
-                .slip_bounds(&self.model, &self.iterate.lambda, &mut set)?;
+                .slip_bounds(&self.model, &self.iterate.lambda, &mut set);
             restore_sliding(&self.model, &set, state.sliding(), &mut self.iterate.lambda);
             self.iterate.known &= old == self.iterate.lambda;
         }
@@ -364,7 +365,7 @@ impl Simulation {
             }
             sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));
         }
-        if effects.history && self.model.friction().depends_on_rate() {
+        if effects.history && self.model.any_law(Friction::depends_on_rate) {
             rate.extend(self.states().iter().map(|p| p.slip_rate));
             report.counters.rate_updates += 1;
         }

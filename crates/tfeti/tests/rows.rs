@@ -315,10 +315,10 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         node: a,
         opponent: Some(o),
         frame: b.frames[0],
+        friction: true,
     };
     let contact = ContactNodes {
         points: vec![point],
-        friction: true,
     };
     let g = gluing(&b, &[], Some(&contact), RowRule::Orthonormal).unwrap();
     assert!(g.is_orthonormal());
