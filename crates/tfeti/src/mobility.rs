@@ -2,10 +2,12 @@
 //!
 //! The rank of `G W G^T` is decided here and not by small pivots: the interface rows join subdomains to bodies, and a
 //! vector of its null space is a rigid motion of bodies that all other rows of positive weight leave alone. That is an
-//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is.
+//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is. Subdomains that
+//! share an edge or a node only are bodies of their own: the rows between them leave a hinge free.
 
 use crate::class::Classes;
 use crate::gluing::{CopyEntry, Gluing};
+use crate::joints::{joint_rows, rigid_pairs};
 use crate::kernel::{Kernel, displacement};
 use crate::matrices::ClassBase;
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -63,6 +65,8 @@ pub(crate) struct Mobility {
     centres: Vec<[f64; 3]>,
     classes: Arc<Classes>,
     bases: Arc<Vec<ClassBase>>,
+    /// Interface rows between bodies (hinges): what they do to their motions.
+    joints: Vec<Vec<(usize, [f64; 6])>>,
 }
 
 #[derive(Debug)]
@@ -85,15 +89,14 @@ impl Mobility {
         centres: Vec<[f64; 3]>,
     ) -> Self {
         let mut parent: Vec<u32> = (0..centres.len() as u32).collect();
-        for block in 0..gluing.blocks() {
-            let entries = gluing.block(block);
-            for pair in entries.windows(2) {
-                let (a, b) = (
-                    root(&mut parent, pair[0].subdomain),
-                    root(&mut parent, pair[1].subdomain),
-                );
-                parent[a.max(b) as usize] = a.min(b);
-            }
+        let position = |s: usize, local: usize| {
+            let kernel = &bases[classes.place(s).0].kernel;
+            let arm = kernel.arm(local);
+            std::array::from_fn(|c| centres[s][c] + kernel.radius() * arm[c])
+        };
+        for (a, b) in rigid_pairs(gluing, position) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b) as usize] = a.min(b);
         }
         let mut bodies: Vec<Body> = Vec::new();
         let mut body_of = vec![0; centres.len()];
@@ -127,13 +130,22 @@ impl Mobility {
                 .sum();
             body.radius = (square / members.len() as f64).sqrt();
         }
-        Self {
+        let joints = joint_rows(gluing, &body_of);
+        let mut out = Self {
             body_of,
             bodies,
             centres,
             classes,
             bases,
-        }
+            joints: Vec::new(),
+        };
+        let acts = |row: &Vec<CopyEntry>| {
+            let mut actions = Vec::new();
+            out.act(row, 1.0, &mut actions);
+            actions
+        };
+        out.joints = joints.iter().map(acts).collect();
+        out
     }
 
     /// Means of the nodes of the subdomains.
@@ -197,7 +209,7 @@ impl Mobility {
     ) -> Vec<FreeMotion> {
         let dim = 6 * self.bodies.len();
         let mut gram = DMatrix::<f64>::zeros(dim, dim);
-        for row in rows {
+        for row in rows.chain(self.joints.iter().cloned()) {
             for (a, ga) in &row {
                 for (b, gb) in &row {
                     for i in 0..6 {
