@@ -5,7 +5,7 @@
 //! loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the cone
 //! is a motion on which the loads work and against which no contact force can.
 
-use crate::cone::{Cone, Generators};
+use crate::cone::{Cone, Generators, Separation};
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::Model;
@@ -24,7 +24,8 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
     if motions.is_empty() {
         return Ok(());
     }
-    let mut cone = Cone::new(motions.len(), generators(model, &motions));
+    let mut cone = Cone::new(motions.len(), generators(model, &motions)?);
+    let given = model.any_law(|law| matches!(law, Friction::Given(_)));
     let loads: Vec<(Vec<f64>, f64)> = model
         .loads
         .iter()
@@ -52,6 +53,14 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
         if length <= WORK * size {
             continue;
         }
+        if given {
+            // the size of the loads counts
+            if let Some(Separation { motion, given }) = cone.exceeded(&b) {
+                let force = vector::dot(&motion, &b);
+                return Err(not_held(level, &motions, &motion, force, given));
+            }
+            continue;
+        }
         b.iter_mut().for_each(|v| *v /= length);
         // loads that only grow need no second look
         let same = |old: &Vec<f64>| vector::distance(old, &b) < 1e-12;
@@ -59,24 +68,43 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
             continue;
         }
         if let Some(motion) = cone.separates(&b) {
-            // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
             let force = length * vector::dot(&motion, &b);
-            let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-            let Described { body, mode, share } = describe(&motions, &motion);
-            return Err(ContactError::NotHeld {
-                level,
-                body,
-                mode,
-                force: force * share,
-            });
+            return Err(not_held(level, &motions, &motion, force, 0.0));
         }
         approved = Some(b);
     }
     Ok(())
 }
 
+/// The refusal: `given` is what given friction takes of the force.
+fn not_held(
+    level: usize,
+    motions: &[FreeMotion],
+    motion: &[f64],
+    force: f64,
+    given: f64,
+) -> ContactError {
+    // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
+    let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
+    let Described { body, mode, share } = describe(motions, &motion);
+    let mode = if given > 0.0 {
+        format!(
+            "{mode}, of which given friction holds {:.3e} N,",
+            given * share
+        )
+    } else {
+        mode
+    };
+    ContactError::NotHeld {
+        level,
+        body,
+        mode,
+        force: force * share,
+    }
+}
+
 /// What a force at each touch point does on the motions: newtons to work.
-fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
+fn generators(model: &Model, motions: &[FreeMotion]) -> Result<Vec<Generators>, ContactError> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
     let columns: Vec<Vec<f64>> = motions
@@ -97,19 +125,22 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Vec<Generators> {
             .map_or_else(Vec::new, |(row, count, scale)| {
                 (row..row + count).map(|k| along(k, 1.0 / scale)).collect()
             });
-        let coefficient = match model.law(point) {
-            Friction::None => Some(0.0),
-            // bounds do not follow the pressure: what they cannot hold shows in the solution
-            Friction::Given(_) => None,
-            Friction::Coulomb(law) => law.largest(point.position),
+        let (coefficient, given) = match model.law(point) {
+            Friction::None => (Some(0.0), 0.0),
+            Friction::Given(bound) => {
+                let stress = bound.stress(point.node, point.position)?;
+                (Some(0.0), stress * point.area)
+            }
+            Friction::Coulomb(law) => (law.largest(point.position), 0.0),
         };
         out.push(Generators {
             normal: along(point.row, -1.0 / point.scale),
             tangents,
             coefficient,
+            given,
         });
     }
-    out
+    Ok(out)
 }
 
 /// What a message says of a motion.

@@ -107,31 +107,34 @@ fn a_cube_in_a_box_is_under_uniaxial_strain() {
     }
 }
 
-/// With friction rows of a node depend on one another; where the body goes does not depend on the cut.
-#[test]
-fn a_corner_with_friction_does_not_depend_on_cut_and_method() {
+fn rough_corner(friction: Friction) -> Scene {
     let contact = Contact::rigid(brick::X_MIN)
         .and_tag(brick::Y_MIN)
         .and_tag(brick::Z_MIN)
-        .with_friction(Friction::coulomb(0.3));
-    let scene = cornered(&[contact], 3)
+        .with_friction(friction);
+    cornered(&[contact], 3)
         .with_load(Load::traction(brick::Z_MAX, [400.0, 100.0, 0.0]))
         .with_analysis(
             Analysis::quasistatic(1.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER),
-        );
+        )
+}
+
+/// Rows of a node depend on one another with friction: forces are not unique, displacements with given bounds are.
+#[test]
+fn a_corner_with_friction_does_not_depend_on_the_cut() {
+    let scene = rough_corner(Friction::given(150.0));
     let reference = run(scene.clone(), tight()).1;
     for boxes in [[1, 1, 1], [3, 1, 1], [2, 2, 2]] {
-        for method in methods() {
-            let levels = run(
-                scene.clone().with_boxes(boxes),
-                tight().with_method(method.clone()),
-            )
-            .1;
-            for (a, b) in levels.iter().zip(&reference) {
-                let off = common::distance(&a.displacement, &b.displacement);
-                assert!(off < 1e-5, "{boxes:?} {}: {off:e}", method.name());
-                assert!(!a.report.fallback, "{boxes:?}");
-            }
+        let levels = run(scene.clone().with_boxes(boxes), tight()).1;
+        for (a, b) in levels.iter().zip(&reference) {
+            let off = common::distance(&a.displacement, &b.displacement);
+            assert!(off < 1e-5, "{boxes:?}: {off:e}");
+            assert!(!a.report.fallback, "{boxes:?}");
+        }
+        // with Coulomb's law bounds follow the forces: one of several solutions, certified
+        let scene = rough_corner(Friction::coulomb(0.3)).with_boxes(boxes);
+        for level in run(scene, tight()).1 {
+            assert!(!level.report.fallback, "{boxes:?}");
         }
     }
 }
@@ -275,7 +278,10 @@ fn a_sliding_block_runs_against_a_wall() {
     };
     for steps in [1, 3, 8] {
         for boxes in [[1, 1, 1], [2, 1, 1]] {
-            for settings in [tight(), tight().with_screening(Screening::on())] {
+            for settings in [
+                Settings::default(),
+                Settings::default().with_screening(Screening::on()),
+            ] {
                 let (_, levels) = run(scene(steps, boxes), settings);
                 for level in &levels {
                     assert!(!level.report.fallback, "{steps} {boxes:?}");
