@@ -47,6 +47,7 @@ pub(crate) fn contact_nodes<'a>(
         opponent: None,
         frame: c.frame,
         friction: scene.contacts[c.surface].friction().is_some(),
+        moving: scene.contacts[c.surface].motion.is_some(),
     };
     ContactNodes {
         points: candidates.map(point).collect(),

@@ -3,7 +3,7 @@
 
 use crate::frame::PointState;
 use crate::level::Level;
-use crate::model::{Tangential, TouchPoint};
+use crate::model::TouchPoint;
 
 /// Rounding of differences of positions, relative.
 const ROUNDING: f64 = 1e-12;
@@ -47,12 +47,12 @@ impl Moved {
             bound: point.slip_bound,
             change: 0.0,
         };
-        let Some((_, row, scale)) = directions(touch).next() else {
+        let Some((_, row, scale)) = touch.along().next() else {
             return moved;
         };
         let k = scale.powi(2) * rows[row];
         let mut start = [0.0; 2];
-        for (j, (direction, row, scale)) in directions(touch).enumerate() {
+        for (j, (direction, row, scale)) in touch.along().enumerate() {
             start[j] = dot(&direction, value) - level.offset[row] / scale;
             moved.force[j] = dot(&direction, &point.friction_force);
         }
@@ -76,7 +76,7 @@ impl Moved {
             moved.change = change;
             moved.slip = nearest(size);
         }
-        for (j, (direction, ..)) in directions(touch).enumerate() {
+        for (j, (direction, ..)) in touch.along().enumerate() {
             shift(value, &direction, moved.slip[j] - start[j]);
         }
         moved
@@ -97,7 +97,7 @@ impl Moved {
         if far(open, self.open, size + offset.abs()) {
             self.open = open;
         }
-        for (j, (direction, row, scale)) in directions(touch).enumerate() {
+        for (j, (direction, row, scale)) in touch.along().enumerate() {
             let offset = level.offset[row] / scale;
             let slip = dot(&direction, value) - offset;
             if far(slip, self.slip[j], size + offset.abs()) {
@@ -143,19 +143,4 @@ pub(crate) fn push_out(level: &Level, touch: &TouchPoint, value: &mut [f64]) {
 /// `v_nu - g`, m.
 fn normal_offset(level: &Level, touch: &TouchPoint, value: &[f64]) -> f64 {
     dot(&touch.frame.normal, value) - level.offset[touch.row] / touch.scale
-}
-
-/// Tangential directions of a point with their rows and scales.
-fn directions(touch: &TouchPoint) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-    let [a, b] = touch.frame.tangents;
-    let list = match touch.tangential {
-        Tangential::None => [None, None],
-        Tangential::Line {
-            row,
-            direction,
-            scale,
-        } => [Some((direction, row, scale)), None],
-        Tangential::Plane { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
-    };
-    list.into_iter().flatten()
 }

@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::law::{Friction, PlaceField};
-use signorini_fem_mesh::FacetTag;
+use signorini_fem_mesh::{FacetTag, History};
 use std::fmt;
 use std::sync::Arc;
 
@@ -48,6 +48,8 @@ pub struct Contact {
     pub(crate) friction: Friction,
     /// Angle of a crease, degrees.
     pub(crate) crease: f64,
+    /// Displacement of the obstacle, m, and its factor in time.
+    pub(crate) motion: Option<([f64; 3], History)>,
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
@@ -63,6 +65,7 @@ impl Contact {
             normal: ContactNormal::Body,
             friction: Friction::None,
             crease: CREASE,
+            motion: None,
         }
     }
 
@@ -121,6 +124,26 @@ impl Contact {
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self
+    }
+
+    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero before the first level, as
+    /// that of the body. Along the normal it opens or closes the gap; along the surface it drags the body by friction: slip is
+    /// the displacement of the body relative to the obstacle. A rotating obstacle is none of these.
+    #[must_use]
+    pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
+        self.motion = Some((displacement, history));
+        self
+    }
+
+    /// Displacement of the obstacle at a time, m.
+    pub(crate) fn obstacle_at(&self, time: f64) -> [f64; 3] {
+        match &self.motion {
+            Some((displacement, history)) => {
+                let factor = history.value(time);
+                displacement.map(|c| factor * c)
+            }
+            None => [0.0; 3],
+        }
     }
 
     /// The friction law. A bound or coefficient that is zero everywhere is no friction.

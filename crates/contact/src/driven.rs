@@ -15,7 +15,7 @@ const RELATIVE: f64 = 1e-9;
 /// Depth below this share of the largest coordinate is rounding of a gap that was computed from coordinates.
 const ROUNDING: f64 = 1e-12;
 
-/// Refuses supports that hold contact nodes inside the obstacle at some time level.
+/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some time level.
 pub(crate) fn check(
     scene: &Scene,
     candidates: &[Candidate],
@@ -24,11 +24,11 @@ pub(crate) fn check(
 ) -> Result<(), ContactError> {
     let points = scene.mesh.points();
     let nodes = contact_nodes(scene, candidates.iter());
-    let held: Vec<(HeldPoint, f64)> = held_points(&nodes, supports, points.len())?
+    let held: Vec<(HeldPoint, &Candidate)> = held_points(&nodes, supports, points.len())?
         .into_iter()
         .map(|point| {
-            let gap = candidates[point.point].gap;
-            (point, gap)
+            let candidate = &candidates[point.point];
+            (point, candidate)
         })
         .collect();
     if held.is_empty() {
@@ -40,7 +40,10 @@ pub(crate) fn check(
     for time in times {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
         let mut deepest: Option<(f64, u32, f64, f64)> = None;
-        for (point, gap) in &held {
+        for (point, candidate) in &held {
+            let contact = &scene.contacts[candidate.surface];
+            let carried = candidate.frame.normal_part(contact.obstacle_at(time));
+            let gap = candidate.gap + carried;
             let displacement: f64 = point
                 .normal
                 .iter()
@@ -49,7 +52,7 @@ pub(crate) fn check(
             let depth = displacement - gap;
             let allowed = rounding + RELATIVE * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
-                deepest = Some((depth, point.node, displacement, *gap));
+                deepest = Some((depth, point.node, displacement, gap));
             }
         }
         if let Some((depth, node, displacement, gap)) = deepest {

@@ -141,7 +141,7 @@ pub enum ContactError {
         time: f64,
         /// Prescribed displacement along the normal into the obstacle, m.
         displacement: f64,
-        /// Initial distance to the obstacle, m.
+        /// Distance to the obstacle at that time without the displacement, m.
         gap: f64,
     },
     /// An obstacle has no usable normal.
@@ -163,7 +163,7 @@ pub enum ContactError {
     /// A load or support history gave a value that is not finite.
     #[error("{what} {index}: its history gives {value} at time {time} s")]
     HistoryValue {
-        /// Load or support.
+        /// Load, support or contact.
         what: &'static str,
         /// Its position in the scene.
         index: usize,
@@ -179,7 +179,7 @@ pub enum ContactError {
     NotHeld {
         /// Time level, from 0.
         level: usize,
-        /// The body (connected component of the mesh).
+        /// The body (part of the mesh that hangs together, not only by an edge or a node).
         body: usize,
         /// The rigid motion, in words: translation of the centre of the body, and rotation in metres at its radius.
         mode: String,
@@ -192,7 +192,7 @@ pub enum ContactError {
         "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are held neither by supports nor by contact ({motions}); add supports that stop them"
     )]
     NotDetermined {
-        /// The first such body (connected component of the mesh).
+        /// The first such body (part of the mesh that hangs together, not only by an edge or a node).
         body: usize,
         /// Number of free rigid motions of all bodies.
         count: usize,

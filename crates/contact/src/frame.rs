@@ -73,12 +73,15 @@ pub struct ContactSummary {
     pub max_slip_rate: f64,
     /// Largest penetration, m.
     pub max_penetration: f64,
-    /// Work done against friction by the displacement increments of this step, J. With the paper's formula it can be
+    /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the paper's formula it can be
     /// slightly negative at points that stick after sliding, see [`DifferenceFormula`](crate::DifferenceFormula).
     pub friction_work: f64,
     /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
+    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
+    /// the obstacle.
+    pub obstacle_work: f64,
 }
 
 /// Result of one level; borrowed from the simulation.
@@ -321,6 +324,7 @@ pub(crate) fn point_state(
 /// Sums over the points; `before` are the tangential displacements at the level before.
 pub(crate) fn summarise(
     model: &Model,
+    level: &Level,
     points: &[PointState],
     lambda: &[f64],
     rows: &[f64],
@@ -344,10 +348,18 @@ pub(crate) fn summarise(
             s.max_slip_rate = s.max_slip_rate.max(point.slip_rate);
         }
         s.max_penetration = s.max_penetration.max(-point.gap);
-        if let Some((row, count, scale)) = touch.tangential.rows() {
-            for k in row..row + count {
-                let old = before.get(k - start).copied().unwrap_or(0.0);
-                s.friction_work -= scale * lambda[k] * (rows[k] / scale - old);
+        for (direction, k, scale) in touch.along() {
+            let old = before.get(k - start).copied().unwrap_or(0.0);
+            let new = rows[k] / scale - level.carried(touch.surface, &direction);
+            s.friction_work -= scale * lambda[k] * (new - old);
+        }
+        if let (Some(now), Some(old)) = (
+            level.obstacles[0].get(touch.surface),
+            level.obstacles[1].get(touch.surface),
+        ) {
+            for c in 0..3 {
+                let force = point.friction_force[c] + point.normal_force * touch.frame.normal[c];
+                s.obstacle_work += force * (now[c] - old[c]);
             }
         }
     }

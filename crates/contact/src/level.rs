@@ -1,5 +1,6 @@
 //! One time level: the dual problem at a time, and the slip bounds.
 
+use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
@@ -25,6 +26,8 @@ pub(crate) struct Level {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
+    /// Displacement of the obstacle of each contact surface, now and at the level before; empty where none moves.
+    pub(crate) obstacles: [Vec<[f64; 3]>; 2],
     /// Largest sizes at earlier levels.
     pub(crate) peak: Peak,
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
@@ -91,11 +94,39 @@ impl Level {
                 }
             }
         }
+        self.move_obstacles(model, index);
         self.linear.resize(rows, 0.0);
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
             *d = c - l;
         }
         self.friction(model, state)
+    }
+
+    /// Offsets of the obstacles that move.
+    fn move_obstacles(&mut self, model: &Model, index: usize) {
+        if !model.plan.effects.moving_obstacle {
+            return;
+        }
+        let analysis = &model.scene.analysis;
+        let before = index.checked_sub(1).and_then(|i| analysis.time(i));
+        self.obstacles = [Some(self.time), before].map(|time| {
+            let contacts = model.scene.contacts.iter();
+            contacts
+                .map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t)))
+                .collect()
+        });
+        for point in &model.points {
+            for (direction, row, scale) in point.directions() {
+                self.offset[row] += scale * self.carried(point.surface, &direction);
+            }
+        }
+    }
+
+    /// Displacement of the obstacle of a surface along a direction, m.
+    pub(crate) fn carried(&self, surface: usize, direction: &[f64; 3]) -> f64 {
+        self.obstacles[0]
+            .get(surface)
+            .map_or(0.0, |w| dot(w, direction))
     }
 
     fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {

@@ -37,6 +37,28 @@ pub struct TouchPoint {
     pub(crate) tangential: Tangential,
 }
 
+impl TouchPoint {
+    /// Directions of all rows of the point, with row and scale: the normal, then the tangential ones.
+    pub(crate) fn directions(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        std::iter::once((self.frame.normal, self.row, self.scale)).chain(self.along())
+    }
+
+    /// Directions of the tangential rows, with row and scale.
+    pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        let [a, b] = self.frame.tangents;
+        let list = match self.tangential {
+            Tangential::None => [None, None],
+            Tangential::Line {
+                row,
+                direction,
+                scale,
+            } => [Some((direction, row, scale)), None],
+            Tangential::Plane { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
+        };
+        list.into_iter().flatten()
+    }
+}
+
 /// Tangential rows of a point, as positions among all tangential rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Tangential {

@@ -45,6 +45,8 @@ pub struct Effects {
     pub supports: bool,
     /// Supports that move.
     pub motion: bool,
+    /// Obstacles that move.
+    pub moving_obstacle: bool,
 }
 
 /// Sizes of a scene and the method chosen for it.
@@ -150,6 +152,7 @@ impl Plan {
             gluing: decomposition.subdomains().len() > 1,
             supports: !scene.supports.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
+            moving_obstacle: scene.contacts.iter().any(|c| c.motion.is_some()),
         };
         let method = if effects.contact {
             settings.method.name()
@@ -277,7 +280,12 @@ impl fmt::Display for Plan {
         } else {
             "no gap: zero offset"
         };
-        let contact = format!("{} nodes, {gap}", self.contact_nodes);
+        let moving = if e.moving_obstacle {
+            ", moving obstacle"
+        } else {
+            ""
+        };
+        let contact = format!("{} nodes, {gap}{moving}", self.contact_nodes);
         writeln!(
             f,
             "  contact     {}",

@@ -348,6 +348,12 @@ impl Scene {
                     .iter()
                     .enumerate()
                     .filter_map(|(i, s)| s.motion.as_ref().map(|m| ("support", i, &m.1))),
+            )
+            .chain(
+                self.contacts
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(i, c)| c.motion.as_ref().map(|m| ("contact", i, &m.1))),
             );
             for (what, index, history) in histories {
                 let value = history.value(time);
@@ -375,6 +381,15 @@ impl Scene {
             if !(length.is_finite() && length > 0.0) {
                 return Err(ContactError::ObstacleNormal { normal });
             }
+        }
+        if let Some((displacement, _)) = contact.motion
+            && let Some(value) = displacement.iter().find(|c| !c.is_finite())
+        {
+            return Err(ContactError::Setting {
+                name: "displacement of the obstacle",
+                value: *value,
+                range: "of finite numbers",
+            });
         }
         if !(contact.crease > 0.0 && contact.crease <= 180.0) {
             return Err(ContactError::Setting {

@@ -254,6 +254,9 @@ impl Screen {
                 displacement[row] = self.times(row, torn);
             }
             offset[point.row] += point.scale * point.gap;
+            for (direction, row, scale) in point.directions() {
+                offset[row] += scale * level.carried(point.surface, &direction);
+            }
             if let (Some(formula), Some((.., scale)), true) =
                 (formula, tangential, model.plan.effects.history)
             {
@@ -273,13 +276,12 @@ impl Screen {
     }
 
     /// Tangential displacements of the points left out, written into a complete trace.
-    pub(crate) fn fill_trace(&self, torn: &[f64], trace: &mut [f64]) {
+    pub(crate) fn fill_trace(&self, level: &Level, torn: &[f64], trace: &mut [f64]) {
         let start = self.gluing.ranges().tangential().start;
         for (point, _) in self.points.iter().zip(&self.active).filter(|(_, a)| !**a) {
-            if let Some((row, count, scale)) = point.tangential.rows() {
-                for k in row..row + count {
-                    trace[k - start] = self.times(k, torn) / scale;
-                }
+            for (direction, k, scale) in point.along() {
+                trace[k - start] =
+                    self.times(k, torn) / scale - level.carried(point.surface, &direction);
             }
         }
     }

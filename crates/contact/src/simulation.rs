@@ -265,7 +265,14 @@ impl Simulation {
         let before: Vec<f64> = (0..self.model.tangential_rows())
             .map(|k| view.traces(k).0)
             .collect();
-        self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
+        self.summary = summarise(
+            &self.model,
+            &self.level,
+            &self.points,
+            &lambda,
+            &rows,
+            &before,
+        );
         Ok((report, lambda, rows))
     }
 
@@ -357,10 +364,10 @@ impl Simulation {
             trace.resize(self.model.tangential_rows(), 0.0);
             let start = self.model.tangential_start();
             for point in &self.model.points {
-                if let Some((row, count, scale)) = point.tangential.rows() {
-                    for k in row..row + count {
-                        trace[k - start] = rows[k] / scale;
-                    }
+                // relative to the obstacle
+                for (direction, k, scale) in point.along() {
+                    trace[k - start] =
+                        rows[k] / scale - self.level.carried(point.surface, &direction);
                 }
             }
             sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));
@@ -406,7 +413,7 @@ impl Simulation {
             (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
             if effects.history {
                 trace = screen.expand_trace(&trace, self.model.tangential_start());
-                screen.fill_trace(&self.torn, &mut trace);
+                screen.fill_trace(&self.level, &self.torn, &mut trace);
             }
         }
         state.advance(

@@ -17,6 +17,8 @@ pub struct ContactPoint {
     pub frame: Frame,
     /// Whether there is friction. Without it there are no tangential rows.
     pub friction: bool,
+    /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
+    pub moving: bool,
 }
 
 /// The contact points of a system.
@@ -36,6 +38,7 @@ impl ContactNodes {
             opponent: None,
             frame: *frame,
             friction,
+            moving: false,
         };
         Self {
             points: nodes.iter().zip(frames).map(point).collect(),
@@ -349,7 +352,7 @@ fn reduce(
     }
     // With all three directions free the rows keep one common scale, so that the friction disc stays a disc.
     let unit = !fixed.is_empty();
-    if friction && space.is_dragged(&normal, &fixed) {
+    if friction && !fixed.is_empty() && (point.moving || space.is_dragged(&normal, &fixed)) {
         // friction and support act along the same directions: all rows as without support
         out.rows.push(PointRows {
             point: index,

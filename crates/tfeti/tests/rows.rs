@@ -233,6 +233,7 @@ fn a_node_may_have_several_normals() {
                 opponent: None,
                 frame: Frame::from_normal(normal).unwrap(),
                 friction,
+                moving: false,
             })
             .collect(),
     };
@@ -388,6 +389,7 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         opponent: Some(o),
         frame: b.frames[0],
         friction: true,
+        moving: false,
     };
     let contact = ContactNodes {
         points: vec![point],
