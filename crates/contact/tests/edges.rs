@@ -355,3 +355,24 @@ fn the_angle_of_a_crease_is_checked_and_can_be_chosen() {
         (18, 18, 15, 15)
     );
 }
+
+/// Dependent rows or not: the number of threads changes no bit.
+#[test]
+fn a_rough_corner_has_the_same_bits_on_any_number_of_threads() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("pool");
+        pool.install(|| {
+            let scene = rough_corner(Friction::coulomb(0.3)).with_boxes([2, 2, 2]);
+            run(scene, Settings::default()).1
+        })
+    };
+    let one = on(1);
+    for threads in [2, 3] {
+        for (a, b) in one.iter().zip(&on(threads)) {
+            assert_eq!(common::bits(a), common::bits(b), "{threads}");
+        }
+    }
+}

@@ -194,3 +194,25 @@ fn obstacles_that_move_are_checked() {
         })
     ));
 }
+
+/// Traces are relative to the obstacle, and its place follows from the time: a run goes on from a state bit for bit.
+#[test]
+fn a_run_over_a_moving_plate_continues() {
+    let make = || {
+        let plate = floor(Friction::coulomb(0.3)).moved([WAY, 0.0, 0.0], there_and_back());
+        let scene = scene(plate, top(), DifferenceFormula::THREE_STEP, [2, 1, 1]);
+        Simulation::new(scene, Settings::default()).expect("set-up")
+    };
+    let mut whole = make();
+    let mut first = make();
+    for _ in 0..3 {
+        first.step().expect("step");
+    }
+    let mut second = make();
+    second.resume(first.state().clone()).expect("resume");
+    let (all, rest) = (common::rest(&mut whole), common::rest(&mut second));
+    for (a, b) in all[3..].iter().zip(&rest) {
+        assert_eq!(common::bits(a), common::bits(b));
+        assert_eq!(a.summary.obstacle_work, b.summary.obstacle_work);
+    }
+}
