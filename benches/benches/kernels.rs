@@ -118,6 +118,10 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
             group.bench_function(BenchmarkId::new(format!("projector, {name}"), n), |b| {
                 b.iter(|| space.project(black_box(&mut x)));
             });
+            group.bench_function(
+                BenchmarkId::new(format!("projector of a step, {name}"), n),
+                |b| b.iter(|| space.project_step(black_box(&mut x))),
+            );
             let change = wave(contact);
             group.bench_function(BenchmarkId::new(format!("compensation, {name}"), n), |b| {
                 b.iter(|| space.compensate(black_box(&change), &mut x));

@@ -34,8 +34,8 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
     Ok(pool.install(|| {
         let m = seconds(quick, || lumped.apply(&x, &mut y, &mut scratch));
         let p = seconds(quick, || {
-            space.project(&mut x);
-            space.project_transpose(&mut y);
+            space.project_step(&mut x);
+            space.project_step_transpose(&mut y);
         });
         // what a step of `qp::face` does besides
         let v = seconds(quick, || {

@@ -12,6 +12,7 @@ use crate::files::RunFiles;
 use crate::options::BrickOptions;
 use crate::pictures;
 use crate::progress::Progress;
+use crate::reactions::ReactionTable;
 use crate::record::{RunRecord, write_json};
 use crate::run::{Header, Outcome, Sink, pool, run};
 use crate::table::{table, verdict, warnings};
@@ -27,6 +28,7 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
     }
     let pool = pool(options.common.threads)?;
     let mut outcomes = Vec::new();
+    let mut forces = String::new();
     for &n in &options.n {
         for &loading in options.loading.loadings() {
             let scene = options.benchmark(n, loading).scene()?;
@@ -41,7 +43,7 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
             let mut files = options
                 .out
                 .as_ref()
-                .map(|dir| RunFiles::new(dir, options.vtu_every));
+                .map(|dir| RunFiles::new(dir, options.vtu_every).with_reactions(options.reactions));
             let mut sinks: Vec<&mut dyn Sink> = Vec::new();
             if !options.common.quiet {
                 sinks.push(&mut progress);
@@ -49,11 +51,17 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
             if let Some(files) = &mut files {
                 sinks.push(files);
             }
+            let mut table = ReactionTable::default();
+            if options.reactions {
+                sinks.push(&mut table);
+            }
             let settings = options.common.settings();
             outcomes.push(pool.install(|| run(scene, settings, &header, &mut sinks))?);
+            forces.push_str(table.text());
         }
     }
     report(options, &outcomes, out)?;
+    write!(out, "{forces}")?;
     let records = outcomes.iter().map(|o| &o.record);
     if let Some(path) = &options.common.json {
         write_json(path, records.clone())?;

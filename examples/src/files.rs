@@ -19,6 +19,7 @@ use crate::snapshot::ContactPatch;
 pub struct RunFiles {
     folder: PathBuf,
     every: usize,
+    reactions: bool,
     series: Option<Series>,
 }
 
@@ -38,8 +39,16 @@ impl RunFiles {
         Self {
             folder: folder.as_ref().to_path_buf(),
             every,
+            reactions: false,
             series: None,
         }
+    }
+
+    /// Writes the reactions of the supports as a field of the body, too.
+    #[must_use]
+    pub fn with_reactions(mut self, on: bool) -> Self {
+        self.reactions = on;
+        self
     }
 }
 
@@ -63,7 +72,7 @@ impl Sink for RunFiles {
         };
         let due = step.step.checked_rem(self.every) == Some(0);
         if due || (self.every > 0 && step.step == series.levels) {
-            series.write_body(simulation)?;
+            series.write_body(simulation, self.reactions)?;
             series.write_contact(simulation)?;
         }
         Ok(())
@@ -79,16 +88,19 @@ impl Sink for RunFiles {
 }
 
 impl Series {
-    fn write_body(&mut self, simulation: &Simulation) -> Result<(), ExampleError> {
+    fn write_body(&mut self, simulation: &Simulation, reactions: bool) -> Result<(), ExampleError> {
         let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
         let mesh = simulation.scene().mesh();
         let stress = frame.stress()?;
         let nodal = nodal_average(mesh, &stress)?;
-        let points = [
+        let mut points = vec![
             Field::vector("displacement", frame.displacement()),
             Field::symmetric_tensor("stress", &nodal),
             Field::scalar("von_mises", nodal.iter().map(von_mises).collect()),
         ];
+        if reactions {
+            points.push(Field::vector("reaction", frame.reaction_field()));
+        }
         let cells = [Field::scalar(
             "von_mises",
             stress.iter().map(von_mises).collect(),

@@ -34,6 +34,7 @@ pub mod performance;
 pub mod pictures;
 pub mod progress;
 pub mod qp_only;
+pub mod reactions;
 pub mod record;
 pub mod run;
 pub mod snapshot;

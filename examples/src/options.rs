@@ -160,6 +160,9 @@ pub struct BrickOptions {
     /// With --out: write a VTU file at every K-th step and at the last; 0 writes none.
     #[arg(long, value_name = "K", default_value_t = 1)]
     pub vtu_every: usize,
+    /// Print what supports, floor and loads do to the body at the end; with --out: write the reactions at its nodes, too.
+    #[arg(long)]
+    pub reactions: bool,
     /// Draw products and seconds against the size into this SVG file.
     #[arg(long, value_name = "FILE")]
     pub chart: Option<PathBuf>,

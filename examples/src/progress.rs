@@ -14,6 +14,7 @@ const TEMPLATE: &str = "{prefix:10} [{bar:30}] {pos:>3}/{len} {elapsed:>4} {msg}
 pub struct Progress {
     bar: Option<ProgressBar>,
     products: usize,
+    unconverged: usize,
 }
 
 impl Sink for Progress {
@@ -25,16 +26,21 @@ impl Sink for Progress {
         bar.set_style(style);
         bar.set_prefix(label.to_owned());
         self.products = 0;
+        self.unconverged = 0;
         self.bar = Some(bar);
         Ok(())
     }
 
     fn step(&mut self, _: &Simulation, step: &StepRecord) -> Result<(), ExampleError> {
         self.products += step.n_m;
+        self.unconverged += usize::from(!step.converged());
         if let Some(bar) = &self.bar {
             let (active, slip) = (step.active, step.slip);
             let products = self.products;
-            bar.set_message(format!("{active} touch, {slip} slide, {products} products"));
+            let failed = failed(self.unconverged);
+            bar.set_message(format!(
+                "{active} touch, {slip} slide, {products} products{failed}"
+            ));
             bar.inc(1);
         }
         Ok(())
@@ -47,11 +53,22 @@ impl Sink for Progress {
         if bar.is_hidden() {
             let (steps, products) = (record.steps.len(), record.n_m);
             eprintln!(
-                "n{}-{}: {steps} steps, {products} products, {:.2} s",
-                record.n, record.loading, record.solve_seconds
+                "n{}-{}: {steps} steps, {products} products, {:.2} s{}",
+                record.n,
+                record.loading,
+                record.solve_seconds,
+                failed(record.unconverged.len())
             );
         }
         bar.finish();
         Ok(())
+    }
+}
+
+/// Words for levels that did not converge, none if all did.
+fn failed(levels: usize) -> String {
+    match levels {
+        0 => String::new(),
+        levels => format!(", {levels} NOT CONVERGED"),
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use signorini::contact::{Certificate, Frame, LevelStatus};
+use signorini::contact::{Certificate, Frame};
 
 use crate::error::ExampleError;
 
@@ -106,6 +106,9 @@ pub struct StepRecord {
     pub certificate_parts: BTreeMap<String, f64>,
     /// How the level ended.
     pub status: String,
+    /// The first earlier step that did not converge and on whose slip this one depends, from 1; absent where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unconverged_history: Option<usize>,
     /// Whether the face method gave up and SMALSE finished.
     pub fallback: bool,
     /// Faces of the face method.
@@ -123,13 +126,6 @@ impl StepRecord {
     #[must_use]
     pub fn new(frame: &Frame<'_>) -> Self {
         let (sum, report) = (frame.summary(), frame.report());
-        let status = match report.status {
-            LevelStatus::Converged => "converged",
-            LevelStatus::IterationLimit => "iteration limit",
-            LevelStatus::Stagnated => "stagnated",
-            LevelStatus::NotContractive => "not contractive",
-            _ => "not converged",
-        };
         Self {
             step: frame.level() + 1,
             t: frame.time(),
@@ -148,7 +144,8 @@ impl StepRecord {
             dissipation_formula: sum.dissipation,
             certificate: finite(frame.certificate().largest()),
             certificate_parts: parts(frame.certificate()),
-            status: status.to_owned(),
+            status: report.status.to_string(),
+            unconverged_history: frame.unconverged_history().map(|level| level + 1),
             fallback: report.fallback,
             faces: report.counters.faces,
             quadratic_programs: report.counters.quadratic_programs,

@@ -115,6 +115,14 @@ pub fn warnings(runs: &[&RunRecord]) -> String {
             "WARNING: n = {}, {}: steps {:?} DID NOT REACH the tolerance {:e}; their states are the last iterates",
             run.n, run.loading, run.unconverged, run.tolerance
         );
+        let mut history = run.steps.iter().filter_map(|s| s.unconverged_history);
+        if let Some(first) = history.next() {
+            let _ = writeln!(
+                text,
+                "         the slip of {} later steps depends on step {first}",
+                history.count() + 1
+            );
+        }
     }
     for run in runs.iter().filter(|r| r.largest_certificate > r.tolerance) {
         let above = run.steps.iter().filter(|s| s.certificate > run.tolerance);

@@ -139,6 +139,12 @@ fn the_json_has_the_names_of_the_benchmark_and_reads_back() {
     assert_eq!(value[0]["steps"][2]["step"], 3);
     assert_eq!(value[0]["steps"][2]["t"], 1.0);
     assert_eq!(value[1]["loading"], "c");
+    // only where it says something
+    assert!(value[0]["steps"][2].get("unconverged_history").is_none());
+    let mut step = back[0].steps[2].clone();
+    step.unconverged_history = Some(1);
+    let step = serde_json::to_value(&step).expect("json");
+    assert_eq!(step["unconverged_history"], 1);
 }
 
 #[test]
@@ -181,6 +187,38 @@ fn files_and_pictures_are_written() {
         none.display()
     ));
     assert!(!none.join("n1-b/body_0000.vtu").exists() && none.join("n1-b/steps.csv").is_file());
+}
+
+#[test]
+fn reactions_are_printed_and_written_when_asked_for() {
+    let folder = tempfile::tempdir().expect("folder");
+    let body = |options: &str| {
+        let out = folder.path().join("out");
+        let line = format!(
+            "brick --n 1 --steps 2 --cells 3 --loading b --quiet {options} --out {}",
+            out.display()
+        );
+        let (_, text) = run(&line);
+        let piece = out.join("n1-b/body_0001.vtu");
+        let written = std::fs::read(&piece).expect("body");
+        let field = b"Name=\"reaction\"";
+        (text, written.windows(field.len()).any(|w| w == field))
+    };
+    let (text, written) = body("");
+    assert!(!text.contains("support 0") && !written);
+    let (text, written) = body("--reactions");
+    assert!(written);
+    let force = |name: &str| {
+        let line = text.lines().find(|l| l.trim_start().starts_with(name));
+        let numbers = line.expect("a line").trim_start()[name.len()..].split_whitespace();
+        let numbers: Vec<f64> = numbers.map(|v| v.parse().expect("a number")).collect();
+        assert_eq!(numbers.len(), 6, "{text}");
+        numbers
+    };
+    // 3 m2 under 3e9 Pa and 1 m2 under (9e8, 0, -15e8) Pa
+    let (loads, sum) = (force("loads"), force("sum"));
+    assert_eq!(loads[..3], [9e8, 0.0, -10.5e9]);
+    assert!(sum.iter().all(|v| v.abs() < 1e-5 * 10.5e9), "{text}");
 }
 
 #[test]
@@ -271,7 +309,12 @@ fn levels_that_did_not_converge_are_loud() {
         verdict,
         Err(ExampleError::NotConverged { levels: 1 })
     ));
-    assert!(signorini_examples::table::warnings(&[record]).contains("DID NOT REACH"));
+    record.steps[1].unconverged_history = Some(1);
+    let text = signorini_examples::table::warnings(&[record]);
+    assert!(
+        text.contains("DID NOT REACH") && text.contains("1 later steps depends on step 1"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -9,9 +9,9 @@
 //! | sign (2.5) | largest pulling normal force | N | largest contact force |
 //! | complementarity (2.5) | largest normal force times open gap | N m | largest contact force times largest displacement |
 //! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
-//! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force times largest displacement |
+//! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force, or `r` if it is larger, times largest displacement |
 //!
-//! The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
+//! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
 //! held, so that a body that does not move has a scale too.
 //!
 //! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
@@ -19,7 +19,7 @@
 
 use crate::level::Level;
 use crate::model::{Model, Tangential};
-use crate::state::REST;
+use crate::state::{Peak, REST};
 use signorini_qp::vector;
 
 /// A violation and the quantity it is relative to, in the same unit.
@@ -39,6 +39,15 @@ impl Violation {
             0.0
         } else {
             self.value / self.reference
+        }
+    }
+
+    /// Takes another violation of the same condition in its place if that is relatively larger, or not a number.
+    fn worsen(&mut self, value: f64, reference: f64) {
+        let other = Self { value, reference };
+        let (old, new) = (self.relative(), other.relative());
+        if new > old || new.is_nan() && !old.is_nan() {
+            *self = other;
         }
     }
 }
@@ -108,73 +117,123 @@ pub(crate) struct Measured<'a> {
 /// Part of all forces that a vanishing contact force is measured against.
 const SMALL_PART: f64 = 1e-4;
 
+/// What the violations of one body are measured against.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Sizes {
+    /// Displacement, m.
+    displacement: f64,
+    /// Contact force at a node, N.
+    contact_force: f64,
+    /// Norm of the loads and of the contact forces, then of all multipliers, too, N.
+    forces: f64,
+    /// Norm of the multipliers, N.
+    multipliers: f64,
+    /// Norm of the residual of the equilibrium, N.
+    residual: f64,
+}
+
+impl Sizes {
+    /// What later levels of the body remember.
+    pub(crate) fn peak(&self) -> Peak {
+        Peak {
+            multipliers: self.multipliers,
+            force: self.contact_force,
+            displacement: self.displacement,
+        }
+    }
+}
+
+/// Sizes of every body.
+pub(crate) fn sizes(model: &Model, level: &Level, lambda: &[f64], m: &Measured<'_>) -> Vec<Sizes> {
+    let bodies = &model.bodies;
+    let mut out = vec![Sizes::default(); bodies.count().max(1)];
+    // where nothing moves, what its load would do to a single node is the scale
+    let copies = model.copies();
+    for subdomain in 0..model.tfeti.subdomains() {
+        let own = &mut out[bodies.of_subdomain(subdomain)];
+        let range = model.tfeti.torn_range(subdomain);
+        for (k, f) in m.force[range.clone()].chunks_exact(3).enumerate() {
+            let alone = vector::max_abs(f) / copies.weight(range.start / 3 + k);
+            own.displacement = own.displacement.max(alone);
+        }
+        own.displacement = own.displacement.max(vector::max_abs(&m.u[range.clone()]));
+        own.residual += vector::dot(&m.residual[range.clone()], &m.residual[range.clone()]);
+        own.forces += vector::dot(&m.force[range.clone()], &m.force[range]);
+    }
+    for point in &model.points {
+        let mut sum = (point.scale * lambda[point.row]).powi(2);
+        if let Some((row, count, scale)) = point.tangential.rows() {
+            let rows = lambda[row..row + count].iter();
+            sum += rows.map(|v| (scale * v).powi(2)).sum::<f64>();
+        }
+        let own = &mut out[bodies.of_row(point.row)];
+        own.contact_force = own.contact_force.max(sum.sqrt());
+        own.forces += sum;
+    }
+    // gluing forces and reactions: what displacements alone cause has no loads
+    let contact = model.tfeti.gluing().ranges().contact().end;
+    let mut inner = vec![0.0; out.len()];
+    bodies.add_squares(lambda, contact..lambda.len(), &mut inner);
+    let mut all = inner.clone();
+    bodies.add_squares(lambda, 0..contact, &mut all);
+    for (body, own) in out.iter_mut().enumerate() {
+        let peak = level.peaks.get(body).copied().unwrap_or_default();
+        own.multipliers = all[body].sqrt();
+        own.residual = own.residual.sqrt();
+        own.displacement = own.displacement.max(REST * peak.displacement);
+        // likewise where no force acts, or next to none on the contact surface
+        let outer = own.forces.sqrt().max(REST * peak.multipliers);
+        own.contact_force = own
+            .contact_force
+            .max(REST * peak.force)
+            .max(SMALL_PART * outer);
+        own.forces = outer.hypot(inner[body].sqrt());
+    }
+    out
+}
+
 pub(crate) fn certify(
     model: &Model,
     level: &Level,
     lambda: &[f64],
     m: &Measured<'_>,
+    sizes: &[Sizes],
 ) -> Certificate {
     let ranges = model.tfeti.gluing().ranges();
-    // where nothing moves, what its load would do to a single node is the scale
-    let copies = model.copies();
-    let alone = m.force.chunks_exact(3).enumerate().map(|(k, f)| {
-        let largest = f.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        largest / copies.weight(k)
-    });
-    let displacement = vector::max_abs(m.u)
-        .max(alone.fold(0.0, f64::max))
-        .max(REST * level.peak.displacement);
-    let mut contact_force = 0.0_f64;
-    let mut total = vector::dot(m.force, m.force);
-    for point in &model.points {
-        let mut sum = (point.scale * lambda[point.row]).powi(2);
-        if let Some((row, count, scale)) = point.tangential.rows() {
-            sum += lambda[row..row + count]
-                .iter()
-                .map(|v| (scale * v).powi(2))
-                .sum::<f64>();
-        }
-        contact_force = contact_force.max(sum.sqrt());
-        total += sum;
-    }
-    // likewise where no force acts, or next to none on the contact surface
-    let all = total.sqrt().max(REST * level.peak.multipliers);
-    contact_force = contact_force
-        .max(REST * level.peak.force)
-        .max(SMALL_PART * all);
-    // gluing forces and reactions: what displacements alone cause has no loads
-    let inner = vector::norm(&lambda[ranges.contact().end..]);
+    // without violation, the largest sizes
+    let none = |size: fn(&Sizes) -> f64| Violation {
+        value: 0.0,
+        reference: sizes.iter().map(size).fold(0.0, f64::max),
+    };
+    let (length, force) = (none(|s| s.displacement), none(|s| s.contact_force));
+    let work = none(|s| s.contact_force * s.displacement);
     let mut c = Certificate {
-        equilibrium: Violation {
-            value: vector::norm(m.residual),
-            reference: all.hypot(inner),
-        },
-        ..Certificate::default()
+        equilibrium: none(|s| s.forces),
+        continuity: length,
+        gap: length,
+        sign: force,
+        complementarity: work,
+        cone: force,
+        direction: work,
     };
-    let jumps = ranges.interface.start..ranges.total();
-    let jump = m.rows[jumps.clone()]
-        .iter()
-        .zip(&level.offset[jumps])
-        .map(|(u, c)| (u - c).abs())
-        .fold(0.0, worse);
-    c.continuity = Violation {
-        value: jump,
-        reference: displacement,
-    };
-    let worst = |v: &mut Violation, value: f64| v.value = worse(v.value, value);
-    for v in [&mut c.sign, &mut c.cone] {
-        v.reference = contact_force;
+    for own in sizes {
+        c.equilibrium.worsen(own.residual, own.forces);
     }
-    c.gap.reference = displacement;
-    for v in [&mut c.complementarity, &mut c.direction] {
-        v.reference = contact_force * displacement;
+    for row in ranges.interface.start..ranges.total() {
+        let own = &sizes[model.bodies.of_row(row)];
+        let jump = (m.rows[row] - level.offset[row]).abs();
+        c.continuity.worsen(jump, own.displacement);
     }
     for (k, point) in model.points.iter().enumerate() {
+        let own = &sizes[model.bodies.of_row(point.row)];
+        let (contact_force, displacement) = (own.contact_force, own.displacement);
         let open = (level.offset[point.row] - m.rows[point.row]) / point.scale;
         let force = point.scale * lambda[point.row];
-        worst(&mut c.gap, -open);
-        worst(&mut c.sign, force);
-        worst(&mut c.complementarity, (force * open.max(0.0)).abs());
+        c.gap.worsen(-open, displacement);
+        c.sign.worsen(force, contact_force);
+        let product = (force * open.max(0.0)).abs();
+        c.complementarity
+            .worsen(product, contact_force * displacement);
         let Some((row, count, scale)) = point.tangential.rows() else {
             continue;
         };
@@ -188,12 +247,16 @@ pub(crate) fn certify(
             friction[j] = scale * lambda[row + j];
         }
         let (length, size) = (slip[0].hypot(slip[1]), friction[0].hypot(friction[1]));
-        worst(&mut c.cone, size - bound);
+        c.cone.worsen(size - bound, contact_force);
         let off = [
             bound * slip[0] + length * friction[0],
             bound * slip[1] + length * friction[1],
         ];
-        worst(&mut c.direction, off[0].hypot(off[1]));
+        // a bound above all forces says that the point sticks: only its displacement counts
+        c.direction.worsen(
+            off[0].hypot(off[1]),
+            contact_force.max(bound) * displacement,
+        );
     }
     c
 }

@@ -163,6 +163,24 @@ impl Contact {
         &self.friction
     }
 
+    /// The tags of its facets.
+    #[must_use]
+    pub fn tags(&self) -> &[FacetTag] {
+        &self.tags
+    }
+
+    /// The distance to the obstacle.
+    #[must_use]
+    pub fn gap(&self) -> &Gap {
+        &self.gap
+    }
+
+    /// The direction in which the obstacle is met.
+    #[must_use]
+    pub fn normal(&self) -> ContactNormal {
+        self.normal
+    }
+
     /// The gap at a node, m, checked.
     pub(crate) fn gap_at(&self, node: u32, position: [f64; 3]) -> Result<f64, ContactError> {
         let value = match &self.gap {

@@ -179,7 +179,7 @@ pub enum ContactError {
     NotHeld {
         /// Time level, from 0.
         level: usize,
-        /// The body (part of the mesh that hangs together, not only by an edge or a node).
+        /// The body (part of the mesh that hangs together).
         body: usize,
         /// The rigid motion, in words: translation of the centre of the body, and rotation in metres at its radius.
         mode: String,
@@ -192,7 +192,7 @@ pub enum ContactError {
         "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are held neither by supports nor by contact ({motions}); add supports that stop them"
     )]
     NotDetermined {
-        /// The first such body (part of the mesh that hangs together, not only by an edge or a node).
+        /// The first such body (part of the mesh that hangs together).
         body: usize,
         /// Number of free rigid motions of all bodies.
         count: usize,
@@ -228,6 +228,29 @@ pub enum ContactError {
         level: usize,
         /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A level did not converge, where that was required.
+    #[error(
+        "level {level}, at {time} s, did not converge ({status}, certificate {certificate:.1e}); {}",
+        status.remedy()
+    )]
+    NotConverged {
+        /// The level, from 0.
+        level: usize,
+        /// Its time in s.
+        time: f64,
+        /// How it ended.
+        status: crate::report::LevelStatus,
+        /// The largest relative violation of its certificate.
+        certificate: f64,
+    },
+    /// An earlier level did not converge, on whose displacement later ones depend, where that was required.
+    #[error(
+        "level {level} did not converge, and the slip of later levels depends on it; continue from a state before it, with smaller steps or other settings"
+    )]
+    UnconvergedHistory {
+        /// The level, from 0.
+        level: usize,
     },
     /// A checkpoint does not belong to this scene or is damaged.
     #[error("checkpoint: {reason}")]

@@ -12,7 +12,6 @@ use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
 use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
-use crate::state::REST;
 use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face, vector};
 use signorini_tfeti::{DualOperator, FaceSpace};
 
@@ -102,11 +101,13 @@ impl FaceSolver {
             linear: &level.linear,
             rhs: &level.rhs,
         };
+        let [least, least_contact] = level.least();
         let face_settings = self
             .settings
             .clone()
             .with_tolerance(settings.tolerance * SAFETY)
-            .with_least(REST * level.peak.multipliers);
+            .with_least(least)
+            .with_least_constrained(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
             let slopes = model.slip_slopes(|k| level.coefficients[k]);

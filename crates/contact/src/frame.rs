@@ -5,6 +5,7 @@ use crate::certificate::{Certificate, slip_bound};
 use crate::error::ContactError;
 use crate::level::Level;
 use crate::model::{Model, Tangential, TouchPoint};
+use crate::reactions::{self, Reactions};
 use crate::report::LevelReport;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, DiscretisationError, StrainRecovery, Surface, fields};
@@ -98,6 +99,8 @@ pub struct Frame<'a> {
     pub(crate) points: &'a [PointState],
     pub(crate) torn: &'a [f64],
     pub(crate) residual: &'a [f64],
+    /// Multipliers of the support rows.
+    pub(crate) held: &'a [f64],
 }
 
 impl Frame<'_> {
@@ -141,6 +144,24 @@ impl Frame<'_> {
     #[must_use]
     pub fn report(&self) -> &LevelReport {
         self.report
+    }
+
+    /// The first earlier level that did not converge and on whose displacement this one depends
+    /// ([`LevelReport::unconverged_history`]).
+    #[must_use]
+    pub fn unconverged_history(&self) -> Option<usize> {
+        self.report.unconverged_history
+    }
+
+    /// For those who want every level to converge: an error unless this one did, and the earlier ones on whose displacement
+    /// it depends.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
+    pub fn require_converged(&self) -> Result<(), ContactError> {
+        let certificate = self.certificate.largest();
+        self.report
+            .require(self.level.index, self.level.time, certificate)
     }
 
     /// How well all conditions hold.
@@ -224,6 +245,53 @@ impl Frame<'_> {
             .recovery
             .get_or_init(|| StrainRecovery::new(&scene.mesh));
         Ok(recovery.error(&scene.mesh, &scene.materials, &self.displacement())?)
+    }
+
+    /// Reactions of the supports, with moments about the origin. See [`reactions_about`](Self::reactions_about).
+    ///
+    /// # Errors
+    /// None for a frame of a simulation.
+    pub fn reactions(&self) -> Result<Reactions, ContactError> {
+        self.reactions_about([0.0; 3])
+    }
+
+    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the obstacle and the
+    /// loads do. Computed from the multipliers when asked for.
+    ///
+    /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
+    ///
+    /// ```
+    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+    ///
+    /// let mesh = Brick::new([1.0, 1.0, 3.0], [2, 2, 6]).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::Z_MIN))
+    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let reactions = simulation.step()?.reactions_about([0.5, 0.5, 0.0])?;
+    /// for support in &reactions.supports {
+    ///     let resultant = support.resultant;
+    ///     assert!((resultant.force[2] - 1e6).abs() < 1.0);
+    ///     assert!(resultant.moment.iter().all(|m| m.abs() < 1.0));
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// None for a frame of a simulation.
+    pub fn reactions_about(&self, point: [f64; 3]) -> Result<Reactions, ContactError> {
+        reactions::about(self.model, self.level, self.solved, self.held, point)
+    }
+
+    /// Reactions of all supports at the mesh nodes, `3 node + component`, N: a field for output. Zero at nodes without support.
+    #[must_use]
+    pub fn reaction_field(&self) -> Vec<f64> {
+        let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
+        for (node, force) in reactions::nodal(self.model, self.held) {
+            field[3 * node as usize..][..3].copy_from_slice(&force);
+        }
+        field
     }
 
     /// Sum of all loads at this level, N.

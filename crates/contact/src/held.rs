@@ -8,9 +8,9 @@
 use crate::cone::{Cone, Generators, Separation};
 use crate::error::ContactError;
 use crate::law::Friction;
-use crate::model::Model;
+use crate::model::{Model, TouchPoint};
 use signorini_qp::vector;
-use signorini_tfeti::{BodyMotion, FreeMotion, OrthonormalCoarse, RowWeights};
+use signorini_tfeti::{FreeMotion, OrthonormalCoarse, RowWeights};
 
 /// Work on a free motion above this fraction of the size of the loads counts.
 const WORK: f64 = 1e-9;
@@ -24,16 +24,62 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
     if motions.is_empty() {
         return Ok(());
     }
-    let mut cone = Cone::new(motions.len(), generators(model, &motions)?);
+    // no row joins bodies: each is judged alone, by its own loads
+    let mut worst: Option<Escape> = None;
+    for body in 0..model.bodies.count() {
+        let own = |m: &&FreeMotion| m.bodies.iter().any(|b| b.body == body);
+        let motions: Vec<&FreeMotion> = motions.iter().filter(own).collect();
+        if motions.is_empty() {
+            continue;
+        }
+        if let Some(escape) = escapes(model, body, &motions)? {
+            let first = |w: &Escape| {
+                escape.level < w.level || escape.level == w.level && escape.force > w.force
+            };
+            if worst.as_ref().is_none_or(first) {
+                worst = Some(escape);
+            }
+        }
+    }
+    worst.map_or(Ok(()), |w| {
+        Err(ContactError::NotHeld {
+            level: w.level,
+            body: w.body,
+            mode: w.mode,
+            force: w.force,
+        })
+    })
+}
+
+/// Where and how a body gets away.
+struct Escape {
+    level: usize,
+    body: usize,
+    mode: String,
+    force: f64,
+}
+
+/// The first level at which nothing can hold a body.
+fn escapes(
+    model: &Model,
+    body: usize,
+    motions: &[&FreeMotion],
+) -> Result<Option<Escape>, ContactError> {
+    let mut cone = Cone::new(motions.len(), generators(model, body, motions)?);
+    let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
+    let largest = largest.fold(0.0, f64::max);
     let given = model.any_law(|law| matches!(law, Friction::Given(_)));
     let loads: Vec<(Vec<f64>, f64)> = model
         .loads
         .iter()
         .map(|response| {
-            let work = |m: &FreeMotion| vector::dot(&m.amplitudes, &response.coarse);
-            let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
-            let size = vector::norm(&response.coarse) * largest.fold(0.0, f64::max);
-            (motions.iter().map(work).collect(), size)
+            let work = |m: &&FreeMotion| vector::dot(&m.amplitudes, &response.coarse);
+            let subdomains = response.coarse.chunks_exact(6).enumerate();
+            let square: f64 = subdomains
+                .filter(|(s, _)| model.bodies.of_subdomain(*s) == body)
+                .map(|(_, e)| e.iter().map(|v| v * v).sum::<f64>())
+                .sum();
+            (motions.iter().map(work).collect(), square.sqrt() * largest)
         })
         .collect();
     let analysis = &model.scene.analysis;
@@ -57,7 +103,7 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
             // the size of the loads counts
             if let Some(Separation { motion, given }) = cone.exceeded(&b) {
                 let force = vector::dot(&motion, &b);
-                return Err(not_held(level, &motions, &motion, force, given));
+                return Ok(Some(escape(level, body, motions, &motion, force, given)));
             }
             continue;
         }
@@ -69,24 +115,25 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
         }
         if let Some(motion) = cone.separates(&b) {
             let force = length * vector::dot(&motion, &b);
-            return Err(not_held(level, &motions, &motion, force, 0.0));
+            return Ok(Some(escape(level, body, motions, &motion, force, 0.0)));
         }
         approved = Some(b);
     }
-    Ok(())
+    Ok(None)
 }
 
-/// The refusal: `given` is what given friction takes of the force.
-fn not_held(
+/// The way out: `given` is what given friction takes of the force.
+fn escape(
     level: usize,
-    motions: &[FreeMotion],
+    body: usize,
+    motions: &[&FreeMotion],
     motion: &[f64],
     force: f64,
     given: f64,
-) -> ContactError {
+) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-    let Described { body, mode, share } = describe(motions, &motion);
+    let (mode, share) = describe(body, motions, &motion);
     let mode = if given > 0.0 {
         format!(
             "{mode}, of which given friction holds {:.3e} N,",
@@ -95,7 +142,7 @@ fn not_held(
     } else {
         mode
     };
-    ContactError::NotHeld {
+    Escape {
         level,
         body,
         mode,
@@ -104,7 +151,11 @@ fn not_held(
 }
 
 /// What a force at each touch point does on the motions: newtons to work.
-fn generators(model: &Model, motions: &[FreeMotion]) -> Result<Vec<Generators>, ContactError> {
+fn generators(
+    model: &Model,
+    body: usize,
+    motions: &[&FreeMotion],
+) -> Result<Vec<Generators>, ContactError> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
     let columns: Vec<Vec<f64>> = motions
@@ -117,8 +168,9 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Result<Vec<Generators>, 
         .collect();
     let along =
         |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
-    let mut out = Vec::with_capacity(model.points.len());
-    for point in &model.points {
+    let mut out = Vec::new();
+    let own = |point: &&TouchPoint| model.bodies.of_row(point.row) == body;
+    for point in model.points.iter().filter(own) {
         let tangents = point
             .tangential
             .rows()
@@ -143,48 +195,31 @@ fn generators(model: &Model, motions: &[FreeMotion]) -> Result<Vec<Generators>, 
     Ok(out)
 }
 
-/// What a message says of a motion.
-struct Described {
-    /// The body that moves most.
-    body: usize,
-    /// Its motion in words, of length one.
-    mode: String,
-    /// Its share of the motion of all bodies, of length one. Supports and obstacles act on each body alone, so its part
-    /// is a free motion of its own, on which the loads do this share of the work per length.
-    share: f64,
-}
-
-fn describe(motions: &[FreeMotion], factors: &[f64]) -> Described {
-    let mut bodies: Vec<(BodyMotion, [f64; 6])> = Vec::new();
+/// What a message says of the motion of a body: the motion in words, of length one, and its length.
+fn describe(body: usize, motions: &[&FreeMotion], factors: &[f64]) -> (String, f64) {
+    // of parts that hinges join the one that moves most
+    let mut parts: Vec<(usize, f64, [f64; 6])> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
-        for body in &motion.bodies {
-            let at = match bodies.iter().position(|b| b.0.body == body.body) {
+        for part in motion.bodies.iter().filter(|b| b.body == body) {
+            let at = match parts.iter().position(|p| p.0 == part.subdomain) {
                 Some(at) => at,
                 None => {
-                    bodies.push((*body, [0.0; 6]));
-                    bodies.len() - 1
+                    parts.push((part.subdomain, part.radius, [0.0; 6]));
+                    parts.len() - 1
                 }
             };
             for c in 0..3 {
-                bodies[at].1[c] += factor * body.translation[c];
-                bodies[at].1[3 + c] += factor * body.rotation[c];
+                parts[at].2[c] += factor * part.translation[c];
+                parts[at].2[3 + c] += factor * part.rotation[c];
             }
         }
     }
-    let size = |m: &[f64; 6]| m.iter().map(|v| v * v).sum::<f64>();
-    let Some((body, m)) = bodies
-        .iter()
-        .max_by(|a, b| size(&a.1).total_cmp(&size(&b.1)))
-    else {
-        return Described {
-            body: 0,
-            mode: "a rigid motion".to_owned(),
-            share: 1.0,
-        };
-    };
-    let share = size(m).sqrt();
+    let size = |p: &(usize, f64, [f64; 6])| vector::norm(&p.2);
+    let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+    let (_, radius, m) = most.copied().unwrap_or((0, 1.0, [0.0; 6]));
+    let length = vector::norm(&m);
     let rounded = |v: &f64| {
-        let v = v / share;
+        let v = v / length;
         if v.abs() < 5e-4 { 0.0 } else { v }
     };
     let words = |name: &str, v: &[f64]| {
@@ -192,16 +227,12 @@ fn describe(motions: &[FreeMotion], factors: &[f64]) -> Described {
         let moves = v.iter().any(|v| *v != 0.0);
         moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
     };
-    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {:.3e} m", body.radius));
+    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e} m"));
     let parts: Vec<String> = words("translation", &m[..3])
         .into_iter()
         .chain(turn)
         .collect();
-    Described {
-        body: body.body,
-        mode: format!("its {}", parts.join(" with ")),
-        share,
-    }
+    (format!("its {}", parts.join(" with ")), length)
 }
 
 /// The orthonormal coarse rows that the linear solver and the paper's methods need.

@@ -1,7 +1,7 @@
 //! Friction laws: none, given (Tresca), and Coulomb with a coefficient that may depend on place and slip rate.
 
 use crate::error::ContactError;
-use crate::model::Model;
+use signorini_fem_mesh::interpolate;
 use std::fmt;
 use std::sync::Arc;
 
@@ -240,25 +240,15 @@ impl fmt::Debug for Coefficient {
     }
 }
 
-fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
-    let after = points.partition_point(|p| p.0 <= x);
-    match (
-        after.checked_sub(1).and_then(|i| points.get(i)),
-        points.get(after),
-    ) {
-        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)),
-        (Some(p), None) | (None, Some(p)) => p.1,
-        (None, None) => f64::NAN,
-    }
-}
-
-/// Asks the law of friction at every touch point, at rest, so that what it cannot mean is said before any work.
-pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
-    for point in &model.points {
-        match model.law(point) {
+/// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any work.
+pub(crate) fn check<'a>(
+    points: impl IntoIterator<Item = (&'a Friction, u32, [f64; 3])>,
+) -> Result<(), ContactError> {
+    for (friction, node, place) in points {
+        match friction {
             Friction::None => continue,
-            Friction::Given(bound) => bound.stress(point.node, point.position)?,
-            Friction::Coulomb(law) => law.value(point.node, point.position, 0.0)?,
+            Friction::Given(bound) => bound.stress(node, place)?,
+            Friction::Coulomb(law) => law.value(node, place, 0.0)?,
         };
     }
     Ok(())

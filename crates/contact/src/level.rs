@@ -4,11 +4,11 @@ use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
-use crate::state::{Peak, State};
+use crate::state::{Peak, REST, State};
 use signorini_qp::{ProductSet, vector};
 
 /// Data of one level; vectors are allocated once and rewritten.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Level {
     /// Position in the analysis, from 0.
     pub(crate) index: usize,
@@ -28,12 +28,14 @@ pub(crate) struct Level {
     pub(crate) rhs: Vec<f64>,
     /// Displacement of the obstacle of each contact surface, now and at the level before; empty where none moves.
     pub(crate) obstacles: [Vec<[f64; 3]>; 2],
-    /// Largest sizes at earlier levels.
-    pub(crate) peak: Peak,
+    /// Largest sizes of each body at earlier levels.
+    pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
     /// Given slip bound at each point, N, 0 without.
     pub(crate) given: Vec<f64>,
+    /// Unit of force of each point, N; empty if it is 1 N everywhere.
+    pub(crate) units: Vec<f64>,
 }
 
 impl Level {
@@ -52,7 +54,10 @@ impl Level {
         self.index = index;
         self.time = time;
         self.step = analysis.step(index);
-        self.peak = state.peak();
+        self.peaks.clear();
+        self.peaks.extend_from_slice(state.peaks());
+        self.peaks
+            .resize(model.bodies.count().max(1), Peak::default());
         self.factors.clear();
         self.factors.extend(
             model
@@ -129,6 +134,31 @@ impl Level {
             .map_or(0.0, |w| dot(w, direction))
     }
 
+    /// What vanishing multipliers of a body are measured against, N.
+    pub(crate) fn rest(&self, body: usize) -> f64 {
+        self.peaks.get(body).map_or(0.0, |p| REST * p.multipliers)
+    }
+
+    /// What vanishing multipliers are measured against, N: all, and those of contact.
+    pub(crate) fn least(&self) -> [f64; 2] {
+        let sizes = |of: fn(&Peak) -> f64| match &self.peaks[..] {
+            [] => 0.0,
+            [peak] => REST * of(peak),
+            peaks => peaks
+                .iter()
+                .map(|p| (REST * of(p)).powi(2))
+                .sum::<f64>()
+                .sqrt(),
+        };
+        [sizes(|p| p.multipliers), sizes(|p| p.force)]
+    }
+
+    /// The torn load, N.
+    pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
+        let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
+        model.tfeti.combine_forces(&loads)
+    }
+
     fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
         if !model.any_law(Friction::is_some)
             || (!self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate))
@@ -158,10 +188,13 @@ impl Level {
         model.set_slip_bounds(set, |k, point| self.bound(k, point, lambda));
     }
 
-    /// Slip bound of a point in newtons, `-F_i lambda_nu,i` or the given one; 0 without friction.
+    /// Slip bound of a point in units of force of its body (newtons), `-F_i lambda_nu,i` or the given one; 0 without friction.
     pub(crate) fn bound(&self, k: usize, point: &TouchPoint, lambda: &[f64]) -> f64 {
         match (self.given.get(k), self.coefficients.get(k)) {
-            (Some(given), Some(coefficient)) => given + coefficient * normal_force(point, lambda),
+            (Some(given), Some(coefficient)) => {
+                let unit = self.units.get(k).copied().unwrap_or(1.0);
+                given / unit + coefficient * normal_force(point, lambda)
+            }
             _ => 0.0,
         }
     }

@@ -12,6 +12,7 @@
 //! | to know the cost before any work | [`Plan`], [`Estimate`] |
 //! | the solver | [`Settings`]; [`Method::Face`] is the default, [`Method::paper`] the paper's |
 //! | forces, states, stress | [`Frame`], [`PointState`], [`ContactSummary`] |
+//! | reactions of supports | [`Frame::reactions`] |
 //! | to know whether a result is right | [`Certificate`]; [`LevelStatus`] says whether and why not |
 //! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`Frame::discretisation_error`], [`StepDoubling`] |
 //! | to stop where more accuracy is useless | [`Accuracy`] |
@@ -63,6 +64,8 @@
 //! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads that
 //! nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a level then ends
 //! with another [`LevelStatus`] than `Converged`, its frame holds the last iterate, and the certificate says how far it is.
+//! Later levels whose friction depends on its slip name it ([`Frame::unconverged_history`]). Who wants errors instead asks
+//! [`RunReport::require_converged`] or [`Frame::require_converged`].
 //!
 //! # Threads
 //!
@@ -72,6 +75,7 @@
 pub mod accumulated;
 pub mod accuracy;
 pub mod algebraic;
+mod bodies;
 mod candidates;
 mod certificate;
 mod clock;
@@ -82,6 +86,7 @@ mod driven;
 mod error;
 mod estimate;
 mod face_solver;
+mod fingerprint;
 pub mod fixed_point;
 mod frame;
 mod held;
@@ -93,7 +98,9 @@ mod observer;
 mod paper_solver;
 mod plan;
 mod pool;
+mod precheck;
 mod preconditioner;
+mod reactions;
 mod report;
 mod scene;
 mod screening;
@@ -116,7 +123,8 @@ pub use law::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use model::TouchPoint;
 pub use observer::{Flow, Observer, Silent};
 pub use plan::{Effects, FrictionKind, Plan};
-pub use report::{Counters, LevelReport, LevelStatus};
+pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
+pub use report::{Counters, LevelFailure, LevelReport, LevelStatus, RunReport};
 pub use scene::{Cut, Load, Place, Scene, Support};
 pub use screening::Screening;
 pub use settings::{InnerAccuracy, Method, Preconditioner, Settings};

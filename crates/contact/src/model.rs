@@ -1,5 +1,6 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
+use crate::bodies::Bodies;
 use crate::candidates::{Candidate, candidates, contact_nodes, surfaces};
 use crate::driven;
 use crate::error::ContactError;
@@ -99,6 +100,7 @@ pub(crate) struct Model {
     pub(crate) plan: Plan,
     pub(crate) decomposition: Decomposition,
     pub(crate) tfeti: Tfeti,
+    pub(crate) bodies: Bodies,
     pub(crate) loads: Vec<LoadResponse>,
     /// History of each displacement case.
     pub(crate) motions: Vec<History>,
@@ -211,6 +213,7 @@ impl Model {
             scene,
             plan,
             decomposition,
+            bodies: Bodies::new(&tfeti),
             tfeti,
             loads,
             motions,

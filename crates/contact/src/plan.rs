@@ -6,6 +6,7 @@ use crate::contact_surface::Gap;
 use crate::error::ContactError;
 use crate::estimate::{Estimate, Sizes, stiffness_ratio};
 use crate::law::Friction;
+use crate::precheck;
 use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use signorini_fem_mesh::Decomposition;
@@ -89,7 +90,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Judges a scene.
+    /// Judges a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, but for loads that nothing can
+    /// hold: that takes a set-up.
     ///
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
@@ -97,7 +99,9 @@ impl Plan {
         scene.validate()?;
         settings.validate()?;
         let decomposition = scene.decompose()?;
-        Self::with_decomposition(scene, settings, &decomposition)
+        let plan = Self::with_decomposition(scene, settings, &decomposition)?;
+        precheck::check(scene, &decomposition)?;
+        Ok(plan)
     }
 
     /// The same plan with times for another machine; [`Rate::measure`] measures this one.

@@ -1,8 +1,10 @@
 //! Reports of a level: how it ended, what it cost.
 
 use crate::accuracy::AccuracyReport;
+use crate::error::ContactError;
 use crate::fixed_point::FixedPointReport;
 use signorini_qp::Steps;
+use std::fmt;
 
 /// How the solve of a level ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,6 +29,37 @@ impl LevelStatus {
     #[must_use]
     pub fn converged(self) -> bool {
         self == Self::Converged
+    }
+
+    /// What to do about it; empty for a level that converged.
+    #[must_use]
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::Converged => "",
+            Self::IterationLimit => {
+                "raise max_fallback_products or the limits of the method, or take smaller steps"
+            }
+            Self::Stagnated => "take smaller steps; with Accuracy::Relative a looser target",
+            Self::NotContractive => {
+                "the Coulomb problem may have no solution here: take a smaller coefficient or smaller steps"
+            }
+            Self::NotCertified => {
+                "the parts of the certificate name the violated condition: take better shaped cells, Poisson's ratio \
+                 further from 1/2, smaller steps, or Method::paper()"
+            }
+        }
+    }
+}
+
+impl fmt::Display for LevelStatus {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Converged => "converged",
+            Self::IterationLimit => "iteration limit",
+            Self::Stagnated => "stagnated",
+            Self::NotContractive => "not contractive",
+            Self::NotCertified => "not certified",
+        })
     }
 }
 
@@ -103,6 +136,10 @@ pub struct LevelReport {
     pub estimated_error: Option<f64>,
     /// Estimates of the level's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
+    /// The first earlier level that did not converge and on whose displacement this one depends, from 0: its slip is part of
+    /// the history of friction, which no certificate of this level can judge. Always `None` in scenes without history (no
+    /// friction, or static). The status of this level does not depend on it.
+    pub unconverged_history: Option<usize>,
 }
 
 impl LevelReport {
@@ -117,7 +154,19 @@ impl LevelReport {
             fallback_products: 0,
             estimated_error: None,
             accuracy: None,
+            unconverged_history: None,
         }
+    }
+
+    /// An error unless this level and its history converged.
+    pub(crate) fn require(
+        &self,
+        level: usize,
+        time: f64,
+        certificate: f64,
+    ) -> Result<(), ContactError> {
+        LevelFailure::of(self, level, time, certificate).map_or(Ok(()), |f| Err(f.error()))?;
+        inherited(self.unconverged_history)
     }
 
     /// Takes over the outcome of a further solve of the same level, with the cost of both.
@@ -128,5 +177,125 @@ impl LevelReport {
         next.fallback |= self.fallback;
         next.fallback_products += self.fallback_products;
         next
+    }
+}
+
+fn inherited(level: Option<usize>) -> Result<(), ContactError> {
+    level.map_or(Ok(()), |level| {
+        Err(ContactError::UnconvergedHistory { level })
+    })
+}
+
+/// A level that did not converge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct LevelFailure {
+    /// The level, from 0.
+    pub level: usize,
+    /// Its time, s.
+    pub time: f64,
+    /// How it ended.
+    pub status: LevelStatus,
+    /// The largest relative violation of its certificate.
+    pub certificate: f64,
+}
+
+impl LevelFailure {
+    /// `None` for a level that converged.
+    pub(crate) fn of(
+        report: &LevelReport,
+        level: usize,
+        time: f64,
+        certificate: f64,
+    ) -> Option<Self> {
+        (!report.status.converged()).then_some(Self {
+            level,
+            time,
+            status: report.status,
+            certificate,
+        })
+    }
+
+    /// As an error.
+    #[must_use]
+    pub fn error(&self) -> ContactError {
+        ContactError::NotConverged {
+            level: self.level,
+            time: self.time,
+            status: self.status,
+            certificate: self.certificate,
+        }
+    }
+}
+
+/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every level to converge asks
+/// [`require_converged`](Self::require_converged).
+///
+/// ```
+/// use signorini_contact::{ContactError, Scene, Settings, Silent, Simulation};
+///
+/// fn strict(scene: Scene) -> Result<Simulation, ContactError> {
+///     let mut simulation = Simulation::new(scene, Settings::default())?;
+///     simulation.run(&mut Silent)?.require_converged()?;
+///     Ok(simulation)
+/// }
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+#[must_use = "levels may not have converged: see `first_failure`, or ask `require_converged`"]
+pub struct RunReport {
+    /// Levels solved.
+    pub levels: usize,
+    /// Levels that did not converge, in order.
+    pub failures: Vec<LevelFailure>,
+    /// The first level before this run that did not converge and on whose displacement its levels depend, see
+    /// [`State::unconverged_history`](crate::State::unconverged_history).
+    pub unconverged_history: Option<usize>,
+    /// What the run cost.
+    pub counters: Counters,
+    /// The largest certificate of all its levels.
+    pub largest_certificate: f64,
+}
+
+impl RunReport {
+    /// Takes a level into account.
+    pub(crate) fn enter(
+        &mut self,
+        report: &LevelReport,
+        level: usize,
+        time: f64,
+        certificate: f64,
+    ) {
+        self.levels += 1;
+        self.counters += report.counters;
+        if certificate.is_nan() || certificate > self.largest_certificate {
+            self.largest_certificate = certificate;
+        }
+        self.failures
+            .extend(LevelFailure::of(report, level, time, certificate));
+    }
+
+    /// Whether all levels converged, and those before on whose displacement they depend.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        self.failures.is_empty() && self.unconverged_history.is_none()
+    }
+
+    /// The first level of this run that did not converge.
+    #[must_use]
+    pub fn first_failure(&self) -> Option<&LevelFailure> {
+        self.failures.first()
+    }
+
+    /// For those who want every level to converge: an error unless [all did](Self::converged).
+    ///
+    /// # Errors
+    /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: level, status and remedy of the first one.
+    pub fn require_converged(&self) -> Result<(), ContactError> {
+        inherited(self.unconverged_history)?;
+        match self.first_failure() {
+            Some(failure) => Err(failure.error()),
+            None => Ok(()),
+        }
     }
 }

@@ -83,6 +83,25 @@ impl Support {
         self.motion = Some((displacements, history));
         self
     }
+
+    /// Where it acts.
+    #[must_use]
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// The directions that it fixes.
+    #[must_use]
+    pub fn directions(&self) -> &Directions {
+        &self.directions
+    }
+
+    /// Its displacements (m; one for all nodes or one a node) and their history; `None` if it does not move.
+    #[must_use]
+    pub fn motion(&self) -> Option<(&[[f64; 3]], &History)> {
+        let (values, history) = self.motion.as_ref()?;
+        Some((values, history))
+    }
 }
 
 /// A load in space and time.
@@ -125,6 +144,18 @@ impl Load {
     pub fn with_history(mut self, history: History) -> Self {
         self.history = history;
         self
+    }
+
+    /// The load in space.
+    #[must_use]
+    pub fn density(&self) -> &LoadDensity {
+        &self.density
+    }
+
+    /// Its factor in time.
+    #[must_use]
+    pub fn history(&self) -> &History {
+        &self.history
     }
 }
 
@@ -246,6 +277,24 @@ impl Scene {
     #[must_use]
     pub fn materials(&self) -> &Materials {
         &self.materials
+    }
+
+    /// The supports, in the order in which they were added.
+    #[must_use]
+    pub fn supports(&self) -> &[Support] {
+        &self.supports
+    }
+
+    /// The loads, in the order in which they were added.
+    #[must_use]
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// How the body is cut.
+    #[must_use]
+    pub fn cut(&self) -> &Cut {
+        &self.cut
     }
 
     /// The first contact surface, if any.

@@ -2,17 +2,18 @@
 
 mod resume;
 mod rounds;
+mod run;
 mod screened;
 
 use crate::accuracy::Controller;
-use crate::certificate::{Certificate, Measured, Violation, certify};
+use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
+use crate::fingerprint::Fingerprint;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
-use crate::observer::{Flow, Observer};
 use crate::plan::Plan;
 use crate::pool::on_pool;
 use crate::report::{Counters, LevelReport};
@@ -48,22 +49,27 @@ use std::time::{Duration, Instant};
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug)]
 pub struct Simulation {
     model: Model,
     settings: Settings,
     solver: Solver,
     state: Arc<State>,
+    /// What numbers of states refer to.
+    origin: Fingerprint,
     /// Whether the fields below belong to a level that was solved.
     solved: bool,
     level: Level,
     iterate: Iterate,
     report: LevelReport,
     certificate: Certificate,
+    /// Sizes of the bodies at the level.
+    sizes: Vec<Sizes>,
     points: Vec<PointState>,
     summary: ContactSummary,
     torn: Vec<f64>,
     residual: Vec<f64>,
+    /// Multipliers of the support rows.
+    held: Vec<f64>,
     total: Counters,
     setup: Duration,
     controller: Controller,
@@ -73,6 +79,17 @@ pub struct Simulation {
     all: Vec<PointState>,
     /// Factorisations of the set-ups that screening has made in this level.
     rebuilt: usize,
+}
+
+/// The plan and how far it is; not the megabytes of tables and vectors.
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Simulation")
+            .field("plan", &self.model.plan)
+            .field("levels_solved", &self.state.level())
+            .field("total", &self.total)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Simulation {
@@ -87,20 +104,35 @@ impl Simulation {
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let (model, screen) = screened::set_up(scene, &settings)?;
-        crate::law::check(&model)?;
+        // with screening the model has no points yet
+        let points = screen.as_ref().map_or(&model.points[..], Screen::points);
+        let places = points.iter().map(|p| (model.law(p), p.node, p.position));
+        crate::law::check(places)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
+        let origin = Fingerprint::new(
+            &model.scene.mesh,
+            &model.scene.analysis,
+            &model.decomposition,
+            model.tfeti.gluing(),
+            points,
+        );
+        let mut state = State::default();
+        state.set_origin(origin);
         Ok(Self {
-            state: Arc::default(),
+            state: Arc::new(state),
+            origin,
             solved: false,
             level: Level::default(),
             iterate: Iterate::default(),
             report: LevelReport::new(),
             certificate: Certificate::default(),
+            sizes: Vec::new(),
             points: Vec::new(),
             summary: ContactSummary::default(),
             torn: Vec::new(),
             residual: Vec::new(),
+            held: Vec::new(),
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
@@ -188,36 +220,12 @@ impl Simulation {
         let outcome = on_pool(busy, || self.solve_level(&state, index));
         drop(state);
         let (mut report, lambda, rows) = outcome?;
+        report.unconverged_history = self.state.unconverged_history();
         self.remember(lambda, rows, &mut report);
         self.total += report.counters;
         self.report = report;
         self.solved = true;
         Ok(self.present())
-    }
-
-    /// Solves all levels that are left, telling the observer; ends early if it says so.
-    ///
-    /// # Errors
-    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
-    pub fn run(&mut self, observer: &mut (impl Observer + ?Sized)) -> Result<(), ContactError> {
-        let levels = self.model.scene.analysis.levels() - self.state.level();
-        observer.started(&self.model.plan, levels);
-        let (mut solved, mut failed) = (0, None);
-        while !self.is_finished() {
-            let frame = self.step()?;
-            solved += 1;
-            match observer.level(&frame) {
-                Flow::Continue => {}
-                Flow::Stop => break,
-                Flow::Fail(source) => {
-                    let level = frame.level();
-                    failed = Some(ContactError::Observer { level, source });
-                    break;
-                }
-            }
-        }
-        observer.finished(solved);
-        failed.map_or(Ok(()), Err)
     }
 
     /// The frame of the last level solved; `None` before the first one, after [`resume`](Self::resume) and after a step that
@@ -239,6 +247,7 @@ impl Simulation {
             points: self.states(),
             torn: &self.torn,
             residual: &self.residual,
+            held: &self.held,
         }
     }
 
@@ -294,7 +303,7 @@ impl Simulation {
             .solve(model, &self.level, settings, &mut self.iterate)?;
         // recovery: u, and from it everything that is reported
         let tfeti = &model.tfeti;
-        let force = combine(model, &self.level);
+        let force = self.level.forces(model);
         let lambda = std::mem::take(&mut self.iterate.lambda);
         self.torn = tfeti.recover(&force, &lambda, &self.iterate.alpha)?;
         report.counters.products += 1;
@@ -307,8 +316,12 @@ impl Simulation {
             force: &force,
             residual: &self.residual,
         };
-        self.certificate = certify(model, &self.level, &lambda, &measured);
+        self.sizes = sizes(model, &self.level, &lambda, &measured);
+        self.certificate = certify(model, &self.level, &lambda, &measured, &self.sizes);
         self.points = point_states(model, &self.level, &lambda, &rows);
+        let supports = tfeti.gluing().ranges().dirichlet.clone();
+        self.held.clear();
+        self.held.extend_from_slice(&lambda[supports]);
         Ok((report, lambda, rows))
     }
 
@@ -397,15 +410,14 @@ impl Simulation {
         } else {
             (Vec::new(), Vec::new(), Vec::new())
         };
-        let largest = |v: &Violation| v.reference;
         let state = Arc::make_mut(&mut self.state);
+        state.pass(self.level.time);
         if report.status.converged() {
             // what did not converge is no scale for later levels
-            state.raise(Peak {
-                multipliers: vector::norm(&lambda),
-                force: largest(&self.certificate.sign),
-                displacement: largest(&self.certificate.gap),
-            });
+            let peaks: Vec<Peak> = self.sizes.iter().map(Sizes::peak).collect();
+            state.raise(&peaks);
+        } else if effects.history {
+            state.note_unconverged();
         }
         if let Some(screen) = &self.screen {
             report.counters.screened_points = screen.left_out();
@@ -434,9 +446,4 @@ impl Simulation {
             state.push_gaps(self.all.iter().map(|p| p.gap).collect());
         }
     }
-}
-
-fn combine(model: &Model, level: &Level) -> Vec<f64> {
-    let loads: Vec<_> = level.factors.iter().copied().zip(&model.loads).collect();
-    model.tfeti.combine_forces(&loads)
 }

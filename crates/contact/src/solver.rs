@@ -50,7 +50,23 @@ impl Solver {
         })
     }
 
+    /// Solves a level; every body in a unit of force of its own (see [`Bodies`](crate::bodies::Bodies)).
     pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        level: &Level,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<LevelReport, ContactError> {
+        let Some((level, units)) = model.bodies.scaled(model, level, iterate) else {
+            return self.solve_plain(model, level, settings, iterate);
+        };
+        let report = self.solve_plain(model, &level, settings, iterate);
+        units.restore(iterate);
+        report
+    }
+
+    fn solve_plain(
         &mut self,
         model: &Model,
         level: &Level,

@@ -2,6 +2,10 @@
 
 use crate::accuracy::Controller;
 use crate::error::ContactError;
+use crate::fingerprint::Fingerprint;
+
+#[cfg(feature = "checkpoint")]
+mod bytes;
 
 /// What one level hands to the next.
 ///
@@ -29,11 +33,15 @@ pub struct State {
     gaps: [Vec<f64>; 2],
     /// What chooses the tolerance of the next level by estimates of the error.
     controller: Controller,
-    /// Largest sizes at the levels so far.
-    peak: Peak,
+    /// Largest sizes of each body at the levels so far.
+    peaks: Vec<Peak>,
+    /// With history: the first level that did not converge.
+    unconverged: Option<usize>,
+    /// What its numbers refer to; `None` if that is not to be compared.
+    origin: Option<Fingerprint>,
 }
 
-/// Largest sizes at earlier levels: what a level where forces and displacements vanish is measured against.
+/// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Peak {
@@ -57,18 +65,6 @@ impl Peak {
             displacement: self.displacement.max(other.displacement),
         }
     }
-}
-
-/// Marks the format of stored states.
-#[cfg(feature = "checkpoint")]
-const MAGIC: u32 = 0x5349_4706;
-
-/// FNV-1a of 64 bits: any one changed byte changes it.
-#[cfg(feature = "checkpoint")]
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }
 
 impl State {
@@ -97,60 +93,15 @@ impl State {
         8 * numbers + self.sliding.len() + self.active.len()
     }
 
-    /// Writes the state as bytes (feature `checkpoint`): a number for the format (4 bytes) and a checksum of the rest (8 bytes,
-    /// FNV-1a), both little-endian, then the state in the encoding of postcard.
-    ///
-    /// # Errors
-    /// [`ContactError::Checkpoint`] if the encoder fails.
-    #[cfg(feature = "checkpoint")]
-    pub fn to_bytes(&self) -> Result<Vec<u8>, ContactError> {
-        let payload = postcard::to_stdvec(self).map_err(|e| ContactError::Checkpoint {
-            reason: format!("the state cannot be encoded ({e})"),
-        })?;
-        let mut bytes = MAGIC.to_le_bytes().to_vec();
-        bytes.extend(checksum(&payload).to_le_bytes());
-        bytes.extend(payload);
-        Ok(bytes)
-    }
-
-    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`). The checksum finds damage by chance; it is no
-    /// protection against bytes made on purpose.
-    ///
-    /// # Errors
-    /// [`ContactError::Checkpoint`] if the bytes are of another format, cut, changed, or followed by others.
-    #[cfg(feature = "checkpoint")]
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
-        let error = |reason: String| ContactError::Checkpoint { reason };
-        let damaged = |how: &str| {
-            error(format!(
-                "the bytes are damaged ({how}); use an earlier checkpoint or start anew"
-            ))
-        };
-        let (magic, rest) = bytes.split_first_chunk().ok_or_else(|| damaged("cut"))?;
-        if u32::from_le_bytes(*magic) != MAGIC {
-            return Err(error(
-                "another format or version; read it with the version that wrote it, or start anew"
-                    .to_owned(),
-            ));
-        }
-        let (sum, payload) = rest.split_first_chunk().ok_or_else(|| damaged("cut"))?;
-        if u64::from_le_bytes(*sum) != checksum(payload) {
-            return Err(damaged("their checksum differs"));
-        }
-        let (state, rest) =
-            postcard::take_from_bytes(payload).map_err(|e| damaged(&e.to_string()))?;
-        if rest.is_empty() {
-            Ok(state)
-        } else {
-            Err(damaged("more follows the state"))
-        }
-    }
-
     /// The same state as the start of another sequence of levels, without what extrapolation needs: the distance
     /// between levels is another one there.
     pub(crate) fn rebased(&self, level: usize) -> Self {
         let mut state = self.clone();
         state.level = level;
+        state.origin = None;
+        // a level here ends where its last part does there
+        let parts = level.checked_div(self.level).unwrap_or(1);
+        state.unconverged = self.unconverged.map(|k| (k + 1) * parts - 1);
         for pair in [
             &mut state.lambda,
             &mut state.f_lambda,
@@ -160,6 +111,32 @@ impl State {
             pair[1] = Vec::new();
         }
         state
+    }
+
+    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume) then compares
+    /// sizes only. Multipliers are start values there; tangential displacements and slip rates are taken for those of the
+    /// points with the same numbers.
+    #[must_use]
+    pub fn without_origin(mut self) -> Self {
+        self.origin = None;
+        self
+    }
+
+    /// What its numbers refer to.
+    pub(crate) fn origin(&self) -> Option<Fingerprint> {
+        self.origin
+    }
+
+    /// Notes what its numbers refer to.
+    pub(crate) fn set_origin(&mut self, origin: Fingerprint) {
+        self.origin = Some(origin);
+    }
+
+    /// Notes the time of the level that is being taken over.
+    pub(crate) fn pass(&mut self, time: f64) {
+        if let Some(origin) = &mut self.origin {
+            origin.pass(time);
+        }
     }
 
     /// With screening, which points were in the dual problem at the last level; empty without.
@@ -205,8 +182,22 @@ impl State {
             active: Vec::new(),
             gaps: Default::default(),
             controller: self.controller,
-            peak: self.peak,
+            peaks: self.peaks.clone(),
+            unconverged: self.unconverged,
+            origin: self.origin,
         }
+    }
+
+    /// The first level that did not converge and on whose displacement later levels depend, from 0. `None` where all
+    /// converged, and in scenes without history (no friction, or static), whose levels stand alone.
+    #[must_use]
+    pub fn unconverged_history(&self) -> Option<usize> {
+        self.unconverged
+    }
+
+    /// Notes that the level that comes next did not converge, although later ones depend on it.
+    pub(crate) fn note_unconverged(&mut self) {
+        self.unconverged = self.unconverged.or(Some(self.level));
     }
 
     /// With screening: gaps of all points at the last level and the one before; empty where they are not known.
@@ -290,14 +281,17 @@ impl State {
         self.level += 1;
     }
 
-    /// Largest sizes at the levels so far.
-    pub(crate) fn peak(&self) -> Peak {
-        self.peak
+    /// Largest sizes of each body at the levels so far; empty before the first.
+    pub(crate) fn peaks(&self) -> &[Peak] {
+        &self.peaks
     }
 
-    /// Takes the sizes of a level into account.
-    pub(crate) fn raise(&mut self, peak: Peak) {
-        self.peak = self.peak.or(peak);
+    /// Takes the sizes of a level into account, one a body.
+    pub(crate) fn raise(&mut self, sizes: &[Peak]) {
+        self.peaks.resize(sizes.len(), Peak::default());
+        for (peak, size) in self.peaks.iter_mut().zip(sizes) {
+            *peak = peak.or(*size);
+        }
     }
 
     /// Checks that the state fits a model of these sizes.
@@ -343,12 +337,16 @@ impl State {
                 reason: "it contains NaN or infinity".to_owned(),
             });
         }
-        let sizes = [
-            self.peak.multipliers,
-            self.peak.force,
-            self.peak.displacement,
-        ];
-        let mut sizes = sizes.into_iter().chain(self.controller.numbers());
+        if self.unconverged.is_some_and(|k| k >= self.level) {
+            return Err(ContactError::Checkpoint {
+                reason: "it says that a level did not converge that it has not solved; use an earlier checkpoint or \
+                         start anew"
+                    .to_owned(),
+            });
+        }
+        let peaks = self.peaks.iter();
+        let sizes = peaks.flat_map(|p| [p.multipliers, p.force, p.displacement]);
+        let mut sizes = sizes.chain(self.controller.numbers());
         if !sizes.all(|v| v.is_finite() && v >= 0.0) {
             return Err(ContactError::Checkpoint {
                 reason: "an error, a tolerance or a size of earlier levels in it is negative, NaN or infinite; use an \
@@ -368,10 +366,10 @@ fn pick<T: Copy>(all: &[T], places: &[usize]) -> Vec<T> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn state() -> State {
+    pub(crate) fn state() -> State {
         let mut state = State::default();
         state.advance(
             true,
@@ -385,39 +383,20 @@ mod tests {
         state
     }
 
-    #[cfg(feature = "checkpoint")]
     #[test]
-    fn bytes_round_trip_and_damage_is_noticed() {
-        let state = state();
-        let bytes = state.to_bytes().unwrap();
-        assert_eq!(State::from_bytes(&bytes).unwrap(), state);
-        assert!(matches!(
-            State::from_bytes(&bytes[..bytes.len() - 1]),
-            Err(ContactError::Checkpoint { .. })
-        ));
-        assert!(State::from_bytes(&[0; 40]).is_err());
-        for at in 0..8 * bytes.len() {
-            let mut damaged = bytes.clone();
-            damaged[at / 8] ^= 1 << (at % 8);
-            assert!(State::from_bytes(&damaged).is_err(), "bit {at}");
+    fn the_first_level_that_did_not_converge_is_kept() {
+        let mut state = state();
+        assert_eq!(state.unconverged_history(), None);
+        state.note_unconverged();
+        for _ in 0..2 {
+            let empty = || (vec![], vec![], vec![], vec![], vec![]);
+            let (a, b, c, d, e) = empty();
+            state.advance(true, a, b, c, d, e, vec![]);
+            state.note_unconverged();
         }
-        // bytes behind it, first as they are, then with the checksum that belongs to them
-        let mut longer = bytes.clone();
-        longer.push(0);
-        let text = |bytes: &[u8]| State::from_bytes(bytes).unwrap_err().to_string();
-        assert!(text(&longer).contains("checksum"));
-        let sum = checksum(&longer[12..]);
-        longer[4..12].copy_from_slice(&sum.to_le_bytes());
-        assert!(text(&longer).contains("more follows"));
-    }
-
-    #[cfg(feature = "checkpoint")]
-    #[test]
-    fn the_checksum_is_fnv_1a() {
-        // published values
-        assert_eq!(checksum(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(checksum(b"a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(checksum(b"foobar"), 0x8594_4171_f739_67e8);
+        assert_eq!((state.level(), state.unconverged_history()), (3, Some(1)));
+        // level 1 in whole steps ends where level 3 in half steps does
+        assert_eq!(state.rebased(6).unconverged_history(), Some(3));
     }
 
     #[test]
@@ -427,12 +406,18 @@ mod tests {
         assert!(state.fits(3, 6, 1, 1).is_err());
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             let mut other = state.clone();
-            other.peak.displacement = bad;
+            other.peaks = vec![Peak {
+                displacement: bad,
+                ..Peak::default()
+            }];
             assert!(other.fits(2, 6, 1, 1).is_err(), "peak {bad}");
             let mut other = state.clone();
             other.controller.discretisation.relative = bad;
             assert!(other.fits(2, 6, 1, 1).is_err(), "controller {bad}");
         }
+        let mut other = state.clone();
+        other.note_unconverged();
+        assert!(other.fits(2, 6, 1, 1).is_err(), "a level to come");
         state.advance(
             true,
             vec![f64::NAN, 0.0],

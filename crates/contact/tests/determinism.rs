@@ -44,6 +44,29 @@ fn the_number_of_threads_changes_no_bit() {
     }
 }
 
+/// Large enough that all loops are cut: over boundaries, vectors and both sides of a cut of the coarse factor.
+#[test]
+fn threads_change_no_bit_where_every_loop_is_cut() {
+    let mesh = common::block([3.0, 1.0, 1.0], [75, 25, 25]);
+    let scene = common::loaded_brick(mesh, up_down_up())
+        .with_contact(common::foundation(weakening()))
+        .with_boxes([15, 5, 5])
+        .with_analysis(Analysis::quasistatic(1.0, 1));
+    let run = |threads| {
+        with_threads(threads, || {
+            let settings = Settings::default().with_tolerance(1e-3);
+            let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
+            let tfeti = simulation.tfeti();
+            assert!(tfeti.dual_dim() >= signorini_qp::vector::PARALLEL);
+            let classes = tfeti.report().classes.iter();
+            assert!(classes.map(|c| c.members * c.boundary).sum::<usize>() >= 3 * 8000);
+            let levels: Vec<_> = rest(&mut simulation).iter().map(bits).collect();
+            (levels, state_bits(simulation.state()))
+        })
+    };
+    assert!(run(1) == run(2));
+}
+
 /// Subdomains that share nothing go through other code than translates.
 #[test]
 fn threads_change_no_bit_where_every_subdomain_is_different() {

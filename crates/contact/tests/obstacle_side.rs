@@ -4,7 +4,7 @@ mod common;
 
 use common::{block, steel};
 use signorini_contact::{
-    Contact, ContactError, Load, Scene, Screening, Settings, Simulation, Support,
+    Contact, ContactError, Load, Plan, Scene, Screening, Settings, Simulation, Support,
 };
 use signorini_fem_mesh::brick;
 
@@ -13,7 +13,14 @@ fn result(contact: Contact, settings: Settings) -> Result<Simulation, ContactErr
         .with_support(Support::fixed(brick::X_MIN))
         .with_load(Load::pressure(brick::Z_MAX, 1e9))
         .with_contact(contact);
-    Simulation::new(scene, settings)
+    let plan = Plan::new(&scene, &settings).map_err(|e| e.to_string());
+    let set_up = Simulation::new(scene, settings);
+    assert_eq!(
+        plan.err(),
+        set_up.as_ref().err().map(ToString::to_string),
+        "the plan knows it before any work"
+    );
+    set_up
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod common;
 
 use common::{block, steel};
 use signorini_contact::{
-    Analysis, Contact, ContactError, DifferenceFormula, Load, Scene, Screening, Settings,
+    Analysis, Contact, ContactError, DifferenceFormula, Load, Plan, Scene, Screening, Settings,
     Simulation, Support,
 };
 use signorini_fem_mesh::{History, LoadDensity, brick};
@@ -28,8 +28,14 @@ fn floor(gap: f64) -> Contact {
 }
 
 fn refused(scene: &Scene, settings: &Settings) -> ContactError {
+    let plan = Plan::new(scene, settings);
     match Simulation::new(scene.clone(), settings.clone()) {
-        Err(error) => error,
+        Err(error) => {
+            // a plan says so before any work
+            let early = plan.expect_err("refused by the plan");
+            assert_eq!(early.to_string(), error.to_string());
+            error
+        }
         Ok(_) => panic!("accepted"),
     }
 }

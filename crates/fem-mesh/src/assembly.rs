@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use sprs::CsMat;
 use thiserror::Error;
 
+use crate::buckets::{buckets, range};
 use crate::decomposition::Subdomain;
 use crate::element::{Element, nodal_stress, stiffness_block};
 use crate::hooke::Hooke;
@@ -132,31 +133,18 @@ struct Pattern {
     start: Vec<usize>,
     nodes: Vec<u32>,
     /// Tetrahedra around node n, ascending: `tets[tet_start[n]..tet_start[n + 1]]`.
-    tet_start: Vec<usize>,
+    tet_start: Vec<u32>,
     tets: Vec<u32>,
 }
 
 impl Pattern {
     fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
-        let mut tet_start = vec![0; nodes + 1];
-        for &node in tets.iter().flatten() {
-            tet_start[node as usize + 1] += 1;
-        }
-        for n in 0..nodes {
-            tet_start[n + 1] += tet_start[n];
-        }
-        let mut next = tet_start.clone();
-        let mut around = vec![0; 4 * tets.len()];
-        for (t, tet) in tets.iter().enumerate() {
-            for &node in tet {
-                around[next[node as usize]] = t as u32;
-                next[node as usize] += 1;
-            }
-        }
+        let (tet_start, mut around) = buckets(nodes, tets.as_flattened());
+        around.iter_mut().for_each(|corner| *corner /= 4);
         let columns: Vec<Vec<u32>> = (0..nodes)
             .into_par_iter()
             .map(|node| {
-                let own = &around[tet_start[node]..tet_start[node + 1]];
+                let own = &around[range(&tet_start, node)];
                 let mut column = vec![node as u32];
                 column.extend(own.iter().flat_map(|&t| tets[t as usize]));
                 column.sort_unstable();
@@ -199,7 +187,7 @@ impl Pattern {
             .filter(|&&n| n as usize >= node)
             .count();
         let mut blocks = vec![[[0.0; 3]; 3]; height];
-        for &t in &self.tets[self.tet_start[node]..self.tet_start[node + 1]] {
+        for &t in &self.tets[range(&self.tet_start, node)] {
             let tet = tets[t as usize].map(|n| n as usize);
             let element = Element::new(&tet.map(|n| points[n]));
             for b in (0..4).filter(|&b| tet[b] == node) {

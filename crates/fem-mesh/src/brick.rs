@@ -11,7 +11,7 @@
 
 use thiserror::Error;
 
-use crate::mesh::{Facet, FacetTag, MeshError, TetMesh};
+use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, numbered};
 
 /// The side of smallest x.
 pub const X_MIN: FacetTag = FacetTag(1);
@@ -207,19 +207,8 @@ impl Brick {
         }
         // Before any allocation: the product itself may overflow.
         let cells = self.cells.iter().try_fold(1usize, |n, &c| n.checked_mul(c));
-        let limit = (u32::MAX / 4) as usize;
-        match cells.and_then(|c| c.checked_mul(5)) {
-            Some(count) if count <= limit => Ok(()),
-            too_many => {
-                let count = too_many.unwrap_or(usize::MAX);
-                Err(MeshError::TooLarge {
-                    what: "tetrahedra",
-                    count,
-                    limit,
-                }
-                .into())
-            }
-        }
+        let tets = cells.and_then(|c| c.checked_mul(5)).unwrap_or(usize::MAX);
+        Ok(numbered("tetrahedra", tets)?)
     }
 
     /// Coordinates of the grid planes along one axis.

@@ -28,15 +28,21 @@ pub fn buckets(count: usize, keys: &[u32]) -> (Vec<u32>, Vec<u32>) {
     (starts, positions)
 }
 
+/// The range of one bucket, from the starts.
+pub(crate) fn range(starts: &[u32], bucket: usize) -> std::ops::Range<usize> {
+    starts[bucket] as usize..starts[bucket + 1] as usize
+}
+
 #[cfg(test)]
 mod tests {
-    use super::buckets;
+    use super::{buckets, range};
 
     #[test]
     fn buckets_keep_the_order_of_positions() {
         let (starts, positions) = buckets(4, &[2, 0, 2, 3, 0]);
         assert_eq!(starts, [0, 2, 2, 4, 5]);
         assert_eq!(positions, [1, 4, 0, 2, 3]);
+        assert!(range(&starts, 0) == (0..2) && range(&starts, 1).is_empty());
         assert_eq!(buckets(0, &[]), (vec![0], vec![]));
     }
 }

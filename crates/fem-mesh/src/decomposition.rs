@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::buckets::{buckets, range};
 use crate::mesh::{NONE, TetMesh, connected_sets};
 use crate::vec3;
 
@@ -107,7 +108,7 @@ pub struct Decomposition {
     subdomains: Vec<Subdomain>,
     part_of: Vec<u32>,
     /// Copies of node n: `copies[copy_start[n]..copy_start[n + 1]]`, by ascending subdomain.
-    copy_start: Vec<usize>,
+    copy_start: Vec<u32>,
     copies: Vec<NodeCopy>,
 }
 
@@ -220,15 +221,12 @@ impl Decomposition {
     /// Expects part numbers without gaps.
     fn build(mesh: &TetMesh, part_of: Vec<u32>) -> Self {
         let parts = part_of.iter().max().map_or(0, |&p| p as usize + 1);
-        let mut elements = vec![Vec::new(); parts];
-        for (tet, &part) in part_of.iter().enumerate() {
-            elements[part as usize].push(tet as u32);
-        }
+        let (starts, tets) = buckets(parts, &part_of);
         let nodes = mesh.points().len();
         let mut local = vec![0u32; nodes];
-        let subdomains: Vec<_> = elements
-            .into_iter()
-            .map(|elements| {
+        let subdomains: Vec<_> = (0..parts)
+            .map(|part| {
+                let elements = tets[range(&starts, part)].to_vec();
                 let global = |&tet: &u32| mesh.tets()[tet as usize];
                 let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
                 nodes.sort_unstable();
@@ -266,7 +264,7 @@ impl Decomposition {
     /// If there is no such node.
     #[must_use]
     pub fn copies(&self, node: usize) -> &[NodeCopy] {
-        &self.copies[self.copy_start[node]..self.copy_start[node + 1]]
+        &self.copies[range(&self.copy_start, node)]
     }
 
     /// The subdomain that owns a tetrahedron.
@@ -329,31 +327,16 @@ fn first_gap(parts: &[u32], limit: usize) -> usize {
     found.iter().position(|&f| !f).unwrap_or(limit)
 }
 
-fn collect_copies(nodes: usize, subdomains: &[Subdomain]) -> (Vec<usize>, Vec<NodeCopy>) {
-    let mut start = vec![0; nodes + 1];
-    for &node in subdomains.iter().flat_map(|s| &s.nodes) {
-        start[node as usize + 1] += 1;
-    }
-    for n in 0..nodes {
-        start[n + 1] += start[n];
-    }
-    let mut next = start.clone();
-    let mut copies = vec![
-        NodeCopy {
-            subdomain: 0,
-            local: 0
-        };
-        start[nodes]
-    ];
+fn collect_copies(nodes: usize, subdomains: &[Subdomain]) -> (Vec<u32>, Vec<NodeCopy>) {
+    let (mut torn, mut node_of) = (Vec::new(), Vec::new());
     for (number, subdomain) in subdomains.iter().enumerate() {
-        for (local, &node) in subdomain.nodes.iter().enumerate() {
-            let place = &mut next[node as usize];
-            copies[*place] = NodeCopy {
-                subdomain: number as u32,
-                local: local as u32,
-            };
-            *place += 1;
-        }
+        torn.extend((0..subdomain.nodes.len()).map(|local| NodeCopy {
+            subdomain: number as u32,
+            local: local as u32,
+        }));
+        node_of.extend_from_slice(&subdomain.nodes);
     }
+    let (start, positions) = buckets(nodes, &node_of);
+    let copies = positions.iter().map(|&k| torn[k as usize]).collect();
     (start, copies)
 }

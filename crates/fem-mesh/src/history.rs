@@ -103,18 +103,9 @@ impl History {
     /// The value at a time. At the points of a table it is exactly the value given.
     #[must_use]
     pub fn value(&self, time: f64) -> f64 {
-        let points = match &self.0 {
-            Kind::Table(points) => points,
-            Kind::Function(value) => return value(time),
-        };
-        let after = points.partition_point(|&(t, _)| t <= time);
-        match (
-            after.checked_sub(1).and_then(|i| points.get(i)),
-            points.get(after),
-        ) {
-            (Some(&(t0, v0)), Some(&(t1, v1))) => v0 + (v1 - v0) * ((time - t0) / (t1 - t0)),
-            (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
-            (None, None) => 0.0,
+        match &self.0 {
+            Kind::Table(points) => interpolate(points, time),
+            Kind::Function(value) => value(time),
         }
     }
 
@@ -126,6 +117,19 @@ impl History {
             Kind::Table(points) if points.len() > 1 => points.iter().map(|p| p.0).collect(),
             _ => Vec::new(),
         }
+    }
+}
+
+/// Straight lines through points of ascending first numbers, constant before the first and after the last; NaN without any.
+/// At the points it is exactly the value given.
+#[must_use]
+pub fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
+    let after = points.partition_point(|p| p.0 <= x);
+    let before = after.checked_sub(1).and_then(|i| points.get(i));
+    match (before, points.get(after)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)),
+        (Some(p), None) | (None, Some(p)) => p.1,
+        (None, None) => f64::NAN,
     }
 }
 

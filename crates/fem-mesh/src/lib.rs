@@ -112,7 +112,7 @@ pub use decomposition::{
 };
 pub use element::{Element, element_stiffness};
 pub use fields::FieldError;
-pub use history::{History, HistoryError};
+pub use history::{History, HistoryError, interpolate};
 pub use hooke::{Hooke, HookeError};
 pub use load::{LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
 pub use locate::{Locator, energy_of_difference};

@@ -56,6 +56,24 @@ pub trait CoarseSpace {
     /// `g <- P_Wᵀ g = g - Gᵀ (G W Gᵀ)⁻¹ G W g`: the residual left after the best multiplier of `G`.
     fn project_transpose(&mut self, g: &mut [f64]);
 
+    /// Whether [`project_step`](Self::project_step), [`project_step_transpose`](Self::project_step_transpose) and
+    /// [`compensate`](Self::compensate) are rounded to less than working precision. `G x = e` then has to be restored
+    /// after many steps.
+    fn rounds_steps(&self) -> bool {
+        false
+    }
+
+    /// [`project`](Self::project) for a step of an iteration: errors are relative to the step and need not be those of
+    /// working precision.
+    fn project_step(&mut self, x: &mut [f64]) {
+        self.project(x);
+    }
+
+    /// [`project_transpose`](Self::project_transpose) for the change of a residual in a step of an iteration, likewise.
+    fn project_step_transpose(&mut self, g: &mut [f64]) {
+        self.project_transpose(g);
+    }
+
     /// Multiplier of `G`: `out = -(G W Gᵀ)⁻¹ G W g`, so that `g + Gᵀ out = P_Wᵀ g`.
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]);
 
@@ -64,7 +82,7 @@ pub trait CoarseSpace {
     fn repair(&mut self, x: &mut [f64], e: &[f64]);
 
     /// What [`repair`](Self::repair) adds to `x` after its leading components were changed by `change` with all others left as
-    /// they are. This default allocates; a space that iterates should have its own.
+    /// they are, for a step of an iteration. This default allocates; a space that iterates should have its own.
     fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
         let mut all = vec![0.0; x.len()];
         all[..change.len()].copy_from_slice(change);

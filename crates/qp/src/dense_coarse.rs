@@ -83,6 +83,20 @@ impl DenseCoarseSpace {
                 .sum();
         }
     }
+
+    /// `x -= W Gᵀ (G W Gᵀ)⁻¹ defect(x)`, or without the first `W`.
+    fn subtract(
+        &mut self,
+        weighted: bool,
+        x: &mut [f64],
+        defect: impl FnOnce(&Self, &[f64], &mut [f64]),
+    ) {
+        let mut small = std::mem::take(&mut self.small);
+        defect(self, x, &mut small);
+        self.solve(&mut small);
+        self.add_transpose(-1.0, &small, weighted, x);
+        self.small = small;
+    }
 }
 
 impl CoarseSpace for DenseCoarseSpace {
@@ -129,19 +143,11 @@ impl CoarseSpace for DenseCoarseSpace {
     }
 
     fn project(&mut self, x: &mut [f64]) {
-        let mut small = std::mem::take(&mut self.small);
-        self.times(x, false, &mut small);
-        self.solve(&mut small);
-        self.add_transpose(-1.0, &small, true, x);
-        self.small = small;
+        self.subtract(true, x, |space, x, defect| space.times(x, false, defect));
     }
 
     fn project_transpose(&mut self, g: &mut [f64]) {
-        let mut small = std::mem::take(&mut self.small);
-        self.times(g, true, &mut small);
-        self.solve(&mut small);
-        self.add_transpose(-1.0, &small, false, g);
-        self.small = small;
+        self.subtract(false, g, |space, g, defect| space.times(g, true, defect));
     }
 
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
@@ -151,21 +157,17 @@ impl CoarseSpace for DenseCoarseSpace {
     }
 
     fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
-        let mut small = std::mem::take(&mut self.small);
-        for (i, s) in small.iter_mut().enumerate() {
-            *s = self.row(i).iter().zip(change).map(|(g, c)| g * c).sum();
-        }
-        self.solve(&mut small);
-        self.add_transpose(-1.0, &small, true, x);
-        self.small = small;
+        self.subtract(true, x, |space, _, defect| {
+            for (i, s) in defect.iter_mut().enumerate() {
+                *s = space.row(i).iter().zip(change).map(|(g, c)| g * c).sum();
+            }
+        });
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {
-        let mut small = std::mem::take(&mut self.small);
-        self.times(x, false, &mut small);
-        small.iter_mut().zip(e).for_each(|(s, e)| *s -= e);
-        self.solve(&mut small);
-        self.add_transpose(-1.0, &small, true, x);
-        self.small = small;
+        self.subtract(true, x, |space, x, defect| {
+            space.times(x, false, defect);
+            defect.iter_mut().zip(e).for_each(|(s, e)| *s -= e);
+        });
     }
 }

@@ -8,7 +8,7 @@
 //! What is left for the move to the next face is of second order, so that nearly nothing is lost by it.
 
 use crate::coarse_space::CoarseSpace;
-use crate::face_state::{Disc, Face, visit};
+use crate::face_state::{Disc, Face, for_discs};
 use crate::product::ProductSet;
 use crate::vector;
 
@@ -77,21 +77,17 @@ impl Coupling {
         // slopes usually come in the order of the discs
         let mut next = 0;
         let (slopes, by_disc) = (&self.slopes, &mut self.by_disc);
-        visit(
-            set,
-            |_, _, _, _| {},
-            |first, _, _| {
-                let found = match slopes.get(next) {
-                    Some(slope) if slope.disc == first => Some(next),
-                    _ => slopes.iter().position(|s| s.disc == first),
-                };
-                by_disc.push(found.and_then(|k| {
-                    next = k + 1;
-                    let s = &slopes[k];
-                    (s.component < n && s.slope.is_finite()).then_some((s.component, s.slope))
-                }));
-            },
-        );
+        for_discs(set, |first, _, _| {
+            let found = match slopes.get(next) {
+                Some(slope) if slope.disc == first => Some(next),
+                _ => slopes.iter().position(|s| s.disc == first),
+            };
+            by_disc.push(found.and_then(|k| {
+                next = k + 1;
+                let s = &slopes[k];
+                (s.component < n && s.slope.is_finite()).then_some((s.component, s.slope))
+            }));
+        });
     }
 
     /// `step = E p`.
@@ -104,19 +100,15 @@ impl Coupling {
     ) {
         self.growth.fill(0.0);
         let (growth, by_disc) = (&mut self.growth, &self.by_disc);
-        visit(
-            set,
-            |_, _, _, _| {},
-            |i, k, _| {
-                if let (Disc::Sliding { tau, .. }, Some((component, slope))) =
-                    (face.discs[k], by_disc[k])
-                {
-                    let radius = slope * p[component];
-                    growth[i] = radius * tau[1];
-                    growth[i + 1] = -radius * tau[0];
-                }
-            },
-        );
+        for_discs(set, |i, k, _| {
+            if let (Disc::Sliding { tau, .. }, Some((component, slope))) =
+                (face.discs[k], by_disc[k])
+            {
+                let radius = slope * p[component];
+                growth[i] = radius * tau[1];
+                growth[i + 1] = -radius * tau[0];
+            }
+        });
         vector::copy(p, &mut self.step);
         self.step
             .iter_mut()

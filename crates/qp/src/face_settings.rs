@@ -12,6 +12,7 @@ use crate::report::Status;
 /// |---|---|---|---|
 /// | `tolerance` | estimated error of `x` relative to its norm, and of its constrained part relative to its own | (0, 1) | 1e-7 |
 /// | `least` | norm of `x` below which errors count relative to it: what a vanishing solution is measured against | >= 0 | 0 |
+/// | `least_constrained` | the same for the constrained part, which is measured against 1e-4 of the norm of `x` in any case | >= 0 | 0 |
 /// | `forcing` | decrease of the error estimate on one face before the face is looked at again | (0, 1) | 0.4 |
 /// | `natural_step` | step of the natural map that predicts the next face, in units of the preconditioner's diagonal | (0, 1] | 0.4 |
 /// | `joint_step` | part of the next step that is taken together with the move to the next face | [0, 1] | 1 |
@@ -26,6 +27,8 @@ pub struct FaceSettings {
     pub tolerance: f64,
     /// Norm of `x` that errors are at least relative to.
     pub least: f64,
+    /// Norm of the constrained part of `x` that its errors are at least relative to.
+    pub least_constrained: f64,
     /// Decrease of the error estimate on one face.
     pub forcing: f64,
     /// Step of the natural map, times the preconditioner's diagonal.
@@ -47,6 +50,7 @@ impl Default for FaceSettings {
         Self {
             tolerance: 1e-7,
             least: 0.0,
+            least_constrained: 0.0,
             forcing: 0.4,
             natural_step: 0.4,
             joint_step: 1.0,
@@ -70,6 +74,13 @@ impl FaceSettings {
     #[must_use]
     pub fn with_least(mut self, norm: f64) -> Self {
         self.least = norm;
+        self
+    }
+
+    /// Sets the norm of the constrained part of `x` that its errors are at least relative to.
+    #[must_use]
+    pub fn with_least_constrained(mut self, norm: f64) -> Self {
+        self.least_constrained = norm;
         self
     }
 
@@ -140,12 +151,17 @@ impl FaceSettings {
         };
         open("tolerance", self.tolerance)?;
         open("forcing", self.forcing)?;
-        if !(self.least >= 0.0 && self.least.is_finite()) {
-            return Err(QpError::Setting {
-                name: "least",
-                value: self.least,
-                range: "finite and not negative",
-            });
+        for (name, value) in [
+            ("least", self.least),
+            ("least_constrained", self.least_constrained),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(QpError::Setting {
+                    name,
+                    value,
+                    range: "finite and not negative",
+                });
+            }
         }
         if !(self.natural_step > 0.0 && self.natural_step <= 1.0) {
             return Err(QpError::Setting {

@@ -1,11 +1,10 @@
-//! The face of a product set: which components are free, and the natural map that predicts the next one.
+//! The face of a product set: which components are free, and what that does to vectors.
 //!
 //! | local | meaning |
 //! |---|---|
-//! | `x`, `g` | point, and gradient without its part in the image of `Gᵀ` |
-//! | `s` | `x - a g`, the natural map before projection; `a = natural_step * scale` |
-//! | `n`, `tau` | outward normal and tangent of a disc at `x` |
-//! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
+//! | `i`, `k` | first component of a block; number of the block among those of its kind |
+//! | `n`, `tau` | outward normal and tangent of a disc |
+//! | `kappa` | curvature that a disc adds along its tangent (`|du_T| / r` in contact) |
 
 use crate::coarse_space::Line;
 use crate::product::{ProductSet, Segment};
@@ -48,41 +47,73 @@ pub(crate) struct Face {
 }
 
 /// A point on the circle within rounding.
-const ON_CIRCLE: f64 = 1e-9;
+pub(crate) const ON_CIRCLE: f64 = 1e-9;
 
-/// Calls `bounds(start, index, lower, upper)` or `discs(start, index, radius)` for every constrained block.
-pub(crate) fn visit(
-    set: &ProductSet,
-    mut bounds: impl FnMut(usize, usize, f64, f64),
-    mut discs: impl FnMut(usize, usize, f64),
-) {
-    let (mut start, mut bound, mut disc) = (0, 0, 0);
+/// A constrained block of a set: its first component `i`, its number `k` among the blocks of its kind, and its data.
+pub(crate) enum Constrained {
+    Bound {
+        i: usize,
+        k: usize,
+        lower: f64,
+        upper: f64,
+    },
+    Disc {
+        i: usize,
+        k: usize,
+        radius: f64,
+    },
+}
+
+/// Hands every constrained block in order to `f`.
+pub(crate) fn for_constrained(set: &ProductSet, mut f: impl FnMut(Constrained)) {
+    let (mut i, mut bounds, mut discs) = (0, 0, 0);
     for segment in set.segments() {
         match segment {
-            Segment::Free(n) => start += n,
+            Segment::Free(n) => i += n,
             Segment::Bounds { lower, upper } => {
-                for (&lo, &hi) in lower.iter().zip(upper) {
-                    bounds(start, bound, lo, hi);
-                    start += 1;
-                    bound += 1;
+                for (&lower, &upper) in lower.iter().zip(upper) {
+                    let k = bounds;
+                    f(Constrained::Bound { i, k, lower, upper });
+                    i += 1;
+                    bounds += 1;
                 }
             }
             Segment::Discs { radii } => {
                 for &radius in radii {
-                    discs(start, disc, radius);
-                    start += 2;
-                    disc += 1;
+                    let k = discs;
+                    f(Constrained::Disc { i, k, radius });
+                    i += 2;
+                    discs += 1;
                 }
             }
         }
     }
 }
 
+/// Calls `f(i, k, lower, upper)` for every bounded component.
+pub(crate) fn for_bounds(set: &ProductSet, mut f: impl FnMut(usize, usize, f64, f64)) {
+    for_constrained(set, |block| {
+        if let Constrained::Bound { i, k, lower, upper } = block {
+            f(i, k, lower, upper);
+        }
+    });
+}
+
+/// Calls `f(i, k, radius)` for every disc.
+pub(crate) fn for_discs(set: &ProductSet, mut f: impl FnMut(usize, usize, f64)) {
+    for_constrained(set, |block| {
+        if let Constrained::Disc { i, k, radius } = block {
+            f(i, k, radius);
+        }
+    });
+}
+
 impl Face {
     /// Makes room for the blocks of `set`; everything starts as held.
     pub(crate) fn resize(&mut self, set: &ProductSet) {
         let (mut bounds, mut discs) = (0, 0);
-        visit(set, |_, _, _, _| bounds += 1, |_, _, _| discs += 1);
+        for_bounds(set, |_, _, _, _| bounds += 1);
+        for_discs(set, |_, _, _| discs += 1);
         self.free.clear();
         self.free.resize(bounds, false);
         self.discs.clear();
@@ -95,20 +126,15 @@ impl Face {
     /// First guess of the face from the point alone: components off their bounds are free, discs
     /// inside their circle stick.
     pub(crate) fn guess(&mut self, set: &ProductSet, x: &[f64]) {
-        let Self { free, discs, .. } = self;
-        let mut free_bounds = 0;
-        visit(
-            set,
-            |i, k, lo, hi| {
-                free[k] = lo < hi && x[i] > lo && x[i] < hi;
-                free_bounds += usize::from(free[k]);
-            },
-            |i, k, radius| {
-                let inside = radius > 0.0 && x[i].hypot(x[i + 1]) < radius * (1.0 - ON_CIRCLE);
-                discs[k] = if inside { Disc::Free } else { Disc::Fixed };
-            },
-        );
-        self.free_bounds = free_bounds;
+        self.free_bounds = 0;
+        for_bounds(set, |i, k, lo, hi| {
+            self.free[k] = lo < hi && x[i] > lo && x[i] < hi;
+            self.free_bounds += usize::from(self.free[k]);
+        });
+        for_discs(set, |i, k, radius| {
+            let inside = radius > 0.0 && x[i].hypot(x[i + 1]) < radius * (1.0 - ON_CIRCLE);
+            self.discs[k] = if inside { Disc::Free } else { Disc::Fixed };
+        });
     }
 
     /// Every bounded component and every disc free, whatever its bounds are now.
@@ -121,19 +147,15 @@ impl Face {
     /// The directions of sliding discs, weighted like the preconditioner weighs them.
     pub(crate) fn lines(&self, set: &ProductSet, lines: &mut Vec<Line>) {
         lines.clear();
-        visit(
-            set,
-            |_, _, _, _| {},
-            |first, k, _| {
-                if let Disc::Sliding { tau, damp, .. } = self.discs[k] {
-                    lines.push(Line {
-                        first,
-                        direction: tau,
-                        weight: damp,
-                    });
-                }
-            },
-        );
+        for_discs(set, |first, k, _| {
+            if let Disc::Sliding { tau, damp, .. } = self.discs[k] {
+                lines.push(Line {
+                    first,
+                    direction: tau,
+                    weight: damp,
+                });
+            }
+        });
     }
 
     /// Frees the `count` discs that slide least; false if none slides.
@@ -151,113 +173,37 @@ impl Face {
         !sliding.is_empty()
     }
 
-    /// Classifies every block at the feasible point `x` with gradient `g`.
-    pub(crate) fn classify(
-        &mut self,
-        set: &ProductSet,
-        x: &[f64],
-        g: &[f64],
-        scale: &[f64],
-        step: f64,
-    ) {
-        let Self {
-            free,
-            discs,
-            blocked,
-            near,
-            ..
-        } = self;
-        let near = *near;
-        let bounds = free.len();
-        let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
-        let (mut changed, mut free_bounds) = (0, 0);
-        visit(
-            set,
-            |i, k, lo, hi| {
-                let s = x[i] - step * scale[i] * g[i];
-                // a component is held only if it also is where it would be held
-                let held = lo >= hi
-                    || (x[i] <= lo && (s <= lo || stays(k)))
-                    || (x[i] >= hi && (s >= hi || stays(k)))
-                    || (near && stays(k));
-                changed += usize::from(free[k] == held);
-                free[k] = !held;
-                free_bounds += usize::from(!held);
-            },
-            |i, k, radius| {
-                let at = [x[i], x[i + 1]];
-                let state = disc_state(at, [g[i], g[i + 1]], radius, scale[i]);
-                discs[k] = if stays(bounds + k) && state == Disc::Free {
-                    along_circle(at, if near { 0.0 } else { radius })
-                } else {
-                    state
-                };
-            },
-        );
-        self.changed = changed;
-        self.free_bounds = free_bounds;
-    }
-
     /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it; with a `reach`
     /// also those that this part of the step takes across. Whether there are more than before.
     pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64], reach: f64) -> bool {
         let (bounds, discs) = (self.free.len(), self.discs.len());
-        let mut blocked = std::mem::take(&mut self.blocked);
+        let blocked = &mut self.blocked;
         blocked.resize(bounds + discs, false);
-        let count = |blocked: &[bool]| blocked.iter().filter(|b| **b).count();
-        let before = count(&blocked);
-        let blocked = std::cell::RefCell::new(blocked);
-        visit(
-            set,
-            |i, k, lo, hi| {
-                let end = x[i] + reach * step[i];
-                if (x[i].min(end) <= lo && step[i] < 0.0) || (x[i].max(end) >= hi && step[i] > 0.0)
-                {
-                    blocked.borrow_mut()[k] = true;
-                }
-            },
-            |i, k, radius| {
-                let outward = x[i] * step[i] + x[i + 1] * step[i + 1];
-                let end = (x[i] + reach * step[i]).hypot(x[i + 1] + reach * step[i + 1]);
-                let far = x[i].hypot(x[i + 1]).max(end);
-                if far >= radius * (1.0 - ON_CIRCLE) && outward > 0.0 {
-                    blocked.borrow_mut()[bounds + k] = true;
-                }
-            },
-        );
-        self.blocked = blocked.into_inner();
+        let before = blocked.iter().filter(|b| **b).count();
+        for_bounds(set, |i, k, lo, hi| {
+            let end = x[i] + reach * step[i];
+            blocked[k] |=
+                (x[i].min(end) <= lo && step[i] < 0.0) || (x[i].max(end) >= hi && step[i] > 0.0);
+        });
+        for_discs(set, |i, k, radius| {
+            let outward = x[i] * step[i] + x[i + 1] * step[i + 1];
+            let end = (x[i] + reach * step[i]).hypot(x[i + 1] + reach * step[i + 1]);
+            let far = x[i].hypot(x[i + 1]).max(end);
+            blocked[bounds + k] |= far >= radius * (1.0 - ON_CIRCLE) && outward > 0.0;
+        });
         self.near = reach > 0.0;
-        count(&self.blocked) > before
+        blocked.iter().filter(|b| **b).count() > before
     }
 
     /// 1 on components that may move in both directions, 0 on others (the one direction of sliding discs is among the
     /// [`lines`](Self::lines)).
     pub(crate) fn weights(&self, set: &ProductSet, w: &mut [f64]) {
         w.fill(1.0);
-        let (mut start, mut bound, mut disc) = (0, 0, 0);
-        for segment in set.segments() {
-            let end = start + segment.len();
-            match segment {
-                Segment::Free(_) => {}
-                Segment::Bounds { .. } => {
-                    for value in &mut w[start..end] {
-                        *value = f64::from(u8::from(self.free[bound]));
-                        bound += 1;
-                    }
-                }
-                Segment::Discs { .. } => {
-                    for pair in w[start..end].chunks_exact_mut(2) {
-                        pair.fill(if self.discs[disc] == Disc::Free {
-                            1.0
-                        } else {
-                            0.0
-                        });
-                        disc += 1;
-                    }
-                }
-            }
-            start = end;
-        }
+        let number = |free: bool| f64::from(u8::from(free));
+        for_bounds(set, |i, k, _, _| w[i] = number(self.free[k]));
+        for_discs(set, |i, k, _| {
+            w[i..i + 2].fill(number(self.discs[k] == Disc::Free));
+        });
     }
 
     /// As [`weights`](Self::weights), with 1 on both components of sliding discs too.
@@ -268,37 +214,20 @@ impl Face {
 
     /// Drops the components of `v` that are not free on the face.
     pub(crate) fn restrict(&self, set: &ProductSet, v: &mut [f64]) {
-        let mut start = 0;
-        let (mut bound, mut disc) = (0, 0);
-        for segment in set.segments() {
-            let end = start + segment.len();
-            match segment {
-                Segment::Free(_) => {}
-                Segment::Bounds { .. } => {
-                    for value in &mut v[start..end] {
-                        if !self.free[bound] {
-                            *value = 0.0;
-                        }
-                        bound += 1;
-                    }
-                }
-                Segment::Discs { .. } => {
-                    for pair in v[start..end].chunks_exact_mut(2) {
-                        match self.discs[disc] {
-                            Disc::Fixed => pair.fill(0.0),
-                            Disc::Free => {}
-                            Disc::Sliding { tau, .. } => {
-                                let along = pair[0] * tau[0] + pair[1] * tau[1];
-                                pair[0] = along * tau[0];
-                                pair[1] = along * tau[1];
-                            }
-                        }
-                        disc += 1;
-                    }
-                }
+        for_bounds(set, |i, k, _, _| {
+            if !self.free[k] {
+                v[i] = 0.0;
             }
-            start = end;
-        }
+        });
+        for_discs(set, |i, k, _| match self.discs[k] {
+            Disc::Fixed => v[i..i + 2].fill(0.0),
+            Disc::Free => {}
+            Disc::Sliding { tau, .. } => {
+                let along = v[i] * tau[0] + v[i + 1] * tau[1];
+                v[i] = along * tau[0];
+                v[i + 1] = along * tau[1];
+            }
+        });
     }
 
     /// `sum kappa |p|^2` over sliding discs.
@@ -335,149 +264,34 @@ impl Face {
     /// Scaling `M` by the square root of `damp` on both sides has the right diagonal only, and puts small
     /// eigenvalues where the curvature is large.
     pub(crate) fn add_own(&self, set: &ProductSet, r: &[f64], v: &mut [f64]) {
-        visit(
-            set,
-            |_, _, _, _| {},
-            |i, k, _| {
-                if let Disc::Sliding { own, .. } = self.discs[k] {
-                    v[i] += own * r[i];
-                    v[i + 1] += own * r[i + 1];
-                }
-            },
-        );
+        for_discs(set, |i, k, _| {
+            if let Disc::Sliding { own, .. } = self.discs[k] {
+                v[i] += own * r[i];
+                v[i + 1] += own * r[i + 1];
+            }
+        });
+    }
+
+    /// Notes the radii of all discs in the first entries of `out`.
+    pub(crate) fn radii(&self, set: &ProductSet, out: &mut [f64]) {
+        for_discs(set, |_, k, radius| out[k] = radius);
+    }
+
+    /// Whether a disc on whose circle a point slides, or which holds it, has grown by more than `limit` since its radius was noted.
+    pub(crate) fn grew(&self, set: &ProductSet, radii: &[f64], limit: f64) -> bool {
+        let mut found = false;
+        for_discs(set, |_, k, radius| {
+            let bound = !matches!(self.discs[k], Disc::Free);
+            found |= bound && radius - radii[k] > limit;
+        });
+        found
     }
 
     fn for_sliding(&self, set: &ProductSet, mut f: impl FnMut(usize, f64, f64)) {
-        visit(
-            set,
-            |_, _, _, _| {},
-            |i, k, _| {
-                if let Disc::Sliding { kappa, damp, .. } = self.discs[k] {
-                    f(i, kappa, damp);
-                }
-            },
-        );
-    }
-
-    /// Moves the bounded components of `x` by the natural map: onto their bound where it predicts that
-    /// they are held, else into the interval.
-    pub(crate) fn settle_bounds(
-        &self,
-        set: &ProductSet,
-        x: &mut [f64],
-        g: &[f64],
-        scale: &[f64],
-        step: f64,
-    ) {
-        let mut start = 0;
-        for segment in set.segments() {
-            if let Segment::Bounds { lower, upper } = segment {
-                for (k, (&lo, &hi)) in lower.iter().zip(upper).enumerate() {
-                    let i = start + k;
-                    let s = x[i] - step * scale[i] * g[i];
-                    x[i] = if s <= lo {
-                        lo
-                    } else if s >= hi {
-                        hi
-                    } else {
-                        x[i].clamp(lo.min(hi), hi)
-                    };
-                }
+        for_discs(set, |i, k, _| {
+            if let Disc::Sliding { kappa, damp, .. } = self.discs[k] {
+                f(i, kappa, damp);
             }
-            start += segment.len();
-        }
-    }
-
-    /// Moves the discs of `x` into their circles: sliding points are drawn back along the radius, others
-    /// go where the natural map predicts that they slide.
-    pub(crate) fn settle_discs(
-        &self,
-        set: &ProductSet,
-        x: &mut [f64],
-        g: &[f64],
-        scale: &[f64],
-        step: f64,
-    ) {
-        let (mut start, mut disc) = (0, 0);
-        for segment in set.segments() {
-            if let Segment::Discs { radii } = segment {
-                for (k, &radius) in radii.iter().enumerate() {
-                    let i = start + 2 * k;
-                    let sliding = matches!(self.discs[disc], Disc::Sliding { .. });
-                    let moved = settle_disc(
-                        [x[i], x[i + 1]],
-                        [g[i], g[i + 1]],
-                        radius,
-                        step * scale[i],
-                        sliding,
-                    );
-                    x[i] = moved[0];
-                    x[i + 1] = moved[1];
-                    disc += 1;
-                }
-            }
-            start += segment.len();
-        }
-    }
-}
-
-/// Free along the circle, without curvature; free everywhere inside of it. With radius 0 along the circle through `x`.
-fn along_circle(x: [f64; 2], radius: f64) -> Disc {
-    let length = x[0].hypot(x[1]);
-    if length <= 0.0 || length < radius * (1.0 - ON_CIRCLE) {
-        return Disc::Free;
-    }
-    slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)
-}
-
-/// Sliding with outward normal `n`.
-fn slides(n: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
-    let kappa = slip / radius;
-    let damp = 1.0 / (1.0 + kappa * scale);
-    Disc::Sliding {
-        tau: [-n[1], n[0]],
-        kappa,
-        damp,
-        own: (kappa * scale * damp) * (scale * damp),
-        slip,
-    }
-}
-
-fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
-    if radius <= 0.0 {
-        return Disc::Fixed;
-    }
-    let length = x[0].hypot(x[1]);
-    if length < radius * (1.0 - ON_CIRCLE) {
-        return Disc::Free;
-    }
-    let n = [x[0] / length, x[1] / length];
-    let outward = g[0] * n[0] + g[1] * n[1];
-    if outward >= 0.0 {
-        return Disc::Free;
-    }
-    slides(n, -outward, radius, scale)
-}
-
-fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {
-    if radius <= 0.0 {
-        return [0.0; 2];
-    }
-    let length = x[0].hypot(x[1]);
-    if sliding {
-        return if length > 0.0 {
-            [x[0] * (radius / length), x[1] * (radius / length)]
-        } else {
-            x
-        };
-    }
-    let s = [x[0] - a * g[0], x[1] - a * g[1]];
-    let reach = s[0].hypot(s[1]);
-    if reach > radius {
-        [s[0] * (radius / reach), s[1] * (radius / reach)]
-    } else if length > radius {
-        [x[0] * (radius / length), x[1] * (radius / length)]
-    } else {
-        x
+        });
     }
 }

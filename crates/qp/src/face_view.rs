@@ -1,7 +1,7 @@
 //! What a face leaves free, as preconditioners and coarse spaces see it.
 
 use crate::dense::DenseOperator;
-use crate::face_state::{Disc, Face, visit};
+use crate::face_state::{Constrained, Disc, Face, for_constrained};
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 use crate::projected_cg::Identity;
@@ -31,27 +31,21 @@ impl<'a> FaceView<'a> {
 
     /// Hands each constrained block in order to `f`: first component, number of components, freedom. Unconstrained
     /// components are left out.
-    pub fn for_each(&self, f: impl FnMut(usize, usize, Freedom)) {
-        let f = std::cell::RefCell::new(f);
-        visit(
-            self.set,
-            |i, k, _, _| {
-                let freedom = if self.face.free[k] {
-                    Freedom::Free
-                } else {
-                    Freedom::Held
-                };
-                f.borrow_mut()(i, 1, freedom);
-            },
-            |i, k, _| {
+    pub fn for_each(&self, mut f: impl FnMut(usize, usize, Freedom)) {
+        for_constrained(self.set, |block| match block {
+            Constrained::Bound { i, k, .. } => {
+                let free = self.face.free[k];
+                f(i, 1, if free { Freedom::Free } else { Freedom::Held });
+            }
+            Constrained::Disc { i, k, .. } => {
                 let freedom = match self.face.discs[k] {
                     Disc::Fixed => Freedom::Held,
                     Disc::Free => Freedom::Free,
                     Disc::Sliding { tau, .. } => Freedom::Along(tau),
                 };
-                f.borrow_mut()(i, 2, freedom);
-            },
-        );
+                f(i, 2, freedom);
+            }
+        });
     }
 }
 

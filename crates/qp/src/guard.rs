@@ -33,6 +33,11 @@ pub(crate) struct Guard {
     stuck: bool,
     /// Error estimate of the last face without blocked blocks.
     unblocked: f64,
+    /// Whether the set followed the last face, and how far constrained components moved when it did.
+    pub(crate) current: bool,
+    pub(crate) drift: f64,
+    /// Very short steps in a row.
+    pub(crate) held_up: usize,
 }
 
 /// Share of the decrease on the face that a move has to keep.
@@ -67,6 +72,9 @@ impl Guard {
             exact: false,
             stuck: false,
             unblocked: f64::INFINITY,
+            current: true,
+            drift: f64::INFINITY,
+            held_up: 0,
         }
     }
 

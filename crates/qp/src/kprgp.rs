@@ -298,16 +298,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
         let t_cg = self.minimising(gp, pap, &v.p, objective.norm())?;
         let t_f = self.set.feasible_step(x, &v.p);
         let t = t_cg.min(t_f);
-        if t == f64::INFINITY {
-            return Err(QpError::Unbounded {
-                products: self.products.total(),
-            });
-        }
-        self.set.advance(x, &v.p, t);
-        vector::axpy(-t, &v.ap, &mut v.g);
-        objective.moved(t);
-        v.stale += 1;
-        self.decrease += t * (gp - 0.5 * t * pap);
+        self.straight(objective, x, v, t, (gp, pap))?;
         if t_cg <= t_f {
             self.steps.cg += 1;
             self.norms = self.set.split(x, &v.g, self.fixed, &mut v.phi);
@@ -318,6 +309,28 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
             self.expand(objective, x, v, t_cg - t_f, pap)?;
             self.restart(x, v);
         }
+        Ok(())
+    }
+
+    /// A step of length `t` along `-p` within the set, with slope `gp` and curvature `pap`; the gradient by recurrence.
+    fn straight(
+        &mut self,
+        objective: &mut impl Objective,
+        x: &mut [f64],
+        v: &mut Vectors,
+        t: f64,
+        (gp, pap): (f64, f64),
+    ) -> Result<(), QpError> {
+        if t == f64::INFINITY {
+            return Err(QpError::Unbounded {
+                products: self.products.total(),
+            });
+        }
+        self.set.advance(x, &v.p, t);
+        vector::axpy(-t, &v.ap, &mut v.g);
+        objective.moved(t);
+        v.stale += 1;
+        self.decrease += t * (gp - 0.5 * t * pap);
         Ok(())
     }
 
@@ -421,16 +434,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
             objective.direction(&v.p, &mut v.ap);
             let (gp, pap) = (vector::dot(&v.p, &v.g), vector::dot(&v.p, &v.ap));
             let t = self.minimising(gp, pap, &v.p, objective.norm())?.min(t_f);
-            if t == f64::INFINITY {
-                return Err(QpError::Unbounded {
-                    products: self.products.total(),
-                });
-            }
-            self.set.advance(x, &v.p, t);
-            vector::axpy(-t, &v.ap, &mut v.g);
-            objective.moved(t);
-            v.stale += 1;
-            self.decrease += t * (gp - 0.5 * t * pap);
+            self.straight(objective, x, v, t, (gp, pap))?;
         } else {
             self.release(objective, x, v);
         }

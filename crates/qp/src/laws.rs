@@ -136,139 +136,193 @@ pub fn check_set_laws<S: ConvexSet + ?Sized>(
     scale: f64,
     samples: usize,
 ) -> Result<(), LawViolation> {
-    const TOLERANCE: f64 = 1e-10;
     let n = set.dim();
     let mut random = Sequence(3);
-    let project = |x: &[f64]| {
-        let mut p = x.to_vec();
-        set.project(&mut p);
-        p
-    };
     for k in 0..samples {
         let wide = if k % 2 == 0 { 1.0 } else { 10.0 };
         let (u, w) = (
             random.vector(n, wide * scale),
             random.vector(n, wide * scale),
         );
-        let (x, y) = (project(&u), project(&w));
-        let size = (vector::norm(&u) + vector::norm(&w)).max(f64::MIN_POSITIVE);
-
-        let again = project(&x);
-        hold(
-            "projecting twice changes nothing",
+        let sample = Sample {
             k,
-            vector::distance(&again, &x) / size,
-            0.0,
-        )?;
-        hold(
-            "a projected point is in the set",
-            k,
-            set.violation(&x) / size,
-            1e-15,
-        )?;
-        let moved = (vector::distance(&u, &x) - set.violation(&u)).abs() / size;
-        hold(
-            "the violation is the distance to the projection",
-            k,
-            moved,
-            TOLERANCE,
-        )?;
-        let stretch = (vector::distance(&x, &y) - vector::distance(&u, &w)) / size;
-        hold("the projection does not expand", k, stretch, TOLERANCE)?;
-        let cone: f64 = (0..n).map(|i| (u[i] - x[i]) * (y[i] - x[i])).sum();
-        hold(
-            "the projection is the nearest point",
-            k,
-            cone / size / size,
-            TOLERANCE,
-        )?;
-
+            size: (vector::norm(&u) + vector::norm(&w)).max(f64::MIN_POSITIVE),
+            x: projected(set, &u),
+            y: projected(set, &w),
+        };
+        check_projection(set, &sample, &u, &w)?;
         let g = random.vector(n, scale);
         let step = 0.5 + 0.4 * random.next();
-        let (mut free, mut chopped, mut projected) =
-            (vec![f64::NAN; n], vec![f64::NAN; n], vec![f64::NAN; n]);
-        let norms = set.split(&x, &g, step, &mut free);
-        set.chopped(&x, &g, &mut chopped);
-        set.projected_gradient(&x, &g, &mut projected);
-        let gg = vector::dot(&g, &g).max(f64::MIN_POSITIVE);
-        let off = (0..n)
-            .map(|i| (free[i] + chopped[i] - projected[i]).abs() + (free[i] * chopped[i]).abs());
-        hold(
-            "free and chopped gradient share no component and add up",
-            k,
-            off.fold(0.0, f64::max),
-            0.0,
-        )?;
-        let off = (norms.free - vector::dot(&free, &free)).abs()
-            + (norms.chopped - vector::dot(&chopped, &chopped)).abs();
-        hold("the norms belong to the parts", k, off / gg, TOLERANCE)?;
-        // Moreau: g = projected gradient + normal part, orthogonal; the normal part is in minus the normal cone
-        let normal: Vec<f64> = g.iter().zip(&projected).map(|(a, b)| a - b).collect();
-        hold(
-            "tangent and normal part are orthogonal",
-            k,
-            vector::dot(&normal, &projected).abs() / gg,
-            TOLERANCE,
-        )?;
-        let outward: f64 = (0..n).map(|i| -normal[i] * (y[i] - x[i])).sum();
-        // points within rounding of a circle count as on it, hence the wider margin
-        hold(
-            "the normal part is in the normal cone",
-            k,
-            outward / gg.sqrt() / size,
-            1e-6,
-        )?;
-        let target: Vec<f64> = (0..n).map(|i| x[i] - step * g[i]).collect();
-        let reduced = vector::distance(&x, &project(&target)) / step;
-        hold(
-            "the reduced gradient is (x - P(x - a g)) / a",
-            k,
-            (norms.reduced() - reduced).abs() / gg.sqrt(),
-            1e-8,
-        )?;
-        hold(
-            "the reduced gradient is not longer",
-            k,
-            (norms.reduced() - norms.projected()) / gg.sqrt(),
-            1e-6,
-        )?;
-        hold(
-            "reduced and free gradient agree in direction",
-            k,
-            norms.reduced_free - norms.reduced_free_dot,
-            1e-12 * gg,
-        )?;
-
-        // feasible step along the free gradient: reachable and not extendable
-        let t = set.feasible_step(&x, &free);
-        if t.is_finite() && t > 0.0 {
-            let mut on = x.clone();
-            set.advance(&mut on, &free, t);
-            hold(
-                "the feasible step stays in the set",
-                k,
-                set.violation(&on) / size,
-                1e-15,
-            )?;
-            let mut beyond = x.clone();
-            vector::axpy(-t * (1.0 + 1e-6), &free, &mut beyond);
-            let out = if set.violation(&beyond) > 0.0 {
-                0.0
-            } else {
-                1.0
-            };
-            hold("the feasible step is the longest", k, out, 0.0)?;
-            set.split(&on, &g, step, &mut chopped);
-            let gained = (0..n)
-                .filter(|&i| free[i] != 0.0 && chopped[i] == 0.0 && g[i] != 0.0)
-                .count();
-            hold(
-                "the feasible step ends on the boundary",
-                k,
-                if gained > 0 { 0.0 } else { 1.0 },
-                0.0,
-            )?;
-        }
+        let free = check_split(set, &sample, &g, step)?;
+        check_feasible_step(set, &sample, &g, step, &free)?;
     }
+    Ok(())
+}
+
+/// Two points of a set.
+struct Sample {
+    k: usize,
+    /// Length of the vectors that they are projections of.
+    size: f64,
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+/// Rounding allowed of laws of a set.
+const TOLERANCE: f64 = 1e-10;
+
+fn projected<S: ConvexSet + ?Sized>(set: &S, x: &[f64]) -> Vec<f64> {
+    let mut p = x.to_vec();
+    set.project(&mut p);
+    p
+}
+
+/// `sample` holds the projections of `u` and `w`.
+fn check_projection<S: ConvexSet + ?Sized>(
+    set: &S,
+    sample: &Sample,
+    u: &[f64],
+    w: &[f64],
+) -> Result<(), LawViolation> {
+    let Sample { k, size, x, y } = sample;
+    let (k, size) = (*k, *size);
+    let again = projected(set, x);
+    hold(
+        "projecting twice changes nothing",
+        k,
+        vector::distance(&again, x) / size,
+        0.0,
+    )?;
+    hold(
+        "a projected point is in the set",
+        k,
+        set.violation(x) / size,
+        1e-15,
+    )?;
+    let moved = (vector::distance(u, x) - set.violation(u)).abs() / size;
+    hold(
+        "the violation is the distance to the projection",
+        k,
+        moved,
+        TOLERANCE,
+    )?;
+    let stretch = (vector::distance(x, y) - vector::distance(u, w)) / size;
+    hold("the projection does not expand", k, stretch, TOLERANCE)?;
+    let cone: f64 = (0..x.len()).map(|i| (u[i] - x[i]) * (y[i] - x[i])).sum();
+    hold(
+        "the projection is the nearest point",
+        k,
+        cone / size / size,
+        TOLERANCE,
+    )?;
+    Ok(())
+}
+
+/// Returns the free gradient.
+fn check_split<S: ConvexSet + ?Sized>(
+    set: &S,
+    sample: &Sample,
+    g: &[f64],
+    step: f64,
+) -> Result<Vec<f64>, LawViolation> {
+    let Sample { k, size, x, y } = sample;
+    let (k, size, n) = (*k, *size, x.len());
+    let (mut free, mut chopped, mut tangent) =
+        (vec![f64::NAN; n], vec![f64::NAN; n], vec![f64::NAN; n]);
+    let norms = set.split(x, g, step, &mut free);
+    set.chopped(x, g, &mut chopped);
+    set.projected_gradient(x, g, &mut tangent);
+    let gg = vector::dot(g, g).max(f64::MIN_POSITIVE);
+    let off =
+        (0..n).map(|i| (free[i] + chopped[i] - tangent[i]).abs() + (free[i] * chopped[i]).abs());
+    hold(
+        "free and chopped gradient share no component and add up",
+        k,
+        off.fold(0.0, f64::max),
+        0.0,
+    )?;
+    let off = (norms.free - vector::dot(&free, &free)).abs()
+        + (norms.chopped - vector::dot(&chopped, &chopped)).abs();
+    hold("the norms belong to the parts", k, off / gg, TOLERANCE)?;
+    // Moreau: g = projected gradient + normal part, orthogonal; the normal part is in minus the normal cone
+    let normal: Vec<f64> = g.iter().zip(&tangent).map(|(a, b)| a - b).collect();
+    hold(
+        "tangent and normal part are orthogonal",
+        k,
+        vector::dot(&normal, &tangent).abs() / gg,
+        TOLERANCE,
+    )?;
+    let outward: f64 = (0..n).map(|i| -normal[i] * (y[i] - x[i])).sum();
+    // points within rounding of a circle count as on it, hence the wider margin
+    hold(
+        "the normal part is in the normal cone",
+        k,
+        outward / gg.sqrt() / size,
+        1e-6,
+    )?;
+    let target: Vec<f64> = (0..n).map(|i| x[i] - step * g[i]).collect();
+    let reduced = vector::distance(x, &projected(set, &target)) / step;
+    hold(
+        "the reduced gradient is (x - P(x - a g)) / a",
+        k,
+        (norms.reduced() - reduced).abs() / gg.sqrt(),
+        1e-8,
+    )?;
+    hold(
+        "the reduced gradient is not longer",
+        k,
+        (norms.reduced() - norms.projected()) / gg.sqrt(),
+        1e-6,
+    )?;
+    hold(
+        "reduced and free gradient agree in direction",
+        k,
+        norms.reduced_free - norms.reduced_free_dot,
+        1e-12 * gg,
+    )?;
+    Ok(free)
+}
+
+/// The feasible step along the free gradient is reachable and not extendable.
+fn check_feasible_step<S: ConvexSet + ?Sized>(
+    set: &S,
+    sample: &Sample,
+    g: &[f64],
+    step: f64,
+    free: &[f64],
+) -> Result<(), LawViolation> {
+    let Sample { k, size, x, .. } = sample;
+    let (k, size) = (*k, *size);
+    let t = set.feasible_step(x, free);
+    if !(t.is_finite() && t > 0.0) {
+        return Ok(());
+    }
+    let mut on = x.clone();
+    set.advance(&mut on, free, t);
+    hold(
+        "the feasible step stays in the set",
+        k,
+        set.violation(&on) / size,
+        1e-15,
+    )?;
+    let mut beyond = x.clone();
+    vector::axpy(-t * (1.0 + 1e-6), free, &mut beyond);
+    let out = if set.violation(&beyond) > 0.0 {
+        0.0
+    } else {
+        1.0
+    };
+    hold("the feasible step is the longest", k, out, 0.0)?;
+    let mut part = vec![f64::NAN; x.len()];
+    set.split(&on, g, step, &mut part);
+    let gained = (0..x.len())
+        .filter(|&i| free[i] != 0.0 && part[i] == 0.0 && g[i] != 0.0)
+        .count();
+    hold(
+        "the feasible step ends on the boundary",
+        k,
+        if gained > 0 { 0.0 } else { 1.0 },
+        0.0,
+    )?;
     Ok(())
 }

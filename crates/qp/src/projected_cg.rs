@@ -24,6 +24,9 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// Iterations without a smaller residual after which the solve ends.
 const PATIENCE: usize = 300;
 
+/// Residual, over the smallest so far, that counts as smaller.
+const LESS: f64 = 0.9;
+
 /// Residual, relative to the first, below which a curvature that is not positive is put down to rounding.
 const ROUNDING: f64 = 1e-8;
 
@@ -105,13 +108,6 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> CgWorkspace<A, C, 
     pub fn equality_multiplier(&self) -> &[f64] {
         &self.coarse
     }
-
-    /// `out = P v`, the coarse vector becomes `C v`.
-    fn project(c: &C, v: &[f64], out: &mut [f64], coarse: &mut [f64], s: &mut C::Scratch) {
-        c.apply(v, coarse, s);
-        c.apply_transpose(coarse, out, s);
-        vector::xpby(v, -1.0, out);
-    }
 }
 
 /// Minimises `1/2 x·Ax - b·x` with `C x = e`, from the point of the equality nearest to `x`.
@@ -154,121 +150,192 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
     expect_finite("the right side b", b)?;
     expect_finite("the right side e", e)?;
     expect_finite("the start x", x)?;
-    let CgWorkspace {
-        g,
-        w,
-        y,
-        p,
-        ap,
-        coarse,
-        a_scratch,
-        c_scratch,
-        m_scratch,
-    } = work;
-    let project = CgWorkspace::<A, C, M>::project;
-
-    project(c, b, w, coarse, c_scratch);
-    let load = vector::norm(w);
-
-    // x -= C'(C x - e)
-    c.apply(x, coarse, c_scratch);
-    vector::subtract(e, coarse);
-    c.apply_transpose(coarse, y, c_scratch);
-    vector::subtract(y, x);
-    a.apply(x, g, a_scratch);
-    // the load may sit in the equality alone
-    project(c, g, w, coarse, c_scratch);
-    let product = vector::norm(w);
-    let reference = if load > NEGLIGIBLE * product {
-        load
-    } else {
-        product
+    let mut run = Run {
+        a,
+        c,
+        m,
+        x,
+        work,
+        report: CgReport {
+            status: Status::Converged,
+            iterations: 0,
+            products: 0,
+            preconditionings: 0,
+            projected_gradient: f64::NAN,
+            tolerance: f64::NAN,
+        },
+        slope: f64::NAN,
+        start: f64::NAN,
+        best: f64::NAN,
+        waited: 0,
     };
-    let tolerance = tolerance.resolve(reference);
-    expect_setting(
-        "tolerance",
-        tolerance,
-        ">= 0, finite",
-        tolerance >= 0.0 && tolerance.is_finite(),
-    )?;
-    vector::subtract(b, g);
-    project(c, g, w, coarse, c_scratch);
-    let mut report = CgReport {
-        status: Status::Converged,
-        iterations: 0,
-        products: 1,
-        preconditionings: 0,
-        projected_gradient: vector::norm(w),
-        tolerance,
+    run.start(b, e, tolerance)?;
+    run.report.status = loop {
+        if let Some(status) = run.ended(max_products)? {
+            break status;
+        }
+        run.direction();
+        let Some(length) = run.step_length()? else {
+            break Status::Stagnated;
+        };
+        run.advance(length);
     };
-    let mut wy_before = f64::NAN;
-    let start = report.projected_gradient;
-    let (mut best, mut waited) = (start, 0);
-    loop {
-        let products = report.products;
+    Ok(run.finish())
+}
+
+/// One solve.
+struct Run<'s, A: SymmetricOperator, C: Equality, M: SymmetricOperator> {
+    a: &'s A,
+    c: &'s C,
+    m: &'s M,
+    x: &'s mut [f64],
+    work: &'s mut CgWorkspace<A, C, M>,
+    report: CgReport,
+    /// `w·y` of the last direction.
+    slope: f64,
+    /// Projected gradient at the start, the smallest so far, and iterations since it.
+    start: f64,
+    best: f64,
+    waited: usize,
+}
+
+impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
+    /// Moves `x` onto the equality, computes its gradient and resolves the tolerance.
+    fn start(&mut self, b: &[f64], e: &[f64], tolerance: Tolerance) -> Result<(), QpError> {
+        let load = self.projected_norm(b);
+        let w = &mut *self.work;
+        // x -= C'(C x - e)
+        self.c.apply(self.x, &mut w.coarse, &mut w.c_scratch);
+        vector::subtract(e, &mut w.coarse);
+        self.c
+            .apply_transpose(&w.coarse, &mut w.y, &mut w.c_scratch);
+        vector::subtract(&w.y, self.x);
+        self.a.apply(self.x, &mut w.g, &mut w.a_scratch);
+        self.report.products += 1;
+        // the load may sit in the equality alone
+        let product = self.project_gradient();
+        let reference = if load > NEGLIGIBLE * product {
+            load
+        } else {
+            product
+        };
+        let tolerance = tolerance.resolve(reference);
+        expect_setting(
+            "tolerance",
+            tolerance,
+            ">= 0, finite",
+            tolerance >= 0.0 && tolerance.is_finite(),
+        )?;
+        vector::subtract(b, &mut self.work.g);
+        self.start = self.project_gradient();
+        self.best = self.start;
+        self.report.projected_gradient = self.start;
+        self.report.tolerance = tolerance;
+        Ok(())
+    }
+
+    /// `|P v|`; `w` becomes `P v`.
+    fn projected_norm(&mut self, v: &[f64]) -> f64 {
+        let w = &mut *self.work;
+        project(self.c, v, &mut w.w, &mut w.coarse, &mut w.c_scratch);
+        vector::norm(&w.w)
+    }
+
+    /// `w = P g`, and its norm.
+    fn project_gradient(&mut self) -> f64 {
+        let w = &mut *self.work;
+        project(self.c, &w.g, &mut w.w, &mut w.coarse, &mut w.c_scratch);
+        vector::norm(&w.w)
+    }
+
+    /// How the solve ends at this iterate, if it does.
+    fn ended(&self, max_products: usize) -> Result<Option<Status>, QpError> {
+        let report = &self.report;
         if !report.projected_gradient.is_finite() {
             return Err(QpError::NotFinite {
                 quantity: "the gradient",
-                products,
-            });
-        }
-        if report.projected_gradient <= tolerance {
-            break;
-        }
-        if products >= max_products {
-            report.status = Status::IterationLimit;
-            break;
-        }
-        m.apply(w, ap, m_scratch);
-        report.preconditionings += 1;
-        project(c, ap, y, coarse, c_scratch);
-        let wy = vector::dot(w, y);
-        if report.iterations == 0 {
-            vector::copy(y, p);
-        } else {
-            vector::xpby(y, wy / wy_before, p);
-        }
-        wy_before = wy;
-        a.apply(p, ap, a_scratch);
-        report.products += 1;
-        report.iterations += 1;
-        let pap = vector::dot(p, ap);
-        if !(pap > 0.0 && wy > 0.0) {
-            if pap.is_nan() || wy.is_nan() {
-                return Err(QpError::NotFinite {
-                    quantity: "a product",
-                    products: report.products,
-                });
-            }
-            if pap > 0.0 || report.projected_gradient <= ROUNDING * start {
-                // rounding errors have taken over: the preconditioned residual is no longer one
-                report.status = Status::Stagnated;
-                break;
-            }
-            let curvature = pap / vector::dot(p, p);
-            return Err(QpError::Indefinite {
-                curvature,
                 products: report.products,
             });
         }
-        let t = wy / pap;
-        vector::axpy(-t, p, x);
-        vector::axpy(-t, ap, g);
-        project(c, g, w, coarse, c_scratch);
-        report.projected_gradient = vector::norm(w);
-        if report.projected_gradient < 0.9 * best {
-            best = report.projected_gradient;
-            waited = 0;
+        Ok(if report.projected_gradient <= report.tolerance {
+            Some(Status::Converged)
+        } else if self.waited >= PATIENCE {
+            Some(Status::Stagnated)
+        } else if report.products >= max_products {
+            Some(Status::IterationLimit)
         } else {
-            waited += 1;
+            None
+        })
+    }
+
+    /// `y = P M w`, the direction `p`, conjugate to the last one, and `ap = A p`.
+    fn direction(&mut self) {
+        let w = &mut *self.work;
+        self.m.apply(&w.w, &mut w.ap, &mut w.m_scratch);
+        self.report.preconditionings += 1;
+        project(self.c, &w.ap, &mut w.y, &mut w.coarse, &mut w.c_scratch);
+        let slope = vector::dot(&w.w, &w.y);
+        if self.report.iterations == 0 {
+            vector::copy(&w.y, &mut w.p);
+        } else {
+            vector::xpby(&w.y, slope / self.slope, &mut w.p);
         }
-        if waited >= PATIENCE {
-            report.status = Status::Stagnated;
-            break;
+        self.slope = slope;
+        self.a.apply(&w.p, &mut w.ap, &mut w.a_scratch);
+        self.report.products += 1;
+        self.report.iterations += 1;
+    }
+
+    /// The minimising length; `None` where rounding errors have taken over.
+    fn step_length(&self) -> Result<Option<f64>, QpError> {
+        let (w, products) = (&*self.work, self.report.products);
+        let pap = vector::dot(&w.p, &w.ap);
+        if pap > 0.0 && self.slope > 0.0 {
+            return Ok(Some(self.slope / pap));
+        }
+        if pap.is_nan() || self.slope.is_nan() {
+            return Err(QpError::NotFinite {
+                quantity: "a product",
+                products,
+            });
+        }
+        // with a positive curvature the preconditioned residual is no longer one
+        if pap > 0.0 || self.report.projected_gradient <= ROUNDING * self.start {
+            return Ok(None);
+        }
+        let curvature = pap / vector::dot(&w.p, &w.p);
+        Err(QpError::Indefinite {
+            curvature,
+            products,
+        })
+    }
+
+    /// A step of this length along `-p`.
+    fn advance(&mut self, length: f64) {
+        vector::axpy(-length, &self.work.p, self.x);
+        let w = &mut *self.work;
+        vector::axpy(-length, &w.ap, &mut w.g);
+        let found = self.project_gradient();
+        self.report.projected_gradient = found;
+        if found < LESS * self.best {
+            (self.best, self.waited) = (found, 0);
+        } else {
+            self.waited += 1;
         }
     }
-    // the multiplier -C (A x - b)
-    c.apply(g, coarse, c_scratch);
-    vector::scale(-1.0, coarse);
-    Ok(report)
+
+    /// Leaves the multiplier `-C (A x - b)` in the workspace.
+    fn finish(self) -> CgReport {
+        let w = self.work;
+        self.c.apply(&w.g, &mut w.coarse, &mut w.c_scratch);
+        vector::scale(-1.0, &mut w.coarse);
+        self.report
+    }
+}
+
+/// `out = P v`, the coarse vector becomes `C v`.
+fn project<C: Equality>(c: &C, v: &[f64], out: &mut [f64], coarse: &mut [f64], s: &mut C::Scratch) {
+    c.apply(v, coarse, s);
+    c.apply_transpose(coarse, out, s);
+    vector::xpby(v, -1.0, out);
 }

@@ -21,6 +21,7 @@
 
 use crate::error::{QpError, expect_finite, expect_length, expect_setting};
 use crate::kprgp::{drifted, iterate};
+use crate::kprgp_settings::{KprgpReport, Vectors};
 use crate::objective::Objective;
 use crate::operator::{Equality, SymmetricOperator};
 use crate::penalised::Penalised;
@@ -82,10 +83,10 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     multiplier: &mut [f64],
     work: &mut SmalseWorkspace<A, C>,
 ) -> Result<SmalseReport, QpError> {
-    let n = a.dim();
     settings.validate()?;
     set.validate()?;
     expect_setting("norm", norm, "> 0, finite", norm > 0.0 && norm.is_finite())?;
+    let n = a.dim();
     for (what, found, expected) in [
         ("the right side b", b.len(), n),
         ("the start x", x.len(), n),
@@ -106,148 +107,264 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     ] {
         expect_finite(what, v)?;
     }
-
-    let v = &mut work.vectors;
-    let mut products = Products::default();
-    let mut o = Penalised {
-        a,
-        c,
-        b,
-        e,
-        beta: multiplier,
-        norm,
-        rho: settings.penalty * norm,
-        precision: settings.precision * norm,
-        cap: 0.0,
-        floor: 0.0,
-        equality_tolerance: 0.0,
-        s: &mut work.state,
-        a_scratch: &mut work.a_scratch,
-        c_scratch: &mut work.c_scratch,
+    work.state.projections = 0;
+    let mut run = Run {
+        o: Penalised {
+            a,
+            c,
+            b,
+            e,
+            beta: multiplier,
+            norm,
+            rho: settings.penalty * norm,
+            precision: settings.precision * norm,
+            cap: 0.0,
+            floor: 0.0,
+            equality_tolerance: 0.0,
+            s: &mut work.state,
+            a_scratch: &mut work.a_scratch,
+            c_scratch: &mut work.c_scratch,
+        },
+        e_norm: vector::norm(e),
+        set,
+        settings,
+        hook,
+        x,
+        v: &mut work.vectors,
+        steps: Steps::default(),
+        products: Products::default(),
+        outer: 0,
+        stagnations: 0,
+        before: None,
+        gradient: f64::NAN,
+        within: false,
     };
-    o.s.projections = 0;
-    // eps_1 = eps |P h|
-    let reference = reference(&mut o, settings.tolerance, &mut v.ap, &mut products);
-    o.floor = settings.tolerance.resolve(reference);
-    o.cap = settings.gradient_cap * reference;
-    expect_setting(
-        "tolerance",
-        o.floor,
-        ">= 0, finite",
-        o.floor >= 0.0 && o.floor.is_finite(),
-    )?;
-    let e_norm = vector::norm(e);
-
-    set.project(x);
-    o.gradient(x, &mut v.g);
-    v.stale = 0;
-    products.initial += 1;
-    let mut steps = Steps::default();
-    let (mut outer, mut stagnations) = (0, 0);
-    // rho and |C x - e| of the step before; none at k = 0 and after the set or the penalty changed
-    let mut before: Option<(f64, f64)> = None;
-    let mut gradient;
-    o.equality_tolerance = settings.equality * vector::norm(x).max(e_norm);
+    run.start()?;
     let status = loop {
         // Step 1: x in the set with |g^K| <= min(M_k |C x - e|, eta)
-        let left = settings.inner.max_products.saturating_sub(products.total());
-        let inner = iterate(&mut o, set, &settings.inner, left, x, v)?;
-        steps += inner.steps;
-        products += inner.products;
-        gradient = inner.measure;
-        outer += 1;
-        let equality = o.equality();
-        o.equality_tolerance = settings.equality * vector::norm(x).max(e_norm);
-        let within = gradient <= o.floor && equality <= o.equality_tolerance;
-
-        let step = OuterStep {
-            index: outer - 1,
-            x,
-            projected_gradient: gradient,
-            equality,
-            converged: within,
-            products: products.total(),
-        };
-        let action = hook.after_step(&step, set);
-        if action == HookAction::SetChanged {
-            set.validate()?;
-            expect_length("the set after the hook", set.dim(), x.len())?;
-            vector::copy(x, &mut v.p);
-            set.project(x);
-        }
+        let inner = run.minimise()?;
+        let action = run.call_hook()?;
         // Step 2: done?
+        match run.judge(inner.status, action) {
+            Verdict::End(status) => break status,
+            Verdict::Again => continue,
+            Verdict::Update => {}
+        }
+        // Step 3: beta_{k+1} = beta_k + rho (C x - e); Step 4: M_{k+1}, or rho
+        let growth = run.growth(inner.decrease);
+        run.update_multiplier();
+        run.update_parameters(growth);
+        if action == HookAction::SetChanged {
+            run.follow_set();
+        }
+    };
+    let report = run.report(status);
+    run.o.unproject(&run.v.g, &mut work.residual, &mut work.mu);
+    Ok(report)
+}
+
+/// One solve.
+struct Run<'s, A: SymmetricOperator, C: Equality, S: ?Sized, H> {
+    o: Penalised<'s, A, C>,
+    set: &'s mut S,
+    settings: &'s SmalseSettings,
+    hook: &'s mut H,
+    x: &'s mut [f64],
+    v: &'s mut Vectors,
+    e_norm: f64,
+    steps: Steps,
+    products: Products,
+    outer: usize,
+    stagnations: usize,
+    /// `rho` and `|C x - e|` of the step before; none at `k = 0` and after the set or the penalty changed.
+    before: Option<(f64, f64)>,
+    /// `|g^K|` at the end of Step 1, and whether it and `|C x - e|` are within their tolerances.
+    gradient: f64,
+    within: bool,
+}
+
+/// What Step 2 decides.
+enum Verdict {
+    End(Status),
+    /// Step 1 again, with a gradient computed afresh.
+    Again,
+    /// On to Steps 3 and 4.
+    Update,
+}
+
+/// What Step 4 looks at.
+struct Growth {
+    /// Whether the Lagrangian grew as much as it has to.
+    enough: bool,
+    /// `|C x - e|` over that of the step before; zero if there is none.
+    ratio: f64,
+}
+
+impl<A, C, S, H> Run<'_, A, C, S, H>
+where
+    A: SymmetricOperator,
+    C: Equality,
+    S: ConvexSet + ?Sized,
+    H: OuterHook<S>,
+{
+    /// Tolerances, and the first gradient.
+    fn start(&mut self) -> Result<(), QpError> {
+        let (o, settings) = (&mut self.o, self.settings);
+        // eps_1 = eps |P h|
+        let reference = reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        o.floor = settings.tolerance.resolve(reference);
+        o.cap = settings.gradient_cap * reference;
+        expect_setting(
+            "tolerance",
+            o.floor,
+            ">= 0, finite",
+            o.floor >= 0.0 && o.floor.is_finite(),
+        )?;
+        self.set.project(self.x);
+        self.compute_gradient();
+        self.products.initial += 1;
+        self.set_equality_tolerance();
+        Ok(())
+    }
+
+    fn compute_gradient(&mut self) {
+        self.o.gradient(self.x, &mut self.v.g);
+        self.v.stale = 0;
+    }
+
+    fn set_equality_tolerance(&mut self) {
+        let size = vector::norm(self.x).max(self.e_norm);
+        self.o.equality_tolerance = self.settings.equality * size;
+    }
+
+    /// Step 1, by KPRGP.
+    fn minimise(&mut self) -> Result<KprgpReport, QpError> {
+        let settings = &self.settings.inner;
+        let left = settings.max_products.saturating_sub(self.products.total());
+        let inner = iterate(&mut self.o, &*self.set, settings, left, self.x, self.v)?;
+        self.steps += inner.steps;
+        self.products += inner.products;
+        self.gradient = inner.measure;
+        self.outer += 1;
+        self.set_equality_tolerance();
+        self.within =
+            self.gradient <= self.o.floor && self.o.equality() <= self.o.equality_tolerance;
+        Ok(inner)
+    }
+
+    /// The hook; if it changed the set, `x` is projected on it, and `v.p` keeps it as it was.
+    fn call_hook(&mut self) -> Result<HookAction, QpError> {
+        let step = OuterStep {
+            index: self.outer - 1,
+            x: self.x,
+            projected_gradient: self.gradient,
+            equality: self.o.equality(),
+            converged: self.within,
+            products: self.products.total(),
+        };
+        let action = self.hook.after_step(&step, self.set);
+        if action == HookAction::SetChanged {
+            self.set.validate()?;
+            expect_length("the set after the hook", self.set.dim(), self.x.len())?;
+            vector::copy(self.x, &mut self.v.p);
+            self.set.project(self.x);
+        }
+        Ok(action)
+    }
+
+    /// Step 2.
+    fn judge(&mut self, inner: Status, action: HookAction) -> Verdict {
         if action == HookAction::Stop {
-            break Status::Stopped;
+            return Verdict::End(Status::Stopped);
         }
-        if within && action == HookAction::Continue {
-            if !drifted(settings.inner.verification, o.norm(), x, v.stale, o.floor) {
-                break Status::Converged;
+        let done = self.within && action == HookAction::Continue;
+        if done {
+            let (verification, norm) = (self.settings.inner.verification, self.o.norm());
+            if !drifted(verification, norm, self.x, self.v.stale, self.o.floor) {
+                return Verdict::End(Status::Converged);
             }
-            o.gradient(x, &mut v.g);
-            v.stale = 0;
-            products.restart += 1;
-            stagnations += 1;
-            if stagnations > MAX_STAGNATIONS {
-                break Status::Stagnated;
-            }
-            continue;
+            self.compute_gradient();
+            self.products.restart += 1;
         }
-        if inner.status == Status::Stagnated {
-            stagnations += 1;
-            if stagnations > MAX_STAGNATIONS {
-                break Status::Stagnated;
+        if done || inner == Status::Stagnated {
+            self.stagnations += 1;
+            if self.stagnations > MAX_STAGNATIONS {
+                return Verdict::End(Status::Stagnated);
             }
         }
-        if inner.status == Status::IterationLimit || outer >= settings.max_outer {
-            break Status::IterationLimit;
+        if done {
+            Verdict::Again
+        } else if inner == Status::IterationLimit || self.outer >= self.settings.max_outer {
+            Verdict::End(Status::IterationLimit)
+        } else {
+            Verdict::Update
         }
-        // Step 4 compares L_k = L(x_k, beta_k) with L_{k-1}. From x_{k-1} with beta_k Step 1 went down by
-        // `decrease`, and the new multiplier had added rho |C x_{k-1} - e|² before.
-        let grew_enough = before
-            .is_none_or(|(rho, c)| rho * c * c - inner.decrease >= 0.5 * rho * equality * equality);
-        let fell = before.map_or(0.0, |(_, c)| equality / c);
-        // Step 3: beta_{k+1} = beta_k + rho (C x - e)
-        before = Some((o.rho, equality));
-        o.update_multiplier(&mut v.g);
-        let penalty = match settings.update {
-            Update::Precision { shrink } if !grew_enough => {
+    }
+
+    /// Step 4 compares `L_k = L(x_k, beta_k)` with `L_{k-1}`. From `x_{k-1}` with `beta_k` Step 1 went down by
+    /// `decrease`, and the new multiplier had added `rho |C x_{k-1} - e|²` before.
+    fn growth(&self, decrease: f64) -> Growth {
+        let equality = self.o.equality();
+        let enough =
+            |(rho, c): (f64, f64)| rho * c * c - decrease >= 0.5 * rho * equality * equality;
+        Growth {
+            enough: self.before.is_none_or(enough),
+            ratio: self.before.map_or(0.0, |(_, c)| equality / c),
+        }
+    }
+
+    /// Step 3.
+    fn update_multiplier(&mut self) {
+        self.before = Some((self.o.rho, self.o.equality()));
+        self.o.update_multiplier(&mut self.v.g);
+    }
+
+    /// Step 4, or another rule for the penalty.
+    fn update_parameters(&mut self, growth: Growth) {
+        let o = &mut self.o;
+        let norm = o.norm;
+        let penalty = match self.settings.update {
+            Update::Precision { shrink } if !growth.enough => {
                 o.precision = (shrink * o.precision).max(LEAST_PRECISION * norm);
                 None
             }
-            Update::Penalty { grow, max } if !grew_enough => Some((grow * o.rho).min(max * norm)),
-            Update::Residual { ratio, grow, max } if fell > ratio => {
+            Update::Penalty { grow, max } if !growth.enough => Some((grow * o.rho).min(max * norm)),
+            Update::Residual { ratio, grow, max } if growth.ratio > ratio => {
                 Some((grow * o.rho).min(max * norm))
             }
             _ => None,
         };
         if let Some(rho) = penalty.filter(|rho| *rho > o.rho) {
-            o.set_penalty(rho, &mut v.g);
+            o.set_penalty(rho, &mut self.v.g);
             // the Lagrangian is another one now
-            before = None;
+            self.before = None;
         }
-        if action == HookAction::SetChanged {
-            if vector::distance_squared(x, &v.p) > 0.0 {
-                o.gradient(x, &mut v.g);
-                v.stale = 0;
-                products.restart += 1;
-            }
-            before = None;
+    }
+
+    /// After a change of the set: the gradient at the projected `x`.
+    fn follow_set(&mut self) {
+        if vector::distance_squared(self.x, &self.v.p) > 0.0 {
+            self.compute_gradient();
+            self.products.restart += 1;
         }
-    };
-    o.unproject(&v.g, &mut work.residual, &mut work.mu);
-    Ok(SmalseReport {
-        status,
-        outer,
-        steps,
-        products,
-        projections: o.s.projections,
-        projected_gradient: gradient,
-        tolerance: o.floor,
-        equality: o.equality(),
-        equality_tolerance: o.equality_tolerance,
-        penalty: o.rho / norm,
-        precision: o.precision / norm,
-    })
+        self.before = None;
+    }
+
+    fn report(&self, status: Status) -> SmalseReport {
+        SmalseReport {
+            status,
+            outer: self.outer,
+            steps: self.steps,
+            products: self.products,
+            projections: self.o.s.projections,
+            projected_gradient: self.gradient,
+            tolerance: self.o.floor,
+            equality: self.o.equality(),
+            equality_tolerance: self.o.equality_tolerance,
+            penalty: self.o.rho / self.o.norm,
+            precision: self.o.precision / self.o.norm,
+        }
+    }
 }
 
 /// Reference of the tolerance: the caller's, or `|P (b - A C'e)|`, or `|P b|` for an absolute tolerance.

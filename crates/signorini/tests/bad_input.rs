@@ -42,7 +42,20 @@ fn attempt(scene: Scene) -> Checked {
 }
 
 fn attempt_with(scene: Scene, settings: Settings) -> Checked {
-    Simulation::new(scene, settings)?.step()?;
+    let plan = Plan::new(&scene, &settings).map(|_| ());
+    let set_up = Simulation::new(scene, settings);
+    // a plan says the same, but for what only a set-up can know
+    match &set_up {
+        Err(ContactError::NotHeld { .. } | ContactError::NotDetermined { .. }) => {
+            plan.expect("nothing that a plan sees");
+        }
+        Err(error) => assert_eq!(
+            plan.expect_err("refused by the plan").to_string(),
+            error.to_string()
+        ),
+        Ok(_) => plan.expect("accepted by the plan"),
+    }
+    set_up?.step()?;
     Ok(())
 }
 
@@ -303,7 +316,8 @@ fn checkpoints_and_the_end() {
     };
     let set_up = |cells| Simulation::new(scene(cells), Settings::default()).expect("set-up");
     let mut first = set_up(3);
-    first.run(&mut Silent).expect("run");
+    let report = first.run(&mut Silent).expect("run");
+    assert!(report.converged());
     let state = first.state().clone();
     let mut short = Simulation::new(
         scene(3).with_analysis(Analysis::quasistatic(1.0, 2)),

@@ -1,5 +1,6 @@
 //! A program that knows the facade only.
 
+use signorini::contact::{ContactNormal, Cut};
 use signorini::prelude::*;
 
 fn scene(levels: usize) -> Result<Scene, Error> {
@@ -54,11 +55,11 @@ fn an_observer_sees_every_level_and_may_stop_the_run() -> Result<(), Error> {
         stop_after: Some(2),
         ..Diary::default()
     };
-    simulation.run(&mut diary)?;
+    simulation.run(&mut diary)?.require_converged()?;
     assert_eq!((diary.started, diary.finished), (Some(4), Some(2)));
     assert!(!simulation.is_finished());
     let mut rest = Diary::default();
-    simulation.run(&mut rest)?;
+    simulation.run(&mut rest)?.require_converged()?;
     assert_eq!((rest.started, rest.finished), (Some(2), Some(2)));
     diary.times.extend(rest.times);
     assert_eq!(diary.times, [0.25, 0.5, 0.75, 1.0]);
@@ -70,10 +71,11 @@ fn an_observer_sees_every_level_and_may_stop_the_run() -> Result<(), Error> {
 fn a_closure_is_an_observer() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
     let mut touching = Vec::new();
-    simulation.run(&mut |frame: &Frame<'_>| {
+    let report = simulation.run(&mut |frame: &Frame<'_>| {
         touching.push(frame.summary().active);
         Flow::Continue
     })?;
+    assert!(report.converged() && report.levels == 3);
     assert_eq!(touching.len(), 3);
     assert!(touching.last() > Some(&0));
     Ok(())
@@ -99,7 +101,7 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
         "observer, after level 1: the disk is full"
     );
     assert_eq!(simulation.state().level(), 2);
-    simulation.run(&mut Silent)?;
+    simulation.run(&mut Silent)?.require_converged()?;
     assert!(simulation.is_finished());
     Ok(())
 }
@@ -131,5 +133,36 @@ fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
     for part in ["Coulomb", "with gap", "4 levels", "face"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
+    Ok(())
+}
+
+#[test]
+fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
+    let pull = History::ramp(2.0, 1.0)?;
+    let scene = scene(2)?
+        .with_support(
+            Support::components(vec![3, 5], [true, false, false])
+                .moved([1e-3, 0.0, 0.0], pull.clone()),
+        )
+        .with_load(Load::body([0.0, 0.0, -1.0]).with_history(pull.clone()));
+    let [clamp, moved] = scene.supports() else {
+        panic!("two supports")
+    };
+    assert_eq!(clamp.place(), &Place::Tag(brick::X_MIN));
+    assert_eq!(clamp.directions(), &Directions::All);
+    assert!(clamp.motion().is_none());
+    assert_eq!(moved.place(), &Place::Nodes(vec![3, 5]));
+    assert_eq!(moved.directions().vectors(), [[1.0, 0.0, 0.0]]);
+    assert_eq!(moved.motion(), Some((&[[1e-3, 0.0, 0.0]][..], &pull)));
+    let [_, weight] = scene.loads() else {
+        panic!("two loads")
+    };
+    assert!(matches!(weight.density(), LoadDensity::Body([_, _, z]) if *z == -1.0));
+    assert_eq!(weight.history(), &pull);
+    assert_eq!(scene.cut(), &Cut::Boxes([3, 1, 1]));
+    let contact = scene.contact().expect("contact");
+    assert_eq!(contact.tags(), [brick::Z_MIN]);
+    assert!(matches!(contact.gap(), Gap::Constant(gap) if *gap == 0.1));
+    assert_eq!(contact.normal(), ContactNormal::Body);
     Ok(())
 }

@@ -48,8 +48,8 @@ fn parts(system: &Tfeti) -> Result<(), Box<dyn std::error::Error>> {
                 drop(space.set_weights(&w));
             })
         });
-        let project = pool.install(|| median(|| space.project(&mut x)));
-        let transposed = pool.install(|| median(|| space.project_transpose(&mut y)));
+        let project = pool.install(|| median(|| space.project_step(&mut x)));
+        let transposed = pool.install(|| median(|| space.project_step_transpose(&mut y)));
         let mut alpha = vec![1.0; system.coarse().rows()];
         let mut s = space.factor().scratch();
         let solve = pool.install(|| median(|| space.factor().solve(&mut alpha, &mut s)));

@@ -47,6 +47,9 @@ impl Classes {
     }
 
     /// Class of a subdomain and its position among the members.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
     #[must_use]
     pub fn place(&self, subdomain: usize) -> (usize, usize) {
         let (class, member) = self.place[subdomain];
@@ -62,6 +65,9 @@ impl Classes {
     /// Finds the classes. Two subdomains share one if their local connectivity is identical, their elements have equal
     /// Hooke tensors, and their node positions agree up to a translation within `1e-12` of their size (plus the
     /// rounding of the coordinates themselves).
+    ///
+    /// # Errors
+    /// [`TfetiError::Material`] if a region has none.
     pub fn find(
         mesh: &TetMesh,
         decomposition: &Decomposition,

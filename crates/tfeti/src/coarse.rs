@@ -103,10 +103,16 @@ impl Coarse {
         self.0.map.rows()
     }
 
-    /// Number of bodies: sets of subdomains that interface rows join rigidly, not by an edge or a node only.
+    /// Number of bodies: sets of subdomains that interface rows join, be it by a hinge.
     #[must_use]
     pub fn bodies(&self) -> usize {
         self.0.mobility.bodies()
+    }
+
+    /// The body of each subdomain; bodies are numbered by their first subdomains.
+    #[must_use]
+    pub fn body_of(&self) -> &[u32] {
+        self.0.mobility.body_of()
     }
 
     /// Numbers stored for a factor of `G W G^T`.
@@ -143,6 +149,9 @@ impl Coarse {
     }
 
     /// Row `row` of `G^T`, for inspection: `(subdomain, six coefficients)`.
+    ///
+    /// # Panics
+    /// If there is no such row.
     #[must_use]
     pub fn column(&self, row: usize) -> Vec<(usize, [f64; 6])> {
         let mut out: Vec<(usize, [f64; 6])> = Vec::new();
@@ -158,6 +167,9 @@ impl Coarse {
     }
 
     /// Rigid motions of bodies that rows of positive weight leave free; all rows count if there are no weights.
+    ///
+    /// # Errors
+    /// [`TfetiError::Setting`] and [`TfetiError::Length`] for weights that cannot be used.
     pub fn free_motions(
         &self,
         weights: Option<&RowWeights>,
@@ -169,6 +181,9 @@ impl Coarse {
     }
 
     /// Factor of `G G^T`.
+    ///
+    /// # Errors
+    /// [`TfetiError::CoarseSingular`] if a pivot is not positive, [`TfetiError::TooLarge`].
     pub fn factor(&self) -> Result<CoarseFactor, TfetiError> {
         self.factor_with(None)
     }
@@ -178,6 +193,9 @@ impl Coarse {
     /// If some rigid motions of bodies escape all rows of positive weight (see [`CoarseFactor::free_motions`]), the matrix
     /// is singular; it is then regularised such that solves apply a generalised inverse, exact for right-hand sides that
     /// do no work on the free motions.
+    ///
+    /// # Errors
+    /// As [`free_motions`](Self::free_motions) and [`factor`](Self::factor).
     pub fn factor_weighted(&self, weights: RowWeights) -> Result<CoarseFactor, TfetiError> {
         weights.validate(self.0.gluing.ranges())?;
         self.factor_with(Some(weights))

@@ -5,6 +5,7 @@ use crate::mobility::FreeMotion;
 use crate::row_weights::{LineWeight, RowWeights};
 use crate::sparse::{SolveMemory, SparseCholesky};
 use crate::split_factor::{SplitBase, SplitFactor};
+use crate::split_solve::Digits;
 use signorini_qp::Equality;
 use std::sync::Arc;
 
@@ -103,14 +104,37 @@ impl CoarseFactor {
 
     /// `y = (G W G^T)^-1 y`.
     pub fn solve(&self, y: &mut [f64], s: &mut CoarseScratch) {
-        self.solve_with(y, &mut s.memory, &mut s.split);
+        self.solve_with(Digits::Double, y, &mut s.memory, &mut s.split);
     }
 
-    fn solve_with(&self, y: &mut [f64], memory: &mut SolveMemory, split: &mut Vec<f64>) {
+    fn solve_with(
+        &self,
+        digits: Digits,
+        y: &mut [f64],
+        memory: &mut SolveMemory,
+        split: &mut Vec<f64>,
+    ) {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.solve(y, 1, memory),
-            Factor::Split(base, factor) => base.solve(factor, y, reserved(base, split)),
+            Factor::Split(base, factor) => {
+                base.solve(factor, y, reserved(base, split), false, digits);
+            }
         }
+    }
+
+    /// Whether the factor is stored in single precision, too.
+    pub(crate) fn has_short(&self) -> bool {
+        matches!(self.0.factor, Factor::Split(..))
+    }
+
+    /// Relative error of a solve in single precision, for a right side in which all motions are.
+    pub(crate) fn single_error(&self, s: &mut CoarseScratch) -> f64 {
+        let side = (0..self.0.coarse.rows()).map(|k| ((k * k + 1) as f64).sin());
+        let mut exact: Vec<f64> = side.collect();
+        let mut short = exact.clone();
+        self.solve_with(Digits::Double, &mut exact, &mut s.memory, &mut s.split);
+        self.solve_with(Digits::Single, &mut short, &mut s.memory, &mut s.split);
+        signorini_qp::vector::distance(&exact, &short) / signorini_qp::vector::norm(&exact)
     }
 
     /// Weights of the rows that are no interface rows, if the interface rows have weight one.
@@ -129,19 +153,45 @@ impl CoarseFactor {
     }
 
     /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
+        self.project_to(Digits::Double, x, e, s);
+    }
+
+    pub(crate) fn project_to(
+        &self,
+        digits: Digits,
+        x: &mut [f64],
+        e: Option<&[f64]>,
+        s: &mut CoarseScratch,
+    ) {
         let data = &self.0.coarse.0;
         data.product(x, None, &mut s.first, &mut s.columns, &mut s.sides);
         if let Some(e) = e {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
-        self.solve_with(&mut s.first, &mut s.memory, &mut s.split);
+        self.solve_with(digits, &mut s.first, &mut s.memory, &mut s.split);
         self.subtract_weighted(x, s);
     }
 
     /// `x = x - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
     /// [`project`](Self::project) where these are the contact rows.
+    ///
+    /// # Panics
+    /// If `change` or `x` is too long, or `x` too short.
     pub fn compensate(&self, change: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
+        self.compensate_to(Digits::Double, change, x, s);
+    }
+
+    pub(crate) fn compensate_to(
+        &self,
+        digits: Digits,
+        change: &[f64],
+        x: &mut [f64],
+        s: &mut CoarseScratch,
+    ) {
         let data = &self.0.coarse.0;
         let contact = change.len() == data.gluing.ranges().contact().end;
         if contact {
@@ -153,9 +203,10 @@ impl CoarseFactor {
         }
         match &self.0.factor {
             Factor::Split(base, factor) if contact && base.rows() >= change.len() => {
-                base.solve_changing(factor, &mut s.first, reserved(base, &mut s.split));
+                let work = reserved(base, &mut s.split);
+                base.solve(factor, &mut s.first, work, true, digits);
             }
-            _ => self.solve_with(&mut s.first, &mut s.memory, &mut s.split),
+            _ => self.solve_with(digits, &mut s.first, &mut s.memory, &mut s.split),
         }
         self.subtract_weighted(x, s);
     }
@@ -187,18 +238,31 @@ impl CoarseFactor {
 
     /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
     /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        self.project_transpose_to(Digits::Double, r, alpha, s);
+    }
+
+    pub(crate) fn project_transpose_to(
+        &self,
+        digits: Digits,
+        r: &mut [f64],
+        alpha: &mut [f64],
+        s: &mut CoarseScratch,
+    ) {
         if self.0.plain {
             keep(self.lines(), r, &mut s.pairs);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
                 r[line.row..line.row + 2].copy_from_slice(&line.along(*old));
             }
-            self.plain_amplitudes(r, alpha, s);
+            self.plain_amplitudes(digits, r, alpha, s);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
                 r[line.row..line.row + 2].copy_from_slice(old);
             }
         } else {
-            self.amplitudes(r, alpha, s);
+            self.amplitudes_to(digits, r, alpha, s);
         }
         let data = &self.0.coarse.0;
         data.with_transpose(alpha, r, &mut s.motions, |r, v| *r += v, |_, r, v| *r += v);
@@ -207,32 +271,48 @@ impl CoarseFactor {
     /// Rigid amplitudes that make the rows residual `r + G^T alpha` smallest in the metric of `W`:
     /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
     /// equality (open contact, sliding).
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        self.amplitudes_to(Digits::Double, r, alpha, s);
+    }
+
+    fn amplitudes_to(&self, digits: Digits, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         if self.0.plain && self.lines().is_empty() {
-            self.plain_amplitudes(r, alpha, s);
+            self.plain_amplitudes(digits, r, alpha, s);
             return;
         }
         s.dual.copy_from_slice(r);
         self.weigh(&mut s.dual);
         let data = &self.0.coarse.0;
         data.product(&s.dual, None, alpha, &mut s.columns, &mut s.sides);
-        self.solve_with(alpha, &mut s.memory, &mut s.split);
+        self.solve_with(digits, alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
 
     /// The same for interface rows of weight one and rows in lines that are weighted already.
-    fn plain_amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+    fn plain_amplitudes(
+        &self,
+        digits: Digits,
+        r: &[f64],
+        alpha: &mut [f64],
+        s: &mut CoarseScratch,
+    ) {
         let data = &self.0.coarse.0;
         data.product(r, self.diagonal(), alpha, &mut s.columns, &mut s.sides);
-        self.solve_with(alpha, &mut s.memory, &mut s.split);
+        self.solve_with(digits, alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
 
     /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
+    ///
+    /// # Panics
+    /// If a vector does not have the length that belongs to it.
     pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
         s.first.copy_from_slice(e);
-        self.solve_with(&mut s.first, &mut s.memory, &mut s.split);
+        self.solve_with(Digits::Double, &mut s.first, &mut s.memory, &mut s.split);
         data.product_transpose(&s.first, x, &mut s.motions);
         self.weigh(x);
     }
@@ -291,6 +371,9 @@ impl OrthonormalCoarse {
 
     /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
     /// `G^T alpha = C^T beta`.
+    ///
+    /// # Panics
+    /// If `beta` or `alpha` does not have one entry for each row.
     pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(beta);
         self.half_solve_transpose(&mut s.first, alpha, &mut s.memory);

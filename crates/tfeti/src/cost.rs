@@ -72,6 +72,9 @@ impl InverseSettings {
     }
 
     /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`TfetiError::Setting`] naming the setting and its range.
     pub fn validate(&self) -> Result<(), TfetiError> {
         if self.expected_products == 0 {
             return Err(TfetiError::Setting {

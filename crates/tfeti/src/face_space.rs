@@ -6,6 +6,7 @@ use crate::contact_fronts::ContactWeights;
 use crate::error::TfetiError;
 use crate::row_weights::{LineWeight, RowWeights};
 use crate::split_factor::{Fronts, SplitBase, SplitFactor};
+use crate::split_solve::Digits;
 use signorini_qp::{CoarseSpace, Line, QpError};
 use std::sync::Arc;
 
@@ -48,7 +49,12 @@ pub struct FaceSpace {
     rhs: Vec<f64>,
     alpha: Vec<f64>,
     scratch: CoarseScratch,
+    /// What the steps of an iteration read.
+    digits: Digits,
 }
+
+/// Largest relative error of a solve with a factor in single precision with which steps are projected.
+const ROUNDED: f64 = 1e-4;
 
 /// Work on a free motion above this fraction of the norm of `e` makes a face deficient.
 const WORK: f64 = 1e-9;
@@ -89,13 +95,6 @@ impl FaceSpace {
             });
         }
         if let Some(metric) = &metric {
-            if metric.len() != coarse.dim() {
-                return Err(TfetiError::Length {
-                    what: "metric of a face space",
-                    expected: coarse.dim(),
-                    found: metric.len(),
-                });
-            }
             RowWeights::diagonal(metric.clone()).validate(coarse.0.gluing.ranges())?;
         }
         let mut weights = vec![1.0; coarse.dim()];
@@ -114,8 +113,18 @@ impl FaceSpace {
         let work = (&mut fronts, &mut contact);
         let factor = factor(coarse, own, row_weights, rows, None, work.0, work.1)?;
         let always = factor.free_motions().is_empty().then(|| factor.clone());
+        let mut scratch = factor.scratch();
+        // weights that are added to those that hold every body leave the matrix better conditioned
+        let single = always
+            .as_ref()
+            .is_some_and(|f| f.has_short() && f.single_error(&mut scratch) <= ROUNDED);
         Ok(Self {
-            scratch: factor.scratch(),
+            digits: if single {
+                Digits::Single
+            } else {
+                Digits::Double
+            },
+            scratch,
             coarse: coarse.clone(),
             always,
             face: factor,
@@ -137,6 +146,13 @@ impl FaceSpace {
     #[must_use]
     pub fn factor(&self) -> &CoarseFactor {
         &self.face
+    }
+
+    /// Projects the steps of iterations in double precision even where single precision is good enough.
+    #[must_use]
+    pub fn exact_steps(mut self) -> Self {
+        self.digits = Digits::Double;
+        self
     }
 
     /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e` does
@@ -296,6 +312,20 @@ impl CoarseSpace for FaceSpace {
             .project_transpose(g, &mut self.alpha, &mut self.scratch);
     }
 
+    fn rounds_steps(&self) -> bool {
+        self.digits == Digits::Single
+    }
+
+    fn project_step(&mut self, x: &mut [f64]) {
+        self.face
+            .project_to(self.digits, x, None, &mut self.scratch);
+    }
+
+    fn project_step_transpose(&mut self, g: &mut [f64]) {
+        self.face
+            .project_transpose_to(self.digits, g, &mut self.alpha, &mut self.scratch);
+    }
+
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
         self.face.amplitudes(g, out, &mut self.scratch);
     }
@@ -322,7 +352,7 @@ impl CoarseSpace for FaceSpace {
 
     fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
         let factor = self.always.as_ref().unwrap_or(&self.face);
-        factor.compensate(change, x, &mut self.scratch);
+        factor.compensate_to(self.digits, change, x, &mut self.scratch);
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {

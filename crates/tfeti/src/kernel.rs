@@ -61,7 +61,10 @@ pub(crate) fn add_wrench(wrench: &mut [f64; 6], arm: &[f64; 3], force: [f64; 3])
 }
 
 impl Kernel {
-    /// Kernel of a subdomain with these nodes. `Err(TfetiError::Collinear)` if the nodes lie on one line.
+    /// Kernel of a subdomain with these nodes.
+    ///
+    /// # Errors
+    /// [`TfetiError::Collinear`], naming the `subdomain`, if the nodes lie on one line.
     pub fn new(points: &[[f64; 3]], subdomain: usize) -> Result<Self, TfetiError> {
         let count = points.len().max(1) as f64;
         let centre = mean(points.iter().copied());
@@ -131,6 +134,9 @@ impl Kernel {
     }
 
     /// The rows of `R` at one node: `[component][mode]`.
+    ///
+    /// # Panics
+    /// If there is no such node.
     #[must_use]
     pub fn node_modes(&self, node: usize) -> [[f64; 6]; 3] {
         let mut out = [[0.0; 6]; 3];
@@ -201,6 +207,9 @@ impl Kernel {
     }
 
     /// `u += factor R amplitudes` for a local vector of length `3 nodes`.
+    ///
+    /// # Panics
+    /// If there are fewer than six amplitudes.
     pub fn add_motion(&self, factor: f64, amplitudes: &[f64], u: &mut [f64]) {
         let motion = self.motion(amplitudes);
         for (arm, target) in self.arms.iter().zip(u.chunks_exact_mut(3)) {

@@ -82,6 +82,7 @@ mod rows;
 mod scaling;
 mod sparse;
 mod split_factor;
+mod split_solve;
 mod supernodes;
 mod supports;
 mod system;

@@ -28,9 +28,9 @@ pub struct FreeMotion {
 /// Rigid motion of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyMotion {
-    /// Body number; bodies are numbered by their first subdomain.
+    /// Body number; bodies are numbered by their first subdomain. Parts of a body that hinges join move each in their way.
     pub body: usize,
-    /// A subdomain of the body.
+    /// The first subdomain of the body, or of its part.
     pub subdomain: usize,
     /// Translation of the centre.
     pub translation: [f64; 3],
@@ -60,13 +60,23 @@ impl fmt::Display for FreeMotion {
 /// Bodies and how the rows act on their rigid motions.
 #[derive(Debug)]
 pub(crate) struct Mobility {
+    /// Rigid part of each subdomain.
     body_of: Vec<u32>,
+    /// Body of each subdomain: parts that hinges join are of one.
+    assembly: Vec<u32>,
     bodies: Vec<Body>,
     centres: Vec<[f64; 3]>,
     classes: Arc<Classes>,
     bases: Arc<Vec<ClassBase>>,
     /// Interface rows between bodies (hinges): what they do to their motions.
     joints: Vec<Vec<(usize, [f64; 6])>>,
+}
+
+/// Bodies that rows join, and the Gram matrix of the actions of the rows on them.
+#[derive(Debug, Default)]
+struct Group {
+    bodies: Vec<usize>,
+    gram: DMatrix<f64>,
 }
 
 #[derive(Debug)]
@@ -131,8 +141,29 @@ impl Mobility {
             body.radius = (square / members.len() as f64).sqrt();
         }
         let joints = joint_rows(gluing, &body_of);
+        for row in &joints {
+            for pair in row.windows(2) {
+                let (a, b) = (
+                    root(&mut parent, pair[0].subdomain),
+                    root(&mut parent, pair[1].subdomain),
+                );
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut assembly = vec![0; centres.len()];
+        let mut count = 0;
+        for s in 0..centres.len() {
+            let first = root(&mut parent, s as u32) as usize;
+            assembly[s] = if first == s {
+                count += 1;
+                count - 1
+            } else {
+                assembly[first]
+            };
+        }
         let mut out = Self {
             body_of,
+            assembly,
             bodies,
             centres,
             classes,
@@ -154,7 +185,12 @@ impl Mobility {
     }
 
     pub(crate) fn bodies(&self) -> usize {
-        self.bodies.len()
+        self.assembly.iter().max().map_or(0, |b| *b as usize + 1)
+    }
+
+    /// Body of each subdomain.
+    pub(crate) fn body_of(&self) -> &[u32] {
+        &self.assembly
     }
 
     fn kernel(&self, subdomain: usize) -> &Kernel {
@@ -203,38 +239,66 @@ impl Mobility {
     }
 
     /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.
+    ///
+    /// Bodies that no row joins are judged one by one: what is little is little for a body, not for all of them.
     pub(crate) fn free(
         &self,
         rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>,
     ) -> Vec<FreeMotion> {
-        let dim = 6 * self.bodies.len();
-        let mut gram = DMatrix::<f64>::zeros(dim, dim);
-        for row in rows.chain(self.joints.iter().cloned()) {
-            for (a, ga) in &row {
-                for (b, gb) in &row {
+        let rows: Vec<_> = rows.chain(self.joints.iter().cloned()).collect();
+        let mut parent: Vec<u32> = (0..self.bodies.len() as u32).collect();
+        for row in &rows {
+            for pair in row.windows(2) {
+                let (a, b) = (
+                    root(&mut parent, pair[0].0 as u32),
+                    root(&mut parent, pair[1].0 as u32),
+                );
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut groups: Vec<Group> = (0..self.bodies.len()).map(|_| Group::default()).collect();
+        let mut place = vec![0; self.bodies.len()];
+        for body in 0..self.bodies.len() {
+            let group = &mut groups[root(&mut parent, body as u32) as usize];
+            place[body] = group.bodies.len();
+            group.bodies.push(body);
+        }
+        groups.retain(|group| !group.bodies.is_empty());
+        let mut of = vec![0; self.bodies.len()];
+        for (k, group) in groups.iter_mut().enumerate() {
+            let dim = 6 * group.bodies.len();
+            group.gram = DMatrix::zeros(dim, dim);
+            for &body in &group.bodies {
+                of[body] = k;
+            }
+        }
+        for row in &rows {
+            for (a, ga) in row {
+                let gram = &mut groups[of[*a]].gram;
+                for (b, gb) in row {
                     for i in 0..6 {
                         for j in 0..6 {
-                            gram[(6 * a + i, 6 * b + j)] += ga[i] * gb[j];
+                            gram[(6 * place[*a] + i, 6 * place[*b] + j)] += ga[i] * gb[j];
                         }
                     }
                 }
             }
         }
-        let eigen = SymmetricEigen::new(gram);
-        let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
-        (0..dim)
-            .filter(|&k| eigen.eigenvalues[k] <= FREE * largest)
-            .map(|k| {
-                self.describe(
-                    &eigen
-                        .eigenvectors
-                        .column(k)
-                        .iter()
-                        .copied()
-                        .collect::<Vec<_>>(),
-                )
-            })
-            .collect()
+        let mut out = Vec::new();
+        for group in groups {
+            let eigen = SymmetricEigen::new(group.gram);
+            let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
+            for (k, value) in eigen.eigenvalues.iter().enumerate() {
+                if *value <= FREE * largest {
+                    let mut vector = vec![0.0; 6 * self.bodies.len()];
+                    for (c, v) in eigen.eigenvectors.column(k).iter().enumerate() {
+                        vector[6 * group.bodies[c / 6] + c % 6] = *v;
+                    }
+                    out.push(self.describe(&vector));
+                }
+            }
+        }
+        out
     }
 
     fn describe(&self, vector: &[f64]) -> FreeMotion {
@@ -244,7 +308,7 @@ impl Mobility {
             let [a, b, c, d, e, f] = part(body);
             let subdomain = self.bodies[body].first;
             BodyMotion {
-                body,
+                body: self.assembly[subdomain] as usize,
                 subdomain,
                 translation: [a, b, c],
                 rotation: [d, e, f],

@@ -18,6 +18,37 @@ impl Tile {
     pub(crate) const NUMBERS: usize = LANES;
 }
 
+/// A tile rounded to single precision: half of the bytes. All arithmetic is in double precision.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(32))]
+pub(crate) struct ShortTile([f32; LANES]);
+
+impl From<&Tile> for ShortTile {
+    fn from(tile: &Tile) -> Self {
+        Self(tile.0.map(|v| v as f32))
+    }
+}
+
+/// What the kernels read.
+pub(crate) trait Stored: Copy + Sync {
+    /// The numbers in double precision.
+    fn numbers(&self) -> [f64; LANES];
+}
+
+impl Stored for Tile {
+    #[inline(always)]
+    fn numbers(&self) -> [f64; LANES] {
+        self.0
+    }
+}
+
+impl Stored for ShortTile {
+    #[inline(always)]
+    fn numbers(&self) -> [f64; LANES] {
+        self.0.map(f64::from)
+    }
+}
+
 /// Calls `$name` for the number of columns of a panel and the number of vectors in a tile.
 macro_rules! panel {
     ($name:ident, $simd:ident, $count:ident, $unit:ident, $work:expr) => {
@@ -32,10 +63,10 @@ macro_rules! panel {
     };
     (@ $name:ident, $simd:ident, $count:expr, $unit:ident, $work:expr) => {
         match S::F64_LANES {
-            8 => $name::<S, { $count }, 1, $unit>($simd, $work),
-            4 => $name::<S, { $count }, 2, $unit>($simd, $work),
-            2 => $name::<S, { $count }, 4, $unit>($simd, $work),
-            _ => $name::<S, { $count }, 8, $unit>($simd, $work),
+            8 => $name::<S, _, { $count }, 1, $unit>($simd, $work),
+            4 => $name::<S, _, { $count }, 2, $unit>($simd, $work),
+            2 => $name::<S, _, { $count }, 4, $unit>($simd, $work),
+            _ => $name::<S, _, { $count }, 8, $unit>($simd, $work),
         }
     };
 }
@@ -51,9 +82,9 @@ pub(crate) fn copy<const U: usize>(from: &[f64], to: &mut [f64]) {
 
 /// Forward elimination of one panel; `t` holds its unknowns and the rows below.
 #[inline(always)]
-pub(crate) fn eliminate<S: Simd, const N: usize, const V: usize, const U: usize>(
+pub(crate) fn eliminate<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
     simd: S,
-    (tiles, t): (&[Tile], &mut [f64]),
+    (tiles, t): (&[T], &mut [f64]),
 ) {
     let x: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(t[k]));
     t[..N].fill(0.0);
@@ -61,7 +92,8 @@ pub(crate) fn eliminate<S: Simd, const N: usize, const V: usize, const U: usize>
         let (t, _) = S::as_mut_simd_f64s(t);
         let mut sum: [S::f64s; V] = std::array::from_fn(|v| t[v]);
         for k in 0..N {
-            let (column, _) = S::as_simd_f64s(&chunk[k].0);
+            let numbers = chunk[k].numbers();
+            let (column, _) = S::as_simd_f64s(&numbers);
             for v in 0..V {
                 sum[v] = simd.mul_add_e_f64s(column[v], x[k], sum[v]);
             }
@@ -72,9 +104,9 @@ pub(crate) fn eliminate<S: Simd, const N: usize, const V: usize, const U: usize>
 
 /// Back substitution of one panel; `t` holds its unknowns and those of the rows below.
 #[inline(always)]
-pub(crate) fn substitute<S: Simd, const N: usize, const V: usize, const U: usize>(
+pub(crate) fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
     simd: S,
-    (tiles, t): (&[Tile], &mut [f64]),
+    (tiles, t): (&[T], &mut [f64]),
 ) {
     let own: [f64; N] = std::array::from_fn(|k| t[k]);
     t[..N].fill(0.0);
@@ -83,7 +115,8 @@ pub(crate) fn substitute<S: Simd, const N: usize, const V: usize, const U: usize
         let (t, _) = S::as_simd_f64s(t);
         let t: [S::f64s; V] = std::array::from_fn(|v| t[v]);
         for k in 0..N {
-            let (column, _) = S::as_simd_f64s(&chunk[k].0);
+            let numbers = chunk[k].numbers();
+            let (column, _) = S::as_simd_f64s(&numbers);
             for v in 0..V {
                 sums[k][v] = simd.mul_add_e_f64s(column[v], t[v], sums[k][v]);
             }
@@ -99,8 +132,8 @@ pub(crate) fn substitute<S: Simd, const N: usize, const V: usize, const U: usize
 }
 
 /// Tiles, rows, number of units of rows in each group, first column, unknowns, those behind, and a buffer.
-pub(crate) type Alike<'a, B> = (
-    &'a [Tile],
+pub(crate) type Alike<'a, T, B> = (
+    &'a [T],
     &'a [u32],
     usize,
     usize,
@@ -111,9 +144,15 @@ pub(crate) type Alike<'a, B> = (
 
 /// Forward elimination of groups of one panel and one shape.
 #[inline(always)]
-pub(crate) fn eliminate_alike<S: Simd, const N: usize, const V: usize, const U: usize>(
+pub(crate) fn eliminate_alike<
+    S: Simd,
+    T: Stored,
+    const N: usize,
+    const V: usize,
+    const U: usize,
+>(
     simd: S,
-    (tiles, rows, units, mut start, x, behind, buffer): Alike<'_, &mut [f64]>,
+    (tiles, rows, units, mut start, x, behind, buffer): Alike<'_, T, &mut [f64]>,
 ) {
     let first = x.len() / U;
     let length = N * (N + U * units).div_ceil(LANES);
@@ -125,7 +164,8 @@ pub(crate) fn eliminate_alike<S: Simd, const N: usize, const V: usize, const U: 
             let (t, _) = S::as_mut_simd_f64s(t);
             let mut sum = [simd.splat_f64s(0.0); V];
             for k in 0..N {
-                let (column, _) = S::as_simd_f64s(&chunk[k].0);
+                let numbers = chunk[k].numbers();
+                let (column, _) = S::as_simd_f64s(&numbers);
                 for v in 0..V {
                     sum[v] = simd.mul_add_e_f64s(column[v], z[k], sum[v]);
                 }
@@ -150,9 +190,15 @@ pub(crate) fn eliminate_alike<S: Simd, const N: usize, const V: usize, const U: 
 
 /// Back substitution of groups of one panel and one shape.
 #[inline(always)]
-pub(crate) fn substitute_alike<S: Simd, const N: usize, const V: usize, const U: usize>(
+pub(crate) fn substitute_alike<
+    S: Simd,
+    T: Stored,
+    const N: usize,
+    const V: usize,
+    const U: usize,
+>(
     simd: S,
-    (tiles, rows, units, start, x, behind, buffer): Alike<'_, &[f64]>,
+    (tiles, rows, units, start, x, behind, buffer): Alike<'_, T, &[f64]>,
 ) {
     let first = x.len() / U;
     let height = N + U * units;
@@ -175,7 +221,8 @@ pub(crate) fn substitute_alike<S: Simd, const N: usize, const V: usize, const U:
         for (chunk, t) in tiles.chunks_exact(N).zip(t.chunks_exact(LANES)) {
             let (t, _) = S::as_simd_f64s(t);
             for k in 0..N {
-                let (column, _) = S::as_simd_f64s(&chunk[k].0);
+                let numbers = chunk[k].numbers();
+                let (column, _) = S::as_simd_f64s(&numbers);
                 for v in 0..V {
                     sums[k][v] = simd.mul_add_e_f64s(column[v], t[v], sums[k][v]);
                 }

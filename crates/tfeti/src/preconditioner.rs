@@ -107,6 +107,9 @@ impl Preconditioner {
     }
 
     /// `y = W M W x` with `W` one on the free rows and zero on the others.
+    ///
+    /// # Panics
+    /// If `x` or `y` does not have the length of dual vectors.
     pub fn apply_masked(
         &self,
         x: &[f64],

@@ -97,6 +97,9 @@ impl Tfeti {
     }
 
     /// `out = B u` for a torn vector.
+    ///
+    /// # Panics
+    /// If a vector is too short.
     pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
         let gluing = self.gluing();
         let start = |subdomain: u32, local: u32| {
@@ -122,6 +125,9 @@ impl Tfeti {
     }
 
     /// `f += B^T x` for a torn vector.
+    ///
+    /// # Panics
+    /// If a vector is too short.
     pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
         let gluing = self.gluing();
         let start = |subdomain: u32, local: u32| {
@@ -190,6 +196,9 @@ impl Tfeti {
     ///
     /// `load` is `B K+ f` (a combination of [`LoadResponse::dual`]). On contact rows subtract the prescribed offsets
     /// ([`Gluing::prescribed`](crate::Gluing::prescribed)) and divide by the row's scale for displacements in metres.
+    ///
+    /// # Panics
+    /// If a vector does not have the length of dual vectors, or `alpha` that of the coarse space.
     pub fn row_displacements(
         &self,
         lambda: &[f64],
@@ -209,6 +218,9 @@ impl Tfeti {
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies of several materials count by
     /// their stiffness.
+    ///
+    /// # Panics
+    /// If `u` is shorter than a torn vector.
     #[must_use]
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
@@ -227,6 +239,9 @@ impl Tfeti {
     }
 
     /// How far the copies of a node are from their mean.
+    ///
+    /// # Panics
+    /// If `u` is shorter than a torn vector.
     #[must_use]
     pub fn jump(&self, u: &[f64]) -> Jump {
         let mean = self.nodal_mean(u);

@@ -107,6 +107,9 @@ impl RowWeights {
     }
 
     /// `x = W x`.
+    ///
+    /// # Panics
+    /// If `x` is longer than the weights and there are lines, or too short for a line.
     pub fn apply(&self, x: &mut [f64]) {
         if self.lines.is_empty() {
             x.iter_mut().zip(&self.diagonal).for_each(|(x, w)| *x *= w);

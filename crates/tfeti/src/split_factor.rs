@@ -13,14 +13,15 @@ use crate::dense;
 use crate::gluing::Gluing;
 use crate::panels::Tile;
 use crate::row_weights::LineWeight;
+use crate::split_solve::Tiles;
 use crate::supernodes::Supernodes;
 
 /// What does not depend on the weights of contact rows.
 #[derive(Debug)]
 pub(crate) struct SplitBase {
-    tree: CoarseTree,
+    pub(crate) tree: CoarseTree,
     /// For each region of the tree.
-    pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<Piece>,
     /// Steady part of the columns of each node that changes; empty for the others.
     base: Vec<Vec<f64>>,
     contact: ContactFronts,
@@ -32,18 +33,18 @@ pub(crate) struct SplitBase {
 
 /// Storage of one region.
 #[derive(Debug)]
-struct Piece {
-    steady: Supernodes,
-    tiles: Vec<Tile>,
-    changing: Supernodes,
+pub(crate) struct Piece {
+    pub(crate) steady: Supernodes,
+    pub(crate) tiles: Tiles,
+    pub(crate) changing: Supernodes,
     /// Whether nothing changes in the region and those within.
-    is_steady: bool,
+    pub(crate) is_steady: bool,
     /// Length of its own work memory, behind that of the regions within.
-    slot: usize,
+    pub(crate) slot: usize,
     /// Length of the work memory with that of the regions within.
-    work: usize,
+    pub(crate) work: usize,
     /// Numbers that a solve reads in the region and those within.
-    reads: usize,
+    pub(crate) reads: usize,
     /// Operations of a change of the face in the region and those within.
     operations: f64,
 }
@@ -51,7 +52,7 @@ struct Piece {
 /// A factor for certain weights of the contact rows: tiles of each region.
 #[derive(Debug)]
 pub(crate) struct SplitFactor {
-    tiles: Vec<Vec<Tile>>,
+    pub(crate) tiles: Vec<Tiles>,
 }
 
 /// Work memory of factorisations.
@@ -67,12 +68,11 @@ struct Front {
 
 /// Pivots below this share of the largest diagonal entry count as zero.
 const SINGULAR: f64 = 1e-14;
-/// Fewest numbers a solve reads that are worth a second thread, and fewest operations of a factorisation.
-const READS: usize = 25_000;
+/// Fewest operations of a factorisation that are worth a second thread.
 const OPERATIONS: f64 = 3e5;
 /// Solves with the factor of one face; seconds for a number that they read; seconds for an operation of a change.
 const SOLVES: f64 = 12.0;
-const READ: f64 = 0.6e-9;
+const READ: f64 = 0.4e-9;
 const OPERATION: f64 = 0.04e-9;
 /// Most levels of cuts through blocks that change.
 const CUTS: usize = 4;
@@ -130,7 +130,7 @@ impl SplitBase {
             tree,
         };
         let mut fronts = vec![Front::default(); out.tree.nodes.len()];
-        let mut tiles: Vec<Vec<Tile>> = vec![Vec::new(); out.pieces.len()];
+        let mut tiles = vec![Tiles::default(); out.pieces.len()];
         let load = |k: usize, front: &mut Front| {
             let node = &out.tree.nodes[k];
             let (width, height) = (node.width(), node.height());
@@ -167,7 +167,8 @@ impl SplitBase {
 
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
-        let tiles = |p: &Piece| Tile::NUMBERS * (p.steady.tiles() + p.changing.tiles());
+        // a rounded tile is half a tile
+        let tiles = |p: &Piece| Tile::NUMBERS * (p.steady.tiles() + p.changing.tiles()) * 3 / 2;
         self.pieces.iter().map(tiles).sum::<usize>() + self.base.iter().map(Vec::len).sum::<usize>()
     }
 
@@ -193,8 +194,8 @@ impl SplitBase {
         fronts: &mut Fronts,
     ) -> Result<SplitFactor, usize> {
         let mut tiles = old.map(|old| old.tiles).unwrap_or_default();
-        tiles.resize(self.pieces.len(), Vec::new());
-        tiles.iter_mut().for_each(Vec::clear);
+        tiles.resize(self.pieces.len(), Tiles::default());
+        tiles.iter_mut().for_each(Tiles::clear);
         fronts.0.resize(self.tree.nodes.len(), Front::default());
         let load = |k: usize, front: &mut Front| {
             let node = &self.tree.nodes[k];
@@ -213,128 +214,6 @@ impl SplitBase {
         };
         work.grow(self.pieces.len().wrapping_sub(1), &mut fronts.0, &mut tiles)?;
         Ok(SplitFactor { tiles })
-    }
-
-    /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least.
-    pub(crate) fn solve(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
-        self.solve_from(factor, y, work, false);
-    }
-
-    /// The same for `y` that is zero but for blocks that change: nothing steady is read on the way up.
-    pub(crate) fn solve_changing(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
-        self.solve_from(factor, y, work, true);
-    }
-
-    fn solve_from(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64], changing: bool) {
-        let Some(root) = self.pieces.len().checked_sub(1) else {
-            return;
-        };
-        let (x, rest) = work.split_at_mut(self.tree.dim());
-        for (x, &block) in x.chunks_exact_mut(6).zip(&self.tree.blocks) {
-            x.copy_from_slice(&y[6 * block as usize..][..6]);
-        }
-        let rest = &mut rest[..self.pieces[root].work];
-        self.forward(root, factor, x, rest, changing);
-        self.backward(root, factor, x, rest);
-        for (x, &block) in x.chunks_exact(6).zip(&self.tree.blocks) {
-            y[6 * block as usize..][..6].copy_from_slice(x);
-        }
-    }
-
-    /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If only
-    /// blocks that are `changing` differ from zero, steady ones are left out.
-    fn forward(
-        &self,
-        r: usize,
-        factor: &SplitFactor,
-        x: &mut [f64],
-        work: &mut [f64],
-        changing: bool,
-    ) {
-        let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
-        let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
-        let (work, slot) = work.split_at_mut(piece.work - piece.slot);
-        let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
-        behind.fill(0.0);
-        if changing && piece.is_steady {
-            return;
-        }
-        if let Some([left, right]) = region.region.children {
-            let (x, y) = self.divide(left, x);
-            let (a, b) = work.split_at_mut(self.pieces[left].work);
-            self.both(
-                piece,
-                || self.forward(left, factor, x, a, changing),
-                || self.forward(right, factor, y, b, changing),
-            );
-            for (child, memory) in [(left, &*a), (right, &*b)] {
-                let sums = &memory[memory.len() - self.pieces[child].slot..];
-                let lift = &self.tree.regions[child].lift;
-                for (&place, sum) in lift.iter().zip(sums.chunks_exact(6)) {
-                    let start = 6 * place as usize;
-                    let target = match start < own.len() {
-                        true => &mut own[start..][..6],
-                        false => &mut behind[start - own.len()..][..6],
-                    };
-                    for k in 0..6 {
-                        target[k] += sum[k];
-                    }
-                }
-            }
-        }
-        if !changing {
-            piece.steady.forward(&piece.tiles, own, behind, buffer);
-        }
-        piece
-            .changing
-            .forward(&factor.tiles[r], own, behind, buffer);
-    }
-
-    /// Back substitution in a region and those within; the blocks behind stand first in its slot of the memory.
-    fn backward(&self, r: usize, factor: &SplitFactor, x: &mut [f64], work: &mut [f64]) {
-        let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
-        let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
-        let (work, slot) = work.split_at_mut(piece.work - piece.slot);
-        let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
-        piece
-            .changing
-            .backward(&factor.tiles[r], own, behind, buffer);
-        piece.steady.backward(&piece.tiles, own, behind, buffer);
-        if let Some([left, right]) = region.region.children {
-            let (x, y) = self.divide(left, x);
-            let (a, b) = work.split_at_mut(self.pieces[left].work);
-            for (child, memory) in [(left, &mut *a), (right, &mut *b)] {
-                let start = memory.len() - self.pieces[child].slot;
-                let lift = &self.tree.regions[child].lift;
-                for (&place, v) in lift.iter().zip(memory[start..].chunks_exact_mut(6)) {
-                    let start = 6 * place as usize;
-                    v.copy_from_slice(match start < own.len() {
-                        true => &own[start..][..6],
-                        false => &behind[start - own.len()..][..6],
-                    });
-                }
-            }
-            self.both(
-                piece,
-                || self.backward(left, factor, x, a),
-                || self.backward(right, factor, y, b),
-            );
-        }
-    }
-
-    /// The unknowns of both sides of a cut.
-    fn divide<'a>(&self, left: usize, x: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
-        let region = &self.tree.regions[left].region;
-        x.split_at_mut(6 * (region.own.end - region.start))
-    }
-
-    fn both(&self, piece: &Piece, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
-        if piece.reads >= READS {
-            rayon::join(a, b);
-        } else {
-            a();
-            b();
-        }
     }
 }
 
@@ -368,7 +247,7 @@ impl Piece {
                 + children().map(|c| c.reads).sum::<usize>(),
             operations: own.map(|n| n.operations()).sum::<f64>()
                 + children().map(|c| c.operations).sum::<f64>(),
-            tiles: Vec::new(),
+            tiles: Tiles::default(),
             steady,
             changing,
         }
@@ -384,7 +263,7 @@ struct Growth<'a, L: Fn(usize, &mut Front) + Sync> {
 
 impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
     /// Works on a region after those within. `fronts` and `tiles` are those of the regions within and its own.
-    fn grow(&self, r: usize, fronts: &mut [Front], tiles: &mut [Vec<Tile>]) -> Result<(), usize> {
+    fn grow(&self, r: usize, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
         let (tree, pieces) = (&self.base.tree, &self.base.pieces);
         let Some(region) = tree.regions.get(r) else {
             return Ok(());
@@ -436,11 +315,12 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
                 false => (&pieces[r].steady, region.steady.start),
             };
             let tiles = &mut tiles[r - region.first_region];
-            group.pack(k - first, &front.columns, tiles);
+            group.pack(k - first, &front.columns, &mut tiles.exact);
             if !self.changing {
                 front.columns = Vec::new();
             }
         }
+        tiles[r - region.first_region].round();
         Ok(())
     }
 }

@@ -6,7 +6,8 @@
 //! then is one product with all tiles, substitution one with their transposes, and no tile is left half empty in between.
 
 use crate::panels::{
-    LANES, PANEL, Tile, copy, eliminate, eliminate_alike, panel, substitute, substitute_alike,
+    LANES, PANEL, Stored, Tile, copy, eliminate, eliminate_alike, panel, substitute,
+    substitute_alike,
 };
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -101,9 +102,9 @@ impl Supernodes {
     }
 
     /// `x = D^-1 L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind.
-    pub(crate) fn forward(
+    pub(crate) fn forward<T: Stored>(
         &self,
-        tiles: &[Tile],
+        tiles: &[T],
         x: &mut [f64],
         behind: &mut [f64],
         buffer: &mut [f64],
@@ -118,9 +119,9 @@ impl Supernodes {
     }
 
     /// `x = L^-T x` for the columns' unknowns, given those `behind`.
-    pub(crate) fn backward(
+    pub(crate) fn backward<T: Stored>(
         &self,
-        tiles: &[Tile],
+        tiles: &[T],
         x: &mut [f64],
         behind: &[f64],
         buffer: &mut [f64],
@@ -195,15 +196,15 @@ impl WithSimd for Pack<'_> {
 }
 
 /// The arguments of [`Supernodes::forward`].
-struct Forward<'a> {
+struct Forward<'a, T> {
     factor: &'a Supernodes,
-    tiles: &'a [Tile],
+    tiles: &'a [T],
     x: &'a mut [f64],
     behind: &'a mut [f64],
     buffer: &'a mut [f64],
 }
 
-impl WithSimd for Forward<'_> {
+impl<T: Stored> WithSimd for Forward<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -216,7 +217,7 @@ impl WithSimd for Forward<'_> {
     }
 }
 
-impl Forward<'_> {
+impl<T: Stored> Forward<'_, T> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
@@ -275,15 +276,15 @@ impl Forward<'_> {
 }
 
 /// The arguments of [`Supernodes::backward`].
-struct Backward<'a> {
+struct Backward<'a, T> {
     factor: &'a Supernodes,
-    tiles: &'a [Tile],
+    tiles: &'a [T],
     x: &'a mut [f64],
     behind: &'a [f64],
     buffer: &'a mut [f64],
 }
 
-impl WithSimd for Backward<'_> {
+impl<T: Stored> WithSimd for Backward<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -296,7 +297,7 @@ impl WithSimd for Backward<'_> {
     }
 }
 
-impl Backward<'_> {
+impl<T: Stored> Backward<'_, T> {
     #[inline(always)]
     fn run<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);

@@ -16,7 +16,9 @@ pub enum Directions {
 }
 
 impl Directions {
-    fn vectors(&self) -> Vec<[f64; 3]> {
+    /// The directions as vectors, not normalised.
+    #[must_use]
+    pub fn vectors(&self) -> Vec<[f64; 3]> {
         const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         match self {
             Self::All => AXES.to_vec(),

@@ -12,8 +12,8 @@ use crate::error::TfetiError;
 use crate::gluing::Gluing;
 use crate::kernel::{Kernel, mean};
 use crate::matrices::{ClassBase, ClassInverse, assemble, invert};
-use crate::report::SetupReport;
-use crate::rows::RowRule;
+use crate::report::{SetupReport, class_reports};
+use crate::rows::{RowRule, count_removed};
 use crate::supports::Support;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::sync::Arc;
@@ -105,49 +105,12 @@ impl<'a> TfetiBuilder<'a> {
     /// beyond the rigid motions, not enough memory. A body that nothing holds is no error here: see
     /// [`Tfeti::coarse_factor`] and its free motions.
     pub fn build(self) -> Result<Tfeti, TfetiError> {
-        self.inverse.validate()?;
+        self.check()?;
         let (mesh, decomposition) = (self.mesh, self.decomposition);
-        let check = |what, found: usize, expected: usize| {
-            if found == expected {
-                Ok(())
-            } else {
-                Err(TfetiError::DecompositionMismatch {
-                    what,
-                    found,
-                    expected,
-                })
-            }
-        };
-        check("nodes", decomposition.nodes(), mesh.points().len())?;
-        check("elements", decomposition.parts().len(), mesh.tets().len())?;
         let mut clock = Clock(Instant::now());
-        let classes = match self.earlier {
-            Some(earlier) => {
-                let own = decomposition.subdomains().len();
-                check("subdomains", own, earlier.subdomains())?;
-                check(
-                    "torn unknowns",
-                    decomposition.torn_dofs(),
-                    earlier.torn_dim(),
-                )?;
-                for (s, subdomain) in decomposition.subdomains().iter().enumerate() {
-                    let expected = earlier.torn_range(s).len() / 3;
-                    check("nodes in a subdomain", subdomain.nodes.len(), expected)?;
-                }
-                earlier.parts.classes.clone()
-            }
-            None => Arc::new(Classes::find(
-                mesh,
-                decomposition,
-                self.materials,
-                self.sharing,
-            )?),
-        };
+        let classes = self.classes()?;
         let classes_seconds = clock.lap();
-        let bases = match self.earlier {
-            Some(earlier) => earlier.parts.bases.clone(),
-            None => Arc::new(assemble(mesh, decomposition, self.materials, &classes)?),
-        };
+        let bases = self.bases(&classes)?;
         let assembly_seconds = clock.lap();
         let heterogeneous = has_several_laws(mesh, self.materials);
         let stiffness = if heterogeneous {
@@ -165,81 +128,152 @@ impl<'a> TfetiBuilder<'a> {
         )?);
         let map = Arc::new(BoundaryMap::new(&classes, &gluing));
         let gluing_seconds = clock.lap();
-        let factors = self.earlier.map(|earlier| &earlier.parts.inverses[..]);
-        let centres: Vec<[f64; 3]> = decomposition
-            .subdomains()
-            .iter()
-            .map(|s| mean(s.nodes.iter().map(|&n| mesh.points()[n as usize])))
-            .collect();
-        let started = Instant::now();
-        let ((inverses, inverse_seconds), coarse) = rayon::join(
-            || {
-                let inverses = invert(&classes, &bases, &map, &self.inverse, factors);
-                (inverses, started.elapsed().as_secs_f64())
-            },
-            || {
-                let parts = (map.clone(), bases.clone(), classes.clone(), gluing.clone());
-                let coarse = Coarse::new(parts.0, parts.1, parts.2, parts.3, centres)?;
-                let factor = coarse.factor()?;
-                Ok::<_, TfetiError>((coarse, factor))
-            },
+        let (inverses, coarse) = rayon::join(
+            || clocked(|| self.invert(&classes, &bases, &map)),
+            || self.coarse(&classes, &bases, &map, &gluing),
         );
+        let (inverses, inverse_seconds) = inverses;
         let inverses = Arc::new(inverses?);
         let (coarse, factor) = coarse?;
         let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
-        let dual = DualOperator::new(map.clone(), bases.clone(), inverses.clone());
-        let mut offsets = vec![0];
-        for subdomain in decomposition.subdomains() {
-            offsets.push(offsets[offsets.len() - 1] + 3 * subdomain.nodes.len());
-        }
+        let motions = factor.free_motions().iter();
         let report = SetupReport {
             subdomains: classes.subdomains(),
-            classes: crate::report::class_reports(&classes, &map, &inverses),
+            classes: class_reports(&classes, &map, &inverses),
             primal_unknowns: decomposition.torn_dofs(),
             rows: gluing.ranges().clone(),
             rows_as_paper: gluing.rows_as_paper(),
-            removed: crate::rows::count_removed(gluing.removed()),
+            removed: count_removed(gluing.removed()),
             inverse_bytes: inverses.iter().map(ClassInverse::bytes).sum(),
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
-            factorisations: 1 + if factors.is_some() { 0 } else { bases.len() },
-            free_motions: factor
-                .free_motions()
-                .iter()
-                .map(ToString::to_string)
-                .collect(),
+            factorisations: 1 + if self.earlier.is_some() {
+                0
+            } else {
+                bases.len()
+            },
+            free_motions: motions.map(ToString::to_string).collect(),
             classes_seconds,
             gluing_seconds,
             assembly_seconds,
             inverse_seconds,
             coarse_seconds,
         };
-        let node_of = decomposition
-            .subdomains()
-            .iter()
-            .flat_map(|s| s.nodes.iter().copied())
-            .collect();
-        let nodes = mesh.points().len();
-        let parts = Parts {
-            classes,
-            gluing,
-            map,
-            bases,
-            inverses,
-            offsets,
-        };
         Ok(Tfeti {
-            parts,
-            dual,
+            dual: DualOperator::new(map.clone(), bases.clone(), inverses.clone()),
+            parts: Parts {
+                classes,
+                gluing,
+                map,
+                bases,
+                inverses,
+                offsets: offsets(decomposition),
+            },
             coarse,
             factor,
             report,
-            node_of,
-            nodes,
+            node_of: node_of(decomposition),
+            nodes: mesh.points().len(),
             heterogeneous,
             stiffness,
         })
     }
+
+    /// Whether settings, mesh, decomposition and the earlier system fit together.
+    fn check(&self) -> Result<(), TfetiError> {
+        self.inverse.validate()?;
+        let (mesh, decomposition) = (self.mesh, self.decomposition);
+        let check = |what, found: usize, expected: usize| {
+            if found == expected {
+                Ok(())
+            } else {
+                Err(TfetiError::DecompositionMismatch {
+                    what,
+                    found,
+                    expected,
+                })
+            }
+        };
+        check("nodes", decomposition.nodes(), mesh.points().len())?;
+        check("elements", decomposition.parts().len(), mesh.tets().len())?;
+        let Some(earlier) = self.earlier else {
+            return Ok(());
+        };
+        let (own, torn) = (decomposition.subdomains(), decomposition.torn_dofs());
+        check("subdomains", own.len(), earlier.subdomains())?;
+        check("torn unknowns", torn, earlier.torn_dim())?;
+        for (s, subdomain) in own.iter().enumerate() {
+            let expected = earlier.torn_range(s).len() / 3;
+            check("nodes in a subdomain", subdomain.nodes.len(), expected)?;
+        }
+        Ok(())
+    }
+
+    fn classes(&self) -> Result<Arc<Classes>, TfetiError> {
+        if let Some(earlier) = self.earlier {
+            return Ok(earlier.parts.classes.clone());
+        }
+        let (mesh, decomposition) = (self.mesh, self.decomposition);
+        Classes::find(mesh, decomposition, self.materials, self.sharing).map(Arc::new)
+    }
+
+    /// Stiffness and kernel of each class.
+    fn bases(&self, classes: &Classes) -> Result<Arc<Vec<ClassBase>>, TfetiError> {
+        if let Some(earlier) = self.earlier {
+            return Ok(earlier.parts.bases.clone());
+        }
+        assemble(self.mesh, self.decomposition, self.materials, classes).map(Arc::new)
+    }
+
+    fn invert(
+        &self,
+        classes: &Classes,
+        bases: &[ClassBase],
+        map: &BoundaryMap,
+    ) -> Result<Vec<ClassInverse>, TfetiError> {
+        let factors = self.earlier.map(|earlier| &earlier.parts.inverses[..]);
+        invert(classes, bases, map, &self.inverse, factors)
+    }
+
+    /// `G`, and the factor of `G G^T`.
+    fn coarse(
+        &self,
+        classes: &Arc<Classes>,
+        bases: &Arc<Vec<ClassBase>>,
+        map: &Arc<BoundaryMap>,
+        gluing: &Arc<Gluing>,
+    ) -> Result<(Coarse, CoarseFactor), TfetiError> {
+        let points = self.mesh.points();
+        let subdomains = self.decomposition.subdomains().iter();
+        let centres = subdomains
+            .map(|s| mean(s.nodes.iter().map(|&n| points[n as usize])))
+            .collect();
+        let coarse = Coarse::new(
+            map.clone(),
+            bases.clone(),
+            classes.clone(),
+            gluing.clone(),
+            centres,
+        )?;
+        let factor = coarse.factor()?;
+        Ok((coarse, factor))
+    }
+}
+
+/// First unknown of each subdomain in torn vectors, and their length.
+fn offsets(decomposition: &Decomposition) -> Vec<usize> {
+    let mut end = 0;
+    let ends = decomposition.subdomains().iter().map(|subdomain| {
+        end += subdomain.dofs();
+        end
+    });
+    std::iter::once(0).chain(ends).collect()
+}
+
+/// Mesh node of each node copy, in torn order.
+fn node_of(decomposition: &Decomposition) -> Vec<u32> {
+    let subdomains = decomposition.subdomains().iter();
+    subdomains.flat_map(|s| s.nodes.iter().copied()).collect()
 }
 
 /// Whether regions in use have different Hooke tensors.
@@ -260,6 +294,13 @@ impl Clock {
         self.0 = Instant::now();
         seconds
     }
+}
+
+/// The result of some work, and its seconds.
+fn clocked<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let started = Instant::now();
+    let result = work();
+    (result, started.elapsed().as_secs_f64())
 }
 
 #[derive(Debug)]
@@ -360,12 +401,18 @@ impl Tfeti {
     }
 
     /// Unknowns of a subdomain in torn vectors.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
     #[must_use]
     pub fn torn_range(&self, subdomain: usize) -> std::ops::Range<usize> {
         self.parts.offsets[subdomain]..self.parts.offsets[subdomain + 1]
     }
 
     /// Rigid motions of a subdomain.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
     #[must_use]
     pub fn kernel(&self, subdomain: usize) -> &Kernel {
         &self.parts.bases[self.parts.classes.place(subdomain).0].kernel

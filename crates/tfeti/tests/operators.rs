@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Brick, build, distance, dot, noise, norm, product};
-use signorini_qp::Equality;
+use signorini_qp::{Equality, SymmetricOperator};
 use signorini_tfeti::{
     InverseKind, InverseSettings, RowRule, RowWeights, Sharing, TfetiBuilder, TfetiError,
 };
@@ -155,6 +155,10 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                 .unwrap();
             pool.install(|| {
                 let system = build(&b, kind, sharing, RowRule::Orthonormal);
+                // enough node copies on boundaries for two threads, in every loop over them
+                let classes = system.report().classes.iter();
+                let boundary: usize = classes.map(|c| c.members * c.boundary).sum();
+                assert!(boundary >= 3 * 8000, "{boundary}");
                 let x = noise(system.dual_dim(), 1);
                 let y = product(&system, &x);
                 let c = system.coarse_factor().orthonormal().unwrap();
@@ -166,7 +170,12 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                 system.add_rows_transposed(&x, &mut u);
                 let mut v = vec![0.0; u.len()];
                 system.generalised_inverse(&u, &mut v);
-                [y, q, v]
+                let [l, d] = [system.lumped(), system.dirichlet()].map(|m| {
+                    let (m, mut z) = (m.unwrap(), vec![0.0; x.len()]);
+                    m.apply(&x, &mut z, &mut m.scratch());
+                    z
+                });
+                [y, q, v, l, d]
                     .concat()
                     .iter()
                     .map(|v| v.to_bits())

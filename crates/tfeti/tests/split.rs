@@ -21,7 +21,8 @@ fn system(n: usize, cells: usize) -> Tfeti {
 
 fn space(system: &Tfeti, kind: FaceFactor, metric: Option<Vec<f64>>) -> FaceSpace {
     let contact = system.gluing().ranges().contact().end;
-    FaceSpace::with_factor(system.coarse(), contact, metric, kind).unwrap()
+    let space = FaceSpace::with_factor(system.coarse(), contact, metric, kind);
+    space.unwrap().exact_steps()
 }
 
 /// Weights of a face: a share of the contact rows is free.
@@ -129,7 +130,10 @@ fn one_subdomain_and_no_or_only_contact() {
     for system in [&few, &many, &one] {
         let all = system.gluing().ranges().contact().end;
         for rows in [0, all] {
-            let new = |kind| FaceSpace::with_factor(system.coarse(), rows, None, kind).unwrap();
+            let new = |kind| {
+                let space = FaceSpace::with_factor(system.coarse(), rows, None, kind);
+                space.unwrap().exact_steps()
+            };
             let (mut split, mut sparse) = (new(FaceFactor::Split), new(FaceFactor::Sparse));
             compare(system, &mut split, &mut sparse);
             let w = match rows {
@@ -168,6 +172,8 @@ fn bits_do_not_depend_on_the_number_of_threads() {
         pool.install(|| {
             let mut space = space(&system, FaceFactor::Split, None);
             space.set_weights(&face(&system, 0.5, 3)).unwrap();
+            // both sides of the first cut read enough for a thread each
+            assert!(space.factor().stored() >= 8 * 25_000);
             results(&system, &mut space)
         })
     };

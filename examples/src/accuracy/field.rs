@@ -20,7 +20,7 @@ pub(super) fn write(path: &Path, short: bool) -> Result<(), ExampleError> {
         floor: Floor::Coulomb,
     };
     let mut simulation = Simulation::new(variant.scene()?, Settings::default())?;
-    simulation.run(&mut Silent)?;
+    simulation.run(&mut Silent)?.require_converged()?;
     let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
     let error = frame.discretisation_error()?;
     let scene = simulation.scene();

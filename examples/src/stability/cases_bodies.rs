@@ -30,6 +30,37 @@ fn weight(setup: Setup, force: [f64; 3]) -> Result<Setup, Failure> {
     Ok(setup.with_load(LoadDensity::body(force), History::constant(1.0)))
 }
 
+/// A clamped brick, and a loose one beside it with this part of its loads.
+fn pair(part: f64) -> Result<Setup, Failure> {
+    let block = Block {
+        boxes: [1; 3],
+        cells: [4; 3],
+        end: [1e7, 0.0, 0.0],
+        gap: 0.0,
+        ..Block::default()
+    };
+    let mesh = block.mesh()?;
+    let own = |tag: FacetTag| match tag {
+        brick::Z_MIN => tag,
+        FacetTag(t) => FacetTag(t + 70),
+    };
+    let other = mesh.map_points(|x| [x[0], x[1] + 2.0, x[2]])?.map_tags(own);
+    let mesh = mesh.append(&other)?;
+    let parts = mesh.components();
+    let setup = block.setup_on(mesh, Materials::uniform(block.material()?))?;
+    let traction = |tag, value: [f64; 3]| LoadDensity::traction(own(tag), value.map(|v| part * v));
+    Ok(setup
+        .map(|s| s.with_parts(parts))
+        .with_load(
+            traction(brick::Z_MAX, block.top),
+            History::table(block.top_history)?,
+        )
+        .with_load(
+            traction(brick::X_MAX, block.end),
+            History::table(block.end_history)?,
+        ))
+}
+
 fn node_near(scene: &Scene, at: [f64; 3]) -> u32 {
     let far = |p: &[f64; 3]| (0..3).map(|c| (p[c] - at[c]).powi(2)).sum::<f64>();
     let points = scene.mesh().points().iter().enumerate();
@@ -176,26 +207,13 @@ pub fn free() -> Vec<Case> {
             GROUP,
             "two bodies, one loose",
             "one brick clamped, one that only lies on the floor",
-            move || {
-                let block = Block {
-                    boxes: [1; 3],
-                    cells: [4; 3],
-                    ..Block::default()
-                };
-                let mesh = block.mesh()?;
-                let other = mesh
-                    .map_points(|x| [x[0], x[1] + 2.0, x[2]])?
-                    .map_tags(|t| if t == brick::X_MIN { FacetTag(77) } else { t });
-                let mesh = mesh.append(&other)?;
-                let parts = mesh.components();
-                let block = Block {
-                    end: [1e7, 0.0, 0.0],
-                    gap: 0.0,
-                    ..block
-                };
-                let setup = block.setup_on(mesh, Materials::uniform(block.material()?))?;
-                Ok(setup.map(|s| s.with_parts(parts)))
-            },
+            || pair(1.0),
+        ),
+        Case::new(
+            GROUP,
+            "two bodies, loads 1e12 apart",
+            "the brick that only lies on the floor has 1e-12 of the other's loads, and is to be as accurate",
+            || pair(1e-12),
         ),
     ]
 }

@@ -13,22 +13,36 @@ const FOREIGN: f64 = 1e-6;
 impl Simulation {
     /// Continues from a stored state of the same scene.
     ///
+    /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports, contact points with
+    /// their normals and areas, difference formula, and the times of the levels solved so far. Free to change are loads, motions of supports, materials,
+    /// gap, coefficients, times to come, settings and method: the state is then where the changed scene goes on from. A start from
+    /// a scene that is another one on purpose needs [`State::without_origin`]; sizes must fit in any case.
+    ///
     /// States do not depend on [`Screening`](crate::Screening): one stored with it can be continued without, and the other
     /// way round; bit for bit the same only with the same setting.
     ///
     /// # Errors
-    /// [`ContactError::Checkpoint`] if the state does not fit.
+    /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
     pub fn resume(&mut self, mut state: State) -> Result<(), ContactError> {
+        let refuse = |reason| Err(ContactError::Checkpoint { reason });
+        let analysis = &self.model.scene.analysis;
+        if state.level() > analysis.levels() {
+            return refuse("it has more levels than this scene".to_owned());
+        }
+        let origin = self.origin.after(analysis, state.level());
+        let known = state.origin().filter(|_| state.level() > 0);
+        if let Some(part) = known.and_then(|known| known.difference(&origin)) {
+            return refuse(format!(
+                "it belongs to another scene, with other {part}; continue with the scene that it was stored with, or, if \
+                 another one is meant, from State::without_origin"
+            ));
+        }
         let tfeti = &self.model.tfeti;
         let own = (tfeti.dual_dim(), self.model.tangential_rows());
         let (rows, tangential) = self.screen.as_ref().map_or(own, Screen::sizes);
         let (coarse, points) = (tfeti.coarse().rows(), self.touch_points().len());
         state.fits(rows, coarse, tangential, points)?;
-        if state.level() > self.model.scene.analysis.levels() {
-            return Err(ContactError::Checkpoint {
-                reason: "it has more levels than this scene".to_owned(),
-            });
-        }
+        state.set_origin(origin);
         if self.screen.is_some() {
             let active = match (state.level(), state.active()) {
                 (0, _) => vec![false; points],

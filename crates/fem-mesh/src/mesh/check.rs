@@ -22,13 +22,16 @@ pub(super) fn sizes(nodes: usize, tets: usize) -> Result<(), MeshError> {
         if count == 0 {
             return Err(MeshError::Empty { what });
         }
-        if count > LIMIT {
-            return Err(MeshError::TooLarge {
-                what,
-                count,
-                limit: LIMIT,
-            });
-        }
+        numbered(what, count)?;
+    }
+    Ok(())
+}
+
+/// Whether so many can be numbered.
+pub(crate) fn numbered(what: &'static str, count: usize) -> Result<(), MeshError> {
+    let limit = LIMIT;
+    if count > limit {
+        return Err(MeshError::TooLarge { what, count, limit });
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Which tetrahedra meet at which face, in linear time.
 
 use super::MeshError;
+use crate::buckets::{buckets, range};
 
 /// Faces of a tetrahedron, each opposite to the node of its number and numbered counter-clockwise
 /// seen from outside.
@@ -37,7 +38,7 @@ struct Entry {
 
 /// All faces, in buckets by their smallest node, sorted inside.
 pub(crate) struct FaceTable {
-    start: Vec<usize>,
+    start: Vec<u32>,
     entries: Vec<Entry>,
 }
 
@@ -51,39 +52,24 @@ pub(crate) enum Sides {
 impl FaceTable {
     /// Expects node numbers below `nodes`.
     pub(crate) fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
-        let mut start = vec![0usize; nodes + 1];
-        for tet in tets {
-            for face in 0..4 {
-                start[sorted(face_nodes(tet, face)).0[0] as usize + 1] += 1;
+        let faces = tets
+            .iter()
+            .flat_map(|tet| (0..4).map(|face| face_nodes(tet, face)));
+        let smallest: Vec<u32> = faces.map(|[a, b, c]| a.min(b).min(c)).collect();
+        let (start, slots) = buckets(nodes, &smallest);
+        let entry = |&slot: &u32| {
+            let nodes = face_nodes(&tets[slot as usize / 4], slot as usize % 4);
+            let ([_, middle, largest], odd) = sorted(nodes);
+            Entry {
+                middle,
+                largest,
+                slot,
+                odd,
             }
-        }
-        for i in 0..nodes {
-            start[i + 1] += start[i];
-        }
-        let mut next = start.clone();
-        let blank = Entry {
-            middle: 0,
-            largest: 0,
-            slot: 0,
-            odd: false,
         };
-        let mut entries = vec![blank; 4 * tets.len()];
-        for (t, tet) in tets.iter().enumerate() {
-            for face in 0..4 {
-                let ([smallest, middle, largest], odd) = sorted(face_nodes(tet, face));
-                let slot = (4 * t + face) as u32;
-                let place = &mut next[smallest as usize];
-                entries[*place] = Entry {
-                    middle,
-                    largest,
-                    slot,
-                    odd,
-                };
-                *place += 1;
-            }
-        }
+        let mut entries: Vec<Entry> = slots.iter().map(entry).collect();
         for i in 0..nodes {
-            entries[start[i]..start[i + 1]].sort_unstable();
+            entries[range(&start, i)].sort_unstable();
         }
         Self { start, entries }
     }
@@ -92,7 +78,7 @@ impl FaceTable {
     pub(crate) fn neighbours(&self, tets: usize) -> Result<Vec<[u32; 4]>, MeshError> {
         let mut neighbours = vec![[NONE; 4]; tets];
         for smallest in 0..self.start.len() - 1 {
-            let bucket = &self.entries[self.start[smallest]..self.start[smallest + 1]];
+            let bucket = &self.entries[range(&self.start, smallest)];
             for group in bucket.chunk_by(|a, b| (a.middle, a.largest) == (b.middle, b.largest)) {
                 let face = [smallest as u32, group[0].middle, group[0].largest];
                 match group {
@@ -125,8 +111,7 @@ impl FaceTable {
     /// The tetrahedra that have the three nodes as a face. Expects valid node numbers.
     pub(crate) fn sides(&self, nodes: [u32; 3]) -> Sides {
         let ([smallest, middle, largest], _) = sorted(nodes);
-        let range = self.start[smallest as usize]..self.start[smallest as usize + 1];
-        let bucket = &self.entries[range];
+        let bucket = &self.entries[range(&self.start, smallest as usize)];
         let key = (middle, largest);
         let begin = bucket.partition_point(|e| (e.middle, e.largest) < key);
         let mut found = bucket[begin..]

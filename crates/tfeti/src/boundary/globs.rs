@@ -325,6 +325,7 @@ impl WithSimd for Wrenches<'_> {
                 let wrench = run_wrench(&x[run * length..][..length], arms);
                 let coefficients = &coefficients[run * count..][..count];
                 for (&coefficient, out) in coefficients.iter().zip(&mut *out) {
+                    // loaded for itself: vectorised over the sides, the loop took a quarter longer
                     let coefficient = black_box(coefficient);
                     for (out, wrench) in out.iter_mut().zip(&wrench) {
                         let old = if run == 0 { [0.0; 4] } else { *out };
@@ -355,8 +356,6 @@ fn run_wrench(x: &[f64], arms: &[NodeArms]) -> Wrench {
     if let (Some(&[a, b, c]), Some(arms)) = (x.last_chunk(), arms.last()) {
         sums[1] = add_node(sums[1], &[a, b, c, 0.0], arms);
     }
-    // whole registers up to here: what follows would be grouped backwards into the loop
-    let sums = black_box(sums);
     let [f, a, b]: [[f64; 4]; 3] =
         std::array::from_fn(|k| std::array::from_fn(|l| sums[0][k][l] + sums[1][k][l]));
     let moment = [a[2] + b[1], a[0] + b[2], a[1] + b[0], 0.0];

@@ -6,7 +6,8 @@ use signorini_fem_mesh::{
 };
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::{
-    ContactNodes, InverseKind, InverseSettings, RowRule, Sharing, Support, Tfeti, TfetiBuilder,
+    ContactNodes, CopyStiffness, Gluing, InverseKind, InverseSettings, RowRule, Sharing, Support,
+    Tfeti, TfetiBuilder, TfetiError,
 };
 
 pub(crate) struct Brick {
@@ -114,10 +115,54 @@ pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowRul
         .unwrap()
 }
 
+/// `B` alone.
+pub(crate) fn gluing(
+    b: &Brick,
+    supports: &[Support],
+    contact: Option<&ContactNodes>,
+    rule: RowRule,
+) -> Result<Gluing, TfetiError> {
+    Gluing::new(
+        &b.decomposition,
+        b.mesh.points().len(),
+        supports,
+        contact,
+        rule,
+        &CopyStiffness::default(),
+    )
+}
+
+/// Dense `B B^T` of all rows.
+pub(crate) fn gram(g: &Gluing) -> Vec<Vec<f64>> {
+    let rows: Vec<std::collections::BTreeMap<(usize, usize), f64>> = (0..g.rows_full_rank())
+        .map(|r| {
+            let mut map = std::collections::BTreeMap::new();
+            g.row(r)
+                .into_iter()
+                .for_each(|(s, d, v)| *map.entry((s, d)).or_insert(0.0) += v);
+            map
+        })
+        .collect();
+    rows.iter()
+        .map(|a| {
+            rows.iter()
+                .map(|b| a.iter().filter_map(|(k, v)| b.get(k).map(|w| v * w)).sum())
+                .collect()
+        })
+        .collect()
+}
+
 /// `F x`.
 pub(crate) fn product(system: &Tfeti, x: &[f64]) -> Vec<f64> {
     let f = system.dual();
     let mut y = vec![0.0; f.dim()];
     f.apply(x, &mut y, &mut f.scratch());
     y
+}
+
+/// Smallest eigenvalue of a dense symmetric matrix.
+pub(crate) fn smallest_eigenvalue(gram: &[Vec<f64>]) -> f64 {
+    let n = gram.len();
+    let matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| gram[i][j]);
+    nalgebra::SymmetricEigen::new(matrix).eigenvalues.min()
 }

@@ -1,0 +1,163 @@
+//! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean something else.
+//!
+//! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between two
+//! levels, and so may settings: the state is then where the changed scene goes on from.
+
+use crate::clock::{Analysis, DifferenceFormula};
+use crate::model::TouchPoint;
+use signorini_fem_mesh::{Decomposition, TetMesh};
+use signorini_tfeti::Gluing;
+use std::collections::BTreeMap;
+
+/// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Fingerprint {
+    points: u64,
+    tets: u64,
+    parts: u64,
+    supports: u64,
+    contact: u64,
+    formula: u64,
+    /// Times of the levels solved.
+    times: u64,
+}
+
+impl Fingerprint {
+    pub(crate) fn new(
+        mesh: &TetMesh,
+        analysis: &Analysis,
+        decomposition: &Decomposition,
+        gluing: &Gluing,
+        points: &[TouchPoint],
+    ) -> Self {
+        let coordinates = mesh.points().iter().flatten();
+        let tets = mesh.tets().iter().flatten();
+        Self {
+            points: hash(coordinates.map(|x| number(*x))),
+            tets: hash(tets.map(|n| u64::from(*n))),
+            parts: hash(decomposition.parts().iter().map(|p| u64::from(*p))),
+            supports: supports(gluing),
+            contact: hash(points.iter().flat_map(point)),
+            formula: analysis.formula().map_or(0, formula),
+            times: 0,
+        }
+    }
+
+    /// The fingerprint after a further level at this time.
+    pub(crate) fn pass(&mut self, time: f64) {
+        self.times = mix(self.times ^ number(time)).wrapping_add(1);
+    }
+
+    /// The fingerprint after the first levels of an analysis.
+    pub(crate) fn after(mut self, analysis: &Analysis, levels: usize) -> Self {
+        self.times = 0;
+        let times = (0..levels).filter_map(|level| analysis.time(level));
+        times.for_each(|time| self.pass(time));
+        self
+    }
+
+    /// The first part in which two differ, in words.
+    pub(crate) fn difference(&self, other: &Self) -> Option<&'static str> {
+        let parts = |f: &Self| {
+            [
+                (f.points, "coordinates of the mesh"),
+                (f.tets, "tetrahedra"),
+                (f.parts, "subdomains"),
+                (f.supports, "nodes or directions of supports"),
+                (f.contact, "contact points (nodes, normals or areas)"),
+                (f.formula, "weights of the difference formula"),
+                (f.times, "times of the levels solved so far"),
+            ]
+        };
+        let pairs = parts(self).into_iter().zip(parts(other));
+        let mut different = pairs.filter(|(a, b)| a.0 != b.0);
+        different.next().map(|(a, _)| a.1)
+    }
+}
+
+/// The finaliser of SplitMix64: a bijection that spreads every bit.
+fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+fn hash(words: impl Iterator<Item = u64>) -> u64 {
+    words.fold(1, |hash, word| mix(hash ^ word).wrapping_add(1))
+}
+
+/// The bits of a number, with one zero.
+fn number(x: f64) -> u64 {
+    (x + 0.0).to_bits()
+}
+
+fn point(point: &TouchPoint) -> impl Iterator<Item = u64> {
+    let [a, b] = point.frame.tangents;
+    let numbers = [point.frame.normal, a, b].into_iter().flatten();
+    std::iter::once(u64::from(point.node)).chain(numbers.chain([point.area]).map(number))
+}
+
+fn formula(formula: DifferenceFormula) -> u64 {
+    let weights = [formula.alpha(), formula.beta(), formula.gamma()];
+    hash(weights.into_iter().map(number))
+}
+
+/// The fixed directions of each node, as the projector on them, rounded: neither the order of supports nor the scale of
+/// their rows counts.
+fn supports(gluing: &Gluing) -> u64 {
+    let mut nodes: BTreeMap<u32, [f64; 6]> = BTreeMap::new();
+    for row in gluing.ranges().dirichlet.clone() {
+        let mut d = [0.0; 3];
+        for (_, dof, coefficient) in gluing.row(row) {
+            d[dof % 3] += coefficient;
+        }
+        let square = d.iter().map(|v| v * v).sum::<f64>();
+        let Some(node) = gluing.node(row).filter(|_| square > 0.0) else {
+            continue;
+        };
+        let products = [
+            d[0] * d[0],
+            d[1] * d[1],
+            d[2] * d[2],
+            d[1] * d[2],
+            d[0] * d[2],
+            d[0] * d[1],
+        ];
+        let projector = nodes.entry(node).or_default();
+        for (sum, product) in projector.iter_mut().zip(products) {
+            *sum += product / square;
+        }
+    }
+    hash(nodes.into_iter().flat_map(|(node, projector)| {
+        let rounded = projector.map(|v| number((v * 1e7).round()));
+        std::iter::once(u64::from(node)).chain(rounded)
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mixer_is_that_of_splitmix64() {
+        // published first output for seed 0
+        assert_eq!(mix(0x9e37_79b9_7f4a_7c15), 0xe220_a839_7b1d_cdaf);
+    }
+
+    #[test]
+    fn one_bit_zeros_lengths_and_order_count() {
+        let of = |words: &[f64]| hash(words.iter().map(|x| number(*x)));
+        let base = of(&[1.0, 2.0, 0.0]);
+        assert_eq!(base, of(&[1.0, 2.0, -0.0]));
+        for other in [
+            &[2.0, 1.0, 0.0][..],
+            &[1.0, 2.0],
+            &[1.0, 2.0, 0.0, 0.0],
+            &[1.0, 2.0, 5e-324],
+            &[1.0_f64.next_up(), 2.0, 0.0],
+        ] {
+            assert_ne!(base, of(other), "{other:?}");
+        }
+    }
+}

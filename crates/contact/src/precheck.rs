@@ -1,0 +1,38 @@
+//! What a plan checks beside sizes: all that can be wrong with supports, contact, loads and laws, without stiffness or factors.
+//!
+//! Only the set-up can judge whether supports and contact hold the body against its loads: that needs the rigid motions of
+//! all subdomains.
+
+use crate::candidates::{candidates, contact_nodes, surfaces};
+use crate::driven;
+use crate::error::ContactError;
+use crate::law;
+use crate::model::supports;
+use crate::scene::Scene;
+use signorini_fem_mesh::{Decomposition, assemble_load};
+use signorini_tfeti::held_points;
+
+/// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse, with the same error.
+pub(crate) fn check(scene: &Scene, decomposition: &Decomposition) -> Result<(), ContactError> {
+    let (supports, motions) = supports(scene)?;
+    let places = scene.mesh.points();
+    let candidates = candidates(scene, &surfaces(scene)?)?;
+    driven::check(scene, &candidates, &supports, &motions)?;
+    // merges the supports, whether there is contact or not
+    let nodes = contact_nodes(scene, candidates.iter());
+    let held = held_points(&nodes, &supports, places.len())?;
+    for (index, load) in scene.loads.iter().enumerate() {
+        assemble_load(&scene.mesh, decomposition, &load.density)
+            .map_err(|source| ContactError::Load { index, source })?;
+    }
+    let mut held = held.iter().map(|h| h.point).peekable();
+    // both in the order of the points
+    let free = candidates
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| held.next_if_eq(k).is_none());
+    law::check(free.map(|(_, c)| {
+        let friction = scene.contacts[c.surface].friction();
+        (friction, c.node, places[c.node as usize])
+    }))
+}

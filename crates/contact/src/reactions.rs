@@ -1,0 +1,201 @@
+//! Reactions: what the supports do to the body, and what contact and loads do. Computed when asked for.
+//!
+//! A support row of `B` with multiplier `lambda` pushes each copy of its node with `lambda` times its coefficients; their sum is
+//! the force on the node. A direction that several supports fix has one row, and belongs to the first of them.
+
+use crate::error::ContactError;
+use crate::frame::PointState;
+use crate::level::Level;
+use crate::model::{Model, supports};
+use std::collections::BTreeMap;
+
+/// A force and its moment about a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Resultant {
+    /// Sum of the forces, N.
+    pub force: [f64; 3],
+    /// Sum of their moments about the point, N m, with the places before the deformation.
+    pub moment: [f64; 3],
+}
+
+impl Resultant {
+    fn add(&mut self, arm: [f64; 3], force: [f64; 3]) {
+        for c in 0..3 {
+            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+            self.force[c] += force[c];
+            self.moment[c] += arm[a] * force[b] - arm[b] * force[a];
+        }
+    }
+}
+
+impl std::ops::AddAssign for Resultant {
+    fn add_assign(&mut self, other: Self) {
+        for c in 0..3 {
+            self.force[c] += other.force[c];
+            self.moment[c] += other.moment[c];
+        }
+    }
+}
+
+/// The force at a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct NodalForce {
+    /// Mesh node.
+    pub node: u32,
+    /// Force on the body, N.
+    pub force: [f64; 3],
+}
+
+/// What one support does to the body.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct SupportReaction {
+    /// Force on the body and its moment.
+    pub resultant: Resultant,
+    /// The same node by node, without nodes at which earlier supports fix all its directions.
+    pub nodes: Vec<NodalForce>,
+}
+
+/// Forces on the body at the end of a level, and their moments about a point.
+///
+/// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs to that one, and a
+/// later support has what it adds at right angles to it. At a contact node whose normal a support fixes, the support's
+/// reaction contains the force of the obstacle.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Reactions {
+    /// The point of all moments, m.
+    pub point: [f64; 3],
+    /// What each support does, in the order of the scene.
+    pub supports: Vec<SupportReaction>,
+    /// What the obstacle does: contact pressure and friction.
+    pub contact: Resultant,
+    /// What the loads do.
+    pub loads: Resultant,
+}
+
+impl Reactions {
+    /// What all supports do together.
+    #[must_use]
+    pub fn of_supports(&self) -> Resultant {
+        let mut sum = Resultant::default();
+        self.supports.iter().for_each(|s| sum += s.resultant);
+        sum
+    }
+
+    /// Supports, contact and loads together: zero in equilibrium.
+    #[must_use]
+    pub fn imbalance(&self) -> Resultant {
+        let mut sum = self.of_supports();
+        sum += self.contact;
+        sum += self.loads;
+        sum
+    }
+}
+
+/// Part of a unit direction that others already fix up to this is fixed entirely; as where the rows are made.
+const DEPENDENT: f64 = 1e-8;
+
+/// Forces of all supports by node, from the multipliers of the support rows.
+pub(crate) fn nodal(model: &Model, lambda: &[f64]) -> BTreeMap<u32, [f64; 3]> {
+    let gluing = model.tfeti.gluing();
+    let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+    for (row, lambda) in gluing.ranges().dirichlet.clone().zip(lambda) {
+        let Some(node) = gluing.node(row) else {
+            continue;
+        };
+        let force = forces.entry(node).or_default();
+        for (_, dof, coefficient) in gluing.row(row) {
+            force[dof % 3] += lambda * coefficient;
+        }
+    }
+    forces
+}
+
+/// All resultants about a point; `points` are those of the model.
+pub(crate) fn about(
+    model: &Model,
+    level: &Level,
+    points: &[PointState],
+    lambda: &[f64],
+    point: [f64; 3],
+) -> Result<Reactions, ContactError> {
+    let places = model.scene.mesh.points();
+    let arm = |node: u32| {
+        let place = places[node as usize];
+        [0, 1, 2].map(|c| place[c] - point[c])
+    };
+    let mut contact = Resultant::default();
+    for (state, touch) in points.iter().zip(&model.points) {
+        let normal = touch.frame.normal;
+        let force = [0, 1, 2].map(|c| state.friction_force[c] + state.normal_force * normal[c]);
+        contact.add(arm(state.node), force);
+    }
+    let mut loads = Resultant::default();
+    for (factor, load) in level.factors.iter().zip(&model.loads) {
+        let nodes = model.decomposition.subdomains().iter();
+        let nodes = nodes.flat_map(|s| &s.nodes);
+        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
+            loads.add(arm(node), force.map(|f| factor * f));
+        }
+    }
+    Ok(Reactions {
+        point,
+        supports: by_support(model, &nodal(model, lambda), arm)?,
+        contact,
+        loads,
+    })
+}
+
+/// Splits nodal forces among the supports: each has the part along the directions that it is the first to fix.
+fn by_support(
+    model: &Model,
+    forces: &BTreeMap<u32, [f64; 3]>,
+    arm: impl Fn(u32) -> [f64; 3],
+) -> Result<Vec<SupportReaction>, ContactError> {
+    let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let mut fixed: BTreeMap<u32, Vec<[f64; 3]>> = BTreeMap::new();
+    let (supports, _) = supports(&model.scene)?;
+    let mut out = Vec::with_capacity(supports.len());
+    for support in &supports {
+        let directions = support.directions.vectors();
+        let mut reaction = SupportReaction::default();
+        for &node in &support.nodes {
+            let Some(whole) = forces.get(&node) else {
+                continue;
+            };
+            let known = fixed.entry(node).or_default();
+            let before = known.len();
+            for direction in &directions {
+                let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+                let mut rest = direction.map(|v| v / largest);
+                let length = dot(&rest, &rest).sqrt();
+                rest = rest.map(|v| v / length);
+                for _ in 0..2 {
+                    for other in &*known {
+                        let along = dot(&rest, other);
+                        (0..3).for_each(|c| rest[c] -= along * other[c]);
+                    }
+                }
+                let length = dot(&rest, &rest).sqrt();
+                if length > DEPENDENT {
+                    known.push(rest.map(|v| v / length));
+                }
+            }
+            if known.len() == before {
+                continue;
+            }
+            let mut force = [0.0; 3];
+            for direction in &known[before..] {
+                let along = dot(whole, direction);
+                (0..3).for_each(|c| force[c] += along * direction[c]);
+            }
+            reaction.resultant.add(arm(node), force);
+            reaction.nodes.push(NodalForce { node, force });
+        }
+        out.push(reaction);
+    }
+    Ok(out)
+}

@@ -1,0 +1,202 @@
+//! The iterate on its present face: what conjugate gradients, and the moves between faces, work on.
+
+use crate::coarse_space::CoarseSpace;
+use crate::error::QpError;
+use crate::face::FaceProblem;
+use crate::face_settings::{FaceReport, FaceWorkspace};
+use crate::guard::restore;
+use crate::natural_map::NaturalMap;
+use crate::operator::SymmetricOperator;
+use crate::product::{ProductSet, Segment};
+use crate::set::ConvexSet;
+use crate::vector;
+
+/// A length of a vector and that of its constrained part.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lengths {
+    pub(crate) all: f64,
+    pub(crate) constrained: f64,
+}
+
+impl Lengths {
+    pub(crate) const INFINITE: Self = Self {
+        all: f64::INFINITY,
+        constrained: f64::INFINITY,
+    };
+
+    /// Both lengths from their two values.
+    pub(crate) fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            all: f(self.all, other.all),
+            constrained: f(self.constrained, other.constrained),
+        }
+    }
+
+    /// Whether both are at most those of `limits`.
+    pub(crate) fn within(self, limits: Self) -> bool {
+        self.all <= limits.all && self.constrained <= limits.constrained
+    }
+}
+
+/// A problem, its iterate and the face it is on. Between two methods `ax` is `A x` but for changes of `x` since
+/// [`mark`](Iterate::mark).
+pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
+    pub(crate) problem: &'s FaceProblem<'s, A, M>,
+    pub(crate) coarse: &'s mut C,
+    pub(crate) set: &'s mut ProductSet,
+    pub(crate) x: &'s mut [f64],
+    pub(crate) ax: &'s mut [f64],
+    pub(crate) work: &'s mut FaceWorkspace<A, M>,
+    pub(crate) report: FaceReport,
+}
+
+impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, C, M> {
+    /// Components up to the last constrained one.
+    pub(crate) fn constrained(&self) -> usize {
+        self.work.face_residual.len()
+    }
+
+    /// Notes the point whose product is known: `t = x`.
+    pub(crate) fn mark(&mut self) {
+        vector::copy(self.x, &mut self.work.t);
+    }
+
+    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark).
+    pub(crate) fn correct(&mut self) {
+        let work = &mut *self.work;
+        for (t, v) in work.t.iter_mut().zip(&*self.x) {
+            *t = v - *t;
+        }
+        if work.t.iter().all(|t| *t == 0.0) {
+            return;
+        }
+        let operator = self.problem.operator;
+        operator.apply(&work.t, &mut work.ap, &mut work.operator);
+        vector::axpy(1.0, &work.ap, self.ax);
+        self.report.corrections += 1;
+    }
+
+    /// `ax = A x`.
+    pub(crate) fn multiply(&mut self) {
+        let operator = self.problem.operator;
+        operator.apply(self.x, self.ax, &mut self.work.operator);
+        self.report.corrections += 1;
+    }
+
+    /// `residual = P_Wᵀ (A x - b)`.
+    pub(crate) fn residual(&mut self) {
+        let residual = &mut self.work.residual;
+        vector::copy(self.ax, residual);
+        vector::axpy(-1.0, self.problem.linear, residual);
+        self.coarse.project_transpose(residual);
+    }
+
+    /// Classifies the blocks by the natural map.
+    pub(crate) fn classify(&mut self, step: f64) {
+        let map = natural_map(self.problem, &self.work.residual, step);
+        self.work.face.classify(self.set, self.x, &map);
+    }
+
+    /// The residual on the face from `residual`.
+    pub(crate) fn start_residual(&mut self) {
+        let work = &mut *self.work;
+        let constrained = work.face_residual.len();
+        work.face_residual
+            .copy_from_slice(&work.residual[..constrained]);
+        work.face.restrict(self.set, &mut work.face_residual);
+    }
+
+    /// `z` from the residual on the face, with its norm. Returns `rho`.
+    pub(crate) fn precondition(&mut self) -> f64 {
+        let FaceWorkspace {
+            residual,
+            face_residual,
+            saved,
+            z,
+            z_norm,
+            face,
+            preconditioner: scratch,
+            ..
+        } = &mut *self.work;
+        let (set, constrained) = (&*self.set, face_residual.len());
+        saved.copy_from_slice(&residual[..constrained]);
+        residual[..constrained].copy_from_slice(face_residual);
+        face.damp(set, &mut residual[..constrained]);
+        self.problem.preconditioner.apply(residual, z, scratch);
+        let part = &mut z[..constrained];
+        face.restrict(set, part);
+        face.damp(set, part);
+        face.add_own(set, face_residual, part);
+        self.coarse.project_step(z);
+        self.report.preconditionings += 1;
+        residual[..constrained].copy_from_slice(face_residual);
+        let (rho, square) = vector::dot_and_square(residual, z);
+        residual[..constrained].copy_from_slice(saved);
+        *z_norm = square.sqrt();
+        rho
+    }
+
+    /// Brings `x`, moved from the mark, back to set and equality by components with the weights `z`; the product follows.
+    /// Returns how far constrained components have moved; where set and equality do not meet, this does not fall.
+    pub(crate) fn restore(&mut self) -> Result<f64, QpError> {
+        let (rhs, constrained) = (self.problem.rhs, self.constrained());
+        restore(self.coarse, self.set, self.x, rhs, &self.work.z)?;
+        let moved = vector::distance(&self.x[..constrained], &self.work.t[..constrained]);
+        let jump = moved.max(self.set.violation(self.x));
+        self.correct();
+        Ok(jump)
+    }
+
+    /// Estimated errors: the lengths of `z`.
+    pub(crate) fn errors(&self) -> Lengths {
+        let constrained = &self.work.z[..self.constrained()];
+        Lengths {
+            all: self.work.z_norm,
+            constrained: vector::norm(constrained),
+        }
+    }
+
+    /// An error for something that is not a number.
+    pub(crate) fn not_finite(&self, quantity: &'static str) -> QpError {
+        QpError::NotFinite {
+            quantity,
+            products: self.report.products(),
+        }
+    }
+}
+
+/// The natural map with this gradient.
+pub(crate) fn natural_map<'a, A, M>(
+    problem: &FaceProblem<'a, A, M>,
+    gradient: &'a [f64],
+    step: f64,
+) -> NaturalMap<'a> {
+    NaturalMap {
+        gradient,
+        scale: problem.scale,
+        step,
+    }
+}
+
+/// Components up to the last constrained one.
+pub(crate) fn constrained_length(set: &ProductSet) -> usize {
+    let mut end = 0;
+    let mut constrained = 0;
+    for segment in set.segments() {
+        end += segment.len();
+        if !matches!(segment, Segment::Free(_)) {
+            constrained = end;
+        }
+    }
+    constrained
+}
+
+/// Kind and length of a segment.
+pub(crate) fn shape(segment: &Segment) -> (u8, usize) {
+    let kind = match segment {
+        Segment::Free(_) => 0,
+        Segment::Bounds { .. } => 1,
+        Segment::Discs { .. } => 2,
+    };
+    (kind, segment.len())
+}

@@ -1,0 +1,494 @@
+//! The steps of the [face method](crate::face): what happens between one face and the next.
+
+use crate::coarse_space::CoarseSpace;
+use crate::error::{QpError, SetError};
+use crate::face::{FaceHook, FaceProblem};
+use crate::face_cg::Goal;
+use crate::face_iterate::{Iterate, Lengths, constrained_length, natural_map, shape};
+use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
+use crate::face_view::{FacePreconditioner, FaceView};
+use crate::guard::{Guard, SHORT, SHORTEST, restore};
+use crate::natural_map::settle_bounds;
+use crate::operator::SymmetricOperator;
+use crate::product::ProductSet;
+use crate::report::Status;
+use crate::set::ConvexSet;
+use crate::vector;
+
+/// An error after a jump larger than that many times the jump and the error before it comes from bad conditioning, and
+/// has to fall further than `forcing` before the face tells anything.
+const MAGNIFIED: f64 = 10.0;
+
+/// Factor on the forcing after faces without progress.
+const FINER: f64 = 0.05;
+
+/// With a guard: factor on patience and faces; share of the last move of the set to which its problem is solved before the
+/// set follows again; very short steps in a row that end it, and the length in units of the shortest up to which they count.
+const LONGER: usize = 5;
+const FOLLOW: f64 = 0.1;
+const HELD_UP: usize = 20;
+const VERY_SHORT: f64 = 16.0;
+
+/// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
+const SHRUNK: f64 = 1e5;
+
+/// Part of the limits that `x` may be off the equality, after steps that round.
+const DRIFT: f64 = 0.03;
+
+/// Decrease of the error, over the smallest so far, that counts as progress.
+const LESS: f64 = 0.9;
+
+/// Part of the norm of `x` that vanishing constrained components are measured against.
+const SMALL_PART: f64 = 1e-4;
+
+/// A face as it is entered.
+pub(crate) struct Place {
+    /// Residual times `z`.
+    rho: f64,
+    /// Estimated distance to the solution of the face.
+    errors: Lengths,
+    /// What it is to fall below.
+    limits: Lengths,
+    x_norm: f64,
+    /// Whether the constrained part is so small that directions in it mean nothing.
+    vanishes: bool,
+    /// Whether the problem with the present set is solved, as far as the set moves.
+    solved: bool,
+}
+
+/// One solve: the iterate, and what it remembers of earlier faces.
+pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
+    at: Iterate<'s, A, C, M>,
+    settings: &'s FaceSettings,
+    hook: &'s mut FaceHook<'h>,
+    /// Kind and length of each segment.
+    shapes: Vec<(u8, usize)>,
+    /// Whether [`CoarseSpace::repair`] leaves constrained components alone, known once it has its first weights. Bodies that
+    /// only contact holds are touchier: every move of theirs changes constrained components.
+    apart: bool,
+    forcing: f64,
+    /// What the last move to a predicted face changed in the constrained components.
+    jump: f64,
+    /// Largest norm of `x` since `A x` was computed afresh.
+    peak: f64,
+    /// Smallest error, relative to its limit, the last one, and faces since the smallest.
+    best: f64,
+    last: f64,
+    waited: usize,
+    /// Estimated errors when the last face was left, and that of the constrained part when it was entered.
+    left: Lengths,
+    begun: f64,
+    /// Whether the hook was called at the last move.
+    followed: bool,
+    /// Whether steps that round have been made since `G x = e` was restored.
+    drifted: bool,
+    /// Once predictions ran in circles.
+    guard: Option<Guard>,
+}
+
+impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s, 'h, A, C, M> {
+    pub(crate) fn new(
+        problem: &'s FaceProblem<'s, A, M>,
+        coarse: &'s mut C,
+        set: &'s mut ProductSet,
+        (x, ax): (&'s mut [f64], &'s mut [f64]),
+        settings: &'s FaceSettings,
+        work: &'s mut FaceWorkspace<A, M>,
+        hook: &'s mut FaceHook<'h>,
+    ) -> Self {
+        let constrained = constrained_length(set);
+        work.resize(constrained);
+        work.coupling.start(set, constrained);
+        work.face.resize(set);
+        Self {
+            shapes: set.segments().iter().map(shape).collect(),
+            apart: true,
+            settings,
+            hook,
+            forcing: settings.forcing,
+            jump: f64::INFINITY,
+            peak: 0.0,
+            best: f64::INFINITY,
+            last: f64::INFINITY,
+            waited: 0,
+            left: Lengths::INFINITE,
+            begun: f64::INFINITY,
+            followed: false,
+            drifted: false,
+            guard: None,
+            at: Iterate {
+                problem,
+                coarse,
+                set,
+                x,
+                ax,
+                work,
+                report: FaceReport::new(),
+            },
+        }
+    }
+
+    /// A feasible point that satisfies `G x = e`, a first face and the product with it.
+    pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
+        self.at.mark();
+        self.guess();
+        if self.at.set_face(false)?.is_none() {
+            // held by its constraints only: forces that balance with all of them at work tell the first face
+            self.at.set_free()?;
+            self.at.coarse.repair(self.at.x, self.at.problem.rhs);
+            self.follow()?;
+            self.guess();
+            if self.at.set_face(false)?.is_none() {
+                self.at.set_free()?;
+            }
+        }
+        self.at.coarse.repair(self.at.x, self.at.problem.rhs);
+        if ax_known {
+            self.at.correct();
+        } else {
+            self.at.multiply();
+        }
+        self.apart = self.at.coarse.repairs_apart();
+        self.peak = vector::norm(self.at.x);
+        Ok(())
+    }
+
+    /// Projects `x` on the set and guesses the face from it.
+    fn guess(&mut self) {
+        let at = &mut self.at;
+        at.set.project(at.x);
+        at.work.face.guess(at.set, at.x);
+    }
+
+    /// Classifies the blocks by the natural map, and enters the face with projector and preconditioner. `None` if it holds no
+    /// equilibrium.
+    pub(crate) fn enter_face(&mut self) -> Result<Option<Place>, QpError> {
+        let (at, settings) = (&mut self.at, self.settings);
+        at.residual();
+        at.classify(settings.natural_step);
+        let sparing = self.guard.is_some() || !self.apart;
+        match at.hold(sparing) {
+            Ok(true) => at.residual(),
+            Ok(false) => {}
+            Err(QpError::CoarseDeficient { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        }
+        let view = FaceView::new(at.set, &at.work.face);
+        let preconditioner = at.problem.preconditioner;
+        preconditioner.enter(&view, &mut at.work.preconditioner);
+        at.start_residual();
+        let rho = at.precondition();
+        let errors = at.errors();
+        // what vanishes is measured against `least`, and its constrained part against a small part of that at least
+        let x_norm = vector::norm(at.x);
+        let all = x_norm.max(settings.least);
+        let part = vector::norm(&at.x[..at.constrained()]);
+        let vanishes = part < settings.least_constrained;
+        let part = part.max(SMALL_PART * all).max(settings.least_constrained);
+        let limits = Lengths {
+            all: settings.tolerance * all,
+            constrained: settings.tolerance * part,
+        };
+        at.report.error = ratio(errors.all, limits.all / settings.tolerance);
+        at.report.constrained_error =
+            ratio(errors.constrained, limits.constrained / settings.tolerance);
+        if !(errors.all.is_finite() && x_norm.is_finite()) {
+            return Err(at.not_finite("the error estimate"));
+        }
+        let drift = self.guard.as_ref().map_or(f64::INFINITY, |g| g.drift);
+        Ok(Some(Place {
+            rho,
+            errors,
+            limits,
+            x_norm,
+            vanishes,
+            solved: errors.constrained <= (FOLLOW * drift).max(limits.constrained),
+        }))
+    }
+
+    /// Computes `A x` afresh if it still carries the rounding errors of a much larger `x`.
+    pub(crate) fn refreshes(&mut self, place: &Place) -> bool {
+        let stale = self.peak > SHRUNK * place.x_norm;
+        if stale {
+            self.peak = place.x_norm;
+            self.at.multiply();
+        }
+        self.peak = self.peak.max(place.x_norm);
+        stale
+    }
+
+    /// With a guard: releases blocked blocks once the problem with them is solved.
+    pub(crate) fn releases(&mut self, place: &Place) -> bool {
+        let blocked = &mut self.at.work.face.blocked;
+        let (error, limit) = (place.errors.constrained, place.limits.constrained);
+        let releases = self
+            .guard
+            .as_mut()
+            .is_some_and(|guard| guard.releases(!blocked.is_empty(), place.solved, error, limit));
+        if releases {
+            blocked.clear();
+        }
+        releases
+    }
+
+    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and held bounds, judged
+    /// again by the residual of this face, which the last classification did not have, stay held.
+    pub(crate) fn is_solved(&self, place: &Place) -> bool {
+        let (at, limit) = (&self.at, place.limits.constrained);
+        let current = self.guard.as_ref().is_none_or(|guard| guard.current);
+        let settled = at.report.faces == 0 || current && self.jump <= limit.max(f64::MIN_POSITIVE);
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        place.errors.within(place.limits)
+            && settled
+            && at.set.violation(at.x) <= limit
+            && !at.work.face.contradicted(at.set, at.x, &map, limit)
+    }
+
+    /// Whether `G x = e` holds as exactly as `x` is known, after steps that round. It does afterwards.
+    pub(crate) fn is_balanced(&mut self, place: &Place) -> bool {
+        if !self.drifted {
+            return true;
+        }
+        self.drifted = false;
+        let at = &mut self.at;
+        at.mark();
+        at.coarse.repair(at.x, at.problem.rhs);
+        let drift = vector::distance(at.x, &at.work.t);
+        if drift <= DRIFT * place.limits.all {
+            vector::copy(&at.work.t, at.x);
+            return true;
+        }
+        at.correct();
+        false
+    }
+
+    /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes.
+    pub(crate) fn set_agrees(&mut self, place: &Place) -> Result<bool, QpError> {
+        if self.followed {
+            return Ok(true);
+        }
+        let work = &mut *self.at.work;
+        work.face.radii(self.at.set, &mut work.before);
+        self.follow()?;
+        self.followed = true;
+        let (at, limit) = (&self.at, place.limits.constrained);
+        let moved =
+            at.set.violation(at.x) > limit || at.work.face.grew(at.set, &at.work.before, limit);
+        Ok(!moved)
+    }
+
+    /// Compares the error with the smallest so far.
+    pub(crate) fn note_progress(&mut self, place: &Place) {
+        let (errors, limits) = (place.errors, place.limits);
+        let constrained = errors.constrained.max(self.jump.min(f64::MAX));
+        self.last = (errors.all / limits.all).max(constrained / limits.constrained);
+        if self.last < LESS * self.best {
+            self.best = self.last;
+            self.waited = 0;
+        } else if self.at.report.faces > 0 {
+            self.waited += 1;
+        }
+    }
+
+    /// Whether predictions without a guard have made no progress for too long.
+    pub(crate) fn in_circles(&self) -> bool {
+        self.waited >= self.settings.patience && self.guard.is_none()
+    }
+
+    /// From now on faces are solved better, and moves have to descend. Whether `x` has moved.
+    pub(crate) fn start_guard(&mut self) -> Result<bool, QpError> {
+        self.guard = Some(Guard::new(self.at.x.len()));
+        self.forcing *= FINER;
+        self.best = self.last;
+        self.waited = 0;
+        if self.apart {
+            return Ok(false);
+        }
+        let at = &mut self.at;
+        at.mark();
+        at.work.face.loose_weights(at.set, &mut at.work.z);
+        restore(at.coarse, at.set, at.x, at.problem.rhs, &at.work.z)?;
+        self.jump = self.jump.max(at.set.violation(at.x));
+        at.correct();
+        Ok(true)
+    }
+
+    /// Why the solve ends without a solution, if it does.
+    pub(crate) fn gives_up(&self) -> Option<Status> {
+        let (settings, report) = (self.settings, &self.at.report);
+        let held_up = self.guard.as_ref().map_or(0, |guard| guard.held_up);
+        if self.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
+            return Some(Status::Stagnated);
+        }
+        let longer = if self.guard.is_some() { LONGER } else { 1 };
+        let faces = settings.max_faces.saturating_mul(longer);
+        let limit = report.faces >= faces || report.products() >= settings.max_products;
+        limit.then_some(Status::IterationLimit)
+    }
+
+    /// Conjugate gradients on the face. Returns the length of the last step, zero if another one is not worth while.
+    pub(crate) fn solve_face(&mut self, place: &Place) -> Result<f64, QpError> {
+        let at = &mut self.at;
+        if let Some(guard) = &mut self.guard {
+            guard.enter(at.x, at.ax, &at.work.residual);
+        }
+        let free = self.followed && self.guard.is_none() && self.apart && !place.vanishes;
+        let error = at.report.constrained_error;
+        at.work.coupling.begin(free, error, self.waited);
+        let goal = Goal {
+            forcing: at
+                .work
+                .coupling
+                .forcing(self.forcing, self.jump, self.begun),
+            expected: Lengths {
+                all: MAGNIFIED * (self.jump + self.left.all),
+                constrained: MAGNIFIED * (self.jump + self.left.constrained),
+            },
+            limits: place.limits,
+            max_products: self.settings.max_products,
+        };
+        self.begun = place.errors.constrained;
+        let length = at.conjugate_gradients(place.rho, &goal)?;
+        self.drifted = at.coarse.rounds_steps();
+        self.left = at.errors();
+        at.report.faces += 1;
+        if let Some(guard) = &mut self.guard
+            && guard.leave(at.x, at.ax)
+        {
+            self.waited = 0;
+        }
+        Ok(length)
+    }
+
+    /// Moves `x` to the next face, with the next step of conjugate gradients, of this `length`, on top. The set follows where
+    /// the face has settled. Then set, equality and product are in order again, and a guard has its say.
+    pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
+        let constrained = self.at.constrained();
+        self.at.mark();
+        let joint = self.joint_step(length);
+        let at = &mut self.at;
+        at.work.before.copy_from_slice(&at.x[..constrained]);
+        self.settle_bounds();
+        self.followed = (self.guard.is_none() || place.solved) && self.has_settled();
+        if self.followed {
+            self.follow()?;
+            // held components go with bounds that moved
+            self.settle_bounds();
+        }
+        let at = &mut self.at;
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        at.work.face.settle_discs(at.set, at.x, &map);
+        self.jump = vector::distance(&at.x[..constrained], &at.work.before);
+        self.balance(joint)?;
+        self.descend()
+    }
+
+    /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no move,
+    /// and with a guard only what descends is taken. Whether there is one.
+    fn joint_step(&mut self, length: f64) -> bool {
+        let at = &mut self.at;
+        if at.constrained() == 0 || self.guard.is_some() || !self.apart {
+            return false;
+        }
+        let joint = self.settings.joint_step * length;
+        if joint > 0.0 {
+            vector::axpy(joint, &at.work.p, at.x);
+        }
+        joint > 0.0
+    }
+
+    fn settle_bounds(&mut self) {
+        let at = &mut self.at;
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        settle_bounds(at.set, at.x, &map);
+    }
+
+    /// Whether few bounded components changed between free and held.
+    fn has_settled(&self) -> bool {
+        let face = &self.at.work.face;
+        let few = (self.settings.settled * face.free_bounds as f64).max(2.0);
+        face.changed as f64 <= few
+    }
+
+    /// Makes `G x = e` hold again, and the product exact.
+    fn balance(&mut self, joint: bool) -> Result<(), QpError> {
+        let at = &mut self.at;
+        if let Some(guard) = &mut self.guard {
+            guard.current = self.followed;
+            // z is free until the next face
+            at.work.face.loose_weights(at.set, &mut at.work.z);
+            if !self.apart {
+                self.jump = at.restore()?;
+                return Ok(());
+            }
+        }
+        if self.jump > 0.0 || joint && self.drifted {
+            at.coarse.repair(at.x, at.problem.rhs);
+            self.drifted = false;
+        }
+        if self.jump > 0.0 || joint {
+            at.correct();
+        }
+        Ok(())
+    }
+
+    /// With a guard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.
+    fn descend(&mut self) -> Result<(), QpError> {
+        let at = &mut self.at;
+        let Some(guard) = &mut self.guard else {
+            return Ok(());
+        };
+        if guard.current {
+            guard.drift = self.jump;
+            return Ok(());
+        }
+        let mut t = 1.0;
+        while t > SHORTEST && !guard.descends(at.x, at.ax, t) {
+            guard.shorten(t, at.x, at.ax);
+            at.mark();
+            self.jump = at.restore()?;
+            t *= 0.5;
+        }
+        guard.held_up = if t > VERY_SHORT * SHORTEST || !self.apart {
+            0
+        } else {
+            guard.held_up + 1
+        };
+        let (rises, reach) = guard.judge(at.set, at.x, at.ax, t);
+        if t >= SHORT {
+            at.work.face.blocked.clear();
+            return Ok(());
+        }
+        let (from, step) = guard.path();
+        let more = at.work.face.block(at.set, from, step, reach);
+        if rises && more {
+            guard.back(at.x, at.ax);
+            self.jump = f64::INFINITY;
+        }
+        Ok(())
+    }
+
+    /// Calls the hook, which may change the data of segments but not the segments.
+    fn follow(&mut self) -> Result<(), QpError> {
+        let at = &mut self.at;
+        (self.hook)(at.x, at.set);
+        at.report.hook_calls += 1;
+        at.set.validate()?;
+        let shapes = self.shapes.iter().copied();
+        if at.set.segments().iter().map(shape).eq(shapes) {
+            Ok(())
+        } else {
+            let wanted = "the segments that it had before the hook";
+            Err(SetError::Kind { segment: 0, wanted }.into())
+        }
+    }
+
+    pub(crate) fn finish(mut self, status: Status) -> FaceReport {
+        self.at.report.status = status;
+        self.at.report
+    }
+}
+
+fn ratio(a: f64, b: f64) -> f64 {
+    if a == 0.0 { 0.0 } else { a / b }
+}

@@ -1,0 +1,175 @@
+//! The natural map: which face it predicts, and where it moves the point.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `x`, `g` | point, and gradient without its part in the image of `Gᵀ` |
+//! | `s` | `x - a g`, the natural map before projection; `a = natural_step * scale` |
+//! | `n`, `tau` | outward normal and tangent of a disc at `x` |
+//! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
+
+use crate::face_state::{Disc, Face, ON_CIRCLE, for_bounds, for_discs};
+use crate::product::ProductSet;
+
+/// Gradient and lengths of the natural map.
+#[derive(Clone, Copy)]
+pub(crate) struct NaturalMap<'a> {
+    /// `g`.
+    pub(crate) gradient: &'a [f64],
+    pub(crate) scale: &'a [f64],
+    /// `natural_step`.
+    pub(crate) step: f64,
+}
+
+impl NaturalMap<'_> {
+    /// Component `i` of `s`.
+    fn of(&self, x: &[f64], i: usize) -> f64 {
+        x[i] - self.step * self.scale[i] * self.gradient[i]
+    }
+
+    /// The gradient on the disc that begins with component `i`.
+    fn on_disc(&self, i: usize) -> [f64; 2] {
+        [self.gradient[i], self.gradient[i + 1]]
+    }
+}
+
+impl Face {
+    /// Classifies every block at the feasible point `x`.
+    pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let Self {
+            free,
+            discs,
+            blocked,
+            near,
+            ..
+        } = self;
+        let near = *near;
+        let bounds = free.len();
+        let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
+        let (mut changed, mut free_bounds) = (0, 0);
+        for_bounds(set, |i, k, lo, hi| {
+            let s = map.of(x, i);
+            // a component is held only if it also is where it would be held
+            let held = lo >= hi
+                || (x[i] <= lo && (s <= lo || stays(k)))
+                || (x[i] >= hi && (s >= hi || stays(k)))
+                || (near && stays(k));
+            changed += usize::from(free[k] == held);
+            free[k] = !held;
+            free_bounds += usize::from(!held);
+        });
+        for_discs(set, |i, k, radius| {
+            let at = [x[i], x[i + 1]];
+            let state = disc_state(at, map.on_disc(i), radius, map.scale[i]);
+            discs[k] = if stays(bounds + k) && state == Disc::Free {
+                along_circle(at, if near { 0.0 } else { radius })
+            } else {
+                state
+            };
+        });
+        self.changed = changed;
+        self.free_bounds = free_bounds;
+    }
+
+    /// Whether the natural map would free a held bound, and move it by more than `limit`.
+    pub(crate) fn contradicted(
+        &self,
+        set: &ProductSet,
+        x: &[f64],
+        map: &NaturalMap<'_>,
+        limit: f64,
+    ) -> bool {
+        let mut found = false;
+        for_bounds(set, |i, k, lower, upper| {
+            if !self.free[k] && lower < upper {
+                let moved = map.of(x, i).clamp(lower, upper);
+                found |= (moved - x[i]).abs() > limit;
+            }
+        });
+        found
+    }
+
+    /// Moves the discs of `x` into their circles: sliding points are drawn back along the radius, others
+    /// go where the natural map predicts that they slide.
+    pub(crate) fn settle_discs(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+        for_discs(set, |i, k, radius| {
+            let sliding = matches!(self.discs[k], Disc::Sliding { .. });
+            let (at, a) = ([x[i], x[i + 1]], map.step * map.scale[i]);
+            let moved = settle_disc(at, map.on_disc(i), radius, a, sliding);
+            x[i] = moved[0];
+            x[i + 1] = moved[1];
+        });
+    }
+}
+
+/// Moves the bounded components of `x` by the natural map: onto their bound where it predicts that
+/// they are held, else into the interval.
+pub(crate) fn settle_bounds(set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+    for_bounds(set, |i, _, lo, hi| {
+        let s = map.of(x, i);
+        x[i] = if s <= lo {
+            lo
+        } else if s >= hi {
+            hi
+        } else {
+            x[i].clamp(lo.min(hi), hi)
+        };
+    });
+}
+
+/// Free along the circle, without curvature; free everywhere inside of it. With radius 0 along the circle through `x`.
+fn along_circle(x: [f64; 2], radius: f64) -> Disc {
+    let length = x[0].hypot(x[1]);
+    if length <= 0.0 || length < radius * (1.0 - ON_CIRCLE) {
+        return Disc::Free;
+    }
+    slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)
+}
+
+/// Sliding with outward normal `n`.
+fn slides(n: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
+    let kappa = slip / radius;
+    let damp = 1.0 / (1.0 + kappa * scale);
+    Disc::Sliding {
+        tau: [-n[1], n[0]],
+        kappa,
+        damp,
+        own: (kappa * scale * damp) * (scale * damp),
+        slip,
+    }
+}
+
+fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
+    if radius <= 0.0 {
+        return Disc::Fixed;
+    }
+    let length = x[0].hypot(x[1]);
+    if length < radius * (1.0 - ON_CIRCLE) {
+        return Disc::Free;
+    }
+    let n = [x[0] / length, x[1] / length];
+    let outward = g[0] * n[0] + g[1] * n[1];
+    if outward >= 0.0 {
+        return Disc::Free;
+    }
+    slides(n, -outward, radius, scale)
+}
+
+fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {
+    if radius <= 0.0 {
+        return [0.0; 2];
+    }
+    let to = |v: [f64; 2], length: f64| [v[0] * (radius / length), v[1] * (radius / length)];
+    let length = x[0].hypot(x[1]);
+    if sliding {
+        return if length > 0.0 { to(x, length) } else { x };
+    }
+    let s = [x[0] - a * g[0], x[1] - a * g[1]];
+    let reach = s[0].hypot(s[1]);
+    if reach > radius {
+        to(s, reach)
+    } else if length > radius {
+        to(x, length)
+    } else {
+        x
+    }
+}
