@@ -61,9 +61,9 @@ impl fmt::Display for FreeMotion {
 #[derive(Debug)]
 pub(crate) struct Mobility {
     /// Rigid part of each subdomain.
-    body_of: Vec<u32>,
+    part_of: Vec<u32>,
     /// Body of each subdomain: parts that hinges join are of one.
-    assembly: Vec<u32>,
+    body_of: Vec<u32>,
     bodies: Vec<Body>,
     centres: Vec<[f64; 3]>,
     classes: Arc<Classes>,
@@ -109,12 +109,12 @@ impl Mobility {
             parent[a.max(b) as usize] = a.min(b);
         }
         let mut bodies: Vec<Body> = Vec::new();
-        let mut body_of = vec![0; centres.len()];
+        let mut part_of = vec![0; centres.len()];
         let mut members: Vec<Vec<usize>> = Vec::new();
         for s in 0..centres.len() {
             let first = root(&mut parent, s as u32) as usize;
             if first == s {
-                body_of[s] = bodies.len() as u32;
+                part_of[s] = bodies.len() as u32;
                 bodies.push(Body {
                     centre: [0.0; 3],
                     radius: 1.0,
@@ -122,8 +122,8 @@ impl Mobility {
                 });
                 members.push(vec![s]);
             } else {
-                body_of[s] = body_of[first];
-                members[body_of[s] as usize].push(s);
+                part_of[s] = part_of[first];
+                members[part_of[s] as usize].push(s);
             }
         }
         for (body, members) in bodies.iter_mut().zip(&members) {
@@ -140,7 +140,7 @@ impl Mobility {
                 .sum();
             body.radius = (square / members.len() as f64).sqrt();
         }
-        let joints = joint_rows(gluing, &body_of);
+        let joints = joint_rows(gluing, &part_of);
         for row in &joints {
             for pair in row.windows(2) {
                 let (a, b) = (
@@ -150,20 +150,20 @@ impl Mobility {
                 parent[a.max(b) as usize] = a.min(b);
             }
         }
-        let mut assembly = vec![0; centres.len()];
+        let mut body_of = vec![0; centres.len()];
         let mut count = 0;
         for s in 0..centres.len() {
             let first = root(&mut parent, s as u32) as usize;
-            assembly[s] = if first == s {
+            body_of[s] = if first == s {
                 count += 1;
                 count - 1
             } else {
-                assembly[first]
+                body_of[first]
             };
         }
         let mut out = Self {
+            part_of,
             body_of,
-            assembly,
             bodies,
             centres,
             classes,
@@ -185,12 +185,12 @@ impl Mobility {
     }
 
     pub(crate) fn bodies(&self) -> usize {
-        self.assembly.iter().max().map_or(0, |b| *b as usize + 1)
+        self.body_of.iter().max().map_or(0, |b| *b as usize + 1)
     }
 
     /// Body of each subdomain.
     pub(crate) fn body_of(&self) -> &[u32] {
-        &self.assembly
+        &self.body_of
     }
 
     fn kernel(&self, subdomain: usize) -> &Kernel {
@@ -199,7 +199,7 @@ impl Mobility {
 
     /// Motion of a subdomain about its own centre when its body moves by `motion` about the body's.
     fn restrict(&self, subdomain: usize, motion: &[f64; 6]) -> [f64; 6] {
-        let body = &self.bodies[self.body_of[subdomain] as usize];
+        let body = &self.bodies[self.part_of[subdomain] as usize];
         let c = self.centres[subdomain];
         let arm = std::array::from_fn(|k| (c[k] - body.centre[k]) / body.radius);
         let [x, y, z] = displacement(motion, &arm);
@@ -218,7 +218,7 @@ impl Mobility {
     pub(crate) fn act(&self, entries: &[CopyEntry], factor: f64, out: &mut Vec<(usize, [f64; 6])>) {
         for e in entries {
             let s = e.subdomain as usize;
-            let body = self.body_of[s] as usize;
+            let body = self.part_of[s] as usize;
             let at = match out.iter().position(|v| v.0 == body) {
                 Some(at) => at,
                 None => {
@@ -308,16 +308,16 @@ impl Mobility {
             let [a, b, c, d, e, f] = part(body);
             let subdomain = self.bodies[body].first;
             BodyMotion {
-                body: self.assembly[subdomain] as usize,
+                body: self.body_of[subdomain] as usize,
                 subdomain,
                 translation: [a, b, c],
                 rotation: [d, e, f],
                 radius: self.bodies[body].radius,
             }
         });
-        let mut amplitudes = Vec::with_capacity(6 * self.body_of.len());
-        for s in 0..self.body_of.len() {
-            let motion = self.restrict(s, &part(self.body_of[s] as usize));
+        let mut amplitudes = Vec::with_capacity(6 * self.part_of.len());
+        for s in 0..self.part_of.len() {
+            let motion = self.restrict(s, &part(self.part_of[s] as usize));
             amplitudes.extend(self.kernel(s).amplitudes(&motion));
         }
         FreeMotion {
