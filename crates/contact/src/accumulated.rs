@@ -20,7 +20,7 @@
 //! On the benchmark with a coefficient that falls with the slip rate the sum was once 0.67 of the true error;
 //! `docs/accuracy-and-time.md` has the measurements.
 
-use crate::algebraic::AlgebraicError;
+use crate::algebraic::{AlgebraicError, relative};
 use crate::frame::Frame;
 
 /// Algebraic error with what earlier levels have left in it; see the [module](self).
@@ -52,8 +52,8 @@ pub struct AccumulatedError {
     sum: f64,
     /// Sum of the gaps, J.
     energy: f64,
-    /// Elastic energy of the last level, J.
-    elastic: f64,
+    /// What the last level is compared with, J: its elastic energy, or more [at rest](crate::algebraic#at-rest).
+    scale: f64,
 }
 
 impl AccumulatedError {
@@ -68,13 +68,13 @@ impl AccumulatedError {
         Self {
             sum: before.sum + own.energy.sqrt(),
             energy: before.energy + own.energy,
-            elastic: own.elastic,
+            scale: own.scale,
         }
     }
 
     /// All that it holds, to be checked.
     pub(crate) fn numbers(&self) -> [f64; 3] {
-        [self.sum, self.energy, self.elastic]
+        [self.sum, self.energy, self.scale]
     }
 
     /// What the last level may have of a total error `target` (relative, likely) if all levels are to have the same share of
@@ -86,33 +86,36 @@ impl AccumulatedError {
         left: usize,
         levels: usize,
     ) -> f64 {
-        if own.elastic <= 0.0 {
+        if own.scale <= 0.0 {
             return target;
         }
         let all = target.powi(2);
-        let rest = (all - self.energy / own.elastic) / left.max(1) as f64;
+        let rest = (all - self.energy / own.scale) / left.max(1) as f64;
         // where the load has fallen the old error may be more than is wanted: no accuracy of this level helps
         rest.max(LEAST * all / levels.max(1) as f64).sqrt()
     }
 
-    /// Likely error relative to the last displacement, both in the energy norm.
+    /// Likely error relative to the last displacement, both in the energy norm. 0 and infinity as in
+    /// [`AlgebraicError::relative`].
     #[must_use]
     pub fn likely(&self) -> f64 {
-        self.relative(self.energy.sqrt())
+        relative(self.energy, self.scale)
+    }
+
+    /// What the last level is compared with, J.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Energy of the difference that the likely errors of two runs can make together, J.
+    pub(crate) fn likely_difference(&self, other: &Self) -> f64 {
+        (self.energy.sqrt() + other.energy.sqrt()).powi(2)
     }
 
     /// The same if the errors of all levels point in the same direction.
     #[must_use]
     pub fn at_most(&self) -> f64 {
-        self.relative(self.sum)
-    }
-
-    fn relative(&self, error: f64) -> f64 {
-        if error == 0.0 {
-            0.0
-        } else {
-            error / self.elastic.sqrt()
-        }
+        relative(self.sum * self.sum, self.scale)
     }
 }
 
@@ -128,6 +131,7 @@ mod tests {
             energy,
             distance: 0.0,
             elastic: 100.0,
+            scale: 100.0,
         }
     }
 

@@ -26,7 +26,12 @@
 //! 1/2 |v - u*|² + 1/2 |u - u*|² <= gap.
 //! ```
 //!
-//! This bounds the errors of the nodal mean and of the torn displacement at once, without any constant.
+//! This bounds the errors of `v` and of the torn displacement at once, without any constant.
+//!
+//! **The mean that is handed out** ([`Frame::displacement`](crate::Frame::displacement)), the plain one of the copies, is neither: it is not moved, and does not
+//! obey the supports better than the copies do. Subdomains that are off as a whole strain nothing while they are torn, and much in the
+//! mean; its error was up to four times the bound. So the estimate is at least `1/2 |mean - v|²`. By the triangle inequality it is
+//! then no less than half the error of the mean, as a norm.
 //!
 //! **The move at contact nodes.** Every admissible `v` gives a bound; a good one costs little. At a node with
 //! stiffness `k` in the direction of the row, the move that minimises the gap with all other nodes held is
@@ -53,12 +58,28 @@
 //!   perpendicular a small depth may be left.
 //! - *The level before* is taken as it is: errors of old tangential positions are not in the estimate.
 //!   [`AccumulatedError`](crate::AccumulatedError) adds them up.
+//!
+//! # At rest
+//!
+//! A relative error needs something to compare with. Where nothing is strained (loads on supported nodes, a body that is
+//! unloaded again, one that only moves with its supports) the elastic energy is rounding, and an error relative to it
+//! would be about one whatever is done. [`AlgebraicError::scale`] therefore is the largest of
+//!
+//! - the elastic energy,
+//! - `1/2 sum |f|² / k`: what the load of each node would do to it with all others held. A body that is free to give way
+//!   has more elastic energy than a quarter of this,
+//! - `1e-6 / 2` times the largest norm of the multipliers times the largest displacement of the levels before: a thousandth of
+//!   both,
+//! - `1e-12 / 2 sum k |u|²`: below it elastic energies are rounding.
+//!
+//! With no load, no displacement and no level before there is nothing wrong either, and the relative error is 0.
 
 use crate::certificate::Certificate;
-use crate::contact_move::{Moved, dot, push_out};
+use crate::contact_move::{Moved, dot, movable_normal, push_out};
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::Model;
+use crate::state::REST;
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
 use std::sync::OnceLock;
@@ -69,27 +90,40 @@ const SWEEPS: usize = 10;
 /// Relative imbalance that counts as rounding.
 const BALANCED: f64 = 1e-12;
 
+/// Elastic energy that may be rounding, relative to that of all nodes moved alone: elastic energies of bodies that move without
+/// strain are differences of numbers this much larger, or more.
+const ROUNDED: f64 = 1e-12;
+
 /// Estimated algebraic error of a level; see the [module](self) for its derivation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct AlgebraicError {
-    /// The duality gap: bounds half the squared energy norm of the error, J.
+    /// The duality gap: bounds half the squared energy norm of the error of the torn displacement, J. Not less than what lies
+    /// between the mean of its copies and the displacement whose energy is in the gap.
     pub energy: f64,
     /// Part of it that comes from the distance of the torn displacement to a continuous admissible one, J.
     pub distance: f64,
     /// Elastic energy of the torn displacement, J.
     pub elastic: f64,
+    /// What the error is compared with, J: the elastic energy, and for a body [at rest](self#at-rest) a little more.
+    pub scale: f64,
 }
 
 impl AlgebraicError {
-    /// Error relative to the displacement, both in the energy norm: `sqrt(energy / elastic)`; 0 for a body at rest.
+    /// Error relative to the displacement, both in the energy norm: `sqrt(energy / scale)`. 0 where nothing is wrong, infinite
+    /// where something is and there is no scale: no load, no displacement, no level before.
     #[must_use]
     pub fn relative(&self) -> f64 {
-        if self.energy == 0.0 {
-            0.0
-        } else {
-            (self.energy / self.elastic).sqrt()
-        }
+        relative(self.energy, self.scale)
+    }
+}
+
+/// Root of a ratio of energies; 0 for no energy, whatever the scale.
+pub(crate) fn relative(energy: f64, scale: f64) -> f64 {
+    if energy == 0.0 {
+        0.0
+    } else {
+        (energy / scale).sqrt()
     }
 }
 
@@ -98,6 +132,8 @@ impl AlgebraicError {
 pub(crate) struct Weights {
     /// Stiffness in the direction of the contact rows, N/m, by row.
     rows: Vec<f64>,
+    /// Movable part of the normal of each contact point.
+    normals: Vec<[f64; 3]>,
     /// Made where a level needs it: solvers of the face method leave nothing to balance.
     interior: OnceLock<Option<CoarseFactor>>,
 }
@@ -107,8 +143,11 @@ impl Weights {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
+        let gluing = model.tfeti.gluing();
+        let normal = |point| movable_normal(gluing, point);
         Self {
             rows,
+            normals: model.points.iter().map(normal).collect(),
             interior: OnceLock::new(),
         }
     }
@@ -141,34 +180,32 @@ pub(crate) struct Solved<'a> {
 impl Solved<'_> {
     pub(crate) fn algebraic_error(&self) -> AlgebraicError {
         let model = self.model;
+        let tfeti = &model.tfeti;
         let weights = model.weights.get_or_init(|| Weights::new(model));
         let mut v = self.mean(model.copies());
-        let pairs = || self.points.iter().zip(&model.points);
-        let moved: Vec<Moved> = pairs()
-            .map(|(point, touch)| {
+        let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(self.torn));
+        let places = || self.points.iter().zip(&model.points).zip(&weights.normals);
+        let moved: Vec<Moved> = places()
+            .map(|((point, touch), normal)| {
                 let value = &mut v[3 * touch.node as usize..][..3];
-                Moved::new(self.level, touch, point, &weights.rows, value)
+                Moved::new(self.level, touch, point, normal, &weights.rows, value)
             })
             .collect();
         self.outside(&mut v);
         self.support(&mut v);
         let (mut terms, mut change) = (0.0, 0.0);
-        for ((point, touch), moved) in pairs().zip(&moved) {
+        for (((point, touch), normal), moved) in places().zip(&moved) {
             let value = &v[3 * touch.node as usize..][..3];
-            terms += moved.gap(self.level, touch, point, value);
+            terms += moved.gap(self.level, touch, point, normal, value);
             change += moved.change;
         }
         // torn difference and its energy
         let balanced = self.balanced(weights);
         let torn = balanced.as_deref().unwrap_or(self.torn);
-        let tfeti = &model.tfeti;
+        let subdomains = model.decomposition.subdomains();
+        let nodes = || subdomains.iter().flat_map(|s| &s.nodes);
         let mut difference = torn.to_vec();
-        let nodes = model
-            .decomposition
-            .subdomains()
-            .iter()
-            .flat_map(|s| &s.nodes);
-        for (d, &node) in difference.chunks_exact_mut(3).zip(nodes) {
+        for (d, &node) in difference.chunks_exact_mut(3).zip(nodes()) {
             (0..3).for_each(|c| d[c] -= v[3 * node as usize + c]);
         }
         let energy = |u: &[f64]| {
@@ -176,18 +213,44 @@ impl Solved<'_> {
             tfeti.stiffness_times(u, &mut force);
             vector::dot(u, &force)
         };
+        // from v to the mean that is handed out
+        let beside = mean.map_or(0.0, |mean| {
+            let off = |&node: &u32| {
+                let at = 3 * node as usize;
+                [0, 1, 2].map(|c| mean[at + c] - v[at + c])
+            };
+            let off: Vec<f64> = nodes().flat_map(off).collect();
+            0.5 * energy(&off)
+        });
         let (elastic, energy) = (energy(torn), energy(&difference));
         if balanced.is_none() && !self.is_balanced() {
             terms += vector::norm(self.residual) * vector::norm(&difference);
         }
         let distance = 0.5 * energy.max(0.0);
         let gap = distance + terms;
+        let elastic = 0.5 * elastic.max(0.0);
         AlgebraicError {
             // the square of the sum of two norms
-            energy: gap + change + 2.0 * (gap * change).sqrt(),
+            energy: (gap + change + 2.0 * gap.sqrt() * change.sqrt()).max(beside),
             distance,
-            elastic: 0.5 * elastic,
+            elastic,
+            scale: elastic.max(self.scale_at_rest(torn)),
         }
+    }
+
+    /// What an energy is compared with where the body is at rest, J.
+    fn scale_at_rest(&self, torn: &[f64]) -> f64 {
+        let (model, copies) = (self.model, self.model.copies());
+        let force = self.level.forces(model);
+        let (mut alone, mut moved) = (0.0_f64, 0.0);
+        for (k, (f, u)) in force.chunks_exact(3).zip(torn.chunks_exact(3)).enumerate() {
+            let stiffness = copies.weight(k);
+            alone += dot(f, f) / stiffness;
+            moved += dot(u, u) * stiffness;
+        }
+        let works = self.level.peaks.iter();
+        let before = REST * REST * works.map(|p| p.multipliers * p.displacement).sum::<f64>();
+        0.5 * alone.max(before).max(ROUNDED * moved)
     }
 
     fn is_balanced(&self) -> bool {
@@ -246,7 +309,7 @@ impl Solved<'_> {
             let points = self.model.points.iter();
             for touch in points.filter(|t| gluing.is_dependent(t.node)) {
                 let value = &mut v[3 * touch.node as usize..][..3];
-                push_out(self.level, touch, value);
+                push_out(self.level, touch, &movable_normal(gluing, touch), value);
             }
         }
     }

@@ -4,6 +4,10 @@
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::TouchPoint;
+use signorini_tfeti::Gluing;
+
+/// Rounding of directions.
+const SAME: f64 = 1e-12;
 
 /// Rounding of differences of positions, relative.
 const ROUNDING: f64 = 1e-12;
@@ -28,18 +32,21 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    /// Moves a node such that the gap is smallest with all other nodes held; `rows` are stiffnesses of rows in N/m.
+    /// Moves a node such that the gap is smallest with all other nodes held; `rows` are stiffnesses of rows in N/m, `normal`
+    /// is the [movable](movable_normal) one.
     pub(crate) fn new(
         level: &Level,
         touch: &TouchPoint,
         point: &PointState,
+        normal: &[f64; 3],
         rows: &[f64],
         value: &mut [f64],
     ) -> Self {
         let k = touch.scale.powi(2) * rows[touch.row];
-        let open = normal_offset(level, touch, value);
+        let open = normal_offset(level, touch, normal, value);
         let target = (open - point.normal_force / k).min(0.0);
-        shift(value, &touch.frame.normal, target - open);
+        // along the movable part, so that supports stay where they are
+        shift(value, normal, (target - open) / dot(normal, normal));
         let mut moved = Self {
             open: target,
             slip: [0.0; 2],
@@ -88,12 +95,13 @@ impl Moved {
         level: &Level,
         touch: &TouchPoint,
         point: &PointState,
+        normal: &[f64; 3],
         value: &[f64],
     ) -> f64 {
         let far = |a: f64, b: f64, size: f64| (a - b).abs() > ROUNDING * size;
         let size = value.iter().map(|v| v.abs()).fold(0.0, f64::max);
         let offset = level.offset[touch.row] / touch.scale;
-        let open = normal_offset(level, touch, value);
+        let open = normal_offset(level, touch, normal, value);
         if far(open, self.open, size + offset.abs()) {
             self.open = open;
         }
@@ -135,12 +143,25 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Moves a node out of the obstacle of a point, if it is inside.
-pub(crate) fn push_out(level: &Level, touch: &TouchPoint, value: &mut [f64]) {
-    let depth = normal_offset(level, touch, value).max(0.0);
-    shift(value, &touch.frame.normal, -depth);
+pub(crate) fn push_out(level: &Level, touch: &TouchPoint, normal: &[f64; 3], value: &mut [f64]) {
+    let depth = normal_offset(level, touch, normal, value).max(0.0);
+    shift(value, normal, -depth / dot(normal, normal));
 }
 
-/// `v_nu - g`, m.
-fn normal_offset(level: &Level, touch: &TouchPoint, value: &[f64]) -> f64 {
-    dot(&touch.frame.normal, value) - level.offset[touch.row] / touch.scale
+/// `v_nu - g`, m. The offset of the row has the motion that supports prescribe along the normal already, so that
+/// only the movable part of the normal counts.
+fn normal_offset(level: &Level, touch: &TouchPoint, normal: &[f64; 3], value: &[f64]) -> f64 {
+    dot(normal, value) - level.offset[touch.row] / touch.scale
+}
+
+/// The normal without its parts along directions that supports fix: what the row of the point measures and moves. The
+/// normal itself where nothing is fixed.
+pub(crate) fn movable_normal(gluing: &Gluing, touch: &TouchPoint) -> [f64; 3] {
+    let mut movable = [0.0; 3];
+    for (_, dof, coefficient) in gluing.row(touch.row) {
+        movable[dof % 3] += coefficient / touch.scale;
+    }
+    let normal = touch.frame.normal;
+    let same = (0..3).all(|c| (movable[c] - normal[c]).abs() <= SAME);
+    if same { normal } else { movable }
 }

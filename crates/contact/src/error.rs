@@ -172,6 +172,20 @@ pub enum ContactError {
         /// The value.
         value: f64,
     },
+    /// A load, a gap or the motion of a support is so large that squares of what follows from it overflow.
+    #[error(
+        "{place}: {value:e} {unit} is too large, squares of what follows from it would overflow (at most {most:e} {unit}); check its units and its history"
+    )]
+    TooLarge {
+        /// Load, support or contact node, and when.
+        place: String,
+        /// Its size: the largest nodal force, displacement or gap.
+        value: f64,
+        /// N or m.
+        unit: &'static str,
+        /// The largest size that is taken.
+        most: f64,
+    },
     /// Loads that nothing can balance.
     #[error(
         "level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push along it with {force:.3e} N; add a support, contact or friction, or balance the loads"

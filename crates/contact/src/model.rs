@@ -5,6 +5,7 @@ use crate::candidates::{Candidate, candidates, contact_nodes, surfaces};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
+use crate::magnitude;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -158,6 +159,7 @@ impl Model {
             None => {
                 scene.validate()?;
                 settings.validate()?;
+                magnitude::check_motions(&scene)?;
                 let decomposition = scene.decompose()?;
                 let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
                 (decomposition, plan)
@@ -169,6 +171,7 @@ impl Model {
             None => {
                 let surfaces = surfaces(&scene)?;
                 let candidates = candidates(&scene, &surfaces)?;
+                magnitude::check_gaps(&candidates)?;
                 driven::check(&scene, &candidates, &supports, &motions)?;
                 (surfaces, candidates)
             }
@@ -197,6 +200,7 @@ impl Model {
                 .map_err(|source| ContactError::Load { index, source })?;
             loads.push(tfeti.load_response(&local)?);
         }
+        magnitude::check_loads(&scene, &loads)?;
         let points = touch_points(&scene, &candidates, &places, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let set = ProductSet::new(vec![

@@ -4,11 +4,12 @@ use crate::candidates::{Candidate, candidates, surfaces};
 use crate::clock::Analysis;
 use crate::contact_surface::Gap;
 use crate::error::ContactError;
-use crate::estimate::{Estimate, Sizes, stiffness_ratio};
+use crate::estimate::{Estimate, SLENDER, Sizes, stiffness_ratio};
 use crate::law::Friction;
 use crate::precheck;
 use crate::scene::Scene;
 use crate::settings::{Method, Settings};
+use crate::slender::slenderness;
 use signorini_fem_mesh::Decomposition;
 use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,6 +67,8 @@ pub struct Plan {
     pub subdomains: usize,
     /// Unknown displacements of all torn subdomains, n_p of the paper.
     pub primal: usize,
+    /// Largest over smallest extent of a subdomain, the mean of all.
+    pub slenderness: f64,
     /// Contact points that can touch: nodes, those in edges and corners counted once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
     pub contact_nodes: usize,
@@ -184,6 +187,7 @@ impl Plan {
             elements: scene.mesh.tets().len(),
             subdomains: decomposition.subdomains().len(),
             ratio: largest_ratio(scene)?,
+            slenderness: slenderness(&scene.mesh, decomposition),
         };
         let estimate = Estimate::new(&effects, settings, &scene.analysis, &forecast, sizes);
         Ok(Self {
@@ -192,6 +196,7 @@ impl Plan {
             nodes,
             subdomains: decomposition.subdomains().len(),
             primal,
+            slenderness: sizes.slenderness,
             contact_nodes: normal_rows,
             normal_rows,
             tangential_rows,
@@ -261,6 +266,14 @@ impl fmt::Display for Plan {
             writeln!(
                 f,
                 "              large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
+            )?;
+        }
+        // the estimate of a brick of 3 : 1 has no part for bending
+        if e.contact && self.slenderness > 1.2 * SLENDER {
+            writeln!(
+                f,
+                "              slender ones, {:.0} : 1: such as are as long as thick need far fewer products",
+                self.slenderness
             )?;
         }
         let gluing = format!("{} rows", self.interface_rows);

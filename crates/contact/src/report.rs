@@ -19,7 +19,8 @@ pub enum LevelStatus {
     /// The Coulomb map is not contractive here: successive approximations have no limit from this start. The result is
     /// the last iterate, which solves the given-friction problem of the last slip bounds.
     NotContractive,
-    /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance: mostly the
+    /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance (with an
+    /// [`Accuracy`](crate::Accuracy) by estimates, above [`certificate_limit`](crate::accuracy::AccuracyReport::certificate_limit)): mostly the
     /// problem is too badly conditioned for it. The parts of the certificate name the violated condition.
     NotCertified,
 }

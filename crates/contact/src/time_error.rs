@@ -15,8 +15,15 @@
 //! no level of the run, and equal steps. From rest both start alike: the body is at rest before time 0, so the missing
 //! old displacements are zero.
 //!
+//! **Below the solver.** Both runs carry the errors that their solver has left ([`AccumulatedError::likely`]). A difference that is
+//! not three times as large as both together says nothing of the time steps: `is_below_solver` tells, nothing is said about
+//! reliability, and such steps do not enter the order. A smaller tolerance would show how small the error is. In
+//! [`Doubling::Local`] only what the step itself adds counts: both runs inherit the same.
+//!
 //! The memory is that of two runs, of three with `Twice`.
 
+use crate::accumulated::AccumulatedError;
+use crate::algebraic::relative;
 use crate::clock::Analysis;
 use crate::error::ContactError;
 use crate::frame::{ContactState, Frame};
@@ -50,6 +57,11 @@ pub struct TimeError {
     pub energy: f64,
     /// Elastic energy of the half steps' displacement, J.
     pub elastic: f64,
+    /// What energies are compared with, J: that, or more for a [body at rest](crate::AlgebraicError::scale).
+    pub scale: f64,
+    /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of the sum of
+    /// the roots of their accumulated algebraic errors.
+    pub algebraic: f64,
     /// Euclidean norm of the differences of the nodal contact forces, N.
     pub contact_force: f64,
     /// Euclidean norm of the nodal contact forces, N.
@@ -62,11 +74,17 @@ pub struct TimeError {
     pub changed_points: usize,
     /// Contact points that touch after the half steps.
     pub touching_points: usize,
-    /// With [`Doubling::Twice`]: energy of the difference to the quarter steps, J.
+    /// With [`Doubling::Twice`]: energy of the difference of the whole to the quarter steps, J.
     pub quarter_energy: Option<f64>,
-    /// With [`Doubling::Twice`]: order `p` measured on all steps so far; NaN as long as nothing differs.
+    /// With [`Doubling::Twice`]: energy of the difference of the half to the quarter steps, J.
+    pub finest_energy: Option<f64>,
+    /// With [`Doubling::Twice`]: order `p` measured on all steps so far in which more differs than the solver leaves; NaN as long
+    /// as there is none.
     pub order: Option<f64>,
 }
+
+/// Differences are time error, and not the solver's, from this many times the solver's errors on.
+const ABOVE: f64 = 3.0;
 
 /// A smaller order means that the steps have not settled into a sequence of sticking and sliding.
 const LOWEST: f64 = 0.5;
@@ -74,10 +92,10 @@ const LOWEST: f64 = 0.5;
 const HIGHEST: f64 = 2.5;
 
 impl TimeError {
-    /// Difference of the displacements relative to the displacement, in the energy norm.
+    /// Difference of the displacements relative to the displacement, in the energy norm. 0 where nothing differs.
     #[must_use]
     pub fn displacement(&self) -> f64 {
-        ratio(self.energy, self.elastic).sqrt()
+        relative(self.energy, self.scale)
     }
 
     /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the finest run
@@ -88,21 +106,31 @@ impl TimeError {
             (Some(energy), Some(order)) => {
                 let order = if order.is_nan() { 1.0 } else { order };
                 let rest = 4.0_f64.powf(-order.clamp(LOWEST, HIGHEST));
-                ratio(energy, self.elastic).sqrt() / (1.0 - rest)
+                relative(energy, self.scale) / (1.0 - rest)
             }
             _ => 2.0 * self.displacement(),
         }
     }
 
-    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to another
-    /// sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` without
-    /// [`Doubling::Twice`]: two runs cannot tell.
+    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most three times the
+    /// algebraic error. The error of the time steps is then as small as that or smaller; how small only a smaller tolerance can
+    /// tell.
     #[must_use]
-    pub fn is_reliable(&self) -> Option<bool> {
-        self.order.map(|order| order.is_nan() || order >= LOWEST)
+    pub fn is_below_solver(&self) -> bool {
+        self.finest_energy.unwrap_or(self.energy) <= ABOVE * ABOVE * self.algebraic
     }
 
-    /// Relative difference of the contact forces.
+    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to another
+    /// sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` where nobody
+    /// can tell: without [`Doubling::Twice`], and where the difference [is no more than the solver's
+    /// error](Self::is_below_solver).
+    #[must_use]
+    pub fn is_reliable(&self) -> Option<bool> {
+        let order = self.order?;
+        (!self.is_below_solver()).then_some(order >= LOWEST)
+    }
+
+    /// Relative difference of the contact forces. Infinite where no point touches any more after the half steps.
     #[must_use]
     pub fn force(&self) -> f64 {
         ratio(self.contact_force, self.contact_force_size)
@@ -115,6 +143,7 @@ impl TimeError {
     }
 }
 
+/// 0 for no value, whatever the size.
 fn ratio(value: f64, size: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / size }
 }
@@ -152,6 +181,8 @@ pub struct StepDoubling {
     differences: [f64; 2],
     /// Work of friction so far, of the whole and the half steps.
     work: [f64; 2],
+    /// Algebraic errors so far of the whole, half and quarter steps.
+    solver: [AccumulatedError; 3],
 }
 
 impl StepDoubling {
@@ -189,6 +220,7 @@ impl StepDoubling {
             mode,
             differences: [0.0; 2],
             work: [0.0; 2],
+            solver: [AccumulatedError::default(); 3],
         })
     }
 
@@ -234,26 +266,38 @@ impl StepDoubling {
     pub fn step(&mut self) -> Result<TimeError, ContactError> {
         if self.mode == Doubling::Local {
             self.work = [0.0; 2];
+            self.solver = [AccumulatedError::default(); 3];
             let level = self.whole.state().level();
             self.half.resume(self.whole.state().rebased(2 * level))?;
         }
+        let [of_whole, of_half, of_quarter] = &mut self.solver;
         for _ in 0..2 {
-            self.work[1] += self.half.step()?.summary().friction_work;
+            let frame = self.half.step()?;
+            self.work[1] += frame.summary().friction_work;
+            of_half.add(&frame);
         }
-        self.work[0] += self.whole.step()?.summary().friction_work;
+        let frame = self.whole.step()?;
+        self.work[0] += frame.summary().friction_work;
+        of_whole.add(&frame);
         let mut error = compare(&self.whole.present(), &self.half.present(), self.work)?;
+        error.scale = error.elastic.max(of_half.scale());
+        error.algebraic = of_whole.likely_difference(of_half);
         if let Some(quarter) = &mut self.quarter {
             for _ in 0..4 {
-                quarter.step()?;
+                of_quarter.add(&quarter.step()?);
             }
             let quarter = quarter.present();
             let far = energy_of_difference(&self.whole.present(), &quarter)?;
             let near = energy_of_difference(&self.half.present(), &quarter)?;
-            for (sum, energy) in self.differences.iter_mut().zip([error.energy, near]) {
-                *sum += ratio(energy, error.elastic);
+            error.quarter_energy = Some(far);
+            error.finest_energy = Some(near);
+            error.algebraic = of_half.likely_difference(of_quarter);
+            if !error.is_below_solver() {
+                for (sum, energy) in self.differences.iter_mut().zip([error.energy, near]) {
+                    *sum += ratio(energy, error.scale);
+                }
             }
             let [first, second] = self.differences;
-            error.quarter_energy = Some(far);
             error.order = Some(0.5 * (first / second).log2());
         }
         Ok(error)
@@ -302,6 +346,8 @@ fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeEr
         level: whole.level(),
         time: whole.time(),
         energy: energy_of_difference(whole, half)?,
+        scale: 0.0,
+        algebraic: 0.0,
         elastic: fields::strain_energy(&scene.mesh, &scene.materials, &other)?,
         contact_force: force.sqrt(),
         contact_force_size: size.sqrt(),
@@ -310,6 +356,7 @@ fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeEr
         changed_points: changed,
         touching_points: touching,
         quarter_energy: None,
+        finest_energy: None,
         order: None,
     })
 }

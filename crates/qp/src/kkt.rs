@@ -33,22 +33,28 @@ pub struct Kkt {
     pub x_norm: f64,
     /// `|b|`, for relative figures of the dual distances.
     pub b_norm: f64,
+    /// What primal distances are compared with: the largest of `|x|`, `|P(x)|` and `|e|`.
+    pub primal_size: f64,
+    /// What dual distances are compared with: `|b|`; for `b = 0` the larger of `|A x|` and `|Cᵀ mu|`, and if these
+    /// vanish as well `s |x - P(x)|`.
+    pub dual_size: f64,
 }
 
 impl Kkt {
-    /// The largest of the relative figures: infeasibility and equality over `|x|`, stationarity over
-    /// `|b|` (a zero denominator counts as 1). Not a number if one of them is none.
+    /// The largest of the relative figures: infeasibility and equality over [`primal_size`](Self::primal_size), stationarity
+    /// over [`dual_size`](Self::dual_size), all without units. A distance of zero counts as zero. Not a number if one of them is
+    /// none.
     #[must_use]
     pub fn relative(&self) -> f64 {
-        let over = |v: f64, d: f64| if d > 0.0 { v / d } else { v };
+        let over = |v: f64, size: f64| if v == 0.0 { 0.0 } else { v / size };
         // `f64::max` would hide what is not a number
         let worse = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
         [
-            over(self.equality, self.x_norm),
-            over(self.stationarity, self.b_norm),
+            over(self.equality, self.primal_size),
+            over(self.stationarity, self.dual_size),
         ]
         .into_iter()
-        .fold(over(self.infeasibility, self.x_norm), worse)
+        .fold(over(self.infeasibility, self.primal_size), worse)
     }
 }
 
@@ -108,6 +114,8 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     expect_setting("scale", scale, "(0, inf)", scale > 0.0 && scale.is_finite())?;
     let mut r = vec![0.0; n];
     a.apply(x, &mut r, &mut a.scratch());
+    let (b_norm, mut other_terms) = (root_of_squares(b), root_of_squares(&r));
+    let mut e_norm = 0.0;
     for i in 0..n {
         r[i] -= b[i];
     }
@@ -128,6 +136,8 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
         for i in 0..n {
             r[i] += t[i];
         }
+        other_terms = other_terms.max(root_of_squares(&t));
+        e_norm = root_of_squares(e);
     }
     let x_norm = root_of_squares(x);
     let mut sums = Sums {
@@ -140,6 +150,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
             Segment::Free(len) => {
                 for i in at..at + len {
                     sums.add(i, 0.0, r[i] * r[i], r[i] * r[i], 0.0);
+                    sums.inside += x[i] * x[i];
                 }
                 at += len;
             }
@@ -147,6 +158,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
                 for (&lo, &hi) in lower.iter().zip(upper) {
                     let (xi, ri) = (x[at], r[at]);
                     let outside = (lo - xi).max(xi - hi).max(0.0);
+                    sums.inside += xi.max(lo).min(hi).powi(2);
                     let moved = (xi - ri / scale).max(lo).min(hi);
                     let natural = scale * (xi - moved);
                     let near = 1e-10 * x_norm;
@@ -173,6 +185,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
                     let (x0, x1, r0, r1) = (x[at], x[at + 1], r[at], r[at + 1]);
                     let length = (x0 * x0 + x1 * x1).sqrt();
                     let outside = (length - radius).max(0.0);
+                    sums.inside += length.min(radius).powi(2);
                     let (y0, y1) = (x0 - r0 / scale, x1 - r1 / scale);
                     let reach = (y0 * y0 + y1 * y1).sqrt();
                     let shrink = if reach > radius { radius / reach } else { 1.0 };
@@ -192,15 +205,25 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
             }
         }
     }
+    let infeasibility = sums.outside.sqrt();
+    let dual_size = if b_norm > 0.0 {
+        b_norm
+    } else if other_terms > 0.0 {
+        other_terms
+    } else {
+        scale * infeasibility
+    };
     Ok(Kkt {
-        infeasibility: sums.outside.sqrt(),
+        infeasibility,
         equality: equality_residual.sqrt(),
         dual: sums.dual.sqrt(),
         stationarity: sums.natural.sqrt(),
         sign: sums.sign.sqrt(),
         worst: sums.worst,
         x_norm,
-        b_norm: root_of_squares(b),
+        b_norm,
+        primal_size: x_norm.max(sums.inside.sqrt()).max(e_norm),
+        dual_size,
     })
 }
 
@@ -210,6 +233,8 @@ struct Sums {
     natural: f64,
     dual: f64,
     sign: f64,
+    /// Squares of the projection of `x`.
+    inside: f64,
     largest: f64,
     worst: usize,
 }

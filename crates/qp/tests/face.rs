@@ -388,6 +388,47 @@ fn what_is_not_a_number_is_no_optimum() {
 }
 
 #[test]
+fn relative_figures_have_no_units() {
+    use signorini_qp::kkt::{EqualityPart, check, check_with};
+    use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment};
+    // lengths in another unit: x and e times `unit`, the operator as it is
+    let found = |unit: f64| {
+        let a = DenseOperator::new(2, vec![2e9, 1e9, 1e9, 3e9]).expect("operator");
+        let b = [0.0; 2];
+        let at_least = |low: f64| {
+            ProductSet::new(vec![Segment::bounds(vec![low; 2], vec![f64::INFINITY; 2])])
+                .expect("set")
+        };
+        // no load, but pushed by a bound: 1e-3 off the bound, outside of it, and at zero
+        let away = check(&a, &b, &at_least(unit), &[1.001 * unit, unit], 3e9).expect("figures");
+        let outside = check(&a, &b, &at_least(unit), &[0.9 * unit, unit], 3e9).expect("figures");
+        let zero = check(&a, &b, &at_least(unit), &[0.0; 2], 3e9).expect("figures");
+        let right = check(&a, &b, &at_least(unit), &[unit; 2], 3e9).expect("figures");
+        let rest = check(&a, &b, &at_least(-unit), &[0.0; 2], 3e9).expect("figures");
+        assert_eq!((right.relative(), rest.relative()), (0.0, 0.0));
+        // by an equality that the point misses
+        let c = DenseEquality::orthonormal(1, 2, &[1.0, 0.0]).expect("equality");
+        let part = EqualityPart {
+            c: &c,
+            e: &[unit],
+            multiplier: &[0.0],
+        };
+        let free = ProductSet::free(2);
+        let missed = check_with(&a, &b, &free, Some(part), &[0.0; 2], 3e9).expect("figures");
+        [away, outside, zero, missed].map(|k| k.relative())
+    };
+    let figures = found(1.0);
+    assert!(figures[0] > 1e-4 && figures[0] < 1e-2, "{figures:?}");
+    assert!(figures[1] > 0.01 && figures[1] < 1.0, "{figures:?}");
+    assert_eq!(figures[2..], [1.0, 1.0]);
+    for unit in [1e3, 1e-3, 1e-9] {
+        for (own, other) in figures.iter().zip(found(unit)) {
+            assert!((own / other - 1.0).abs() < 1e-9, "{unit:e}: {own} {other}");
+        }
+    }
+}
+
+#[test]
 fn sizes_that_cannot_be_counted_are_refused() {
     use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment};
     assert!(DenseOperator::new(1 << 32, Vec::new()).is_err());

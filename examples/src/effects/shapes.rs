@@ -14,7 +14,7 @@ type Make = fn() -> Result<Scene, Error>;
 /// # Errors
 /// [`ExampleError`] of the library.
 pub fn shapes() -> Result<Vec<Case>, ExampleError> {
-    let list: [(&str, Make); 13] = [
+    let list: [(&str, Make); 16] = [
         ("cube sheared by its support", cube),
         ("long beam, bends down", beam),
         ("plate, frictionless, static", plate),
@@ -28,6 +28,9 @@ pub fn shapes() -> Result<Vec<Case>, ExampleError> {
         ("pulled brick, given friction", pulled),
         ("brick, no friction, 10 steps", smooth),
         ("brick, H/h = 9", fine),
+        ("slab 8 : 1, one subdomain", slab),
+        ("beam 8 : 1, one subdomain", long),
+        ("slab 8 : 1, 64 subdomains", cut_slab),
     ];
     list.into_iter()
         .map(|(name, scene)| {
@@ -233,6 +236,28 @@ fn fine() -> Result<Scene, Error> {
         .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(ramp()?))
         .with_load(Load::traction(brick::X_MAX, [9e8, 0.0, -15e8]).with_history(waves()?))
         .with_contact(floor(0.1, 0.3))
+        .with_analysis(steps(10)))
+}
+
+fn slab() -> Result<Scene, Error> {
+    let mesh = Brick::new([4.0, 4.0, 0.5], [16, 16, 2]).build()?;
+    Ok(Scene::new(mesh, steel()?)
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::pressure(brick::Z_MAX, 1e8).with_history(ramp()?))
+        .with_contact(floor(0.01, 0.3))
+        .with_analysis(steps(1)))
+}
+
+fn cut_slab() -> Result<Scene, Error> {
+    Ok(slab()?.with_boxes([8, 8, 1]))
+}
+
+fn long() -> Result<Scene, Error> {
+    let mesh = Brick::new([8.0, 1.0, 1.0], [16, 2, 2]).build()?;
+    Ok(Scene::new(mesh, steel()?)
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::pressure(brick::Z_MAX, 1e8).with_history(ramp()?))
+        .with_contact(floor(0.02, 0.3))
         .with_analysis(steps(10)))
 }
 

@@ -1,7 +1,10 @@
 //! Solves of one level: one, or several until the certificate or an estimate of the error is small enough.
 
 use super::Simulation;
-use crate::accuracy::{Accuracy, AccuracyReport, Discretisation, ROUNDS};
+use crate::accuracy::{
+    Accuracy, AccuracyReport, Discretisation, ROUNDS, certificate_limit, contact_violation,
+};
+use crate::algebraic::{AlgebraicError, relative};
 use crate::error::ContactError;
 use crate::report::{LevelReport, LevelStatus};
 
@@ -30,8 +33,8 @@ impl Simulation {
             let algebraic = self.present().algebraic_error();
             let (discretisation, target) = match accuracy {
                 Accuracy::Balanced { fraction } => {
-                    let known = self.discretisation(algebraic.elastic)?;
-                    (Some(known), fraction * known.relative)
+                    let known = self.discretisation(&algebraic)?;
+                    (Some(known), known.target(fraction))
                 }
                 Accuracy::Relative(x) => (None, x),
                 Accuracy::Tolerance => (None, f64::INFINITY),
@@ -48,6 +51,9 @@ impl Simulation {
                 target
             };
             let reached = found <= share;
+            let largest = contact_violation(&self.certificate);
+            let limit = certificate_limit(target);
+            let certified = largest <= limit;
             report.accuracy = Some(AccuracyReport {
                 algebraic,
                 accumulated: self.controller.errors.with(&algebraic, history),
@@ -56,6 +62,8 @@ impl Simulation {
                 target,
                 share,
                 reached,
+                certificate_limit: limit,
+                certified,
                 rounds,
                 tolerance,
             });
@@ -64,14 +72,17 @@ impl Simulation {
                 Some(before) => before.resumed(report),
                 None => report,
             };
-            if reached && rounds == 1 {
-                self.controller.relax(found, share);
+            let (good, targets) = (reached && certified, [(found, share), (largest, limit)]);
+            if good && rounds == 1 {
+                self.controller.relax(targets);
             }
-            let again = !reached && converged && rounds < ROUNDS;
-            if !again || !self.controller.tighten(found, share) {
-                if converged && !reached {
-                    report.status = LevelStatus::Stagnated;
-                }
+            let again = !good && converged && rounds < ROUNDS;
+            if !again || !self.controller.tighten(targets) {
+                report.status = match report.status {
+                    LevelStatus::Converged if !reached => LevelStatus::Stagnated,
+                    LevelStatus::Converged if !certified => LevelStatus::NotCertified,
+                    status => status,
+                };
                 return Ok((report, lambda, rows));
             }
             total = Some(report);
@@ -79,17 +90,21 @@ impl Simulation {
         }
     }
 
-    /// The discretisation error of the level, or of an earlier one like it; `elastic` is the level's energy.
-    fn discretisation(&mut self, elastic: f64) -> Result<Discretisation, ContactError> {
+    /// The discretisation error of the level, or of an earlier one like it.
+    fn discretisation(&mut self, own: &AlgebraicError) -> Result<Discretisation, ContactError> {
         let (known, level) = (self.controller.discretisation, self.level.index);
-        if known.holds(level, elastic) {
+        if known.holds(level, own.scale) {
             return Ok(known);
         }
-        let relative = self.present().discretisation_error()?.relative();
+        let found = self.present().discretisation_error()?;
         self.controller.discretisation = Discretisation {
-            relative,
+            relative: if own.scale > own.elastic {
+                relative(found.energy(), own.scale)
+            } else {
+                found.relative()
+            },
             level,
-            elastic,
+            scale: own.scale,
         };
         Ok(self.controller.discretisation)
     }
