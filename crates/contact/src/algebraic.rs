@@ -54,6 +54,8 @@
 //!   *its* given-friction problem, one evaluation of the map (3.15) away. With contraction rate `q` of the map the distance
 //!   to its fixed point is at most `1 / (1 - q)` times the estimate; `q` is about 0.06 on the benchmark. Where the
 //!   map is not contractive the estimate says nothing about the Coulomb problem.
+//! - *Nodes in edges* of obstacles are moved out of one after the other, ten times. Between obstacles that are not
+//!   perpendicular a small depth may be left.
 //! - *The level before* is taken as it is: errors of old tangential positions are not in the estimate.
 //!   [`AccumulatedError`](crate::AccumulatedError) adds them up.
 //!
@@ -73,7 +75,7 @@
 //! With no load, no displacement and no level before there is nothing wrong either, and the relative error is 0.
 
 use crate::certificate::Certificate;
-use crate::contact_move::{Moved, dot, movable_normal};
+use crate::contact_move::{Moved, dot, movable_normal, push_out};
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::Model;
@@ -81,6 +83,9 @@ use crate::state::REST;
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
 use std::sync::OnceLock;
+
+/// Moves out of one obstacle after another, for nodes in edges; one is enough between perpendicular ones.
+const SWEEPS: usize = 10;
 
 /// Relative imbalance that counts as rounding.
 const BALANCED: f64 = 1e-12;
@@ -186,6 +191,7 @@ impl Solved<'_> {
                 Moved::new(self.level, touch, point, normal, &weights.rows, value)
             })
             .collect();
+        self.outside(&mut v);
         self.support(&mut v);
         let (mut terms, mut change) = (0.0, 0.0);
         for (((point, touch), normal), moved) in places().zip(&moved) {
@@ -294,6 +300,18 @@ impl Solved<'_> {
             value.iter_mut().for_each(|x| *x /= total);
         }
         v
+    }
+
+    /// Moves nodes with several contact points out of all their obstacles: the move for one of them may go into another.
+    fn outside(&self, v: &mut [f64]) {
+        let gluing = self.model.tfeti.gluing();
+        for _ in 0..SWEEPS {
+            let points = self.model.points.iter();
+            for touch in points.filter(|t| gluing.is_dependent(t.node)) {
+                let value = &mut v[3 * touch.node as usize..][..3];
+                push_out(self.level, touch, &movable_normal(gluing, touch), value);
+            }
+        }
     }
 
     /// Sets supported directions to their prescribed values.

@@ -17,8 +17,7 @@
 //! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
 
-use crate::law::Friction;
-use crate::level::{Level, ROUNDED, normal_force};
+use crate::level::{Level, ROUNDED};
 use crate::model::{Model, Tangential};
 use crate::state::{Peak, REST};
 use signorini_qp::vector;
@@ -277,12 +276,5 @@ pub(crate) fn slip_bound(model: &Model, level: &Level, k: usize, lambda: &[f64])
     if point.tangential == Tangential::None {
         return None;
     }
-    match model.friction() {
-        Friction::None => None,
-        Friction::Given(bound) => bound
-            .stress(point.node, point.position)
-            .ok()
-            .map(|s| s * point.area),
-        Friction::Coulomb(_) => Some(level.coefficients.get(k)? * normal_force(point, lambda)),
-    }
+    Some(level.bound(k, point, lambda))
 }

@@ -3,6 +3,10 @@
 //! Least squares with non-negative coefficients (Lawson and Hanson) over the generators `n + F (t1 cos + t2 sin)` of all
 //! points and angles: in each round the generator that helps most joins those in use, which are never more than there
 //! are motions, up to rounding.
+//!
+//! Given friction adds forces that are bounded whatever the pressure: a set of points `z` around the cone. Whether loads lie
+//! in the sum of both is asked by going towards them in steps (Frank and Wolfe): the residual `r` of `b - z` separates `b`
+//! if `b` works more on it than all friction can.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,8 +17,19 @@ pub(crate) struct Generators {
     pub(crate) normal: Vec<f64>,
     /// Of friction forces of 1 N along each tangent.
     pub(crate) tangents: Vec<Vec<f64>>,
-    /// Largest friction over pressure; `None` if friction has no bound that follows the pressure.
+    /// Largest friction over pressure; `None` if friction has no known bound.
     pub(crate) coefficient: Option<f64>,
+    /// Largest friction without pressure, N.
+    pub(crate) given: f64,
+}
+
+/// A motion along which loads push more than contact can take.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Separation {
+    /// The motion, of length one.
+    pub(crate) motion: Vec<f64>,
+    /// What given friction takes along it, N.
+    pub(crate) given: f64,
 }
 
 #[derive(Debug)]
@@ -34,6 +49,12 @@ const LEVERAGE: f64 = 1e5;
 /// Rounds before the question is left open.
 const ROUNDS: usize = 500;
 
+/// Steps towards the loads before the question is left open.
+const STEPS: usize = 200;
+
+/// Part by which loads must exceed given friction to count.
+const MORE: f64 = 1e-6;
+
 impl Cone {
     pub(crate) fn new(dim: usize, generators: Vec<Generators>) -> Self {
         let mut largest = 0.0_f64;
@@ -47,6 +68,48 @@ impl Cone {
             generators,
             largest,
         }
+    }
+
+    /// Whether the loads `b`, N, are out of reach of cone and given friction.
+    pub(crate) fn exceeded(&mut self, b: &[f64]) -> Option<Separation> {
+        let size = norm(b);
+        let mut z = vec![0.0; b.len()];
+        for step in 0..STEPS {
+            let rest: Vec<f64> = b.iter().zip(&z).map(|(b, z)| b - z).collect();
+            let length = norm(&rest);
+            if length <= MORE * size {
+                return None;
+            }
+            let unit: Vec<f64> = rest.iter().map(|v| v / length).collect();
+            let motion = self.separates(&unit)?;
+            let most = self.most_given(&motion);
+            let given = dot(&most, &motion);
+            if dot(b, &motion) > given + MORE * size {
+                return Some(Separation { motion, given });
+            }
+            let share = 2.0 / (step as f64 + 2.0);
+            for (z, m) in z.iter_mut().zip(&most) {
+                *z += share * (m - *z);
+            }
+        }
+        None
+    }
+
+    /// The given friction that works most on a motion.
+    fn most_given(&self, motion: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; motion.len()];
+        for g in self.generators.iter().filter(|g| g.given > 0.0) {
+            let along: Vec<f64> = g.tangents.iter().map(|t| dot(t, motion)).collect();
+            let length = norm(&along);
+            if length > 0.0 {
+                for (t, a) in g.tangents.iter().zip(&along) {
+                    for (o, t) in out.iter_mut().zip(t) {
+                        *o += g.given * a / length * t;
+                    }
+                }
+            }
+        }
+        out
     }
 
     /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies in the
@@ -181,8 +244,27 @@ mod tests {
             normal: vec![1.0, 0.0, x],
             tangents: vec![vec![0.0, 1.0, 0.0]],
             coefficient: Some(coefficient),
+            given: 0.0,
         };
         Cone::new(3, vec![point(-1.0), point(1.0)])
+    }
+
+    #[test]
+    fn given_friction_holds_up_to_its_bounds() {
+        let mut cone = two_points(0.0);
+        for g in &mut cone.generators {
+            g.given = 5.0;
+        }
+        for along in [0.0, 3.0, 9.999, -9.999] {
+            assert_eq!(cone.exceeded(&[7.0, along, 1.0]), None, "{along}");
+        }
+        for along in [10.001, -30.0] {
+            let found = cone.exceeded(&[7.0, along, 1.0]).expect("exceeded");
+            assert!((found.given - 10.0).abs() < 1e-6, "{found:?}");
+            assert!((found.motion[1] - along.signum()).abs() < 1e-6, "{found:?}");
+        }
+        // what lifts the body off is not held by it
+        assert!(cone.exceeded(&[-1.0, 0.0, 0.0]).is_some());
     }
 
     fn held(cone: &mut Cone, b: [f64; 3]) -> bool {
@@ -239,6 +321,7 @@ mod tests {
                         vec![0.0, 1.0, 0.0, 0.0, 0.0, x],
                     ],
                     coefficient: Some(0.5),
+                    given: 0.0,
                 }
             })
             .collect();

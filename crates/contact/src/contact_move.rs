@@ -3,7 +3,7 @@
 
 use crate::frame::PointState;
 use crate::level::Level;
-use crate::model::{Tangential, TouchPoint};
+use crate::model::TouchPoint;
 use signorini_tfeti::Gluing;
 
 /// Rounding of directions.
@@ -54,12 +54,12 @@ impl Moved {
             bound: point.slip_bound,
             change: 0.0,
         };
-        let Some((_, row, scale)) = directions(touch).next() else {
+        let Some((_, row, scale)) = touch.along().next() else {
             return moved;
         };
         let k = scale.powi(2) * rows[row];
         let mut start = [0.0; 2];
-        for (j, (direction, row, scale)) in directions(touch).enumerate() {
+        for (j, (direction, row, scale)) in touch.along().enumerate() {
             start[j] = dot(&direction, value) - level.offset[row] / scale;
             moved.force[j] = dot(&direction, &point.friction_force);
         }
@@ -83,7 +83,7 @@ impl Moved {
             moved.change = change;
             moved.slip = nearest(size);
         }
-        for (j, (direction, ..)) in directions(touch).enumerate() {
+        for (j, (direction, ..)) in touch.along().enumerate() {
             shift(value, &direction, moved.slip[j] - start[j]);
         }
         moved
@@ -105,7 +105,7 @@ impl Moved {
         if far(open, self.open, size + offset.abs()) {
             self.open = open;
         }
-        for (j, (direction, row, scale)) in directions(touch).enumerate() {
+        for (j, (direction, row, scale)) in touch.along().enumerate() {
             let offset = level.offset[row] / scale;
             let slip = dot(&direction, value) - offset;
             if far(slip, self.slip[j], size + offset.abs()) {
@@ -142,6 +142,12 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// Moves a node out of the obstacle of a point, if it is inside.
+pub(crate) fn push_out(level: &Level, touch: &TouchPoint, normal: &[f64; 3], value: &mut [f64]) {
+    let depth = normal_offset(level, touch, normal, value).max(0.0);
+    shift(value, normal, -depth / dot(normal, normal));
+}
+
 /// `v_nu - g`, m. The offset of the row has the motion that supports prescribe along the normal already, so that
 /// only the movable part of the normal counts.
 fn normal_offset(level: &Level, touch: &TouchPoint, normal: &[f64; 3], value: &[f64]) -> f64 {
@@ -158,19 +164,4 @@ pub(crate) fn movable_normal(gluing: &Gluing, touch: &TouchPoint) -> [f64; 3] {
     let normal = touch.frame.normal;
     let same = (0..3).all(|c| (movable[c] - normal[c]).abs() <= SAME);
     if same { normal } else { movable }
-}
-
-/// Tangential directions of a point with their rows and scales.
-fn directions(touch: &TouchPoint) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-    let [a, b] = touch.frame.tangents;
-    let list = match touch.tangential {
-        Tangential::None => [None, None],
-        Tangential::Line {
-            row,
-            direction,
-            scale,
-        } => [Some((direction, row, scale)), None],
-        Tangential::Plane { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
-    };
-    list.into_iter().flatten()
 }

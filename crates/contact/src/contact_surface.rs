@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::law::{Friction, PlaceField};
-use signorini_fem_mesh::FacetTag;
+use signorini_fem_mesh::{FacetTag, History};
 use std::fmt;
 use std::sync::Arc;
 
@@ -46,7 +46,14 @@ pub struct Contact {
     pub(crate) gap: Gap,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
+    /// Angle of a crease, degrees.
+    pub(crate) crease: f64,
+    /// Displacement of the obstacle, m, and its factor in time.
+    pub(crate) motion: Option<([f64; 3], History)>,
 }
+
+/// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
+const CREASE: f64 = 60.0;
 
 impl Contact {
     /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.
@@ -57,6 +64,8 @@ impl Contact {
             gap: Gap::None,
             normal: ContactNormal::Body,
             friction: Friction::None,
+            crease: CREASE,
+            motion: None,
         }
     }
 
@@ -74,9 +83,8 @@ impl Contact {
             .with_gap_field(gap)
     }
 
-    /// More facets of the same kind. Each node has one normal: where facets of two sides meet at an edge it is their mean, so
-    /// that nodes of an edge between floor and wall meet neither straight. Leave such edges out of one of the tags, or give
-    /// one direction for all by [`with_normal`](Self::with_normal).
+    /// More facets of the same kind. For another gap, direction or friction give a scene another contact
+    /// ([`Scene::with_contact`](crate::Scene::with_contact)).
     #[must_use]
     pub fn and_tag(mut self, tag: FacetTag) -> Self {
         self.tags.push(tag);
@@ -106,6 +114,36 @@ impl Contact {
     pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
         self.normal = ContactNormal::Fixed(into_obstacle);
         self
+    }
+
+    /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
+    /// default; in (0, 180], 180 for none). A node has one contact point with the mean normal of its facets; at a crease it
+    /// has one for each side, so that an edge between floor and wall meets both. Ordinary meshes of curved surfaces have
+    /// smaller angles (45 with 8 facets around a cylinder). Without effect with [`with_normal`](Self::with_normal).
+    #[must_use]
+    pub fn with_crease(mut self, degrees: f64) -> Self {
+        self.crease = degrees;
+        self
+    }
+
+    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero before the first level, as
+    /// that of the body. Along the normal it opens or closes the gap; along the surface it drags the body by friction: slip is
+    /// the displacement of the body relative to the obstacle. A rotating obstacle is none of these.
+    #[must_use]
+    pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
+        self.motion = Some((displacement, history));
+        self
+    }
+
+    /// Displacement of the obstacle at a time, m.
+    pub(crate) fn obstacle_at(&self, time: f64) -> [f64; 3] {
+        match &self.motion {
+            Some((displacement, history)) => {
+                let factor = history.value(time);
+                displacement.map(|c| factor * c)
+            }
+            None => [0.0; 3],
+        }
     }
 
     /// The friction law. A bound or coefficient that is zero everywhere is no friction.

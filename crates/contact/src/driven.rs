@@ -3,11 +3,11 @@
 //! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
 //! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
-use crate::contact_surface::Contact;
+use crate::candidates::{Candidate, contact_nodes};
 use crate::error::ContactError;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
-use signorini_tfeti::{ContactNodes, HeldPoint, Support, held_points};
+use signorini_tfeti::{HeldPoint, Support, held_points};
 
 /// Depth above this share of the displacement or the gap counts.
 const RELATIVE: f64 = 1e-9;
@@ -15,22 +15,22 @@ const RELATIVE: f64 = 1e-9;
 /// Depth below this share of the largest coordinate is rounding of a gap that was computed from coordinates.
 const ROUNDING: f64 = 1e-12;
 
-/// Refuses supports that hold contact nodes inside the obstacle at some time level.
+/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some time level.
 pub(crate) fn check(
     scene: &Scene,
-    contact: &Contact,
-    nodes: &ContactNodes,
+    candidates: &[Candidate],
     supports: &[Support],
     motions: &[History],
 ) -> Result<(), ContactError> {
     let points = scene.mesh.points();
-    let held = held_points(nodes, supports, points.len())?
+    let nodes = contact_nodes(scene, candidates.iter());
+    let held: Vec<(HeldPoint, &Candidate)> = held_points(&nodes, supports, points.len())?
         .into_iter()
         .map(|point| {
-            let gap = contact.gap_at(point.node, points[point.node as usize])?;
-            Ok((point, gap))
+            let candidate = &candidates[point.point];
+            (point, candidate)
         })
-        .collect::<Result<Vec<(HeldPoint, f64)>, ContactError>>()?;
+        .collect();
     if held.is_empty() {
         return Ok(());
     }
@@ -40,7 +40,10 @@ pub(crate) fn check(
     for time in times {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
         let mut deepest: Option<(f64, u32, f64, f64)> = None;
-        for (point, gap) in &held {
+        for (point, candidate) in &held {
+            let contact = &scene.contacts[candidate.surface];
+            let carried = candidate.frame.normal_part(contact.obstacle_at(time));
+            let gap = candidate.gap + carried;
             let displacement: f64 = point
                 .normal
                 .iter()
@@ -49,7 +52,7 @@ pub(crate) fn check(
             let depth = displacement - gap;
             let allowed = rounding + RELATIVE * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
-                deepest = Some((depth, point.node, displacement, *gap));
+                deepest = Some((depth, point.node, displacement, gap));
             }
         }
         if let Some((depth, node, displacement, gap)) = deepest {

@@ -120,14 +120,6 @@ pub enum ContactError {
         /// Number of nodes.
         nodes: usize,
     },
-    /// More than one contact surface.
-    #[error(
-        "with_contact was called {count} times, and a scene has one contact surface; put further tags with the same law in by Contact::and_tag, or take the other surface by replace_contact"
-    )]
-    SeveralContacts {
-        /// Calls.
-        count: usize,
-    },
     /// A gap is not finite.
     #[error("contact at node {node}: the gap {value} m is not finite")]
     Gap {
@@ -149,7 +141,7 @@ pub enum ContactError {
         time: f64,
         /// Prescribed displacement along the normal into the obstacle, m.
         displacement: f64,
-        /// Initial distance to the obstacle, m.
+        /// Distance to the obstacle at that time without the displacement, m.
         gap: f64,
     },
     /// An obstacle has no usable normal.
@@ -171,7 +163,7 @@ pub enum ContactError {
     /// A load or support history gave a value that is not finite.
     #[error("{what} {index}: its history gives {value} at time {time} s")]
     HistoryValue {
-        /// Load or support.
+        /// Load, support or contact.
         what: &'static str,
         /// Its position in the scene.
         index: usize,
@@ -201,7 +193,7 @@ pub enum ContactError {
     NotHeld {
         /// Time level, from 0.
         level: usize,
-        /// The body (connected component of the mesh).
+        /// The body (part of the mesh that hangs together).
         body: usize,
         /// The rigid motion, in words: translation of the centre of the body, and rotation in metres at its radius.
         mode: String,
@@ -214,7 +206,7 @@ pub enum ContactError {
         "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are held neither by supports nor by contact ({motions}); add supports that stop them"
     )]
     NotDetermined {
-        /// The first such body (connected component of the mesh).
+        /// The first such body (part of the mesh that hangs together).
         body: usize,
         /// Number of free rigid motions of all bodies.
         count: usize,

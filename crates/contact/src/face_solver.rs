@@ -4,6 +4,7 @@
 //! reached, from the start of the level where the face method stagnated. It is proved to solve every given-friction problem.
 
 use crate::error::ContactError;
+use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{DISCS, Model, Tangential};
 use crate::paper_solver::PaperSolver;
@@ -11,7 +12,7 @@ use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
 use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
-use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face};
+use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face, vector};
 use signorini_tfeti::{DualOperator, FaceSpace};
 
 /// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
@@ -21,6 +22,16 @@ const SAFETY: f64 = 1.0;
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
 /// predicts faces from gradients alone.
 const LOOSE: f64 = 5.0;
+
+/// Part of the stiffness that the natural map takes at rows that may depend on others of their node: two rows along one
+/// direction move it twice.
+const SHARED: f64 = 0.5;
+
+/// What a release would change, over the error of a solved face, from which on it is worth it.
+const CONTRADICTION: f64 = 10.0;
+
+/// Solves of a level with contradicting points released.
+const TURNS: usize = 8;
 
 #[derive(Debug)]
 pub(crate) struct FaceSolver {
@@ -49,6 +60,16 @@ impl FaceSolver {
         for (scale, compliance) in scale.iter_mut().zip(compliance) {
             *scale = scale.min(LOOSE / compliance);
         }
+        let gluing = model.tfeti.gluing();
+        let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
+        for (_, scale) in scale
+            .iter_mut()
+            .enumerate()
+            .take(contact)
+            .filter(|s| shared(s.0))
+        {
+            *scale *= SHARED;
+        }
         Ok(Self {
             space: FaceSpace::new(model.tfeti.coarse(), contact, model.tfeti.row_weights())?,
             work: FaceWorkspace::new(model.tfeti.dual(), &preconditioner),
@@ -69,8 +90,8 @@ impl FaceSolver {
     ) -> Result<LevelReport, ContactError> {
         let mut report = LevelReport::new();
         report.counters.inequality_solves = 1;
-        level.slip_bounds(model, &iterate.lambda, &mut self.set)?;
-        report.counters.slip_bound_updates = usize::from(model.friction().is_some());
+        level.slip_bounds(model, &iterate.lambda, &mut self.set);
+        report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
         let start = iterate.lambda.clone();
         self.space.set_rhs(&level.rhs);
         let problem = FaceProblem {
@@ -95,45 +116,66 @@ impl FaceSolver {
         let mut updates = 0;
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             if coulomb {
-                level.coulomb_bounds(model, x, set);
+                level.slip_bounds(model, x, set);
                 updates += 1;
             }
         };
-        let outcome = face(
-            &problem,
-            &mut self.space,
-            &mut self.set,
-            &mut iterate.lambda,
-            &mut iterate.f_lambda,
-            iterate.known,
-            &face_settings,
-            &mut self.work,
-            &mut hook,
-        );
-        let status = match outcome {
-            Ok(outcome) => {
-                report.iterations = outcome.faces;
-                report.counters.products += outcome.products();
-                report.counters.preconditionings += outcome.preconditionings;
-                report.counters.coarse_factorisations += outcome.factorisations;
-                report.counters.faces += outcome.faces;
-                report.counters.slip_bound_updates += updates;
-                report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
-                outcome.status
+        let mut turns = 0;
+        let status = loop {
+            let outcome = face(
+                &problem,
+                &mut self.space,
+                &mut self.set,
+                &mut iterate.lambda,
+                &mut iterate.f_lambda,
+                iterate.known,
+                &face_settings,
+                &mut self.work,
+                &mut hook,
+            );
+            let status = match outcome {
+                Ok(outcome) => {
+                    report.iterations += outcome.faces;
+                    report.counters.products += outcome.products();
+                    report.counters.preconditionings += outcome.preconditionings;
+                    report.counters.coarse_factorisations += outcome.factorisations;
+                    report.counters.faces += outcome.faces;
+                    report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
+                    outcome.status
+                }
+                // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
+                Err(
+                    signorini_qp::QpError::CoarseDeficient { .. }
+                    | signorini_qp::QpError::NotFinite { .. },
+                ) => Status::Stagnated,
+                Err(error) => return Err(error.into()),
+            };
+            let limit = CONTRADICTION
+                * face_settings.tolerance
+                * vector::norm(&iterate.lambda).max(face_settings.least);
+            if status != Status::Converged
+                || turns == TURNS
+                || !release(
+                    model,
+                    &self.set,
+                    self.work.residual(),
+                    &self.scale,
+                    limit,
+                    &mut iterate.lambda,
+                )
+            {
+                break status;
             }
-            // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
-            Err(
-                signorini_qp::QpError::CoarseDeficient { .. }
-                | signorini_qp::QpError::NotFinite { .. },
-            ) => Status::Stagnated,
-            Err(error) => return Err(error.into()),
+            iterate.known = false;
+            turns += 1;
         };
+        report.counters.slip_bound_updates += updates;
         report.status = level_status(status);
         if report.status.converged() {
             iterate.known = true;
             iterate.alpha.resize(level.rhs.len(), 0.0);
             let mut residual = iterate.f_lambda.clone();
-            signorini_qp::vector::axpy(-1.0, &level.linear, &mut residual);
+            vector::axpy(-1.0, &level.linear, &mut residual);
             self.space.amplitudes(&residual, &mut iterate.alpha);
             return Ok(report);
         }
@@ -174,6 +216,39 @@ impl FaceSolver {
         iterate.multiplier.clear();
         Ok(report)
     }
+}
+
+/// Lets points slide that stick where other rows of their node move them: a solved face leaves their slip, since the rows
+/// contradict one another and no force can change it. Whether there are such points.
+fn release(
+    model: &Model,
+    set: &ProductSet,
+    residual: &[f64],
+    scale: &[f64],
+    limit: f64,
+    lambda: &mut [f64],
+) -> bool {
+    let gluing = model.tfeti.gluing();
+    let Some(signorini_qp::Segment::Discs { radii }) = set.segments().get(DISCS) else {
+        return false;
+    };
+    let start = gluing.ranges().discs.start;
+    let mut any = false;
+    for point in model.points.iter().filter(|p| gluing.is_dependent(p.node)) {
+        let Tangential::Plane { row, .. } = point.tangential else {
+            continue;
+        };
+        let radius = radii[(row - start) / 2];
+        let slip = residual[row].hypot(residual[row + 1]);
+        let size = lambda[row].hypot(lambda[row + 1]);
+        if (slip * scale[row]).min(radius - size) > limit {
+            for k in row..row + 2 {
+                lambda[k] = -radius * residual[k] / slip;
+            }
+            any = true;
+        }
+    }
+    any
 }
 
 /// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a

@@ -26,8 +26,10 @@ pub enum ContactState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
-    /// Mesh node.
+    /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
     pub node: u32,
+    /// Position of the contact surface in [`Scene::contacts`].
+    pub surface: usize,
     /// What it does.
     pub state: ContactState,
     /// Normal force on the body `lambda_nu`, N, not positive.
@@ -72,12 +74,15 @@ pub struct ContactSummary {
     pub max_slip_rate: f64,
     /// Largest penetration, m.
     pub max_penetration: f64,
-    /// Work done against friction by the displacement increments of this step, J. With the paper's formula it can be
+    /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the paper's formula it can be
     /// slightly negative at points that stick after sliding, see [`DifferenceFormula`](crate::DifferenceFormula).
     pub friction_work: f64,
     /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
+    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
+    /// the obstacle.
+    pub obstacle_work: f64,
 }
 
 /// Result of one level; borrowed from the simulation.
@@ -123,10 +128,16 @@ impl Frame<'_> {
         &self.model.decomposition
     }
 
-    /// The contact surface with all its nodes, fixed ones included; `None` without contact.
+    /// The first contact surface with all its nodes, fixed ones included; `None` without contact.
     #[must_use]
     pub fn surface(&self) -> Option<&Surface> {
-        self.model.surface.as_ref()
+        self.model.surfaces.first()
+    }
+
+    /// All contact surfaces, in the order of [`Scene::contacts`].
+    #[must_use]
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.model.surfaces
     }
 
     /// How the level was solved.
@@ -365,6 +376,7 @@ pub(crate) fn point_state(
     let slip = difference[0].hypot(difference[1]);
     PointState {
         node: point.node,
+        surface: point.surface,
         state,
         normal_force,
         friction_force: space(friction),
@@ -380,6 +392,7 @@ pub(crate) fn point_state(
 /// Sums over the points; `before` are the tangential displacements at the level before.
 pub(crate) fn summarise(
     model: &Model,
+    level: &Level,
     points: &[PointState],
     lambda: &[f64],
     rows: &[f64],
@@ -403,10 +416,18 @@ pub(crate) fn summarise(
             s.max_slip_rate = s.max_slip_rate.max(point.slip_rate);
         }
         s.max_penetration = s.max_penetration.max(-point.gap);
-        if let Some((row, count, scale)) = touch.tangential.rows() {
-            for k in row..row + count {
-                let old = before.get(k - start).copied().unwrap_or(0.0);
-                s.friction_work -= scale * lambda[k] * (rows[k] / scale - old);
+        for (direction, k, scale) in touch.along() {
+            let old = before.get(k - start).copied().unwrap_or(0.0);
+            let new = rows[k] / scale - level.carried(touch.surface, &direction);
+            s.friction_work -= scale * lambda[k] * (new - old);
+        }
+        if let (Some(now), Some(old)) = (
+            level.obstacles[0].get(touch.surface),
+            level.obstacles[1].get(touch.surface),
+        ) {
+            for c in 0..3 {
+                let force = point.friction_force[c] + point.normal_force * touch.frame.normal[c];
+                s.obstacle_work += force * (now[c] - old[c]);
             }
         }
     }

@@ -5,7 +5,7 @@
 //! loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the cone
 //! is a motion on which the loads work and against which no contact force can.
 
-use crate::cone::{Cone, Generators};
+use crate::cone::{Cone, Generators, Separation};
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
@@ -32,7 +32,7 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
         if motions.is_empty() {
             continue;
         }
-        if let Some(escape) = escapes(model, body, &motions) {
+        if let Some(escape) = escapes(model, body, &motions)? {
             let first = |w: &Escape| {
                 escape.level < w.level || escape.level == w.level && escape.force > w.force
             };
@@ -60,10 +60,15 @@ struct Escape {
 }
 
 /// The first level at which nothing can hold a body.
-fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Option<Escape> {
-    let mut cone = Cone::new(motions.len(), generators(model, body, motions));
+fn escapes(
+    model: &Model,
+    body: usize,
+    motions: &[&FreeMotion],
+) -> Result<Option<Escape>, ContactError> {
+    let mut cone = Cone::new(motions.len(), generators(model, body, motions)?);
     let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
     let largest = largest.fold(0.0, f64::max);
+    let given = model.any_law(|law| matches!(law, Friction::Given(_)));
     let loads: Vec<(Vec<f64>, f64)> = model
         .loads
         .iter()
@@ -94,6 +99,14 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Option<Escape
         if length <= WORK * size {
             continue;
         }
+        if given {
+            // the size of the loads counts
+            if let Some(Separation { motion, given }) = cone.exceeded(&b) {
+                let force = vector::dot(&motion, &b);
+                return Ok(Some(escape(level, body, motions, &motion, force, given)));
+            }
+            continue;
+        }
         b.iter_mut().for_each(|v| *v /= length);
         // loads that only grow need no second look
         let same = |old: &Vec<f64>| vector::distance(old, &b) < 1e-12;
@@ -101,24 +114,48 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Option<Escape
             continue;
         }
         if let Some(motion) = cone.separates(&b) {
-            // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
             let force = length * vector::dot(&motion, &b);
-            let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-            let (mode, share) = describe(body, motions, &motion);
-            return Some(Escape {
-                level,
-                body,
-                mode,
-                force: force * share,
-            });
+            return Ok(Some(escape(level, body, motions, &motion, force, 0.0)));
         }
         approved = Some(b);
     }
-    None
+    Ok(None)
+}
+
+/// The way out: `given` is what given friction takes of the force.
+fn escape(
+    level: usize,
+    body: usize,
+    motions: &[&FreeMotion],
+    motion: &[f64],
+    force: f64,
+    given: f64,
+) -> Escape {
+    // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
+    let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
+    let (mode, share) = describe(body, motions, &motion);
+    let mode = if given > 0.0 {
+        format!(
+            "{mode}, of which given friction holds {:.3e} N,",
+            given * share
+        )
+    } else {
+        mode
+    };
+    Escape {
+        level,
+        body,
+        mode,
+        force: force * share,
+    }
 }
 
 /// What a force at each touch point does on the motions: newtons to work.
-fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Vec<Generators> {
+fn generators(
+    model: &Model,
+    body: usize,
+    motions: &[&FreeMotion],
+) -> Result<Vec<Generators>, ContactError> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
     let columns: Vec<Vec<f64>> = motions
@@ -140,34 +177,46 @@ fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Vec<Genera
             .map_or_else(Vec::new, |(row, count, scale)| {
                 (row..row + count).map(|k| along(k, 1.0 / scale)).collect()
             });
-        let coefficient = match model.friction() {
-            Friction::None => Some(0.0),
-            // bounds do not follow the pressure: what they cannot hold shows in the solution
-            Friction::Given(_) => None,
-            Friction::Coulomb(law) => law.largest(point.position),
+        let (coefficient, given) = match model.law(point) {
+            Friction::None => (Some(0.0), 0.0),
+            Friction::Given(bound) => {
+                let stress = bound.stress(point.node, point.position)?;
+                (Some(0.0), stress * point.area)
+            }
+            Friction::Coulomb(law) => (law.largest(point.position), 0.0),
         };
         out.push(Generators {
             normal: along(point.row, -1.0 / point.scale),
             tangents,
             coefficient,
+            given,
         });
     }
-    out
+    Ok(out)
 }
 
 /// What a message says of the motion of a body: the motion in words, of length one, and its length.
 fn describe(body: usize, motions: &[&FreeMotion], factors: &[f64]) -> (String, f64) {
-    let mut m = [0.0; 6];
-    let mut radius = 1.0;
+    // of parts that hinges join the one that moves most
+    let mut parts: Vec<(usize, f64, [f64; 6])> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
         for part in motion.bodies.iter().filter(|b| b.body == body) {
-            radius = part.radius;
+            let at = match parts.iter().position(|p| p.0 == part.subdomain) {
+                Some(at) => at,
+                None => {
+                    parts.push((part.subdomain, part.radius, [0.0; 6]));
+                    parts.len() - 1
+                }
+            };
             for c in 0..3 {
-                m[c] += factor * part.translation[c];
-                m[3 + c] += factor * part.rotation[c];
+                parts[at].2[c] += factor * part.translation[c];
+                parts[at].2[3 + c] += factor * part.rotation[c];
             }
         }
     }
+    let size = |p: &(usize, f64, [f64; 6])| vector::norm(&p.2);
+    let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+    let (_, radius, m) = most.copied().unwrap_or((0, 1.0, [0.0; 6]));
     let length = vector::norm(&m);
     let rounded = |v: &f64| {
         let v = v / length;

@@ -240,14 +240,13 @@ impl fmt::Debug for Coefficient {
     }
 }
 
-/// Asks the law of friction at points (node, place), at rest, so that what it cannot mean is said before any work.
-pub(crate) fn check(
-    friction: &Friction,
-    points: impl IntoIterator<Item = (u32, [f64; 3])>,
+/// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any work.
+pub(crate) fn check<'a>(
+    points: impl IntoIterator<Item = (&'a Friction, u32, [f64; 3])>,
 ) -> Result<(), ContactError> {
-    for (node, place) in points {
+    for (friction, node, place) in points {
         match friction {
-            Friction::None => return Ok(()),
+            Friction::None => continue,
             Friction::Given(bound) => bound.stress(node, place)?,
             Friction::Coulomb(law) => law.value(node, place, 0.0)?,
         };

@@ -1,5 +1,6 @@
 //! One time level: the dual problem at a time, and the slip bounds.
 
+use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
@@ -28,12 +29,16 @@ pub(crate) struct Level {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
+    /// Displacement of the obstacle of each contact surface, now and at the level before; empty where none moves.
+    pub(crate) obstacles: [Vec<[f64; 3]>; 2],
     /// Largest sizes of each body at earlier levels.
     pub(crate) peaks: Vec<Peak>,
-    /// Coefficient of friction at each point; empty unless Coulomb.
+    /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
     /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if none moves.
     pub(crate) driven: Vec<f64>,
+    /// Given slip bound at each point, N, 0 without.
+    pub(crate) given: Vec<f64>,
     /// Unit of force of each point, N; empty if it is 1 N everywhere.
     pub(crate) units: Vec<f64>,
 }
@@ -100,11 +105,39 @@ impl Level {
                 }
             }
         }
+        self.move_obstacles(model, index);
         self.linear.resize(rows, 0.0);
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
             *d = c - l;
         }
         self.friction(model, state)
+    }
+
+    /// Offsets of the obstacles that move.
+    fn move_obstacles(&mut self, model: &Model, index: usize) {
+        if !model.plan.effects.moving_obstacle {
+            return;
+        }
+        let analysis = &model.scene.analysis;
+        let before = index.checked_sub(1).and_then(|i| analysis.time(i));
+        self.obstacles = [Some(self.time), before].map(|time| {
+            let contacts = model.scene.contacts.iter();
+            contacts
+                .map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t)))
+                .collect()
+        });
+        for point in &model.points {
+            for (direction, row, scale) in point.directions() {
+                self.offset[row] += scale * self.carried(point.surface, &direction);
+            }
+        }
+    }
+
+    /// Displacement of the obstacle of a surface along a direction, m.
+    pub(crate) fn carried(&self, surface: usize, direction: &[f64; 3]) -> f64 {
+        self.obstacles[0]
+            .get(surface)
+            .map_or(0.0, |w| dot(w, direction))
     }
 
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its motion.
@@ -137,51 +170,43 @@ impl Level {
     }
 
     fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
-        let Friction::Coulomb(law) = model.friction() else {
-            self.coefficients.clear();
-            return Ok(());
-        };
-        if !self.coefficients.is_empty() && !law.depends_on_rate() {
+        if !model.any_law(Friction::is_some)
+            || (!self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate))
+        {
             return Ok(());
         }
         // none where the law fails at a point: a later level must not take a part for all
         self.coefficients.clear();
-        let value = |(k, point): (usize, &TouchPoint)| {
-            let rate = state.rates().get(k).copied().unwrap_or(0.0);
-            law.value(point.node, point.position, rate)
+        let value = |(k, point): (usize, &TouchPoint)| match model.law(point) {
+            Friction::None => Ok((0.0, 0.0)),
+            Friction::Given(bound) => {
+                Ok((0.0, bound.stress(point.node, point.position)? * point.area))
+            }
+            Friction::Coulomb(law) => {
+                let rate = state.rates().get(k).copied().unwrap_or(0.0);
+                Ok((law.value(point.node, point.position, rate)?, 0.0))
+            }
         };
-        let values: Result<Vec<f64>, _> = model.points.iter().enumerate().map(value).collect();
-        self.coefficients = values?;
+        let values: Result<Vec<_>, ContactError> =
+            model.points.iter().enumerate().map(value).collect();
+        (self.coefficients, self.given) = values?.into_iter().unzip();
         Ok(())
     }
 
     /// Writes the slip bounds into the set: given ones, or the coefficients times the normal forces in `lambda`.
-    pub(crate) fn slip_bounds(
-        &self,
-        model: &Model,
-        lambda: &[f64],
-        set: &mut ProductSet,
-    ) -> Result<(), ContactError> {
-        match model.friction() {
-            Friction::None => {}
-            Friction::Given(bound) => {
-                let mut values = Vec::with_capacity(model.points.len());
-                for point in &model.points {
-                    values.push(bound.stress(point.node, point.position)? * point.area);
-                }
-                let unit = |k: usize| self.units.get(k).copied().unwrap_or(1.0);
-                model.set_slip_bounds(set, |k, _| values[k] / unit(k));
-            }
-            Friction::Coulomb(_) => self.coulomb_bounds(model, lambda, set),
-        }
-        Ok(())
+    pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
+        model.set_slip_bounds(set, |k, point| self.bound(k, point, lambda));
     }
 
-    /// Coulomb slip bounds `-F_i lambda_nu,i` in newtons.
-    pub(crate) fn coulomb_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
-        let force =
-            |k: usize, point: &TouchPoint| self.coefficients[k] * normal_force(point, lambda);
-        model.set_slip_bounds(set, force);
+    /// Slip bound of a point in units of force of its body (newtons), `-F_i lambda_nu,i` or the given one; 0 without friction.
+    pub(crate) fn bound(&self, k: usize, point: &TouchPoint, lambda: &[f64]) -> f64 {
+        match (self.given.get(k), self.coefficients.get(k)) {
+            (Some(given), Some(coefficient)) => {
+                let unit = self.units.get(k).copied().unwrap_or(1.0);
+                given / unit + coefficient * normal_force(point, lambda)
+            }
+            _ => 0.0,
+        }
     }
 }
 

@@ -76,6 +76,7 @@ pub mod accumulated;
 pub mod accuracy;
 pub mod algebraic;
 mod bodies;
+mod candidates;
 mod certificate;
 mod clock;
 mod cone;

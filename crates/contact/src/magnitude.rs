@@ -1,11 +1,11 @@
 //! Loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
 //! only see norms that are infinite, and blame their tolerance.
 
+use crate::candidates::Candidate;
 use crate::clock::Analysis;
-use crate::contact_surface::Contact;
 use crate::error::ContactError;
 use crate::scene::Scene;
-use signorini_fem_mesh::{History, Surface};
+use signorini_fem_mesh::History;
 use signorini_qp::vector;
 use signorini_tfeti::LoadResponse;
 
@@ -63,15 +63,11 @@ pub(crate) fn check_loads(scene: &Scene, loads: &[LoadResponse]) -> Result<(), C
     Ok(())
 }
 
-/// Gaps of all nodes of the contact surface.
-pub(crate) fn check_gaps(
-    scene: &Scene,
-    contact: &Contact,
-    surface: &Surface,
-) -> Result<(), ContactError> {
-    for &node in surface.nodes() {
-        let gap = contact.gap_at(node, scene.mesh.points()[node as usize])?;
-        expect(gap.abs(), "m", || {
+/// Gaps of all contact points.
+pub(crate) fn check_gaps(candidates: &[Candidate]) -> Result<(), ContactError> {
+    for c in candidates {
+        let node = c.node;
+        expect(c.gap.abs(), "m", || {
             format!("contact at node {node}: the gap")
         })?;
     }

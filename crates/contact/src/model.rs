@@ -1,7 +1,7 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
 use crate::bodies::Bodies;
-use crate::contact_surface::{Contact, ContactNormal};
+use crate::candidates::{Candidate, candidates, contact_nodes, surfaces};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
@@ -12,16 +12,16 @@ use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface, assemble_load};
 use signorini_qp::{ProductSet, RadiusSlope, Segment};
 use signorini_tfeti as tfeti;
-use signorini_tfeti::{
-    ContactNodes, ContactPoint, Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder,
-};
+use signorini_tfeti::{Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
 
-/// A node that can touch the obstacle.
+/// A node that can touch an obstacle. A node in an edge or a corner is several, with other normals.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct TouchPoint {
     /// Mesh node.
     pub node: u32,
+    /// Position of its contact surface in [`Scene::contacts`].
+    pub surface: usize,
     /// Its position, m.
     pub position: [f64; 3],
     /// Normal into the obstacle and two tangents.
@@ -30,11 +30,35 @@ pub struct TouchPoint {
     pub area: f64,
     /// Initial distance to the obstacle, m.
     pub gap: f64,
+    /// Place among all points of the scene.
+    pub(crate) place: usize,
     /// Normal row.
     pub(crate) row: usize,
     /// Row value over normal displacement, and nodal force over multiplier.
     pub(crate) scale: f64,
     pub(crate) tangential: Tangential,
+}
+
+impl TouchPoint {
+    /// Directions of all rows of the point, with row and scale: the normal, then the tangential ones.
+    pub(crate) fn directions(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        std::iter::once((self.frame.normal, self.row, self.scale)).chain(self.along())
+    }
+
+    /// Directions of the tangential rows, with row and scale.
+    pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        let [a, b] = self.frame.tangents;
+        let list = match self.tangential {
+            Tangential::None => [None, None],
+            Tangential::Line {
+                row,
+                direction,
+                scale,
+            } => [Some((direction, row, scale)), None],
+            Tangential::Plane { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
+        };
+        list.into_iter().flatten()
+    }
 }
 
 /// Tangential rows of a point, as positions among all tangential rows.
@@ -70,9 +94,6 @@ pub(crate) const DISCS: usize = 1;
 /// Intervals of points with one tangential direction.
 pub(crate) const INTERVALS: usize = 2;
 
-/// Cosine to the outward normal below which a direction counts as along the surface.
-const ALONG: f64 = 1e-9;
-
 /// Everything that is computed once.
 #[derive(Debug)]
 pub(crate) struct Model {
@@ -85,8 +106,10 @@ pub(crate) struct Model {
     /// History of each displacement case.
     pub(crate) motions: Vec<History>,
     pub(crate) points: Vec<TouchPoint>,
-    /// Nodal areas and nodes of the whole contact surface, fixed nodes included.
-    pub(crate) surface: Option<Surface>,
+    /// Nodal areas and nodes of the whole contact surfaces, fixed nodes included.
+    pub(crate) surfaces: Vec<Surface>,
+    /// All points of the scene, those left out included.
+    pub(crate) candidates: Vec<Candidate>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
@@ -129,20 +152,20 @@ impl Model {
         Self::build(scene, settings, None, None)
     }
 
-    /// The model with rows at some contact nodes only (ascending mesh numbers); the plan is that of the whole scene.
-    pub(crate) fn with_contact_nodes(
+    /// The model with rows at some contact points only (ascending places); the plan is that of the whole scene.
+    pub(crate) fn with_points(
         scene: Scene,
         settings: &Settings,
-        kept: &[u32],
+        kept: &[usize],
     ) -> Result<Self, ContactError> {
         Self::build(scene, settings, Some(kept), None)
     }
 
-    /// The same scene with rows at other contact nodes; what does not depend on them is taken over.
-    pub(crate) fn with_other_nodes(
+    /// The same scene with rows at other contact points; what does not depend on them is taken over.
+    pub(crate) fn with_other_points(
         &self,
         settings: &Settings,
-        kept: &[u32],
+        kept: &[usize],
     ) -> Result<Self, ContactError> {
         Self::build(self.scene.clone(), settings, Some(kept), Some(self))
     }
@@ -150,7 +173,7 @@ impl Model {
     fn build(
         scene: Scene,
         settings: &Settings,
-        kept: Option<&[u32]>,
+        kept: Option<&[usize]>,
         earlier: Option<&Self>,
     ) -> Result<Self, ContactError> {
         let (decomposition, plan) = match earlier {
@@ -165,23 +188,22 @@ impl Model {
             }
         };
         let (supports, motions) = supports(&scene)?;
-        let surface = match &scene.contact {
-            Some(contact) => Some(Surface::new(&scene.mesh, &contact.tags)?),
-            None => None,
+        let (surfaces, candidates) = match earlier {
+            Some(model) => (model.surfaces.clone(), model.candidates.clone()),
+            None => {
+                let surfaces = surfaces(&scene)?;
+                let candidates = candidates(&scene, &surfaces)?;
+                magnitude::check_gaps(&candidates)?;
+                driven::check(&scene, &candidates, &supports, &motions)?;
+                (surfaces, candidates)
+            }
         };
-        let mut nodes = match (&scene.contact, &surface) {
-            (Some(contact), Some(surface)) => Some(contact_nodes(contact, surface)?),
-            _ => None,
+        let places: Vec<usize> = match kept {
+            Some(kept) => kept.to_vec(),
+            None => (0..candidates.len()).collect(),
         };
-        if let (Some(contact), Some(surface), Some(nodes), None) =
-            (&scene.contact, &surface, &nodes, earlier)
-        {
-            magnitude::check_gaps(&scene, contact, surface)?;
-            driven::check(&scene, contact, nodes, &supports, &motions)?;
-        }
-        if let (Some(nodes), Some(kept)) = (&mut nodes, kept) {
-            nodes.points.retain(|p| kept.binary_search(&p.node).is_ok());
-        }
+        let nodes = (!scene.contacts.is_empty())
+            .then(|| contact_nodes(&scene, places.iter().map(|&k| &candidates[k])));
         let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
             .supports(&supports)
             .rule(settings.row_rule)
@@ -201,12 +223,7 @@ impl Model {
             loads.push(tfeti.load_response(&local)?);
         }
         magnitude::check_loads(&scene, &loads)?;
-        let points = match (&scene.contact, &surface) {
-            (Some(contact), Some(surface)) => {
-                touch_points(&scene, contact, surface, tfeti.gluing())?
-            }
-            _ => Vec::new(),
-        };
+        let points = touch_points(&scene, &candidates, &places, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let set = ProductSet::new(vec![
             Segment::upper(vec![0.0; ranges.normal.len()]),
@@ -227,7 +244,8 @@ impl Model {
             loads,
             motions,
             points,
-            surface,
+            surfaces,
+            candidates,
             set,
             weights: std::sync::OnceLock::new(),
             support_stiffness: std::sync::OnceLock::new(),
@@ -236,12 +254,14 @@ impl Model {
         })
     }
 
-    /// Friction of the contact surface; none without one.
-    pub(crate) fn friction(&self) -> &Friction {
-        self.scene
-            .contact
-            .as_ref()
-            .map_or(&Friction::None, Contact::friction)
+    /// Friction law of a point.
+    pub(crate) fn law(&self, point: &TouchPoint) -> &Friction {
+        self.scene.contacts[point.surface].friction()
+    }
+
+    /// Whether the law of some contact surface is such.
+    pub(crate) fn any_law(&self, such: impl Fn(&Friction) -> bool) -> bool {
+        self.scene.contacts.iter().any(|c| such(c.friction()))
     }
 
     /// Tangential rows.
@@ -324,52 +344,16 @@ pub(crate) fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<Histor
     Ok((out, motions))
 }
 
-pub(crate) fn contact_nodes(
-    contact: &Contact,
-    surface: &Surface,
-) -> Result<ContactNodes, ContactError> {
-    let fixed = match contact.normal {
-        ContactNormal::Body => None,
-        ContactNormal::Fixed(normal) => {
-            let frame =
-                Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal { normal })?;
-            let outside = |own: &Frame| frame.normal_part(own.normal) > ALONG;
-            if !surface.frames().iter().any(outside) {
-                return Err(ContactError::ObstacleSide {
-                    direction: normal,
-                    nodes: surface.nodes().len(),
-                });
-            }
-            Some(frame)
-        }
-    };
-    let point = |(&node, &frame): (&u32, &Frame)| ContactPoint {
-        node,
-        opponent: None,
-        frame: fixed.unwrap_or(frame),
-    };
-    let points = surface
-        .nodes()
-        .iter()
-        .zip(surface.frames())
-        .map(point)
-        .collect();
-    Ok(ContactNodes {
-        points,
-        friction: contact.friction().is_some(),
-    })
-}
-
+/// The points that have rows; `places` are those of the points that `gluing` was made from.
 pub(crate) fn touch_points(
     scene: &Scene,
-    contact: &Contact,
-    surface: &Surface,
+    candidates: &[Candidate],
+    places: &[usize],
     gluing: &Gluing,
-) -> Result<Vec<TouchPoint>, ContactError> {
-    let mut points = Vec::with_capacity(gluing.contact().len());
-    for info in gluing.contact() {
-        let position = scene.mesh.points()[info.node as usize];
-        let gap = contact.gap_at(info.node, position)?;
+) -> Vec<TouchPoint> {
+    let point = |info: &tfeti::ContactInfo| {
+        let place = places[info.point];
+        let candidate = &candidates[place];
         let tangential = match info.tangential {
             TangentialRows::Disc { row, scale } => Tangential::Plane { row, scale },
             TangentialRows::Interval {
@@ -383,19 +367,18 @@ pub(crate) fn touch_points(
             },
             _ => Tangential::None,
         };
-        let area = surface
-            .local(info.node)
-            .map_or(0.0, |local| surface.areas()[local]);
-        points.push(TouchPoint {
+        TouchPoint {
             node: info.node,
-            position,
+            surface: candidate.surface,
+            position: scene.mesh.points()[info.node as usize],
             frame: info.frame,
-            area,
-            gap,
+            area: candidate.area,
+            gap: candidate.gap,
+            place,
             row: info.row,
             scale: info.scale,
             tangential,
-        });
-    }
-    Ok(points)
+        }
+    };
+    gluing.contact().iter().map(point).collect()
 }

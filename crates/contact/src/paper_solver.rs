@@ -4,6 +4,7 @@
 use crate::error::ContactError;
 use crate::fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
 use crate::held::orthonormal_coarse;
+use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{DISCS, INTERVALS, Model};
 use crate::report::{LevelReport, LevelStatus};
@@ -109,8 +110,8 @@ impl PaperSolver {
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
         if !is_coulomb(model) {
-            level.slip_bounds(model, &iterate.lambda, &mut self.set)?;
-            report.counters.slip_bound_updates = usize::from(model.friction().is_some());
+            level.slip_bounds(model, &iterate.lambda, &mut self.set);
+            report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
             let qp =
                 self.given_friction(model, level, settings.tolerance * SAFETY, &mut (), iterate)?;
             add(&mut report, &qp);
@@ -207,7 +208,7 @@ impl PaperSolver {
                     _ => target,
                 };
                 iterate.lambda[normal.clone()].copy_from_slice(x);
-                level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
+                level.slip_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
                 let qp = self
                     .given_friction(model, level, tolerance, &mut (), iterate)
@@ -253,14 +254,14 @@ impl PaperSolver {
         iterate: &mut Iterate,
         report: &mut LevelReport,
     ) -> Result<(), ContactError> {
-        level.coulomb_bounds(model, &iterate.lambda, &mut self.set);
+        level.slip_bounds(model, &iterate.lambda, &mut self.set);
         let tolerance = settings.tolerance * SAFETY;
         let mut contraction = Contraction::new();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
-            level.coulomb_bounds(model, step.x, set);
+            level.slip_bounds(model, step.x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);

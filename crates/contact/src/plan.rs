@@ -1,5 +1,6 @@
 //! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
 
+use crate::candidates::{Candidate, candidates, surfaces};
 use crate::clock::Analysis;
 use crate::contact_surface::Gap;
 use crate::error::ContactError;
@@ -14,8 +15,8 @@ use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-/// What kind of friction a scene has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+/// What kind of friction a scene has; of several the one with the most effects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[non_exhaustive]
 pub enum FrictionKind {
     /// No tangential rows.
@@ -46,6 +47,8 @@ pub struct Effects {
     pub supports: bool,
     /// Supports that move.
     pub motion: bool,
+    /// Obstacles that move.
+    pub moving_obstacle: bool,
 }
 
 /// Sizes of a scene and the method chosen for it.
@@ -66,7 +69,8 @@ pub struct Plan {
     pub primal: usize,
     /// Largest over smallest extent of a subdomain, the mean of all.
     pub slenderness: f64,
-    /// Contact nodes that can touch (nodes whose normal displacement is fixed by supports are left out).
+    /// Contact points that can touch: nodes, those in edges and corners counted once for each normal (nodes whose normal
+    /// displacement is fixed by supports are left out).
     pub contact_nodes: usize,
     /// Rows of `N`.
     pub normal_rows: usize,
@@ -130,43 +134,32 @@ impl Plan {
             .sum();
         let interface_rows = 3 * (torn_nodes - nodes);
         let dirichlet_rows: usize = fixed.values().copied().sum();
-        let friction = scene
-            .contact
-            .as_ref()
-            .map_or(&Friction::None, |c| c.friction());
-        let mut touching = BTreeSet::new();
-        if let Some(contact) = &scene.contact {
-            for &tag in &contact.tags {
-                touching.extend(scene.mesh.nodes_on(tag));
-            }
-        }
+        let mut points = candidates(scene, &surfaces(scene)?)?;
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
         let free = |node: &u32| 3 - fixed.get(node).copied().unwrap_or(0).min(3);
-        touching.retain(|node| free(node) > 0);
-        let normal_rows = touching.len();
-        let tangential_rows = if friction.is_some() {
-            touching.iter().map(|node| free(node) - 1).sum()
-        } else {
-            0
-        };
-        let kind = match friction {
+        points.retain(|point| free(&point.node) > 0);
+        let touching: BTreeSet<u32> = points.iter().map(|point| point.node).collect();
+        let normal_rows = points.len();
+        let rough = |p: &&Candidate| scene.contacts[p.surface].friction().is_some();
+        let tangential_rows = points.iter().filter(rough).map(|p| free(&p.node) - 1).sum();
+        let kind = |friction: &Friction| match friction {
             Friction::None => FrictionKind::None,
             Friction::Given(_) => FrictionKind::Given,
             Friction::Coulomb(c) if c.depends_on_rate() => FrictionKind::RateDependent,
             Friction::Coulomb(_) => FrictionKind::Coulomb,
         };
+        let kinds = scene.contacts.iter().map(|c| kind(c.friction()));
+        let kind = kinds.max().unwrap_or(FrictionKind::None);
         let effects = Effects {
-            contact: scene.contact.is_some(),
-            gap: scene
-                .contact
-                .as_ref()
-                .is_some_and(|c| !matches!(c.gap, Gap::None)),
+            contact: !scene.contacts.is_empty(),
+            gap: scene.contacts.iter().any(|c| !matches!(c.gap, Gap::None)),
             friction: kind,
             history: kind != FrictionKind::None
                 && matches!(scene.analysis, Analysis::Quasistatic { .. }),
             gluing: decomposition.subdomains().len() > 1,
             supports: !scene.supports.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
+            moving_obstacle: scene.contacts.iter().any(|c| c.motion.is_some()),
         };
         let method = if effects.contact {
             settings.method.name()
@@ -304,7 +297,12 @@ impl fmt::Display for Plan {
         } else {
             "no gap: zero offset"
         };
-        let contact = format!("{} nodes, {gap}", self.contact_nodes);
+        let moving = if e.moving_obstacle {
+            ", moving obstacle"
+        } else {
+            ""
+        };
+        let contact = format!("{} nodes, {gap}{moving}", self.contact_nodes);
         writeln!(
             f,
             "  contact     {}",

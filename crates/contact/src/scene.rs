@@ -192,9 +192,7 @@ pub struct Scene {
     pub(crate) materials: Materials,
     pub(crate) supports: Vec<Support>,
     pub(crate) loads: Vec<Load>,
-    pub(crate) contact: Option<Contact>,
-    /// Contacts given; more than one are refused.
-    pub(crate) contacts: usize,
+    pub(crate) contacts: Vec<Contact>,
     pub(crate) cut: Cut,
     pub(crate) analysis: Analysis,
 }
@@ -208,8 +206,7 @@ impl Scene {
             materials,
             supports: Vec::new(),
             loads: Vec::new(),
-            contact: None,
-            contacts: 0,
+            contacts: Vec::new(),
             cut: Cut::Whole,
             analysis: Analysis::statics(),
         }
@@ -229,20 +226,22 @@ impl Scene {
         self
     }
 
-    /// Sets the contact surface. A scene has one, with one law; a second call is refused when the scene is used, because it
-    /// would drop the first surface. [`replace_contact`](Self::replace_contact) does that on purpose.
+    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall without.
+    ///
+    /// Surfaces may share nodes, and even tags (one surface between two obstacles). A node then has one contact point for
+    /// each direction of contact. Where the directions are one (two parts of a floor with different friction), or the body's
+    /// own normals differ by less than a [crease](Contact::with_crease), it has one for all of them, with the law of
+    /// the obstacle that is nearer, of the first one where both are as near.
     #[must_use]
     pub fn with_contact(mut self, contact: Contact) -> Self {
-        self.contact = Some(contact);
-        self.contacts += 1;
+        self.contacts.push(contact);
         self
     }
 
-    /// Another contact surface in the place of the one there is; `None` for no contact.
+    /// One contact surface in the place of those there are; `None` for no contact.
     #[must_use]
     pub fn replace_contact(mut self, contact: Option<Contact>) -> Self {
-        self.contacts = usize::from(contact.is_some());
-        self.contact = contact;
+        self.contacts = contact.into_iter().collect();
         self
     }
 
@@ -298,10 +297,16 @@ impl Scene {
         &self.cut
     }
 
-    /// The contact surface, if any.
+    /// The first contact surface, if any.
     #[must_use]
     pub fn contact(&self) -> Option<&Contact> {
-        self.contact.as_ref()
+        self.contacts.first()
+    }
+
+    /// The contact surfaces.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
     }
 
     /// The analysis.
@@ -392,6 +397,12 @@ impl Scene {
                     .iter()
                     .enumerate()
                     .filter_map(|(i, s)| s.motion.as_ref().map(|m| ("support", i, &m.1))),
+            )
+            .chain(
+                self.contacts
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(i, c)| c.motion.as_ref().map(|m| ("contact", i, &m.1))),
             );
             for (what, index, history) in histories {
                 let value = history.value(time);
@@ -405,14 +416,10 @@ impl Scene {
                 }
             }
         }
-        if self.contacts > 1 {
-            return Err(ContactError::SeveralContacts {
-                count: self.contacts,
-            });
-        }
-        let Some(contact) = &self.contact else {
-            return Ok(());
-        };
+        self.contacts.iter().try_for_each(|c| self.check(c))
+    }
+
+    fn check(&self, contact: &Contact) -> Result<(), ContactError> {
         for &tag in &contact.tags {
             if self.mesh.nodes_on(tag).is_empty() {
                 return Err(self.unknown_tag("contact", tag));
@@ -423,6 +430,22 @@ impl Scene {
             if !(length.is_finite() && length > 0.0) {
                 return Err(ContactError::ObstacleNormal { normal });
             }
+        }
+        if let Some((displacement, _)) = contact.motion
+            && let Some(value) = displacement.iter().find(|c| !c.is_finite())
+        {
+            return Err(ContactError::Setting {
+                name: "displacement of the obstacle",
+                value: *value,
+                range: "of finite numbers",
+            });
+        }
+        if !(contact.crease > 0.0 && contact.crease <= 180.0) {
+            return Err(ContactError::Setting {
+                name: "crease",
+                value: contact.crease,
+                range: "(0, 180]",
+            });
         }
         if let Friction::Coulomb(coefficient) = &contact.friction {
             coefficient.validate()?;

@@ -14,12 +14,13 @@
 //! Screening is not used where points act while open or are needed before anything is known: with given friction, whose
 //! bounds do not vanish with the pressure, and for bodies that contact must hold.
 
+use crate::candidates::contact_nodes;
 use crate::contact_surface::Contact;
 use crate::error::ContactError;
 use crate::frame::{PointState, Rows, point_state};
 use crate::law::Friction;
 use crate::level::Level;
-use crate::model::{Model, TouchPoint, contact_nodes, supports, touch_points};
+use crate::model::{Model, TouchPoint, supports, touch_points};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::state::State;
@@ -86,16 +87,14 @@ pub(crate) struct Screen {
 impl Screen {
     /// The screen of a model without contact points; `None` where screening is not used.
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Option<Self>, ContactError> {
-        let (Screening::On { margin }, Some(contact), Some(surface)) =
-            (settings.screening, &model.scene.contact, &model.surface)
-        else {
+        let Screening::On { margin } = settings.screening else {
             return Ok(None);
         };
         if !model.tfeti.coarse_factor().free_motions().is_empty() {
             return Ok(None);
         }
         let (supports, _) = supports(&model.scene)?;
-        let nodes = contact_nodes(contact, surface)?;
+        let nodes = contact_nodes(&model.scene, model.candidates.iter());
         let mesh_nodes = model.scene.mesh.points().len();
         let gluing = Gluing::new(
             &model.decomposition,
@@ -105,7 +104,8 @@ impl Screen {
             settings.row_rule,
             model.tfeti.copy_stiffness(),
         )?;
-        let points = touch_points(&model.scene, contact, surface, &gluing)?;
+        let places: Vec<usize> = (0..model.candidates.len()).collect();
+        let points = touch_points(&model.scene, &model.candidates, &places, &gluing);
         let entry = |(subdomain, dof, value): (usize, usize, f64)| {
             (model.tfeti.torn_range(subdomain).start + dof, value)
         };
@@ -129,7 +129,9 @@ impl Screen {
     /// Whether a scene can be screened, judged without work.
     pub(crate) fn applies(scene: &Scene, settings: &Settings) -> bool {
         let given = |c: &Contact| matches!(c.friction(), Friction::Given(_));
-        settings.screening != Screening::Off && scene.contact.as_ref().is_some_and(|c| !given(c))
+        settings.screening != Screening::Off
+            && !scene.contacts.is_empty()
+            && !scene.contacts.iter().any(given)
     }
 
     /// Takes over a model with the points `active` in.
@@ -167,10 +169,10 @@ impl Screen {
         self.active.iter().filter(|a| !**a).count()
     }
 
-    /// Mesh nodes of the points in a mask, ascending.
-    pub(crate) fn nodes(&self, active: &[bool]) -> Vec<u32> {
+    /// Places of the points in a mask, ascending.
+    pub(crate) fn places(&self, active: &[bool]) -> Vec<usize> {
         let kept = self.points.iter().zip(active).filter(|(_, a)| **a);
-        kept.map(|(p, _)| p.node).collect()
+        kept.map(|(p, _)| p.place).collect()
     }
 
     /// Rows and tangential rows of the complete problem.
@@ -252,6 +254,9 @@ impl Screen {
                 displacement[row] = self.times(row, torn);
             }
             offset[point.row] += point.scale * point.gap;
+            for (direction, row, scale) in point.directions() {
+                offset[row] += scale * level.carried(point.surface, &direction);
+            }
             if let (Some(formula), Some((.., scale)), true) =
                 (formula, tangential, model.plan.effects.history)
             {
@@ -271,13 +276,12 @@ impl Screen {
     }
 
     /// Tangential displacements of the points left out, written into a complete trace.
-    pub(crate) fn fill_trace(&self, torn: &[f64], trace: &mut [f64]) {
+    pub(crate) fn fill_trace(&self, level: &Level, torn: &[f64], trace: &mut [f64]) {
         let start = self.gluing.ranges().tangential().start;
         for (point, _) in self.points.iter().zip(&self.active).filter(|(_, a)| !**a) {
-            if let Some((row, count, scale)) = point.tangential.rows() {
-                for k in row..row + count {
-                    trace[k - start] = self.times(k, torn) / scale;
-                }
+            for (direction, k, scale) in point.along() {
+                trace[k - start] =
+                    self.times(k, torn) / scale - level.carried(point.surface, &direction);
             }
         }
     }

@@ -11,6 +11,7 @@ use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
 use crate::fingerprint::Fingerprint;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
+use crate::law::Friction;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::plan::Plan;
@@ -105,8 +106,8 @@ impl Simulation {
         let (model, screen) = screened::set_up(scene, &settings)?;
         // with screening the model has no points yet
         let points = screen.as_ref().map_or(&model.points[..], Screen::points);
-        let places = points.iter().map(|p| (p.node, p.position));
-        crate::law::check(model.friction(), places)?;
+        let places = points.iter().map(|p| (model.law(p), p.node, p.position));
+        crate::law::check(places)?;
         crate::held::check(&model)?;
         let solver = Solver::new(&model, &settings)?;
         let origin = Fingerprint::new(
@@ -273,7 +274,14 @@ impl Simulation {
         let before: Vec<f64> = (0..self.model.tangential_rows())
             .map(|k| view.traces(k).0)
             .collect();
-        self.summary = summarise(&self.model, &self.points, &lambda, &rows, &before);
+        self.summary = summarise(
+            &self.model,
+            &self.level,
+            &self.points,
+            &lambda,
+            &rows,
+            &before,
+        );
         Ok((report, lambda, rows))
     }
 
@@ -352,7 +360,7 @@ impl Simulation {
             let old = self.iterate.lambda.clone();
             let mut set = self.model.set.clone();
             self.level
-                .slip_bounds(&self.model, &self.iterate.lambda, &mut set)?;
+                .slip_bounds(&self.model, &self.iterate.lambda, &mut set);
             restore_sliding(&self.model, &set, state.sliding(), &mut self.iterate.lambda);
             self.iterate.known &= old == self.iterate.lambda;
         }
@@ -369,15 +377,15 @@ impl Simulation {
             trace.resize(self.model.tangential_rows(), 0.0);
             let start = self.model.tangential_start();
             for point in &self.model.points {
-                if let Some((row, count, scale)) = point.tangential.rows() {
-                    for k in row..row + count {
-                        trace[k - start] = rows[k] / scale;
-                    }
+                // relative to the obstacle
+                for (direction, k, scale) in point.along() {
+                    trace[k - start] =
+                        rows[k] / scale - self.level.carried(point.surface, &direction);
                 }
             }
             sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));
         }
-        if effects.history && self.model.friction().depends_on_rate() {
+        if effects.history && self.model.any_law(Friction::depends_on_rate) {
             rate.extend(self.states().iter().map(|p| p.slip_rate));
             report.counters.rate_updates += 1;
         }
@@ -417,7 +425,7 @@ impl Simulation {
             (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
             if effects.history {
                 trace = screen.expand_trace(&trace, self.model.tangential_start());
-                screen.fill_trace(&self.torn, &mut trace);
+                screen.fill_trace(&self.level, &self.torn, &mut trace);
             }
         }
         state.advance(

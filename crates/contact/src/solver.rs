@@ -92,5 +92,5 @@ pub(crate) fn level_status(status: Status) -> LevelStatus {
 
 /// Whether slip bounds follow the normal forces.
 pub(crate) fn is_coulomb(model: &Model) -> bool {
-    matches!(model.friction(), Friction::Coulomb(_))
+    model.any_law(|law| matches!(law, Friction::Coulomb(_)))
 }

@@ -181,3 +181,38 @@ fn without_forces_or_in_balance_the_motions_are_free() {
         assert!(!text.contains("cannot be in equilibrium"), "{text}");
     }
 }
+
+/// Given friction holds bounds times area whatever the pressure, and no more.
+#[test]
+fn loads_beyond_given_slip_bounds_are_refused() {
+    use signorini_contact::{Contact, ContactError, Friction, Load, Scene, Settings, Simulation};
+    use signorini_fem_mesh::brick;
+    let scene = |along: f64| {
+        Scene::new(
+            common::block([2.0, 1.0, 1.0], [4, 2, 2]),
+            common::uniform(1e6, 0.3),
+        )
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::given(30.0)))
+        .with_load(Load::pressure(brick::Z_MAX, 100.0))
+        .with_load(Load::body([0.6 * along / 2.0, 0.8 * along / 2.0, 0.0]))
+    };
+    // 30 Pa on 2 m²: 60 N, and 200 N of pressure keep the block from tipping
+    for along in [0.0, 20.0, 59.0] {
+        let level = common::solve(scene(along), Settings::default());
+        let held = level.summary.friction_force;
+        assert!(
+            (common::norm(&held) - along).abs() < 1e-3,
+            "{along}: {held:?}"
+        );
+    }
+    for along in [60.1, 90.0] {
+        match Simulation::new(scene(along), Settings::default()) {
+            Err(ContactError::NotHeld { mode, force, .. }) => {
+                assert!(mode.contains("given friction holds 6.000e1 N"), "{mode}");
+                assert!((force / along - 1.0).abs() < 1e-3, "{force}");
+            }
+            Err(error) => panic!("{error}"),
+            Ok(_) => panic!("{along} accepted"),
+        }
+    }
+}

@@ -225,7 +225,7 @@ fn contact_and_friction() {
     let nan = f64::NAN;
     let count = check(cases! {
         "contact on an unknown tag": attempt(good().replace_contact(Some(Contact::rigid(FacetTag(9))))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact", "tag 9";
-        "two contact surfaces": attempt(good().with_contact(Contact::rigid(brick::X_MAX))) => Error::Contact(ContactError::SeveralContacts { count: 2 }), "2 times", "and_tag", "replace_contact";
+        "a crease of no angle": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_crease(0.0)))) => Error::Contact(ContactError::Setting { name: "crease", .. }), "crease", "(0, 180]";
         "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).and_tag(brick::Z_MIN)))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
         "a normal of length zero": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
         "a half-space without a direction": attempt(good().replace_contact(Some(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal";

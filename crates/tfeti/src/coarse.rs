@@ -103,7 +103,7 @@ impl Coarse {
         self.0.map.rows()
     }
 
-    /// Number of bodies: sets of subdomains that interface rows join.
+    /// Number of bodies: sets of subdomains that interface rows join, be it by a hinge.
     #[must_use]
     pub fn bodies(&self) -> usize {
         self.0.mobility.bodies()

@@ -15,15 +15,18 @@ pub struct ContactPoint {
     pub opponent: Option<u32>,
     /// Outward normal and two tangents, orthonormal.
     pub frame: Frame,
+    /// Whether there is friction. Without it there are no tangential rows.
+    pub friction: bool,
+    /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
+    pub moving: bool,
 }
 
 /// The contact points of a system.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactNodes {
-    /// The points; each node may appear once.
+    /// The points. A node in an edge or a corner of rigid obstacles appears several times, with other normals; rows of such
+    /// a node may depend on one another. A node of a pair appears once.
     pub points: Vec<ContactPoint>,
-    /// Whether there is friction. Without it there are no tangential rows.
-    pub friction: bool,
 }
 
 impl ContactNodes {
@@ -34,10 +37,11 @@ impl ContactNodes {
             node,
             opponent: None,
             frame: *frame,
+            friction,
+            moving: false,
         };
         Self {
             points: nodes.iter().zip(frames).map(point).collect(),
-            friction,
         }
     }
 }
@@ -90,6 +94,8 @@ pub(crate) struct PointRows {
     pub(crate) point: usize,
     pub(crate) normal: ContactRow,
     pub(crate) tangential: Vec<ContactRow>,
+    /// Whether the rows keep directions that supports fix.
+    pub(crate) dragged: bool,
     /// `(case, relative displacement prescribed by supports)`.
     pub(crate) prescribed: Vec<(u32, [f64; 3])>,
 }
@@ -101,6 +107,12 @@ pub(crate) struct ContactRows {
     pub(crate) removed: Vec<RemovedRow>,
     pub(crate) held: Vec<HeldPoint>,
 }
+
+/// Cosine of the angle between two normals of a node from which on they count as one.
+const SAME_NORMAL: f64 = 1.0 - 1e-12;
+
+/// Cosine to the normal below which a direction counts as tangential.
+const OBLIQUE: f64 = 1e-6;
 
 /// Below this share of a direction that can move, the direction counts as fixed.
 const FIXED: f64 = 1e-8;
@@ -114,25 +126,13 @@ pub(crate) fn contact_rows(
     nodes: usize,
     squares: impl Fn(u32) -> f64,
 ) -> Result<ContactRows, TfetiError> {
-    let mut used = vec![false; nodes];
+    let mut uses = Uses::new(nodes, contact.points.len());
     let mut out = ContactRows {
         rows: Vec::with_capacity(contact.points.len()),
         ..ContactRows::default()
     };
     for (index, point) in contact.points.iter().enumerate() {
-        for node in std::iter::once(point.node).chain(point.opponent) {
-            match used.get_mut(node as usize) {
-                None => {
-                    return Err(TfetiError::UnknownNode {
-                        place: format!("contact point {index}"),
-                        node,
-                        nodes,
-                    });
-                }
-                Some(true) => return Err(TfetiError::ContactNodeTwice { node }),
-                Some(flag) => *flag = true,
-            }
-        }
+        uses.add(index, contact)?;
         check_frame(index, point)?;
         let (alpha, beta, scale) = match rule {
             RowRule::Chained => (1.0, f64::from(u8::from(point.opponent.is_some())), 1.0),
@@ -150,9 +150,55 @@ pub(crate) fn contact_rows(
             alpha,
             beta,
         );
-        reduce(index, point, contact.friction, &space, scale, &mut out);
+        reduce(index, point, point.friction, &space, scale, &mut out);
     }
     Ok(out)
+}
+
+/// The contact points of each node.
+struct Uses {
+    /// Last point of a node, plus one; 0 for none.
+    last: Vec<u32>,
+    /// The point of the same node before a point, plus one; 0 for none.
+    before: Vec<u32>,
+}
+
+impl Uses {
+    fn new(nodes: usize, points: usize) -> Self {
+        Self {
+            last: vec![0; nodes],
+            before: vec![0; points],
+        }
+    }
+
+    /// Takes a point in: only points against rigid obstacles, of different normals, may share a node.
+    fn add(&mut self, index: usize, contact: &ContactNodes) -> Result<(), TfetiError> {
+        let point = &contact.points[index];
+        let nodes = self.last.len();
+        for node in std::iter::once(point.node).chain(point.opponent) {
+            let Some(last) = self.last.get_mut(node as usize) else {
+                return Err(TfetiError::UnknownNode {
+                    place: format!("contact point {index}"),
+                    node,
+                    nodes,
+                });
+            };
+            let mut earlier = *last as usize;
+            while earlier > 0 {
+                let other = &contact.points[earlier - 1];
+                let pair = other.opponent.is_some() || point.opponent.is_some();
+                if pair || dot(&other.frame.normal, &point.frame.normal) > SAME_NORMAL {
+                    return Err(TfetiError::ContactNodeTwice { node });
+                }
+                earlier = self.before[earlier - 1] as usize;
+            }
+            if node == point.node {
+                self.before[index] = *last;
+            }
+            *last = index as u32 + 1;
+        }
+        Ok(())
+    }
 }
 
 fn check_frame(index: usize, point: &ContactPoint) -> Result<(), TfetiError> {
@@ -225,6 +271,28 @@ impl Space {
         }
     }
 
+    /// The row of a direction that does not leave out what supports fix.
+    fn full_row(&self, direction: Vector3<f64>, scale: f64) -> ContactRow {
+        ContactRow {
+            node: (direction * self.alpha).into(),
+            opponent: (direction * -self.beta).into(),
+            direction: direction.into(),
+            scale,
+        }
+    }
+
+    /// Whether supports move the point along the surface, or fix a direction that is neither normal nor tangential, so that
+    /// friction works where they act.
+    fn is_dragged(&self, normal: &Vector3<f64>, fixed: &[Vector3<f64>]) -> bool {
+        let moved = self.prescribed.iter().any(|(_, value)| {
+            let value = Vector3::from(*value);
+            let length = value.norm();
+            (value - normal * value.dot(normal)).norm() > FIXED * length
+        });
+        // all fixed directions are tangential: then what is left is the normal, or the normal and a tangent
+        moved || fixed.iter().any(|d| d.dot(normal).abs() > OBLIQUE)
+    }
+
     /// The row of a direction, divided by its length.
     fn unit_row(&self, direction: Vector3<f64>, scale: f64, unit: bool) -> ContactRow {
         let length = direction.dot(&(self.gram * direction)).sqrt();
@@ -284,6 +352,17 @@ fn reduce(
     }
     // With all three directions free the rows keep one common scale, so that the friction disc stays a disc.
     let unit = !fixed.is_empty();
+    if friction && !fixed.is_empty() && (point.moving || space.is_dragged(&normal, &fixed)) {
+        // friction and support act along the same directions: all rows as without support
+        out.rows.push(PointRows {
+            point: index,
+            normal: space.full_row(normal, scale),
+            tangential: tangents.iter().map(|t| space.full_row(*t, scale)).collect(),
+            dragged: true,
+            prescribed: Vec::new(),
+        });
+        return;
+    }
     let mut tangential = Vec::new();
     if friction {
         match fixed.len() {
@@ -307,6 +386,7 @@ fn reduce(
         point: index,
         normal,
         tangential,
+        dragged: false,
         prescribed: space.prescribed.clone(),
     });
 }

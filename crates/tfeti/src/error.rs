@@ -106,9 +106,9 @@ pub enum TfetiError {
         /// Difference of the two prescribed values in metres.
         difference: f64,
     },
-    /// A node that takes part in two contact points.
+    /// A node that takes part in two contact points of one normal, or of a pair.
     #[error(
-        "node {node} takes part in more than one contact point; a node may touch one opponent only"
+        "node {node} takes part in more than one contact point; a node may touch one opponent, or rigid obstacles of different normals"
     )]
     ContactNodeTwice {
         /// Mesh node.

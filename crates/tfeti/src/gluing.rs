@@ -19,7 +19,7 @@ use signorini_fem_mesh::{Decomposition, Frame};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum TangentialRows {
-    /// None: no friction, or supports leave no tangential direction.
+    /// None: no friction, or supports hold the point along the surface.
     None,
     /// One row; the friction force is bounded by an interval.
     Interval {
@@ -109,6 +109,10 @@ pub struct Gluing {
     prescribed: Vec<Vec<(u32, f64)>>,
     paper_rows: usize,
     orthonormal: bool,
+    /// The same without rows that depend on others of their node.
+    aligned: bool,
+    /// Nodes whose rows may depend on one another, ascending.
+    dependent: Vec<u32>,
 }
 
 impl Gluing {
@@ -171,10 +175,12 @@ impl Gluing {
             .iter()
             .map(|s| s.nodes.len())
             .sum();
-        let per_point = if contact_nodes.friction { 3 } else { 1 };
-        gluing.paper_rows = 3 * (torn - nodes.min(torn))
-            + 3 * merged.nodes.len()
-            + per_point * contact_nodes.points.len();
+        let contact_rows = contact_nodes
+            .points
+            .iter()
+            .map(|p| if p.friction { 3 } else { 1 });
+        gluing.paper_rows =
+            3 * (torn - nodes.min(torn)) + 3 * merged.nodes.len() + contact_rows.sum::<usize>();
         let entries = gluing.block_entries.len().max(gluing.row_entries.len());
         if entries.max(gluing.ranges.total()).max(3 * torn) >= u32::MAX as usize {
             return Err(TfetiError::TooLarge {
@@ -207,6 +213,8 @@ impl Gluing {
             prescribed: vec![Vec::new(); cases],
             paper_rows: 0,
             orthonormal: rule == RowRule::Orthonormal && plain,
+            aligned: rule == RowRule::Orthonormal && plain,
+            dependent: Vec::new(),
         }
     }
 
@@ -222,7 +230,8 @@ impl Gluing {
         &self.ranges
     }
 
-    /// Number of rows of `B`, which has full rank: the length of dual vectors.
+    /// Number of rows of `B`: the length of dual vectors. `B` has full rank, except at [dependent
+    /// nodes](Self::dependent_nodes).
     #[must_use]
     pub fn rows_full_rank(&self) -> usize {
         self.ranges.total()
@@ -239,6 +248,24 @@ impl Gluing {
     #[must_use]
     pub fn is_orthonormal(&self) -> bool {
         self.orthonormal
+    }
+
+    /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a support
+    /// drags along an obstacle with friction, where the friction force is wanted although the support takes it.
+    #[must_use]
+    pub fn dependent_nodes(&self) -> &[u32] {
+        &self.dependent
+    }
+
+    /// Whether a node is one of the [dependent nodes](Self::dependent_nodes).
+    #[must_use]
+    pub fn is_dependent(&self, node: u32) -> bool {
+        self.dependent.binary_search(&node).is_ok()
+    }
+
+    /// Whether `B B^T` is the identity, but for rows of dependent nodes.
+    pub(crate) fn is_aligned(&self) -> bool {
+        self.aligned
     }
 
     /// The contact points that have a normal row, in the order of the normal rows.

@@ -67,6 +67,7 @@ mod face_space;
 mod forecast;
 mod gluing;
 mod inverse;
+mod joints;
 mod kernel;
 mod matrices;
 mod mobility;

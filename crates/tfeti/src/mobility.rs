@@ -2,10 +2,12 @@
 //!
 //! The rank of `G W G^T` is decided here and not by small pivots: the interface rows join subdomains to bodies, and a
 //! vector of its null space is a rigid motion of bodies that all other rows of positive weight leave alone. That is an
-//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is.
+//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is. Subdomains that
+//! share an edge or a node only are bodies of their own: the rows between them leave a hinge free.
 
 use crate::class::Classes;
 use crate::gluing::{CopyEntry, Gluing};
+use crate::joints::{joint_rows, rigid_pairs};
 use crate::kernel::{Kernel, displacement};
 use crate::matrices::ClassBase;
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -26,9 +28,9 @@ pub struct FreeMotion {
 /// Rigid motion of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyMotion {
-    /// Body number; bodies are numbered by their first subdomain.
+    /// Body number; bodies are numbered by their first subdomain. Parts of a body that hinges join move each in their way.
     pub body: usize,
-    /// A subdomain of the body.
+    /// The first subdomain of the body, or of its part.
     pub subdomain: usize,
     /// Translation of the centre.
     pub translation: [f64; 3],
@@ -58,11 +60,16 @@ impl fmt::Display for FreeMotion {
 /// Bodies and how the rows act on their rigid motions.
 #[derive(Debug)]
 pub(crate) struct Mobility {
+    /// Rigid part of each subdomain.
+    part_of: Vec<u32>,
+    /// Body of each subdomain: parts that hinges join are of one.
     body_of: Vec<u32>,
     bodies: Vec<Body>,
     centres: Vec<[f64; 3]>,
     classes: Arc<Classes>,
     bases: Arc<Vec<ClassBase>>,
+    /// Interface rows between bodies (hinges): what they do to their motions.
+    joints: Vec<Vec<(usize, [f64; 6])>>,
 }
 
 /// Bodies that rows join, and the Gram matrix of the actions of the rows on them.
@@ -92,23 +99,22 @@ impl Mobility {
         centres: Vec<[f64; 3]>,
     ) -> Self {
         let mut parent: Vec<u32> = (0..centres.len() as u32).collect();
-        for block in 0..gluing.blocks() {
-            let entries = gluing.block(block);
-            for pair in entries.windows(2) {
-                let (a, b) = (
-                    root(&mut parent, pair[0].subdomain),
-                    root(&mut parent, pair[1].subdomain),
-                );
-                parent[a.max(b) as usize] = a.min(b);
-            }
+        let position = |s: usize, local: usize| {
+            let kernel = &bases[classes.place(s).0].kernel;
+            let arm = kernel.arm(local);
+            std::array::from_fn(|c| centres[s][c] + kernel.radius() * arm[c])
+        };
+        for (a, b) in rigid_pairs(gluing, position) {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b) as usize] = a.min(b);
         }
         let mut bodies: Vec<Body> = Vec::new();
-        let mut body_of = vec![0; centres.len()];
+        let mut part_of = vec![0; centres.len()];
         let mut members: Vec<Vec<usize>> = Vec::new();
         for s in 0..centres.len() {
             let first = root(&mut parent, s as u32) as usize;
             if first == s {
-                body_of[s] = bodies.len() as u32;
+                part_of[s] = bodies.len() as u32;
                 bodies.push(Body {
                     centre: [0.0; 3],
                     radius: 1.0,
@@ -116,8 +122,8 @@ impl Mobility {
                 });
                 members.push(vec![s]);
             } else {
-                body_of[s] = body_of[first];
-                members[body_of[s] as usize].push(s);
+                part_of[s] = part_of[first];
+                members[part_of[s] as usize].push(s);
             }
         }
         for (body, members) in bodies.iter_mut().zip(&members) {
@@ -134,13 +140,43 @@ impl Mobility {
                 .sum();
             body.radius = (square / members.len() as f64).sqrt();
         }
-        Self {
+        let joints = joint_rows(gluing, &part_of);
+        for row in &joints {
+            for pair in row.windows(2) {
+                let (a, b) = (
+                    root(&mut parent, pair[0].subdomain),
+                    root(&mut parent, pair[1].subdomain),
+                );
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut body_of = vec![0; centres.len()];
+        let mut count = 0;
+        for s in 0..centres.len() {
+            let first = root(&mut parent, s as u32) as usize;
+            body_of[s] = if first == s {
+                count += 1;
+                count - 1
+            } else {
+                body_of[first]
+            };
+        }
+        let mut out = Self {
+            part_of,
             body_of,
             bodies,
             centres,
             classes,
             bases,
-        }
+            joints: Vec::new(),
+        };
+        let acts = |row: &Vec<CopyEntry>| {
+            let mut actions = Vec::new();
+            out.act(row, 1.0, &mut actions);
+            actions
+        };
+        out.joints = joints.iter().map(acts).collect();
+        out
     }
 
     /// Means of the nodes of the subdomains.
@@ -149,7 +185,7 @@ impl Mobility {
     }
 
     pub(crate) fn bodies(&self) -> usize {
-        self.bodies.len()
+        self.body_of.iter().max().map_or(0, |b| *b as usize + 1)
     }
 
     /// Body of each subdomain.
@@ -163,7 +199,7 @@ impl Mobility {
 
     /// Motion of a subdomain about its own centre when its body moves by `motion` about the body's.
     fn restrict(&self, subdomain: usize, motion: &[f64; 6]) -> [f64; 6] {
-        let body = &self.bodies[self.body_of[subdomain] as usize];
+        let body = &self.bodies[self.part_of[subdomain] as usize];
         let c = self.centres[subdomain];
         let arm = std::array::from_fn(|k| (c[k] - body.centre[k]) / body.radius);
         let [x, y, z] = displacement(motion, &arm);
@@ -182,7 +218,7 @@ impl Mobility {
     pub(crate) fn act(&self, entries: &[CopyEntry], factor: f64, out: &mut Vec<(usize, [f64; 6])>) {
         for e in entries {
             let s = e.subdomain as usize;
-            let body = self.body_of[s] as usize;
+            let body = self.part_of[s] as usize;
             let at = match out.iter().position(|v| v.0 == body) {
                 Some(at) => at,
                 None => {
@@ -209,7 +245,7 @@ impl Mobility {
         &self,
         rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>,
     ) -> Vec<FreeMotion> {
-        let rows: Vec<_> = rows.collect();
+        let rows: Vec<_> = rows.chain(self.joints.iter().cloned()).collect();
         let mut parent: Vec<u32> = (0..self.bodies.len() as u32).collect();
         for row in &rows {
             for pair in row.windows(2) {
@@ -272,16 +308,16 @@ impl Mobility {
             let [a, b, c, d, e, f] = part(body);
             let subdomain = self.bodies[body].first;
             BodyMotion {
-                body,
+                body: self.body_of[subdomain] as usize,
                 subdomain,
                 translation: [a, b, c],
                 rotation: [d, e, f],
                 radius: self.bodies[body].radius,
             }
         });
-        let mut amplitudes = Vec::with_capacity(6 * self.body_of.len());
-        for s in 0..self.body_of.len() {
-            let motion = self.restrict(s, &part(self.body_of[s] as usize));
+        let mut amplitudes = Vec::with_capacity(6 * self.part_of.len());
+        for s in 0..self.part_of.len() {
+            let motion = self.restrict(s, &part(self.part_of[s] as usize));
             amplitudes.extend(self.kernel(s).amplitudes(&motion));
         }
         FreeMotion {

@@ -5,6 +5,10 @@ use crate::error::TfetiError;
 use crate::system::Tfeti;
 use signorini_qp::{FaceView, Freedom};
 
+/// What is added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come
+/// out large, but `B^T` takes them to zero.
+const DEPENDENT: f64 = 0.3;
+
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or to
 /// a contact pair) are coupled by a small matrix, which is inverted once.
 #[derive(Debug)]
@@ -72,6 +76,12 @@ impl Scaling {
                     };
                     matrix[i + j * count] = entries[i].iter().map(weight).sum();
                 }
+            }
+            if gluing.is_dependent(rows[0].0) {
+                let size = (0..count)
+                    .map(|k| matrix[k * (count + 1)])
+                    .fold(0.0, f64::max);
+                (0..count).for_each(|k| matrix[k * (count + 1)] += DEPENDENT * size);
             }
             let inverse = dense::inverse(matrix, count, 0.0)
                 .map_err(|pivot| TfetiError::CoarseSingular { pivot })?;

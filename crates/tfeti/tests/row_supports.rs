@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{Brick, dot, gluing, gram};
-use signorini_fem_mesh::brick;
+use common::{Brick, dot, gluing, gram, smallest_eigenvalue};
+use signorini_fem_mesh::{Frame, brick};
 use signorini_tfeti::{
-    Directions, Motion, RemovalReason, RowKind, RowRule, Support, TangentialRows, TfetiError,
+    ContactNodes, ContactPoint, Directions, Gluing, Motion, RemovalReason, RowKind, RowRule,
+    Support, TangentialRows, TfetiError,
 };
 
 #[test]
@@ -62,18 +63,22 @@ fn partial_supports_reduce_the_tangential_space() {
         vec![node],
         Directions::Vectors(vec![[s, 0.0, s]]),
     )];
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let g = gluing(&b, &supports, Some(&b.contact(false)), RowRule::Orthonormal).unwrap();
     let info = g.contact().iter().find(|c| c.node == node).unwrap();
     assert!((info.scale - 2.0_f64.sqrt()).abs() < 1e-12);
-    assert!(
-        matches!(info.tangential, TangentialRows::Interval { direction, .. } if direction[1].abs() > 1.0 - 1e-12)
-    );
-    assert!(
-        gram(&g)
-            .iter()
-            .enumerate()
-            .all(|(i, r)| (r[i] - 1.0).abs() < 1e-13)
-    );
+    let unit = |g: &Gluing| {
+        let gram = gram(g);
+        (0..gram.len()).all(|i| (gram[i][i] - 1.0).abs() < 1e-13)
+    };
+    assert!(unit(&g) && g.is_orthonormal() && g.dependent_nodes().is_empty());
+    // With friction all rows of the node are wanted, though one of them depends on those of the support.
+    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let info = g.contact().iter().find(|c| c.node == node).unwrap();
+    assert!((info.scale - 1.0).abs() < 1e-12);
+    assert!(matches!(info.tangential, TangentialRows::Disc { .. }));
+    assert_eq!(g.dependent_nodes(), [node]);
+    assert!(unit(&g) && !g.is_orthonormal());
+    assert!(smallest_eigenvalue(&gram(&g)).abs() < 1e-12);
 }
 
 #[test]
@@ -188,4 +193,73 @@ fn prescribed_motion_of_a_support_appears_in_the_contact_offset() {
             "{rule:?}"
         );
     }
+}
+
+/// What a support drags along the surface keeps its tangential rows; what it only holds does not.
+#[test]
+fn dragged_nodes_keep_their_tangential_rows() {
+    let b = Brick::new(1, 2);
+    let node = b.bottom[b.bottom.len() - 1];
+    let support = |along: [f64; 3]| {
+        let directions = Directions::Components([true, false, false]);
+        let values = vec![along];
+        [Support::partial(vec![node], directions).with_motion(Motion { case: 0, values })]
+    };
+    let rows = |along: [f64; 3], friction: bool| {
+        let contact = b.contact(friction);
+        gluing(&b, &support(along), Some(&contact), RowRule::Orthonormal).unwrap()
+    };
+    let discs = |g: &Gluing| g.ranges().discs.len() / 2;
+    let all = b.bottom.len();
+    let held = rows([0.0, 1.0, 1.0], true);
+    assert_eq!((discs(&held), held.ranges().intervals.len()), (all - 1, 1));
+    let dragged = rows([1e-3, 0.0, 0.0], true);
+    assert_eq!(
+        (discs(&dragged), dragged.ranges().intervals.len()),
+        (all, 0)
+    );
+    assert_eq!(dragged.dependent_nodes(), [node]);
+    assert!(rows([1e-3, 0.0, 0.0], false).dependent_nodes().is_empty());
+}
+
+/// A node in a corner of three walls has three normal rows; two points of one normal are one too many.
+#[test]
+fn a_node_may_have_several_normals() {
+    let b = Brick::new(1, 2);
+    let node = b.bottom[0];
+    let points = |normals: &[[f64; 3]], friction| ContactNodes {
+        points: normals
+            .iter()
+            .map(|&normal| ContactPoint {
+                node,
+                opponent: None,
+                frame: Frame::from_normal(normal).unwrap(),
+                friction,
+                moving: false,
+            })
+            .collect(),
+    };
+    let corner = [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
+    let make = |normals: &[[f64; 3]], friction| {
+        gluing(
+            &b,
+            &[],
+            Some(&points(normals, friction)),
+            RowRule::Orthonormal,
+        )
+    };
+    let smooth = make(&corner, false).unwrap();
+    assert_eq!(smooth.ranges().contact().len(), 3);
+    assert!(smooth.is_orthonormal());
+    assert_eq!(smooth.dependent_nodes(), [node]);
+    let rough = make(&corner, true).unwrap();
+    assert_eq!(rough.ranges().contact().len(), 9);
+    assert!(!rough.is_orthonormal());
+    assert_eq!(rough.rows_as_paper() - smooth.rows_as_paper(), 6);
+    let blunt = make(&[[0.0, 0.6, -0.8], [0.0, 0.0, -1.0]], false).unwrap();
+    assert!(!blunt.is_orthonormal());
+    assert!(matches!(
+        make(&[[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]], true),
+        Err(TfetiError::ContactNodeTwice { .. })
+    ));
 }

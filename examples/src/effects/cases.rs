@@ -40,7 +40,8 @@ pub(super) fn four_sides(scene: Scene) -> Scene {
     let contact = [brick::Z_MAX, brick::Y_MIN, brick::Y_MAX]
         .into_iter()
         .fold(Contact::rigid(brick::Z_MIN), Contact::and_tag);
-    let contact = contact.with_gap(GAP);
+    // measured with one normal a node
+    let contact = contact.with_gap(GAP).with_crease(180.0);
     scene.replace_contact(Some(contact.with_friction(friction.unwrap_or_default())))
 }
 

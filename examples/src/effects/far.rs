@@ -41,6 +41,8 @@ fn long(cells: usize, steps: usize) -> Result<Scene, Error> {
         .into_iter()
         .fold(Contact::rigid(brick::Z_MIN), Contact::and_tag)
         .with_gap(0.2)
+        // measured with one normal a node
+        .with_crease(180.0)
         .with_friction(Friction::coulomb(0.3));
     Ok(Scene::new(mesh, steel()?)
         .with_support(Support::fixed(brick::X_MIN))

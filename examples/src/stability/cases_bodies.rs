@@ -265,7 +265,7 @@ pub fn supports() -> Vec<Case> {
         Case::new(
             GROUP,
             "three normals at a corner",
-            "floor, end and side touch: mean normals at edges and at the corner, friction in tilted planes",
+            "floor, end and side touch: nodes at edges have two normals with friction, the one at the corner three",
             move || {
                 let block = base();
                 let contact = Contact::rigid(brick::Z_MIN)

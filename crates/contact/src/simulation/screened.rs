@@ -20,7 +20,7 @@ pub(super) fn set_up(
     if !Screen::applies(&scene, settings) {
         return Ok((Model::new(scene, settings)?, None));
     }
-    let model = Model::with_contact_nodes(scene, settings, &[])?;
+    let model = Model::with_points(scene, settings, &[])?;
     match Screen::new(&model, settings)? {
         Some(screen) => Ok((model, Some(screen))),
         None => Ok((Model::new(model.scene, settings)?, None)),
@@ -88,8 +88,8 @@ impl Simulation {
         if screen.active() == active {
             return Ok(());
         }
-        let nodes = screen.nodes(&active);
-        let model = self.model.with_other_nodes(&self.settings, &nodes)?;
+        let places = screen.places(&active);
+        let model = self.model.with_other_points(&self.settings, &places)?;
         let solver = Solver::new(&model, &self.settings)?;
         screen.install(&model, active);
         self.rebuilt += model.tfeti.report().factorisations;

@@ -4,7 +4,7 @@ use super::{BlockEntry, ContactInfo, CopyEntry, Glob, Gluing, TangentialRows};
 use crate::contact::{ContactNodes, ContactRow, PointRows};
 use crate::copy_stiffness::CopyStiffness;
 use crate::rows::RowRule;
-use crate::supports::MergedSupports;
+use crate::supports::{MergedSupports, dot};
 use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 pub(super) struct Builder<'a> {
@@ -90,9 +90,10 @@ impl Builder<'_> {
                 (length - 1.0).abs() > 1e-12
             };
             if skew(&p.normal) || p.tangential.iter().any(skew) {
-                self.gluing.orthonormal = false;
+                (self.gluing.orthonormal, self.gluing.aligned) = (false, false);
             }
         }
+        self.dependent(contact, points);
         let normal = self.gluing.specials();
         for (k, p) in points
             .iter()
@@ -127,6 +128,20 @@ impl Builder<'_> {
         let ranges = &mut self.gluing.ranges;
         (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
         ranges.interface = end..end;
+    }
+
+    /// Notes the nodes whose rows may depend on one another.
+    fn dependent(&mut self, contact: &ContactNodes, points: &[PointRows]) {
+        let node = |k: &usize| contact.points[points[*k].point].node;
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by_key(node);
+        for same in order.chunk_by(|a, b| node(a) == node(b)) {
+            let dragged = same.iter().any(|&k| points[k].dragged);
+            if same.len() > 1 || dragged {
+                self.gluing.dependent.push(node(&same[0]));
+                self.gluing.orthonormal &= !dragged && separate(points, same);
+            }
+        }
     }
 
     pub(super) fn interface(&mut self, nodes: usize) {
@@ -198,4 +213,12 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Whether the rows of different points of one node are orthogonal.
+fn separate(points: &[PointRows], same: &[usize]) -> bool {
+    let rows = |k: usize| std::iter::once(&points[k].normal).chain(&points[k].tangential);
+    let orthogonal =
+        |a: usize, b: usize| rows(a).all(|x| rows(b).all(|y| dot(&x.node, &y.node).abs() <= 1e-12));
+    (1..same.len()).all(|i| (0..i).all(|j| orthogonal(same[i], same[j])))
 }

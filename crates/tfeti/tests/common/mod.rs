@@ -159,3 +159,10 @@ pub(crate) fn product(system: &Tfeti, x: &[f64]) -> Vec<f64> {
     f.apply(x, &mut y, &mut f.scratch());
     y
 }
+
+/// Smallest eigenvalue of a dense symmetric matrix.
+pub(crate) fn smallest_eigenvalue(gram: &[Vec<f64>]) -> f64 {
+    let n = gram.len();
+    let matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| gram[i][j]);
+    nalgebra::SymmetricEigen::new(matrix).eigenvalues.min()
+}
