@@ -78,14 +78,19 @@ use crate::certificate::Certificate;
 use crate::contact_move::{Moved, dot, movable_normal, push_out};
 use crate::frame::PointState;
 use crate::level::Level;
-use crate::model::Model;
+use crate::model::{Model, TouchPoint};
 use crate::state::REST;
+use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// Moves out of one obstacle after another, for nodes in edges; one is enough between perpendicular ones.
 const SWEEPS: usize = 10;
+
+/// Planes of one node count as parallel below this singular value over the largest.
+const PARALLEL: f64 = 1e-6;
 
 /// Relative imbalance that counts as rounding.
 const BALANCED: f64 = 1e-12;
@@ -191,8 +196,8 @@ impl Solved<'_> {
                 Moved::new(self.level, touch, point, normal, &weights.rows, value)
             })
             .collect();
-        self.outside(&mut v);
         self.support(&mut v);
+        self.agree(&moved, &mut v);
         let (mut terms, mut change) = (0.0, 0.0);
         for (((point, touch), normal), moved) in places().zip(&moved) {
             let value = &v[3 * touch.node as usize..][..3];
@@ -302,16 +307,60 @@ impl Solved<'_> {
         v
     }
 
-    /// Moves nodes with several contact points out of all their obstacles: the move for one of them may go into another.
-    fn outside(&self, v: &mut [f64]) {
+    /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one may undo
+    /// another. Points that touch stay at their obstacles, others are moved out of theirs.
+    fn agree(&self, moved: &[Moved], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
+        if gluing.dependent_nodes().is_empty() {
+            return;
+        }
+        let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
+        for row in gluing.ranges().dirichlet.clone() {
+            if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
+                let plane = (self.direction(row), self.level.offset[row]);
+                planes.entry(node).or_default().push(plane);
+            }
+        }
+        let dependent = |t: &&TouchPoint| gluing.is_dependent(t.node);
+        let points = || self.model.points.iter().filter(dependent);
+        for (touch, moved) in self.model.points.iter().zip(moved) {
+            if !gluing.is_dependent(touch.node) {
+                continue;
+            }
+            let planes = planes.entry(touch.node).or_default();
+            let mut fix = |direction, row: usize, scale: f64| {
+                planes.push((direction, self.level.offset[row] / scale));
+            };
+            if moved.touches() {
+                fix(movable_normal(gluing, touch), touch.row, touch.scale);
+            }
+            // with given friction also where the contact is open
+            if moved.sticks() {
+                touch.along().for_each(|(d, row, scale)| fix(d, row, scale));
+            }
+        }
+        let on_planes = |v: &mut [f64]| {
+            for (&node, planes) in &planes {
+                meet(planes, &mut v[3 * node as usize..][..3]);
+            }
+        };
+        on_planes(v);
         for _ in 0..SWEEPS {
-            let points = self.model.points.iter();
-            for touch in points.filter(|t| gluing.is_dependent(t.node)) {
+            for touch in points() {
                 let value = &mut v[3 * touch.node as usize..][..3];
                 push_out(self.level, touch, &movable_normal(gluing, touch), value);
             }
         }
+        on_planes(v);
+    }
+
+    /// The direction that a support row fixes, times the scale of the row.
+    fn direction(&self, row: usize) -> [f64; 3] {
+        let mut direction = [0.0; 3];
+        for (_, dof, coefficient) in self.model.tfeti.gluing().row(row) {
+            direction[dof % 3] += coefficient;
+        }
+        direction
     }
 
     /// Sets supported directions to their prescribed values.
@@ -321,10 +370,7 @@ impl Solved<'_> {
             let Some(node) = gluing.node(row) else {
                 continue;
             };
-            let mut direction = [0.0; 3];
-            for (_, dof, coefficient) in gluing.row(row) {
-                direction[dof % 3] += coefficient;
-            }
+            let direction = self.direction(row);
             let value = &mut v[3 * node as usize..][..3];
             let off =
                 (self.level.offset[row] - dot(&direction, value)) / dot(&direction, &direction);
@@ -332,5 +378,16 @@ impl Solved<'_> {
                 value[c] += off * direction[c];
             }
         }
+    }
+}
+
+/// Moves a point as little as possible onto planes `(n, d)`, `n . x = d`; next to all of them where they do not meet.
+fn meet(planes: &[([f64; 3], f64)], x: &mut [f64]) {
+    let rows = DMatrix::from_fn(planes.len(), 3, |i, c| planes[i].0[c]);
+    let off = DVector::from_fn(planes.len(), |i, _| planes[i].1 - dot(&planes[i].0, x));
+    let svd = rows.svd(true, true);
+    let cut = PARALLEL * svd.singular_values.max();
+    if let Ok(by) = svd.solve(&off, cut) {
+        x.iter_mut().zip(by.iter()).for_each(|(x, b)| *x += b);
     }
 }

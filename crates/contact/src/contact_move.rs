@@ -89,6 +89,16 @@ impl Moved {
         moved
     }
 
+    /// Whether the node is at the obstacle.
+    pub(crate) fn touches(&self) -> bool {
+        self.open == 0.0
+    }
+
+    /// Whether friction holds it where it is.
+    pub(crate) fn sticks(&self) -> bool {
+        self.bound > 0.0 && self.slip == [0.0; 2]
+    }
+
     /// The node's share of the gap at its final position, which supports may have changed, J.
     pub(crate) fn gap(
         mut self,

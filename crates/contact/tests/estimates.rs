@@ -152,10 +152,15 @@ fn random(seed: u64) -> Scene {
 
 #[test]
 fn random_scenes_keep_what_they_promise() {
-    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    let (mut least, mut most, mut left_out) = (f64::INFINITY, 0.0_f64, 0);
     for seed in 0..40 {
         let scene = random(seed);
         let exact = estimated(&scene, at(1e-12));
+        // a support that pushes rough nodes obliquely into the floor may jam them: there is no solution then
+        if exact.iter().any(|l| !l.0.report.status.converged()) {
+            left_out += 1;
+            continue;
+        }
         let largest = exact.iter().map(|l| l.1.elastic).fold(0.0, f64::max);
         let truth = |k: usize, u: &[f64]| distance(&scene, u, &exact[k].0.displacement);
         for tolerance in [1e-2, 1e-5] {
@@ -181,7 +186,8 @@ fn random_scenes_keep_what_they_promise() {
             }
         }
     }
-    println!("indices {least:.2} to {most:.2}");
+    println!("indices {least:.2} to {most:.2}, {left_out} left out");
+    assert!(left_out <= 3, "{left_out}");
 }
 
 #[test]
