@@ -34,6 +34,11 @@ pub struct Balance {
     pub surplus: f64,
 }
 
+/// Part of displacement times stiffness below which forces are measured against it.
+const ROUNDED: f64 = 1e-8;
+/// The same for energies.
+const ROUNDED_WORK: f64 = 1e-10;
+
 impl Balance {
     /// The largest of the errors.
     #[must_use]
@@ -168,6 +173,14 @@ impl Ledger {
             }
             size += length(f);
         }
+        // rounding errors of K u, where the body moves without strain
+        let (mut stiff, mut worked) = (0.0, 0.0);
+        for (i, row) in self.rows.iter().enumerate() {
+            let k = row.iter().find(|(j, _)| *j == i).map_or(0.0, |(_, v)| *v);
+            stiff += k * u[i].abs();
+            worked += k * u[i] * u[i];
+        }
+        size = size.max(ROUNDED * stiff);
         let b = &mut self.balance;
         b.force = worse(b.force, ratio(length(&sum), size));
         b.moment = worse(b.moment, ratio(length(&moment), size));
@@ -193,7 +206,7 @@ impl Ledger {
         }
         if known {
             self.turnover += turned;
-            let scale = self.turnover.max(energy);
+            let scale = self.turnover.max(energy).max(ROUNDED_WORK * worked);
             b.energy = worse(
                 b.energy,
                 ratio((energy - before.energy - work).abs(), scale),
