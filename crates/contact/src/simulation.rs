@@ -109,14 +109,13 @@ impl Simulation {
         let places = points.iter().map(|p| (model.law(p), p.node, p.position));
         crate::law::check(places)?;
         crate::held::check(&model)?;
-        let solver = Solver::new(&model, &settings)?;
-        let origin = Fingerprint::new(
-            &model.scene.mesh,
-            &model.scene.analysis,
-            &model.decomposition,
-            model.tfeti.gluing(),
-            points,
-        );
+        let origin = || {
+            let (scene, gluing) = (&model.scene, model.tfeti.gluing());
+            let decomposition = &model.decomposition;
+            Fingerprint::new(&scene.mesh, &scene.analysis, decomposition, gluing, points)
+        };
+        let (solver, origin) = rayon::join(|| Solver::new(&model, &settings), origin);
+        let solver = solver?;
         let mut state = State::default();
         state.set_origin(origin);
         Ok(Self {
