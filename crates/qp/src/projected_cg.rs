@@ -225,10 +225,10 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
             product
         };
         let size = vector::norm(b);
-        let tolerance = match tolerance.resolve(reference) {
+        let tolerance = match tolerance {
             // what the projector leaves of the load is rounding, and nothing else acts
-            _ if reference <= VANISHED * size => ROUNDED * size,
-            tolerance => tolerance,
+            Tolerance::Relative(_) if reference <= VANISHED * size => ROUNDED * size,
+            tolerance => tolerance.resolve(reference),
         };
         expect_setting(
             "tolerance",

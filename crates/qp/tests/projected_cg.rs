@@ -94,3 +94,30 @@ fn indefinite_and_misfitting_input_is_named() {
     assert!(matches!(run(&[], &mut work), Err(QpError::Length { .. })));
     assert_eq!(ProductSet::free(2).dim(), 2);
 }
+
+/// A load that the equality takes alone, with `e = 0`: the solution is zero, and what the projector leaves is rounding.
+#[test]
+fn a_load_in_the_equality_is_solved_at_once() {
+    let mut r = Random::new(5);
+    let n = 60;
+    let (a, _) = common::spd(n, 2.0, &mut r);
+    let (c, _) = common::equality(n, 6, &ProductSet::free(n), &mut r);
+    let (mut b, e) = (vec![0.0; n], vec![0.0; 6]);
+    c.apply_transpose(&r.vector(6), &mut b, &mut ());
+    let mut work = CgWorkspace::new(&a, &c, &Identity(n));
+    let mut solve = |tolerance| {
+        let mut x = vec![0.0; n];
+        let m = Identity(n);
+        let report = projected_cg(&a, &b, &c, &e, &m, tolerance, 100, &mut x, &mut work);
+        (report.expect("solve"), vector::norm(&x))
+    };
+    let (report, size) = solve(Tolerance::Relative(1e-12));
+    assert!(
+        report.status.converged() && report.products <= 2,
+        "{report:?}"
+    );
+    assert!(size < 1e-13, "{size:e}");
+    // who names a size gets it
+    let (report, _) = solve(Tolerance::Absolute(1e-300));
+    assert_eq!(report.tolerance, 1e-300);
+}
