@@ -383,6 +383,9 @@ impl Solved<'_> {
 
 /// Moves a point as little as possible onto planes `(n, d)`, `n . x = d`; next to all of them where they do not meet.
 fn meet(planes: &[([f64; 3], f64)], x: &mut [f64]) {
+    if planes.is_empty() {
+        return;
+    }
     let rows = DMatrix::from_fn(planes.len(), 3, |i, c| planes[i].0[c]);
     let off = DVector::from_fn(planes.len(), |i, _| planes[i].1 - dot(&planes[i].0, x));
     let svd = rows.svd(true, true);

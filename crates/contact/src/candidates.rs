@@ -88,7 +88,7 @@ pub(crate) fn candidates(
                 let others = known.entry(node).or_default();
                 let same = |k: &&usize| is_same(scene, &out[**k], &candidate);
                 match others.iter().find(same) {
-                    Some(&k) => join(&mut out[k], candidate),
+                    Some(&k) => join(scene, &mut out[k], candidate)?,
                     None => {
                         others.push(out.len());
                         out.push(candidate);
@@ -116,20 +116,40 @@ fn fixed_frame(contact: &Contact, surface: &Surface) -> Result<Option<Frame>, Co
     Ok(Some(frame))
 }
 
-/// Whether two points of a node are one: the same direction, or sides of the body that go over into one another.
+/// Whether two points of a node are one: the same direction, or surfaces that go over into one another. Sides of one surface
+/// have been told apart at its creases.
 fn is_same(scene: &Scene, a: &Candidate, b: &Candidate) -> bool {
     let cosine = a.frame.normal_part(b.frame.normal);
+    if a.surface == b.surface {
+        return cosine > SAME;
+    }
     let [x, y] = [a, b].map(|c| &scene.contacts[c.surface]);
     let body = [x, y].iter().all(|c| c.normal == ContactNormal::Body);
     cosine > SAME || (body && cosine > x.crease.min(y.crease).to_radians().cos())
 }
 
-/// Joins a point to an earlier one of the same node: the law is that of the nearer obstacle.
-fn join(point: &mut Candidate, other: Candidate) {
-    let area = point.area + other.area;
+/// Joins a point to an earlier one of the same node: the law is that of the nearer obstacle. Surfaces with a tag in common
+/// share its facets, whose area counts once.
+fn join(scene: &Scene, point: &mut Candidate, other: Candidate) -> Result<(), ContactError> {
+    let [x, y] = [&*point, &other].map(|c| &scene.contacts[c.surface]);
+    if x.motion != y.motion {
+        // which obstacle is nearer would change with time
+        return Err(ContactError::SharedNode {
+            node: point.node,
+            first: point.surface,
+            second: other.surface,
+        });
+    }
+    let shared = point.surface != other.surface && x.tags.iter().any(|t| y.tags.contains(t));
+    let weights = point.area + other.area;
+    let area = if shared {
+        point.area.max(other.area)
+    } else {
+        weights
+    };
     if point.frame.normal_part(other.frame.normal) <= SAME {
         let mean = [0, 1, 2].map(|c| {
-            (point.area * point.frame.normal[c] + other.area * other.frame.normal[c]) / area
+            (point.area * point.frame.normal[c] + other.area * other.frame.normal[c]) / weights
         });
         point.frame = Frame::from_normal(mean).unwrap_or(point.frame);
     }
@@ -137,6 +157,7 @@ fn join(point: &mut Candidate, other: Candidate) {
         (point.surface, point.gap) = (other.surface, other.gap);
     }
     point.area = area;
+    Ok(())
 }
 
 /// The sides that meet at each node of a crease, as frames and areas; keys are places in the surface.

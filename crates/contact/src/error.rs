@@ -160,6 +160,18 @@ pub enum ContactError {
         /// Number of nodes of the contact surface.
         nodes: usize,
     },
+    /// Two contact surfaces whose obstacles move differently meet a node along one direction.
+    #[error(
+        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"
+    )]
+    SharedNode {
+        /// Mesh node.
+        node: u32,
+        /// Position of the first surface in the scene.
+        first: usize,
+        /// Position of the second.
+        second: usize,
+    },
     /// A load or support history gave a value that is not finite.
     #[error("{what} {index}: its history gives {value} at time {time} s")]
     HistoryValue {

@@ -22,7 +22,7 @@
 //!
 //! **Slender subdomains.** Contact rows of a body that bends are coupled over its whole length, and the preconditioner sees only the
 //! neighbours of a node. With `s` the ratio of the largest to the smallest extent of a subdomain (of the ellipsoid with its second
-//! moments, mean of all), the first level takes
+//! moments, mean over 64 of them at most), the first level takes
 //!
 //! ```text
 //! S = (s / 3)²  times as much with friction, S^0.7 without, from s = 3 on,

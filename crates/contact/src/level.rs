@@ -7,7 +7,8 @@ use crate::model::{Model, TouchPoint};
 use crate::state::{Peak, REST, State};
 use signorini_qp::{ProductSet, vector};
 
-/// Part of a displacement times stiffness up to which forces are rounding errors, times a tolerance.
+/// Forces are measured against this part of displacement times stiffness at least: what is left of a rigid motion are rounding
+/// errors, 1e-16 of that product.
 pub(crate) const ROUNDED: f64 = 1e-8;
 
 /// Data of one level; vectors are allocated once and rewritten.

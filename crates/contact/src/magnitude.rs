@@ -39,7 +39,7 @@ fn largest(analysis: &Analysis, history: &History) -> (f64, f64) {
     })
 }
 
-/// Motions of supports.
+/// Motions of supports and obstacles.
 pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
     for (index, support) in scene.supports.iter().enumerate() {
         if let Some((values, history)) = &support.motion {
@@ -47,6 +47,13 @@ pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
             let size = vector::max_abs(values.as_flattened());
             let place = || format!("support {index} at time {time} s: its displacement");
             expect(factor * size, "m", place)?;
+        }
+    }
+    for (index, contact) in scene.contacts.iter().enumerate() {
+        if let Some((value, history)) = &contact.motion {
+            let (factor, time) = largest(&scene.analysis, history);
+            let place = || format!("obstacle {index} at time {time} s: its displacement");
+            expect(factor * vector::max_abs(value), "m", place)?;
         }
     }
     Ok(())

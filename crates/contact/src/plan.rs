@@ -67,7 +67,7 @@ pub struct Plan {
     pub subdomains: usize,
     /// Unknown displacements of all torn subdomains, n_p of the paper.
     pub primal: usize,
-    /// Largest over smallest extent of a subdomain, the mean of all.
+    /// Largest over smallest extent of a subdomain: the mean, weighted by tetrahedra, over 64 of them at most.
     pub slenderness: f64,
     /// Contact points that can touch: nodes, those in edges and corners counted once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).

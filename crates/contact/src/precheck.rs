@@ -7,16 +7,20 @@ use crate::candidates::{candidates, contact_nodes, surfaces};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law;
+use crate::magnitude;
 use crate::model::supports;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_tfeti::held_points;
 
-/// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse, with the same error.
+/// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse of supports, contact, loads and laws, with the same error; not
+/// nodal forces that are too large, nor subdomains that cannot be factored.
 pub(crate) fn check(scene: &Scene, decomposition: &Decomposition) -> Result<(), ContactError> {
+    magnitude::check_motions(scene)?;
     let (supports, motions) = supports(scene)?;
     let places = scene.mesh.points();
     let candidates = candidates(scene, &surfaces(scene)?)?;
+    magnitude::check_gaps(&candidates)?;
     driven::check(scene, &candidates, &supports, &motions)?;
     // merges the supports, whether there is contact or not
     let nodes = contact_nodes(scene, candidates.iter());

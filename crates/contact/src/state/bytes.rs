@@ -50,7 +50,7 @@ impl State {
                     found & 0xff,
                     MAGIC & 0xff
                 ),
-                _ => "another format: the bytes are no state".to_owned(),
+                _ => return Err(error("another format: the bytes are no state".to_owned())),
             };
             return Err(error(format!(
                 "{what}; read it with the version that wrote it, or start anew"
