@@ -45,6 +45,9 @@ pub(crate) const ROUNDS: usize = 8;
 const MARGIN: f64 = 0.5;
 
 /// When the solve of a level ends.
+///
+/// Estimates are those of the energy of the whole body, beside a loose bound on the contact conditions: forces that carry little of
+/// it (a light touch after a long rigid motion, friction of a drag far below the elastic displacement) need `Tolerance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Accuracy {

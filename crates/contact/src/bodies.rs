@@ -64,7 +64,7 @@ impl Bodies {
     }
 
     /// The units of force of all bodies, N: the nearest powers of two to the sizes of their multipliers, or of their loads
-    /// if these are larger; empty for one body, which needs none.
+    /// or of what moved supports would do to their nodes if these are larger; empty for one body, which needs none.
     fn units(&self, model: &Model, level: &Level, start: &[f64]) -> Vec<f64> {
         if self.count <= 1 {
             return Vec::new();
@@ -77,13 +77,12 @@ impl Bodies {
             let own = &force[model.tfeti.torn_range(subdomain)];
             loads[self.of_subdomain(subdomain)] += signorini_qp::vector::dot(own, own);
         }
+        // where supports move a body, warm starts may be rounding errors
+        let driven = |b: usize| level.driven.get(b).copied().unwrap_or(0.0);
         let known = |b: usize| squares[b].max(loads[b]).sqrt().max(level.rest(b));
-        let unit = |b: usize| match known(b) {
-            // moved only
-            0.0 => level.driven.get(b).copied().unwrap_or(0.0),
-            size => size,
-        };
-        (0..self.count).map(|b| power_of_two(unit(b))).collect()
+        (0..self.count)
+            .map(|b| power_of_two(known(b).max(driven(b))))
+            .collect()
     }
 
     /// The level and the iterate in units of the bodies, and the units of all rows; `None` for one body.

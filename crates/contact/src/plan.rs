@@ -114,7 +114,7 @@ impl Plan {
         self
     }
 
-    /// All rows, n_d of full rank.
+    /// All rows that are solved for: n_d of full rank, but for nodes with several normals or in the grip of a support.
     #[must_use]
     pub fn dual(&self) -> usize {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.dirichlet_rows

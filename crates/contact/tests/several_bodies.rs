@@ -176,6 +176,28 @@ fn a_body_that_only_moves_is_solved_beside_a_loaded_one() {
     assert!(off < 2e-5, "{off:e}");
 }
 
+/// A soft block that its support moves without touching, beside a loaded bar: its forces are rounding errors.
+#[test]
+fn a_body_that_moves_without_forces_does_not_disturb_another() {
+    let bar = last(
+        on_the_floor(
+            bar_loads(Scene::new(bar(), uniform(2e11, 0.3))),
+            Friction::None,
+        ),
+        tight(),
+        of_the_bar,
+        "bar",
+    );
+    for (young, motion) in [(0.2, 1e-5), (2.0, 1e-5), (0.2, 1e-3), (2e11, 1e-5)] {
+        let top = Support::fixed(other(brick::Z_MAX));
+        let scene = bar_loads(both(young)).with_support(top.moved([motion, 0.0, motion], ramp()));
+        let scene = on_the_floor(scene, Friction::None);
+        let points = last(scene, Settings::default(), of_the_bar, "both");
+        let off = distance(&forces(&points), &forces(&bar));
+        assert!(off < 2e-5, "E {young:e}, motion {motion:e}: {off:e}");
+    }
+}
+
 /// A force that nothing balances is found under another body's load 1e12 times as large.
 #[test]
 fn a_light_body_that_nothing_holds_is_refused() {

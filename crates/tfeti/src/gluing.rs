@@ -3,7 +3,8 @@
 //! `B` acts on the displacements of all subdomains, node copies included. It is stored by what its rows do: an
 //! *interface block* is three rows (x, y, z) that combine the copies of one node with the same coefficients, every other
 //! row is a list of (copy, vector). Supports and contact act on the mean of the copies, the interface rows on its
-//! complement, so the rows are independent by construction; what would depend is reported in [`Gluing::removed`].
+//! complement, so the rows are independent by construction, except at [dependent nodes](Gluing::dependent_nodes) (edges, and nodes that a support drags
+//! along an obstacle); what else would depend is reported in [`Gluing::removed`].
 
 mod build;
 

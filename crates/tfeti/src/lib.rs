@@ -5,7 +5,7 @@
 //!
 //! | symbol | here | meaning |
 //! |---|---|---|
-//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent rows are removed and reported |
+//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent rows are removed and reported, or kept where contact needs them |
 //! | `R` | [`Kernel`] | six orthonormal rigid motions of a subdomain, without eigenvalue computation |
 //! | `F = B K+ B^T` | [`DualOperator`] | the dual operator, a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
 //! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium of the subdomains, `G lambda = e` |
