@@ -127,14 +127,19 @@ impl CoarseFactor {
         matches!(self.0.factor, Factor::Split(..))
     }
 
-    /// Relative error of a solve in single precision, for a right side in which all motions are.
+    /// How far `G W G^T` times a solve in single precision is from the right side, relative, for one in which all motions
+    /// are: what steps do to the equality.
     pub(crate) fn single_error(&self, s: &mut CoarseScratch) -> f64 {
-        let side = (0..self.0.coarse.rows()).map(|k| ((k * k + 1) as f64).sin());
-        let mut exact: Vec<f64> = side.collect();
-        let mut short = exact.clone();
-        self.solve_with(Digits::Double, &mut exact, &mut s.memory, &mut s.split);
-        self.solve_with(Digits::Single, &mut short, &mut s.memory, &mut s.split);
-        signorini_qp::vector::distance(&exact, &short) / signorini_qp::vector::norm(&exact)
+        let data = &self.0.coarse.0;
+        let rows = 0..self.0.coarse.rows();
+        let side: Vec<f64> = rows.map(|k| ((k * k + 1) as f64).sin()).collect();
+        s.first.copy_from_slice(&side);
+        self.solve_with(Digits::Single, &mut s.first, &mut s.memory, &mut s.split);
+        let (mut x, mut found) = (vec![0.0; self.0.coarse.dim()], side.clone());
+        data.product_transpose(&s.first, &mut x, &mut s.motions);
+        self.weigh(&mut x);
+        data.product(&x, None, &mut found, &mut s.columns, &mut s.sides);
+        signorini_qp::vector::distance(&found, &side) / signorini_qp::vector::norm(&side)
     }
 
     /// Weights of the rows that are no interface rows, if the interface rows have weight one.

@@ -53,7 +53,7 @@ pub struct FaceSpace {
     digits: Digits,
 }
 
-/// Largest relative error of a solve with a factor in single precision with which steps are projected.
+/// Largest relative error in the equality of a solve with a factor in single precision with which steps are projected.
 const ROUNDED: f64 = 1e-4;
 
 /// Work on a free motion above this fraction of the norm of `e` makes a face deficient.

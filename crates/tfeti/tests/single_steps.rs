@@ -85,3 +85,26 @@ fn a_sparse_factor_and_exact_steps_round_nothing() {
         assert!(distance(&part, &repaired) < 1e-12 * norm(&repaired));
     }
 }
+
+/// Rows of very different weights make the matrix so badly conditioned that rounding its factor shows.
+#[test]
+fn a_badly_conditioned_factor_is_not_rounded() {
+    let system = system(&Brick::new(3, 3));
+    let contact = system.gluing().ranges().contact().end;
+    let space = |least: f64| {
+        let weight = |row: usize| if row.is_multiple_of(7) { 1.0 } else { least };
+        let metric: Vec<f64> = (0..system.dual_dim()).map(weight).collect();
+        FaceSpace::with_factor(system.coarse(), contact, Some(metric), FaceFactor::Split).unwrap()
+    };
+    assert!(space(0.5).rounds_steps());
+    // supports next to nothing: the body all but floats
+    let supports = system.gluing().ranges().dirichlet.clone();
+    let metric = (0..system.dual_dim()).map(|row| if supports.contains(&row) { 1e-9 } else { 1.0 });
+    let loose = FaceSpace::with_factor(
+        system.coarse(),
+        contact,
+        Some(metric.collect()),
+        FaceFactor::Split,
+    );
+    assert!(!loose.unwrap().rounds_steps());
+}
