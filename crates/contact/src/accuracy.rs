@@ -32,7 +32,7 @@
 
 use crate::accumulated::AccumulatedError;
 use crate::algebraic::AlgebraicError;
-use crate::certificate::{Certificate, Violation};
+use crate::certificate::{Certificate, Violation, worst};
 use crate::error::ContactError;
 
 /// Tolerance of the first solve of the first level. A looser one saves little and may end before slip bounds have settled.
@@ -154,11 +154,8 @@ const EXACT_MESH: f64 = 1e-6;
 /// Largest relative violation of the contact conditions; not a number if one is none.
 pub(crate) fn contact_violation(certificate: &Certificate) -> f64 {
     let c = certificate;
-    [c.gap, c.sign, c.complementarity, c.cone, c.direction]
-        .iter()
-        .map(Violation::relative)
-        // `f64::max` would hide what is not a number
-        .fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+    let parts = [c.gap, c.sign, c.complementarity, c.cone, c.direction];
+    worst(parts.iter().map(Violation::relative))
 }
 
 /// Largest relative violation of the contact conditions that goes with a target.

@@ -197,7 +197,7 @@ impl Solved<'_> {
             })
             .collect();
         self.support(&mut v);
-        self.agree(&moved, &mut v);
+        self.agree(&moved, &weights.normals, &mut v);
         let (mut terms, mut change) = (0.0, 0.0);
         for (((point, touch), normal), moved) in places().zip(&moved) {
             let value = &v[3 * touch.node as usize..][..3];
@@ -309,7 +309,7 @@ impl Solved<'_> {
 
     /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one may undo
     /// another. Points that touch stay at their obstacles, others are moved out of theirs.
-    fn agree(&self, moved: &[Moved], v: &mut [f64]) {
+    fn agree(&self, moved: &[Moved], normals: &[[f64; 3]], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         if gluing.dependent_nodes().is_empty() {
             return;
@@ -321,18 +321,15 @@ impl Solved<'_> {
                 planes.entry(node).or_default().push(plane);
             }
         }
-        let dependent = |t: &&TouchPoint| gluing.is_dependent(t.node);
-        let points = || self.model.points.iter().filter(dependent);
-        for (touch, moved) in self.model.points.iter().zip(moved) {
-            if !gluing.is_dependent(touch.node) {
-                continue;
-            }
+        let dependent = |t: &(&TouchPoint, &[f64; 3])| gluing.is_dependent(t.0.node);
+        let places = self.model.points.iter().zip(normals);
+        for ((touch, normal), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
             let planes = planes.entry(touch.node).or_default();
             let mut fix = |direction, row: usize, scale: f64| {
                 planes.push((direction, self.level.offset[row] / scale));
             };
             if moved.touches() {
-                fix(movable_normal(gluing, touch), touch.row, touch.scale);
+                fix(*normal, touch.row, touch.scale);
             }
             // with given friction also where the contact is open
             if moved.sticks() {
@@ -346,9 +343,9 @@ impl Solved<'_> {
         };
         on_planes(v);
         for _ in 0..SWEEPS {
-            for touch in points() {
+            for (touch, normal) in places.clone().filter(dependent) {
                 let value = &mut v[3 * touch.node as usize..][..3];
-                push_out(self.level, touch, &movable_normal(gluing, touch), value);
+                push_out(self.level, touch, normal, value);
             }
         }
         on_planes(v);

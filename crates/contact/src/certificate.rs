@@ -45,8 +45,7 @@ impl Violation {
     /// Takes another violation of the same condition in its place if that is relatively larger, or not a number.
     fn worsen(&mut self, value: f64, reference: f64) {
         let other = Self { value, reference };
-        let (old, new) = (self.relative(), other.relative());
-        if new > old || new.is_nan() && !old.is_nan() {
+        if is_worse(other.relative(), self.relative()) {
             *self = other;
         }
     }
@@ -76,10 +75,7 @@ impl Certificate {
     /// The largest relative violation; not a number if one is none.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        self.parts()
-            .iter()
-            .map(|(_, v)| v.relative())
-            .fold(0.0, worse)
+        worst(self.parts().iter().map(|(_, v)| v.relative()))
     }
 
     /// Name and violation of every condition.
@@ -97,9 +93,15 @@ impl Certificate {
     }
 }
 
-/// The larger one; `f64::max` would hide what is not a number.
-fn worse(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b > a { b } else { a }
+/// Whether a violation is larger than another one; what is not a number is worse than all that are.
+fn is_worse(new: f64, old: f64) -> bool {
+    new > old || new.is_nan() && !old.is_nan()
+}
+
+/// The largest violation, at least 0; `f64::max` would hide what is not a number.
+pub(crate) fn worst(violations: impl IntoIterator<Item = f64>) -> f64 {
+    let larger = |old, new| if is_worse(new, old) { new } else { old };
+    violations.into_iter().fold(0.0, larger)
 }
 
 /// Displacements of rows, in metres, from the recovered torn displacement.

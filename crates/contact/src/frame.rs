@@ -50,6 +50,14 @@ pub struct PointState {
     pub area: f64,
 }
 
+impl PointState {
+    /// The whole contact force on the body, N, in space.
+    pub(crate) fn force(&self, touch: &TouchPoint) -> [f64; 3] {
+        let normal = touch.frame.normal;
+        [0, 1, 2].map(|c| self.friction_force[c] + self.normal_force * normal[c])
+    }
+}
+
 /// Sums over the contact surface at the end of a level.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
@@ -406,9 +414,10 @@ pub(crate) fn summarise(
         s.slip += usize::from(point.state == ContactState::Slip);
         s.normal_force -= point.normal_force;
         s.normal_norm += point.normal_force.powi(2);
+        let force = point.force(touch);
         for c in 0..3 {
             s.friction_force[c] += point.friction_force[c];
-            s.resultant[c] += point.friction_force[c] + point.normal_force * touch.frame.normal[c];
+            s.resultant[c] += force[c];
             s.friction_norm += point.friction_force[c].powi(2);
             s.dissipation -= point.friction_force[c] * point.difference[c];
         }
@@ -426,8 +435,7 @@ pub(crate) fn summarise(
             level.obstacles[1].get(touch.surface),
         ) {
             for c in 0..3 {
-                let force = point.friction_force[c] + point.normal_force * touch.frame.normal[c];
-                s.obstacle_work += force * (now[c] - old[c]);
+                s.obstacle_work += force[c] * (now[c] - old[c]);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
 use crate::bodies::Bodies;
-use crate::candidates::{Candidate, candidates, contact_nodes, surfaces};
+use crate::candidates::{Candidate, contact_nodes};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
@@ -176,8 +176,15 @@ impl Model {
         kept: Option<&[usize]>,
         earlier: Option<&Self>,
     ) -> Result<Self, ContactError> {
-        let (decomposition, plan) = match earlier {
-            Some(model) => (model.decomposition.clone(), model.plan.clone()),
+        let (decomposition, (plan, surfaces, candidates)) = match earlier {
+            Some(model) => (
+                model.decomposition.clone(),
+                (
+                    model.plan.clone(),
+                    model.surfaces.clone(),
+                    model.candidates.clone(),
+                ),
+            ),
             None => {
                 scene.validate()?;
                 settings.validate()?;
@@ -188,16 +195,10 @@ impl Model {
             }
         };
         let (supports, motions) = supports(&scene)?;
-        let (surfaces, candidates) = match earlier {
-            Some(model) => (model.surfaces.clone(), model.candidates.clone()),
-            None => {
-                let surfaces = surfaces(&scene)?;
-                let candidates = candidates(&scene, &surfaces)?;
-                magnitude::check_gaps(&candidates)?;
-                driven::check(&scene, &candidates, &supports, &motions)?;
-                (surfaces, candidates)
-            }
-        };
+        if earlier.is_none() {
+            magnitude::check_gaps(&candidates)?;
+            driven::check(&scene, &candidates, &supports, &motions)?;
+        }
         let places: Vec<usize> = match kept {
             Some(kept) => kept.to_vec(),
             None => (0..candidates.len()).collect(),

@@ -10,7 +10,7 @@ use crate::precheck;
 use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use crate::slender::slenderness;
-use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -102,8 +102,8 @@ impl Plan {
         scene.validate()?;
         settings.validate()?;
         let decomposition = scene.decompose()?;
-        let plan = Self::with_decomposition(scene, settings, &decomposition)?;
-        precheck::check(scene, &decomposition)?;
+        let (plan, _, candidates) = Self::with_decomposition(scene, settings, &decomposition)?;
+        precheck::check(scene, &decomposition, &candidates)?;
         Ok(plan)
     }
 
@@ -120,11 +120,12 @@ impl Plan {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.dirichlet_rows
     }
 
+    /// The plan, and the contact surfaces and points that it has found.
     pub(crate) fn with_decomposition(
         scene: &Scene,
         settings: &Settings,
         decomposition: &Decomposition,
-    ) -> Result<Self, ContactError> {
+    ) -> Result<(Self, Vec<Surface>, Vec<Candidate>), ContactError> {
         let fixed = fixed_directions(scene)?;
         let nodes = scene.mesh.points().len();
         let torn_nodes: usize = decomposition
@@ -134,13 +135,15 @@ impl Plan {
             .sum();
         let interface_rows = 3 * (torn_nodes - nodes);
         let dirichlet_rows: usize = fixed.values().copied().sum();
-        let mut points = candidates(scene, &surfaces(scene)?)?;
+        let surfaces = surfaces(scene)?;
+        let candidates = candidates(scene, &surfaces)?;
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
         let free = |node: &u32| 3 - fixed.get(node).copied().unwrap_or(0).min(3);
-        points.retain(|point| free(&point.node) > 0);
+        let points = candidates.iter().filter(|point| free(&point.node) > 0);
+        let points: Vec<&Candidate> = points.collect();
         let touching: BTreeSet<u32> = points.iter().map(|point| point.node).collect();
         let normal_rows = points.len();
-        let rough = |p: &&Candidate| scene.contacts[p.surface].friction().is_some();
+        let rough = |p: &&&Candidate| scene.contacts[p.surface].friction().is_some();
         let tangential_rows = points.iter().filter(rough).map(|p| free(&p.node) - 1).sum();
         let kind = |friction: &Friction| match friction {
             Friction::None => FrictionKind::None,
@@ -190,7 +193,7 @@ impl Plan {
             slenderness: slenderness(&scene.mesh, decomposition),
         };
         let estimate = Estimate::new(&effects, settings, &scene.analysis, &forecast, sizes);
-        Ok(Self {
+        let plan = Self {
             effects,
             elements: scene.mesh.tets().len(),
             nodes,
@@ -207,7 +210,8 @@ impl Plan {
             method,
             vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
             estimate,
-        })
+        };
+        Ok((plan, surfaces, candidates))
     }
 }
 

@@ -3,7 +3,7 @@
 //! Only the set-up can judge whether supports and contact hold the body against its loads: that needs the rigid motions of
 //! all subdomains.
 
-use crate::candidates::{candidates, contact_nodes, surfaces};
+use crate::candidates::{Candidate, contact_nodes};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law;
@@ -15,13 +15,16 @@ use signorini_tfeti::held_points;
 
 /// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse of supports, contact, loads and laws, with the same error; not
 /// nodal forces that are too large, nor subdomains that cannot be factored.
-pub(crate) fn check(scene: &Scene, decomposition: &Decomposition) -> Result<(), ContactError> {
+pub(crate) fn check(
+    scene: &Scene,
+    decomposition: &Decomposition,
+    candidates: &[Candidate],
+) -> Result<(), ContactError> {
     magnitude::check_motions(scene)?;
     let (supports, motions) = supports(scene)?;
     let places = scene.mesh.points();
-    let candidates = candidates(scene, &surfaces(scene)?)?;
-    magnitude::check_gaps(&candidates)?;
-    driven::check(scene, &candidates, &supports, &motions)?;
+    magnitude::check_gaps(candidates)?;
+    driven::check(scene, candidates, &supports, &motions)?;
     // merges the supports, whether there is contact or not
     let nodes = contact_nodes(scene, candidates.iter());
     let held = held_points(&nodes, &supports, places.len())?;

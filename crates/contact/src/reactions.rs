@@ -3,10 +3,12 @@
 //! A support row of `B` with multiplier `lambda` pushes each copy of its node with `lambda` times its coefficients; their sum is
 //! the force on the node. A direction that several supports fix has one row, and belongs to the first of them.
 
+use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::{Model, supports};
+use signorini_tfeti::{HeldDirection, Support, held_directions};
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
@@ -95,9 +97,6 @@ impl Reactions {
     }
 }
 
-/// Part of a unit direction that others already fix up to this is fixed entirely; as where the rows are made.
-const DEPENDENT: f64 = 1e-8;
-
 /// Forces of all supports by node, from the multipliers of the support rows.
 pub(crate) fn nodal(model: &Model, lambda: &[f64]) -> BTreeMap<u32, [f64; 3]> {
     let gluing = model.tfeti.gluing();
@@ -129,9 +128,7 @@ pub(crate) fn about(
     };
     let mut contact = Resultant::default();
     for (state, touch) in points.iter().zip(&model.points) {
-        let normal = touch.frame.normal;
-        let force = [0, 1, 2].map(|c| state.friction_force[c] + state.normal_force * normal[c]);
-        contact.add(arm(state.node), force);
+        contact.add(arm(state.node), state.force(touch));
     }
     let mut loads = Resultant::default();
     for (factor, load) in level.factors.iter().zip(&model.loads) {
@@ -155,47 +152,30 @@ fn by_support(
     forces: &BTreeMap<u32, [f64; 3]>,
     arm: impl Fn(u32) -> [f64; 3],
 ) -> Result<Vec<SupportReaction>, ContactError> {
-    let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let mut fixed: BTreeMap<u32, Vec<[f64; 3]>> = BTreeMap::new();
     let (supports, _) = supports(&model.scene)?;
-    let mut out = Vec::with_capacity(supports.len());
-    for support in &supports {
-        let directions = support.directions.vectors();
+    let mut held: BTreeMap<u32, Vec<HeldDirection>> = BTreeMap::new();
+    for direction in held_directions(&supports, model.scene.mesh.points().len())? {
+        held.entry(direction.node).or_default().push(direction);
+    }
+    let reaction = |(index, support): (usize, &Support)| {
         let mut reaction = SupportReaction::default();
-        for &node in &support.nodes {
-            let Some(whole) = forces.get(&node) else {
+        for node in &support.nodes {
+            let (Some(whole), Some(held)) = (forces.get(node), held.get(node)) else {
                 continue;
             };
-            let known = fixed.entry(node).or_default();
-            let before = known.len();
-            for direction in &directions {
-                let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-                let mut rest = direction.map(|v| v / largest);
-                let length = dot(&rest, &rest).sqrt();
-                rest = rest.map(|v| v / length);
-                for _ in 0..2 {
-                    for other in &*known {
-                        let along = dot(&rest, other);
-                        (0..3).for_each(|c| rest[c] -= along * other[c]);
-                    }
-                }
-                let length = dot(&rest, &rest).sqrt();
-                if length > DEPENDENT {
-                    known.push(rest.map(|v| v / length));
-                }
-            }
-            if known.len() == before {
+            let mut own = held.iter().filter(|h| h.support == index).peekable();
+            if own.peek().is_none() {
                 continue;
             }
             let mut force = [0.0; 3];
-            for direction in &known[before..] {
+            for HeldDirection { direction, .. } in own {
                 let along = dot(whole, direction);
                 (0..3).for_each(|c| force[c] += along * direction[c]);
             }
-            reaction.resultant.add(arm(node), force);
-            reaction.nodes.push(NodalForce { node, force });
+            reaction.resultant.add(arm(*node), force);
+            reaction.nodes.push(NodalForce { node: *node, force });
         }
-        out.push(reaction);
-    }
-    Ok(out)
+        reaction
+    };
+    Ok(supports.iter().enumerate().map(reaction).collect())
 }

@@ -20,6 +20,13 @@ fn lowered(gap: f64, depth: f64, tilt: [f64; 2]) -> Scene {
         .with_analysis(Analysis::quasistatic(1.0, 10))
 }
 
+fn assert_cheap(level: &common::Level, what: &str) {
+    let report = &level.report;
+    let parts = level.certificate.parts().map(|(n, v)| (n, v.relative()));
+    assert!(report.status.converged(), "{what}: {report:?} {parts:?}");
+    assert!(report.counters.products <= 60, "{what}: {report:?}");
+}
+
 #[test]
 fn a_body_that_is_lowered_touches_at_the_right_level() {
     for (gap, depth, tilt) in [
@@ -33,18 +40,8 @@ fn a_body_that_is_lowered_touches_at_the_right_level() {
         while !simulation.is_finished() {
             let level = step(&mut simulation);
             let reach = depth * level.time;
-            let what = format!(
-                "gap {gap}, depth {depth}, t = {}: {:?}",
-                level.time, level.report
-            );
-            let parts = level.certificate.parts().map(|(n, v)| (n, v.relative()));
-            println!(
-                "{} products, {:e}",
-                level.report.counters.products,
-                level.certificate.largest()
-            );
-            assert!(level.report.status.converged(), "{what} {parts:?}");
-            assert!(level.report.counters.products <= 60, "{what}");
+            let what = format!("gap {gap}, depth {depth}, t = {}", level.time);
+            assert_cheap(&level, &what);
             let touches = level.summary.normal_force > 1.0;
             assert_eq!(touches, reach > gap * (1.0 + 1e-9), "{what}");
         }
@@ -68,15 +65,7 @@ fn a_rigid_motion_costs_little() {
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
         while !simulation.is_finished() {
             let level = step(&mut simulation);
-            let what = format!("contact {contact}: {:?}", level.report);
-            let parts = level.certificate.parts().map(|(n, v)| (n, v.relative()));
-            println!(
-                "{} products, {:e}",
-                level.report.counters.products,
-                level.certificate.largest()
-            );
-            assert!(level.report.status.converged(), "{what} {parts:?}");
-            assert!(level.report.counters.products <= 60, "{what}");
+            assert_cheap(&level, &format!("contact {contact}"));
             for u in level.displacement.chunks_exact(3) {
                 for (u, m) in u.iter().zip(motion) {
                     assert!((u - level.time * m).abs() < 1e-12, "{u:e}");

@@ -26,7 +26,7 @@ use crate::kprgp_settings::{
 };
 use crate::objective::{Objective, Plain};
 use crate::operator::SymmetricOperator;
-use crate::report::{Products, Status, Steps, Tolerance};
+use crate::report::{Products, Status, Steps, Tolerance, usable};
 use crate::set::{ConvexSet, GradientNorms};
 use crate::vector;
 
@@ -104,13 +104,7 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
             products: 1,
         });
     }
-    expect_setting(
-        "tolerance",
-        tolerance,
-        ">= 0, finite",
-        tolerance >= 0.0 && tolerance.is_finite(),
-    )?;
-    objective.tolerance = tolerance;
+    objective.tolerance = usable(tolerance)?;
     let mut report = iterate(
         &mut objective,
         set,

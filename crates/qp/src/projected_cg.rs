@@ -13,9 +13,9 @@
 //! All iterates satisfy the equality. One iteration costs one product with `A`, one projection, and with a
 //! preconditioner one product with it and a second projection.
 
-use crate::error::{QpError, expect_finite, expect_length, expect_setting};
+use crate::error::{QpError, expect_finite, expect_length};
 use crate::operator::{Equality, SymmetricOperator};
-use crate::report::{Status, Tolerance};
+use crate::report::{Status, Tolerance, usable};
 use crate::vector;
 
 /// Part of a load that is rounding once it is projected, and the projected gradient that suffices then.
@@ -225,17 +225,11 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
             product
         };
         let size = vector::norm(b);
-        let tolerance = match tolerance {
+        let tolerance = usable(match tolerance {
             // what the projector leaves of the load is rounding, and nothing else acts
             Tolerance::Relative(_) if reference <= VANISHED * size => ROUNDED * size,
             tolerance => tolerance.resolve(reference),
-        };
-        expect_setting(
-            "tolerance",
-            tolerance,
-            ">= 0, finite",
-            tolerance >= 0.0 && tolerance.is_finite(),
-        )?;
+        })?;
         vector::subtract(b, &mut self.work.g);
         self.start = self.project_gradient();
         self.best = self.start;

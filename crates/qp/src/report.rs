@@ -1,5 +1,7 @@
 //! What the solvers have in common: tolerance, status, counts.
 
+use crate::error::{QpError, expect_setting};
+
 /// How a solve ended. All of these are in an `Ok` report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -51,6 +53,13 @@ impl Tolerance {
             Self::RelativeTo { factor, reference } => factor * reference,
         }
     }
+}
+
+/// A resolved tolerance, if it is usable.
+pub(crate) fn usable(tolerance: f64) -> Result<f64, QpError> {
+    let good = tolerance >= 0.0 && tolerance.is_finite();
+    expect_setting("tolerance", tolerance, ">= 0, finite", good)?;
+    Ok(tolerance)
 }
 
 impl Default for Tolerance {

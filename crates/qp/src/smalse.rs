@@ -25,7 +25,7 @@ use crate::kprgp_settings::{KprgpReport, Vectors};
 use crate::objective::Objective;
 use crate::operator::{Equality, SymmetricOperator};
 use crate::penalised::Penalised;
-use crate::report::{Products, Status, Steps, Tolerance};
+use crate::report::{Products, Status, Steps, Tolerance, usable};
 use crate::set::ConvexSet;
 use crate::smalse_settings::{
     HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace, Update,
@@ -212,14 +212,8 @@ where
         let (o, settings) = (&mut self.o, self.settings);
         // eps_1 = eps |P h|
         let reference = reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
-        o.floor = settings.tolerance.resolve(reference);
+        o.floor = usable(settings.tolerance.resolve(reference))?;
         o.cap = settings.gradient_cap * reference;
-        expect_setting(
-            "tolerance",
-            o.floor,
-            ">= 0, finite",
-            o.floor >= 0.0 && o.floor.is_finite(),
-        )?;
         self.set.project(self.x);
         self.compute_gradient();
         self.products.initial += 1;

@@ -106,5 +106,5 @@ pub use recovery::{Jump, LoadResponse};
 pub use report::{ClassReport, SetupReport};
 pub use row_weights::{LineWeight, RowWeights};
 pub use rows::{RemovalReason, RemovedRow, RowKind, RowRanges, RowRule, count_removed};
-pub use supports::{Directions, Motion, Support};
+pub use supports::{Directions, HeldDirection, Motion, Support, held_directions};
 pub use system::{Tfeti, TfetiBuilder};

@@ -130,6 +130,38 @@ pub(crate) struct MergedSupports {
     index: Vec<u32>,
 }
 
+/// A direction that supports fix at a node, and the first of them that does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct HeldDirection {
+    /// Mesh node.
+    pub node: u32,
+    /// Unit direction, at right angles to the other ones of the node.
+    pub direction: [f64; 3],
+    /// Position of the support in the list.
+    pub support: usize,
+}
+
+/// The directions that supports fix, nodes ascending, each once.
+///
+/// # Errors
+/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
+pub fn held_directions(
+    supports: &[Support],
+    nodes: usize,
+) -> Result<Vec<HeldDirection>, TfetiError> {
+    let merged = MergedSupports::new(supports, nodes)?;
+    let of_node = |fixed: &FixedNode| -> Vec<HeldDirection> {
+        let held = |d: &FixedDirection| HeldDirection {
+            node: fixed.node,
+            direction: d.direction,
+            support: d.support,
+        };
+        fixed.directions.iter().map(held).collect()
+    };
+    Ok(merged.nodes.iter().flat_map(of_node).collect())
+}
+
 /// Two unit directions closer than this to dependence are taken as dependent.
 const DEPENDENT: f64 = 1e-8;
 
