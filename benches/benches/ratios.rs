@@ -48,8 +48,7 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
         });
         let growth = wave(contact);
         let follow = seconds(quick, || {
-            vector::copy(&x, &mut z);
-            space.compensate(&growth, &mut z);
+            space.compensate(&x, &growth, &mut z);
         });
         let change = seconds(quick, || {
             k += 1;

@@ -81,14 +81,13 @@ pub trait CoarseSpace {
     /// [`set_weights`](Self::set_weights) where those alone do not suffice) that restores `G x = e`.
     fn repair(&mut self, x: &mut [f64], e: &[f64]);
 
-    /// What [`repair`](Self::repair) adds to `x` after its leading components were changed by `change` with all others left as
-    /// they are, for a step of an iteration. This default allocates; a space that iterates should have its own.
-    fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
-        let mut all = vec![0.0; x.len()];
-        all[..change.len()].copy_from_slice(change);
-        self.repair(&mut all, &vec![0.0; self.rows()]);
-        all.iter_mut().zip(change).for_each(|(a, c)| *a -= c);
-        x.iter_mut().zip(&all).for_each(|(x, a)| *x += a);
+    /// A step of an iteration in which the leading components change further: `to = from + change`, with what
+    /// [`repair`](Self::repair) adds for the `change`. This default allocates; a space that iterates should have its own.
+    fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
+        to.fill(0.0);
+        to[..change.len()].copy_from_slice(change);
+        self.repair(to, &vec![0.0; self.rows()]);
+        to.iter_mut().zip(from).for_each(|(t, f)| *t += f);
     }
 
     /// Whether [`repair`](Self::repair) changes unconstrained components only.
@@ -146,5 +145,8 @@ impl CoarseSpace for NoCoarseSpace {
     fn project_transpose(&mut self, _g: &mut [f64]) {}
     fn multiplier(&mut self, _g: &[f64], _out: &mut [f64]) {}
     fn repair(&mut self, _x: &mut [f64], _e: &[f64]) {}
-    fn compensate(&mut self, _change: &[f64], _x: &mut [f64]) {}
+    fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
+        to.copy_from_slice(from);
+        to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
+    }
 }

@@ -156,8 +156,10 @@ impl CoarseSpace for DenseCoarseSpace {
         out.iter_mut().for_each(|v| *v = -*v);
     }
 
-    fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
-        self.subtract(true, x, |space, _, defect| {
+    fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
+        to.copy_from_slice(from);
+        to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
+        self.subtract(true, to, |space, _, defect| {
             for (i, s) in defect.iter_mut().enumerate() {
                 *s = space.row(i).iter().zip(change).map(|(g, c)| g * c).sum();
             }

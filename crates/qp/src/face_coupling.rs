@@ -10,7 +10,6 @@
 use crate::coarse_space::CoarseSpace;
 use crate::face_state::{Disc, Face, for_discs};
 use crate::product::ProductSet;
-use crate::vector;
 
 /// The radius of a disc changes by `slope` times the change of another component.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,12 +108,7 @@ impl Coupling {
                 growth[i + 1] = -radius * tau[0];
             }
         });
-        vector::copy(p, &mut self.step);
-        self.step
-            .iter_mut()
-            .zip(&self.growth)
-            .for_each(|(q, g)| *q += g);
-        coarse.compensate(&self.growth, &mut self.step);
+        coarse.compensate(p, &self.growth, &mut self.step);
     }
 
     /// Decides for the next face, if it is `free` to couple: its relative `error`, and faces without progress so far.

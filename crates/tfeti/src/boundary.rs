@@ -26,8 +26,6 @@ pub(crate) struct BoundaryClass {
     pub(crate) nodes: Vec<u32>,
     /// Subdomains, in the order of the columns.
     pub(crate) members: Vec<u32>,
-    /// First column among the columns of all classes.
-    pub(crate) column: usize,
 }
 
 /// Some columns of one class, worked on together.
@@ -47,7 +45,6 @@ pub(crate) struct Panel {
 pub(crate) struct Lane {
     pub(crate) panels: Range<usize>,
     copy: usize,
-    column: usize,
 }
 
 /// The tables.
@@ -56,8 +53,6 @@ pub(crate) struct BoundaryMap {
     pub(crate) classes: Vec<BoundaryClass>,
     pub(crate) panels: Vec<Panel>,
     pub(crate) lanes: Vec<Lane>,
-    /// Column of each subdomain.
-    pub(crate) column_of: Vec<u32>,
     copies: usize,
     interface: Range<usize>,
     rows: usize,
@@ -258,27 +253,6 @@ impl BoundaryMap {
         task: &(impl Fn(&Lane, &mut W, &mut [f64]) + Sync),
     ) {
         over_lanes(&self.lanes, work, y, &|lane| 3 * lane.copy, parallel, task);
-    }
-
-    /// Runs `task` on every lane with its part of a vector of six numbers per column.
-    pub(crate) fn for_columns(
-        &self,
-        amplitudes: &mut [f64],
-        task: &(impl Fn(&Lane, &mut [f64]) + Sync),
-    ) {
-        let mut none = [(); LANES];
-        let parallel = self.copies >= SMALL;
-        let count = self.lanes.len();
-        over_lanes(
-            &self.lanes,
-            &mut none[..count],
-            amplitudes,
-            &|lane| 6 * lane.column,
-            parallel,
-            &|lane, (), part| {
-                task(lane, part);
-            },
-        );
     }
 
     /// Whether loops over all copies are worth several threads.

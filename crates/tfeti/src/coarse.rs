@@ -6,6 +6,7 @@ use crate::coarse_factor::{CoarseFactor, Factor};
 use crate::coarse_matrix::{CoarseMatrix, ModeTable};
 use crate::error::TfetiError;
 use crate::gluing::Gluing;
+use crate::kernel::Kernel;
 use crate::matrices::ClassBase;
 use crate::mobility::{FreeMotion, Mobility};
 use crate::row_weights::RowWeights;
@@ -34,11 +35,9 @@ pub(crate) struct CoarseData {
 /// Work memory of all operations with `G` and its factors.
 #[derive(Debug)]
 pub struct CoarseScratch {
-    /// Wrenches by column.
-    pub(crate) columns: Vec<f64>,
     /// Wrenches by glob and subdomain.
     pub(crate) sides: Vec<Wrench>,
-    /// Motions by column.
+    /// Motions by subdomain.
     pub(crate) motions: Vec<[f64; 6]>,
     pub(crate) first: Vec<f64>,
     pub(crate) second: Vec<f64>,
@@ -126,7 +125,6 @@ impl Coarse {
     pub fn scratch(&self) -> CoarseScratch {
         let rows = self.rows();
         CoarseScratch {
-            columns: vec![0.0; rows],
             sides: vec![Wrench::default(); self.0.tables.work()],
             motions: vec![[0.0; 6]; rows / 6],
             first: vec![0.0; rows],
@@ -140,7 +138,7 @@ impl Coarse {
 
     /// `out = G x`: the wrenches of the multipliers on the subdomains.
     pub fn apply(&self, x: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.0.product(x, None, out, &mut s.columns, &mut s.sides);
+        self.0.product(x, None, out, &mut s.sides);
     }
 
     /// `out = G^T y`.
@@ -156,7 +154,7 @@ impl Coarse {
     pub fn column(&self, row: usize) -> Vec<(usize, [f64; 6])> {
         let mut out: Vec<(usize, [f64; 6])> = Vec::new();
         for (subdomain, dof, value) in self.0.gluing.row(row) {
-            let kernel = &self.0.bases[self.0.classes.place(subdomain).0].kernel;
+            let kernel = self.0.kernel(subdomain);
             let modes = kernel.node_modes(dof / 3)[dof % 3].map(|m| value * m);
             match out.iter_mut().find(|v| v.0 == subdomain) {
                 Some(v) => (0..6).for_each(|k| v.1[k] += modes[k]),
@@ -268,56 +266,62 @@ impl Coarse {
 }
 
 impl CoarseData {
+    fn kernel(&self, subdomain: usize) -> &Kernel {
+        &self.bases[self.classes.place(subdomain).0].kernel
+    }
+
     /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
     pub(crate) fn product(
         &self,
         x: &[f64],
         weights: Option<&[f64]>,
         out: &mut [f64],
-        columns: &mut [f64],
         sides: &mut [Wrench],
     ) {
-        let map = &self.map;
-        map.wrenches(&self.tables, &self.bases, x, weights, columns, sides);
-        map.sort_columns(columns, out);
+        self.map
+            .wrenches(&self.tables, |s| self.kernel(s), x, weights, out, sides);
     }
 
     /// `out = G x` for a vector of which `contact` are the leading entries, the contact rows, and the others are zero.
-    pub(crate) fn contact_product(&self, contact: &[f64], out: &mut [f64], columns: &mut [f64]) {
-        let map = &self.map;
-        map.contact_wrenches(&self.tables, &self.bases, contact, columns);
-        map.sort_columns(columns, out);
+    pub(crate) fn contact_product(&self, contact: &[f64], out: &mut [f64]) {
+        self.map
+            .contact_wrenches(&self.tables, |s| self.kernel(s), contact, out);
     }
 
-    /// Motions of the subdomains, by column, from amplitudes by subdomain.
+    /// Whether work on all interface rows is worth several threads.
+    pub(crate) fn is_large(&self) -> bool {
+        self.map.is_large()
+    }
+
+    /// Motions of the subdomains from amplitudes.
     fn motions(&self, y: &[f64], motions: &mut [[f64; 6]]) {
-        for (s, (&column, amplitudes)) in
-            self.map.column_of.iter().zip(y.chunks_exact(6)).enumerate()
-        {
-            let kernel = &self.bases[self.classes.place(s).0].kernel;
-            let mut motion = kernel.motion(amplitudes);
-            motion[3..].iter_mut().for_each(|w| *w /= kernel.radius());
-            motions[column as usize] = motion;
+        let both = y.chunks_exact(6).zip(motions);
+        for (s, (amplitudes, target)) in both.enumerate() {
+            let kernel = self.kernel(s);
+            *target = kernel.motion(amplitudes);
+            target[3..].iter_mut().for_each(|w| *w /= kernel.radius());
         }
     }
 
     /// `out = G^T y`.
     pub(crate) fn product_transpose(&self, y: &[f64], out: &mut [f64], motions: &mut [[f64; 6]]) {
-        self.with_transpose(y, out, motions, |x, v| *x = v, |_, x, v| *x = v);
+        self.with_transpose(y, out, true, motions, |x, v| *x = v, |_, x, v| *x = v);
     }
 
-    /// Hands `G^T y` to `interface(x, value)` and, on other rows, `other(row, x, value)`.
+    /// Hands `G^T y` to `interface(x, value)` and, on other rows, `other(row, x, value)`; to the latter without contact
+    /// rows if there is no need of them.
     pub(crate) fn with_transpose(
         &self,
         y: &[f64],
         x: &mut [f64],
+        contact: bool,
         motions: &mut [[f64; 6]],
         interface: impl Fn(&mut f64, f64) + Sync,
         other: impl Fn(usize, &mut f64, f64) + Sync,
     ) {
         self.motions(y, motions);
         self.map
-            .for_motions(&self.tables, motions, x, interface, other);
+            .for_motions(&self.tables, motions, x, contact, interface, other);
     }
 
     pub(crate) fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {

@@ -23,6 +23,8 @@ struct FactorData {
     weights: Option<RowWeights>,
     /// Whether interface rows have weight one.
     plain: bool,
+    /// Whether contact rows have weights.
+    contact: bool,
     free: Vec<FreeMotion>,
 }
 
@@ -48,11 +50,14 @@ impl CoarseFactor {
                 .for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
         }
         let plain = weights.as_ref().is_none_or(|w| w.is_plain(ranges));
+        let contact = |w: &RowWeights| w.diagonal[ranges.contact()].iter().any(|w| *w != 0.0);
+        let contact = weights.as_ref().is_none_or(contact);
         Self(Arc::new(FactorData {
             coarse,
             factor,
             weights,
             plain,
+            contact,
             free,
         }))
     }
@@ -138,7 +143,7 @@ impl CoarseFactor {
         let (mut x, mut found) = (vec![0.0; self.0.coarse.dim()], side.clone());
         data.product_transpose(&s.first, &mut x, &mut s.motions);
         self.weigh(&mut x);
-        data.product(&x, None, &mut found, &mut s.columns, &mut s.sides);
+        data.product(&x, None, &mut found, &mut s.sides);
         signorini_qp::vector::distance(&found, &side) / signorini_qp::vector::norm(&side)
     }
 
@@ -173,7 +178,7 @@ impl CoarseFactor {
         s: &mut CoarseScratch,
     ) {
         let data = &self.0.coarse.0;
-        data.product(x, None, &mut s.first, &mut s.columns, &mut s.sides);
+        data.product(x, None, &mut s.first, &mut s.sides);
         if let Some(e) = e {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
@@ -181,31 +186,39 @@ impl CoarseFactor {
         self.subtract_weighted(x, s);
     }
 
-    /// `x = x - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
+    /// `to = from + c - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
     /// [`project`](Self::project) where these are the contact rows.
     ///
     /// # Panics
-    /// If `change` or `x` is too long, or `x` too short.
-    pub fn compensate(&self, change: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        self.compensate_to(Digits::Double, change, x, s);
+    /// If `change` is too long, or another vector does not have the length of dual vectors.
+    pub fn compensate(&self, from: &[f64], change: &[f64], to: &mut [f64], s: &mut CoarseScratch) {
+        self.compensate_to(Digits::Double, from, change, to, s);
     }
 
     pub(crate) fn compensate_to(
         &self,
         digits: Digits,
+        from: &[f64],
         change: &[f64],
-        x: &mut [f64],
+        to: &mut [f64],
         s: &mut CoarseScratch,
     ) {
         let data = &self.0.coarse.0;
         let contact = change.len() == data.gluing.ranges().contact().end;
         if contact {
-            data.contact_product(change, &mut s.first, &mut s.columns);
+            let first = &mut s.first;
+            both(
+                data.is_large(),
+                || data.contact_product(change, first),
+                || signorini_qp::vector::copy(from, to),
+            );
         } else {
             s.dual.fill(0.0);
             s.dual[..change.len()].copy_from_slice(change);
-            data.product(&s.dual, None, &mut s.first, &mut s.columns, &mut s.sides);
+            data.product(&s.dual, None, &mut s.first, &mut s.sides);
+            signorini_qp::vector::copy(from, to);
         }
+        to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
         match &self.0.factor {
             Factor::Split(base, factor) if contact && base.rows() >= change.len() => {
                 let work = reserved(base, &mut s.split);
@@ -213,7 +226,7 @@ impl CoarseFactor {
             }
             _ => self.solve_with(digits, &mut s.first, &mut s.memory, &mut s.split),
         }
-        self.subtract_weighted(x, s);
+        self.subtract_weighted(to, s);
     }
 
     /// `x = x - W G^T y`, `y` the first vector of the memory.
@@ -225,6 +238,7 @@ impl CoarseFactor {
             data.with_transpose(
                 &s.first,
                 x,
+                self.0.contact,
                 &mut s.motions,
                 |x, v| *x -= v,
                 |row, x, v| *x -= weight(row) * v,
@@ -270,7 +284,14 @@ impl CoarseFactor {
             self.amplitudes_to(digits, r, alpha, s);
         }
         let data = &self.0.coarse.0;
-        data.with_transpose(alpha, r, &mut s.motions, |r, v| *r += v, |_, r, v| *r += v);
+        data.with_transpose(
+            alpha,
+            r,
+            true,
+            &mut s.motions,
+            |r, v| *r += v,
+            |_, r, v| *r += v,
+        );
     }
 
     /// Rigid amplitudes that make the rows residual `r + G^T alpha` smallest in the metric of `W`:
@@ -291,7 +312,7 @@ impl CoarseFactor {
         s.dual.copy_from_slice(r);
         self.weigh(&mut s.dual);
         let data = &self.0.coarse.0;
-        data.product(&s.dual, None, alpha, &mut s.columns, &mut s.sides);
+        data.product(&s.dual, None, alpha, &mut s.sides);
         self.solve_with(digits, alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -305,7 +326,7 @@ impl CoarseFactor {
         s: &mut CoarseScratch,
     ) {
         let data = &self.0.coarse.0;
-        data.product(r, self.diagonal(), alpha, &mut s.columns, &mut s.sides);
+        data.product(r, self.diagonal(), alpha, &mut s.sides);
         self.solve_with(digits, alpha, &mut s.memory, &mut s.split);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -344,6 +365,16 @@ fn reserved<'m>(base: &SplitBase, memory: &'m mut Vec<f64>) -> &'m mut [f64] {
         memory.resize(base.work(), 0.0);
     }
     memory
+}
+
+/// Both, at the same time if that is `worth` it.
+fn both(worth: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    if worth {
+        rayon::join(a, b);
+    } else {
+        a();
+        b();
+    }
 }
 
 /// Remembers the entries of the rows in lines.
@@ -408,7 +439,7 @@ impl Equality for OrthonormalCoarse {
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse().0;
-        data.product(x, None, &mut s.first, &mut s.columns, &mut s.sides);
+        data.product(x, None, &mut s.first, &mut s.sides);
         self.half_solve(&s.first, y, &mut s.memory);
     }
 

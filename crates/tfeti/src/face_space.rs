@@ -350,9 +350,9 @@ impl CoarseSpace for FaceSpace {
         Ok(())
     }
 
-    fn compensate(&mut self, change: &[f64], x: &mut [f64]) {
+    fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
         let factor = self.always.as_ref().unwrap_or(&self.face);
-        factor.compensate_to(self.digits, change, x, &mut self.scratch);
+        factor.compensate_to(self.digits, from, change, to, &mut self.scratch);
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {

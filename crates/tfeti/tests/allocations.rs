@@ -43,7 +43,7 @@ fn products_and_projectors_allocate_nothing() {
                 space.project_transpose(&mut y);
                 space.multiplier(&x, &mut beta);
                 space.repair(&mut y, &beta);
-                space.compensate(&x[..contact], &mut y);
+                space.compensate(&x, &x[..contact], &mut y);
             });
             assert_eq!(count.count_total, 0, "{kind:?}");
         }

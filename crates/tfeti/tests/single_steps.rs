@@ -77,10 +77,9 @@ fn a_sparse_factor_and_exact_steps_round_nothing() {
         space.project_transpose(&mut exact);
         space.project_step_transpose(&mut step);
         assert_eq!(exact, step);
-        let mut part = x.clone();
-        part[contact..].fill(0.0);
-        let mut repaired = part.clone();
-        space.compensate(&x[..contact], &mut part);
+        let (mut part, mut repaired) = (x.clone(), x.clone());
+        repaired[contact..].fill(0.0);
+        space.compensate(&vec![0.0; x.len()], &x[..contact], &mut part);
         space.repair(&mut repaired, &vec![0.0; system.coarse().rows()]);
         assert!(distance(&part, &repaired) < 1e-12 * norm(&repaired));
     }

@@ -50,9 +50,8 @@ fn results(system: &Tfeti, space: &mut FaceSpace) -> [Vec<f64>; 6] {
     // the leading rows of x, zero behind them, brought back to the kernel of G
     let contact = system.gluing().ranges().contact().end;
     let mut parts = [contact, contact / 2].map(|count| {
-        let mut part = x.clone();
-        part[count..].fill(0.0);
-        space.compensate(&x[..count], &mut part);
+        let (zero, mut part) = (vec![0.0; x.len()], x.clone());
+        space.compensate(&zero, &x[..count], &mut part);
         part
     });
     for (part, count) in parts.iter().zip([contact, contact / 2]) {

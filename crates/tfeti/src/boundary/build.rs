@@ -62,7 +62,7 @@ impl BoundaryMap {
                 .iter()
                 .for_each(|e| touch(e.subdomain, e.local));
         }
-        let mut list: Vec<BoundaryClass> = classes
+        let list: Vec<BoundaryClass> = classes
             .classes()
             .iter()
             .zip(&touched)
@@ -73,27 +73,13 @@ impl BoundaryMap {
                 BoundaryClass {
                     nodes,
                     members: class.members.clone(),
-                    column: 0,
                 }
             })
             .collect();
-        // Classes that no row touches have no panels; their columns come last.
-        let mut columns = 0;
-        let mut column_of = vec![0; classes.subdomains()];
-        for untouched in [false, true] {
-            for class in list.iter_mut().filter(|c| c.nodes.is_empty() == untouched) {
-                class.column = columns;
-                for (k, &member) in class.members.iter().enumerate() {
-                    column_of[member as usize] = (columns + k) as u32;
-                }
-                columns += class.members.len();
-            }
-        }
         Self {
             classes: list,
             panels: Vec::new(),
             lanes: Vec::new(),
-            column_of,
             copies: 0,
             interface: gluing.ranges().interface.clone(),
             rows: gluing.ranges().total(),
@@ -146,11 +132,9 @@ impl BoundaryMap {
             let full = done * lanes >= total * (self.lanes.len() as u64 + 1);
             if full || k + 1 == self.panels.len() {
                 let first = &self.panels[start];
-                let column = self.classes[first.class].column + first.columns.start;
                 self.lanes.push(Lane {
                     panels: start..k + 1,
                     copy: first.copies.start,
-                    column,
                 });
                 start = k + 1;
             }

@@ -17,8 +17,8 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(crate) struct GlobTables {
     globs: Vec<Piece>,
-    /// Column of the subdomain of each side.
-    columns: Vec<u32>,
+    /// Subdomain of each side.
+    subdomains: Vec<u32>,
     /// From the centre of the subdomain to the mean of the nodes.
     levers: Vec<[f64; 3]>,
     /// Arms of each shape: for each chunk `q_(c+2)` for each component `c` of each node, then `-q_(c+1)`.
@@ -28,7 +28,7 @@ pub(crate) struct GlobTables {
     /// For each run one for each side.
     coefficients: Vec<f64>,
     tasks: Vec<Task>,
-    /// Sides of each column.
+    /// Sides of each subdomain.
     side_pointers: Vec<u32>,
     sides: Vec<u32>,
 }
@@ -64,12 +64,12 @@ struct Side {
 impl GlobTables {
     pub(crate) fn new<'k>(
         gluing: &Gluing,
-        column_of: &[u32],
+        subdomains: usize,
         kernel: impl Fn(u32) -> (usize, &'k Kernel),
     ) -> Self {
         let mut out = Self {
             globs: Vec::with_capacity(gluing.globs().len()),
-            columns: Vec::new(),
+            subdomains: Vec::new(),
             levers: Vec::new(),
             arms: Vec::new(),
             node_arms: Vec::new(),
@@ -82,10 +82,10 @@ impl GlobTables {
         let mut rules: Vec<Range<usize>> = Vec::new();
         for glob in gluing.globs() {
             let sides = sides_of(gluing, glob);
-            let first = out.columns.len();
+            let first = out.subdomains.len();
             for side in &sides {
                 let (_, kernel) = kernel(side.subdomain);
-                out.columns.push(column_of[side.subdomain as usize]);
+                out.subdomains.push(side.subdomain);
                 out.levers.push(mean_arm(gluing, glob, side, kernel));
             }
             let (class, own) = kernel(sides[0].subdomain);
@@ -120,7 +120,7 @@ impl GlobTables {
             });
         }
         out.cut();
-        (out.side_pointers, out.sides) = buckets(column_of.len(), &out.columns);
+        (out.side_pointers, out.sides) = buckets(subdomains, &out.subdomains);
         out
     }
 
@@ -164,15 +164,20 @@ impl GlobTables {
 
     /// Number of sides.
     pub(crate) fn len(&self) -> usize {
-        self.columns.len()
+        self.subdomains.len()
     }
 
-    /// Wrench on a column, about its centre, from those on its sides.
+    /// Sides of a subdomain.
+    pub(crate) fn sides_of(&self, subdomain: usize) -> &[u32] {
+        let pointers = &self.side_pointers;
+        &self.sides[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
+    }
+
+    /// Wrench on a subdomain, about its centre, from those on its sides.
     #[inline]
-    pub(crate) fn column_wrench(&self, column: usize, sides: &[Wrench]) -> [f64; 6] {
-        let range = self.side_pointers[column] as usize..self.side_pointers[column + 1] as usize;
+    pub(crate) fn wrench(&self, subdomain: usize, sides: &[Wrench]) -> [f64; 6] {
         let mut sum = [0.0; 6];
-        for &side in &self.sides[range] {
+        for &side in self.sides_of(subdomain) {
             let side = side as usize;
             let [[fx, fy, fz, _], [mx, my, mz, _]] = sides[side];
             add_wrench(&mut sum, &self.levers[side], [fx, fy, fz]);
@@ -205,7 +210,7 @@ impl GlobTables {
         );
     }
 
-    /// Hands each interface row to `each` with the displacement that the motions of the columns give it.
+    /// Hands each interface row to `each` with the displacement that the motions of the subdomains give it.
     pub(crate) fn motions(
         &self,
         motions: &[[f64; 6]],
@@ -392,9 +397,9 @@ impl<F: Fn(&mut f64, f64)> WithSimd for Motions<'_, F> {
         for piece in &tables.globs[self.task.globs.clone()] {
             let count = piece.count as usize;
             let sides = piece.side as usize..piece.side as usize + count;
-            let (columns, levers) = (&tables.columns[sides.clone()], &tables.levers[sides]);
+            let (owners, levers) = (&tables.subdomains[sides.clone()], &tables.levers[sides]);
             let shifted = |k: usize| {
-                let motion = &motions[columns[k] as usize];
+                let motion = &motions[owners[k] as usize];
                 let [x, y, z] = displacement(motion, &levers[k]);
                 [x, y, z, motion[3], motion[4], motion[5]]
             };

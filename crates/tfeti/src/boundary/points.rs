@@ -12,7 +12,7 @@ use std::ops::Range;
 #[derive(Debug, Default)]
 pub(crate) struct PointTables {
     points: Vec<Point>,
-    /// Column and arm.
+    /// Subdomain and arm.
     copies: Vec<[u32; 2]>,
     /// Counted from the first of the consecutive rows.
     rows: Vec<u32>,
@@ -32,7 +32,7 @@ struct Point {
 const KEPT: usize = 8;
 
 impl PointTables {
-    /// For the special rows `specials`; `copy` gives column and arm from subdomain and local node.
+    /// For the special rows `specials`; `copy` gives subdomain and arm from subdomain and local node.
     pub(crate) fn new(
         gluing: &Gluing,
         specials: Range<usize>,
@@ -75,8 +75,8 @@ impl PointTables {
         out
     }
 
-    /// Adds the wrenches of the rows `x` on the columns, about their means.
-    pub(crate) fn add_wrenches(&self, arms: &[[f64; 3]], x: &[f64], columns: &mut [[f64; 6]]) {
+    /// Adds the wrenches of the rows `x` on the subdomains, about their means.
+    pub(crate) fn add_wrenches(&self, arms: &[[f64; 3]], x: &[f64], wrenches: &mut [[f64; 6]]) {
         let mut start = Point::default();
         for &end in &self.points {
             let copies = &self.copies[start.copies..end.copies];
@@ -86,18 +86,22 @@ impl PointTables {
             if rows.iter().all(|&row| x[row as usize] == 0.0) {
                 continue;
             }
-            for (k, &[column, arm]) in copies.iter().enumerate() {
+            for (k, &[subdomain, arm]) in copies.iter().enumerate() {
                 let mut force = [0.0; 3];
                 let own = vectors.iter().skip(k).step_by(copies.len());
                 for (&row, v) in rows.iter().zip(own) {
                     (0..3).for_each(|c| force[c] += v[c] * x[row as usize]);
                 }
-                add_wrench(&mut columns[column as usize], &arms[arm as usize], force);
+                add_wrench(
+                    &mut wrenches[subdomain as usize],
+                    &arms[arm as usize],
+                    force,
+                );
             }
         }
     }
 
-    /// Hands each row to `each(row, x, value)` with the displacement that the motions of the columns give it.
+    /// Hands each row to `each(row, x, value)` with the displacement that the motions of the subdomains give it.
     pub(crate) fn motions(
         &self,
         motions: &[[f64; 6]],
@@ -108,8 +112,8 @@ impl PointTables {
         let mut start = Point::default();
         for &end in &self.points {
             let copies = &self.copies[start.copies..end.copies];
-            let at = |&[column, arm]: &[u32; 2]| {
-                displacement(&motions[column as usize], &arms[arm as usize])
+            let at = |&[subdomain, arm]: &[u32; 2]| {
+                displacement(&motions[subdomain as usize], &arms[arm as usize])
             };
             let rows = &self.rows[start.rows..end.rows];
             let vectors = &self.vectors[start.vectors..end.vectors];
