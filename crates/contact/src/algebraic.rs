@@ -75,7 +75,7 @@
 //! With no load, no displacement and no level before there is nothing wrong either, and the relative error is 0.
 
 use crate::certificate::Certificate;
-use crate::contact_move::{Moved, dot, movable_normal, push_out};
+use crate::contact_move::{Movable, Moved, dot};
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
@@ -137,8 +137,8 @@ pub(crate) fn relative(energy: f64, scale: f64) -> f64 {
 pub(crate) struct Weights {
     /// Stiffness in the direction of the contact rows, N/m, by row.
     rows: Vec<f64>,
-    /// Movable part of the normal of each contact point.
-    normals: Vec<[f64; 3]>,
+    /// What moves at each contact point.
+    movable: Vec<Movable>,
     /// Made where a level needs it: solvers of the face method leave nothing to balance.
     interior: OnceLock<Option<CoarseFactor>>,
 }
@@ -148,11 +148,13 @@ impl Weights {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
-        let gluing = model.tfeti.gluing();
-        let normal = |point| movable_normal(gluing, point);
         Self {
             rows,
-            normals: model.points.iter().map(normal).collect(),
+            movable: model
+                .points
+                .iter()
+                .map(|p| Movable::new(model, p))
+                .collect(),
             interior: OnceLock::new(),
         }
     }
@@ -189,19 +191,19 @@ impl Solved<'_> {
         let weights = model.weights.get_or_init(|| Weights::new(model));
         let mut v = self.mean(model.copies());
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(self.torn));
-        let places = || self.points.iter().zip(&model.points).zip(&weights.normals);
+        let places = || self.points.iter().zip(&model.points).zip(&weights.movable);
         let moved: Vec<Moved> = places()
-            .map(|((point, touch), normal)| {
-                let value = &mut v[3 * touch.node as usize..][..3];
-                Moved::new(self.level, touch, point, normal, &weights.rows, value)
+            .map(|((point, touch), movable)| {
+                let place = movable.place(self.level, touch, &v);
+                Moved::new(touch, point, &place, &weights.rows, movable.value(&mut v))
             })
             .collect();
         self.support(&mut v);
-        self.agree(&moved, &weights.normals, &mut v);
+        self.agree(&moved, &weights.movable, &mut v);
         let (mut terms, mut change) = (0.0, 0.0);
-        for (((point, touch), normal), moved) in places().zip(&moved) {
-            let value = &v[3 * touch.node as usize..][..3];
-            terms += moved.gap(self.level, touch, point, normal, value);
+        for (((point, touch), movable), moved) in places().zip(&moved) {
+            let place = movable.place(self.level, touch, &v);
+            terms += moved.gap(point, &place, movable.value(&mut v));
             change += moved.change;
         }
         // torn difference and its energy
@@ -309,7 +311,7 @@ impl Solved<'_> {
 
     /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one may undo
     /// another. Points that touch stay at their obstacles, others are moved out of theirs.
-    fn agree(&self, moved: &[Moved], normals: &[[f64; 3]], v: &mut [f64]) {
+    fn agree(&self, moved: &[Moved], movable: &[Movable], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         if gluing.dependent_nodes().is_empty() {
             return;
@@ -321,19 +323,17 @@ impl Solved<'_> {
                 planes.entry(node).or_default().push(plane);
             }
         }
-        let dependent = |t: &(&TouchPoint, &[f64; 3])| gluing.is_dependent(t.0.node);
-        let places = self.model.points.iter().zip(normals);
-        for ((touch, normal), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
-            let planes = planes.entry(touch.node).or_default();
-            let mut fix = |direction, row: usize, scale: f64| {
-                planes.push((direction, self.level.offset[row] / scale));
-            };
+        let dependent = |t: &(&TouchPoint, &Movable)| gluing.is_dependent(t.0.node);
+        let places = self.model.points.iter().zip(movable);
+        for ((touch, movable), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
+            let place = movable.place(self.level, touch, v);
+            let planes = planes.entry(movable.node).or_default();
             if moved.touches() {
-                fix(*normal, touch.row, touch.scale);
+                planes.push((place.normal, place.offset));
             }
             // with given friction also where the contact is open
             if moved.sticks() {
-                touch.along().for_each(|(d, row, scale)| fix(d, row, scale));
+                planes.extend_from_slice(place.along());
             }
         }
         let on_planes = |v: &mut [f64]| {
@@ -343,9 +343,9 @@ impl Solved<'_> {
         };
         on_planes(v);
         for _ in 0..SWEEPS {
-            for (touch, normal) in places.clone().filter(dependent) {
-                let value = &mut v[3 * touch.node as usize..][..3];
-                push_out(self.level, touch, normal, value);
+            for (touch, movable) in places.clone().filter(dependent) {
+                let place = movable.place(self.level, touch, v);
+                place.push_out(movable.value(v));
             }
         }
         on_planes(v);

@@ -1,6 +1,7 @@
 //! Bodies that nothing joins, and sizes of their own.
 //!
-//! The obstacle is rigid, so bodies know nothing of each other: a scene with several is several problems in one. Norms over
+//! Bodies that may touch each other count as one here, and so do parts that hinges join. An obstacle is rigid, so the others know
+//! nothing of each other: a scene with several is several problems in one. Norms over
 //! all of them would let the heaviest alone decide when the others are done. Every body therefore gets a unit of force: the
 //! problem of a level is solved with forces and displacements of each body divided by it. The conditions are homogeneous,
 //! so that only data change (`d`, `e`, given slip bounds), operators do not; units are powers of two, so that no digit changes.
@@ -8,7 +9,8 @@
 use crate::level::Level;
 use crate::model::Model;
 use crate::solver::Iterate;
-use signorini_tfeti::Tfeti;
+use signorini_fem_mesh::DisjointSets;
+use signorini_tfeti::{Gluing, Tfeti};
 
 /// To which body rows and subdomains belong. With one body there are no tables.
 #[derive(Debug, Default)]
@@ -16,20 +18,23 @@ pub(crate) struct Bodies {
     count: usize,
     rows: Vec<u32>,
     subdomains: Vec<u32>,
+    /// Number here of each body of the coarse space.
+    numbers: Vec<u32>,
 }
 
 impl Bodies {
     pub(crate) fn new(tfeti: &Tfeti) -> Self {
-        let coarse = tfeti.coarse();
-        let count = coarse.bodies();
+        let (coarse, gluing) = (tfeti.coarse(), tfeti.gluing());
+        let numbers = joined(coarse.bodies(), coarse.body_of(), gluing);
+        let count = numbers.iter().max().map_or(0, |last| *last as usize + 1);
         if count <= 1 {
             return Self {
                 count,
                 ..Self::default()
             };
         }
-        let subdomains = coarse.body_of().to_vec();
-        let gluing = tfeti.gluing();
+        let number = |body: &u32| numbers[*body as usize];
+        let subdomains: Vec<u32> = coarse.body_of().iter().map(number).collect();
         let body = |row| {
             let entries = gluing.row(row);
             entries.first().map_or(0, |entry| subdomains[entry.0])
@@ -38,6 +43,7 @@ impl Bodies {
             count,
             rows: (0..tfeti.dual_dim()).map(body).collect(),
             subdomains,
+            numbers,
         }
     }
 
@@ -54,6 +60,11 @@ impl Bodies {
     /// Body of a subdomain.
     pub(crate) fn of_subdomain(&self, subdomain: usize) -> usize {
         self.subdomains.get(subdomain).map_or(0, |b| *b as usize)
+    }
+
+    /// Number here of a body of the coarse space.
+    pub(crate) fn of_body(&self, body: usize) -> usize {
+        self.numbers.get(body).map_or(0, |b| *b as usize)
     }
 
     /// Adds the squares of the rows in a range to those of their bodies.
@@ -116,6 +127,18 @@ impl Bodies {
         iterate.multiplier.clear();
         Some((scaled, units))
     }
+}
+
+/// A number for each of so many bodies: the same for those that contact points join.
+fn joined(bodies: usize, body_of: &[u32], gluing: &Gluing) -> Vec<u32> {
+    let mut sets = DisjointSets::new(bodies);
+    for info in gluing.contact().iter().filter(|c| c.opponent.is_some()) {
+        for pair in gluing.row(info.row).windows(2) {
+            let [a, b] = [pair[0].0, pair[1].0].map(|s| body_of[s] as usize);
+            sets.join(a, b);
+        }
+    }
+    sets.numbers()
 }
 
 /// The unit of force of each row and of each rigid amplitude.

@@ -2,10 +2,12 @@
 //!
 //! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two surfaces
 //! meet at an edge one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all of
-//! their obstacles. Surfaces that go over into one another share a node with one point.
+//! their obstacles. Surfaces that go over into one another share a node with one point. Between bodies a node is one point,
+//! with a [partner](crate::partners).
 
 use crate::contact_surface::{Contact, ContactNormal};
 use crate::error::ContactError;
+use crate::partners::{Partner, partners};
 use crate::scene::Scene;
 use signorini_fem_mesh::{Frame, Surface, TetMesh};
 use signorini_tfeti::{ContactNodes, ContactPoint};
@@ -24,6 +26,8 @@ pub(crate) struct Candidate {
     pub(crate) surface: usize,
     /// Mesh node.
     pub(crate) node: u32,
+    /// Its partner on another body.
+    pub(crate) opponent: Option<u32>,
     pub(crate) frame: Frame,
     /// A third of the areas of the facets of its side, m².
     pub(crate) area: f64,
@@ -44,7 +48,7 @@ pub(crate) fn contact_nodes<'a>(
 ) -> ContactNodes {
     let point = |c: &Candidate| ContactPoint {
         node: c.node,
-        opponent: None,
+        opponent: c.opponent,
         frame: c.frame,
         friction: scene.contacts[c.surface].friction().is_some(),
         moving: scene.contacts[c.surface].motion.is_some(),
@@ -64,19 +68,23 @@ pub(crate) fn candidates(
     let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
         let fixed = fixed_frame(contact, surface)?;
+        let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
         let sides = match fixed {
-            Some(_) => HashMap::new(),
-            None => creases(&scene.mesh, surface, contact.crease),
+            None if partners.is_empty() => creases(&scene.mesh, surface, contact.crease),
+            _ => HashMap::new(),
         };
         let alone = scene.contacts.len() == 1;
         for (local, &node) in surface.nodes().iter().enumerate() {
-            let gap = contact.gap_at(node, scene.mesh.points()[node as usize])?;
+            let partner = partners.get(local);
+            let measured = partner.map_or(0.0, |p: &Partner| p.gap);
+            let gap = contact.gap_at(node, scene.mesh.points()[node as usize], measured)?;
             let one = [(surface.frames()[local], surface.areas()[local])];
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
                 let candidate = Candidate {
                     surface: index,
                     node,
+                    opponent: partner.map(|p| p.node),
                     frame: fixed.unwrap_or(frame),
                     area,
                     gap,
@@ -119,6 +127,9 @@ fn fixed_frame(contact: &Contact, surface: &Surface) -> Result<Option<Frame>, Co
 /// Whether two points of a node are one: the same direction, or surfaces that go over into one another. Sides of one surface
 /// have been told apart at its creases.
 fn is_same(scene: &Scene, a: &Candidate, b: &Candidate) -> bool {
+    if a.opponent.is_some() || b.opponent.is_some() {
+        return false;
+    }
     let cosine = a.frame.normal_part(b.frame.normal);
     if a.surface == b.surface {
         return cosine > SAME;

@@ -1,10 +1,11 @@
 //! The best admissible position of one contact node, and its share of the duality gap; see the [algebraic
 //! error](crate::AlgebraicError).
+//!
+//! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more freedom.
 
 use crate::frame::PointState;
 use crate::level::Level;
-use crate::model::TouchPoint;
-use signorini_tfeti::Gluing;
+use crate::model::{Model, TouchPoint};
 
 /// Rounding of directions.
 const SAME: f64 = 1e-12;
@@ -15,6 +16,141 @@ const ROUNDING: f64 = 1e-12;
 /// Relative change of a slip bound that is judged by the stiffness of the node. Larger ones move the whole body, and the
 /// gap, which overrates small changes, is the safer measure.
 const NEAR: f64 = 0.01;
+
+/// What the rows of a contact point measure of the displacement of one node, in metres: their directions, without the parts
+/// along directions that supports fix.
+#[derive(Debug, Clone, Copy, Default)]
+struct Side {
+    normal: [f64; 3],
+    along: [[f64; 3]; 2],
+}
+
+impl Side {
+    /// Sum of the squares: 3 for a node without supports.
+    fn freedom(&self) -> f64 {
+        let all = [self.normal, self.along[0], self.along[1]];
+        all.iter().map(|d| dot(d, d)).sum()
+    }
+}
+
+/// The node of a contact point that moves, and its partner, which stays.
+#[derive(Debug, Clone)]
+pub(crate) struct Movable {
+    /// Mesh node.
+    pub(crate) node: u32,
+    own: Side,
+    still: Option<(u32, Side)>,
+}
+
+impl Movable {
+    pub(crate) fn new(model: &Model, touch: &TouchPoint) -> Self {
+        let subdomains = model.decomposition.subdomains();
+        let mut sides = [Side::default(); 2];
+        let rows = touch.directions().zip(0..);
+        for ((_, row, scale), k) in rows {
+            for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
+                let first = subdomains[subdomain].nodes[dof / 3] == touch.node;
+                let side = &mut sides[usize::from(!first)];
+                let part = match k {
+                    0 => &mut side.normal,
+                    k => &mut side.along[k - 1],
+                };
+                part[dof % 3] += coefficient / scale;
+            }
+        }
+        // where supports fix nothing, without rounding
+        let normal = touch.frame.normal;
+        for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+            if (0..3).all(|c| (sign * side.normal[c] - normal[c]).abs() <= SAME) {
+                side.normal = normal.map(|c| sign * c);
+            }
+        }
+        let [mut first, second] = sides;
+        match touch.opponent {
+            None => {
+                for (along, (direction, ..)) in first.along.iter_mut().zip(touch.along()) {
+                    *along = direction;
+                }
+                Self {
+                    node: touch.node,
+                    own: first,
+                    still: None,
+                }
+            }
+            Some(opponent) if second.freedom() > first.freedom() + SAME => Self {
+                node: opponent,
+                own: second,
+                still: Some((touch.node, first)),
+            },
+            Some(opponent) => Self {
+                node: touch.node,
+                own: first,
+                still: Some((opponent, second)),
+            },
+        }
+    }
+
+    /// The displacement of the node that moves.
+    pub(crate) fn value<'a>(&self, v: &'a mut [f64]) -> &'a mut [f64] {
+        &mut v[3 * self.node as usize..][..3]
+    }
+
+    /// The conditions on the node that moves, with the others at their displacements `v`.
+    pub(crate) fn place(&self, level: &Level, touch: &TouchPoint, v: &[f64]) -> Place {
+        // the offset of a row has the motion that supports prescribe along it already
+        let offset = |row: usize, scale: f64, still: fn(&Side) -> [f64; 3]| {
+            let own = level.offset[row] / scale;
+            match &self.still {
+                Some((node, side)) => own - dot(&still(side), &v[3 * *node as usize..][..3]),
+                None => own,
+            }
+        };
+        let mut place = Place {
+            normal: self.own.normal,
+            offset: offset(touch.row, touch.scale, |s| s.normal),
+            along: [([0.0; 3], 0.0); 2],
+            count: 0,
+        };
+        for (k, (_, row, scale)) in touch.along().enumerate() {
+            let still = [|s: &Side| s.along[0], |s: &Side| s.along[1]][k];
+            place.along[k] = (self.own.along[k], offset(row, scale, still));
+            place.count = k + 1;
+        }
+        place
+    }
+}
+
+/// Conditions on the displacement `v` of one node: `normal . v <= offset`, and friction along directions `d` where
+/// `d . v` is not their offset.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) normal: [f64; 3],
+    pub(crate) offset: f64,
+    along: [([f64; 3], f64); 2],
+    count: usize,
+}
+
+impl Place {
+    /// Directions along the surface, with their offsets.
+    pub(crate) fn along(&self) -> &[([f64; 3], f64)] {
+        &self.along[..self.count]
+    }
+
+    /// How deep the node is in the obstacle, m; negative outside.
+    fn depth(&self, value: &[f64]) -> f64 {
+        dot(&self.normal, value) - self.offset
+    }
+
+    /// Moves the node out of the obstacle, if it is inside.
+    pub(crate) fn push_out(&self, value: &mut [f64]) {
+        let depth = self.depth(value).max(0.0);
+        shift(
+            value,
+            &self.normal,
+            -depth / dot(&self.normal, &self.normal),
+        );
+    }
+}
 
 /// A contact node after its move.
 #[derive(Debug, Clone, Copy)]
@@ -32,20 +168,19 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    /// Moves a node such that the gap is smallest with all other nodes held; `rows` are stiffnesses of rows in N/m, `normal`
-    /// is the [movable](movable_normal) one.
+    /// Moves a node such that the gap is smallest with all other nodes held; `rows` are stiffnesses of rows in N/m.
     pub(crate) fn new(
-        level: &Level,
         touch: &TouchPoint,
         point: &PointState,
-        normal: &[f64; 3],
+        place: &Place,
         rows: &[f64],
         value: &mut [f64],
     ) -> Self {
         let k = touch.scale.powi(2) * rows[touch.row];
-        let open = normal_offset(level, touch, normal, value);
+        let open = place.depth(value);
         let target = (open - point.normal_force / k).min(0.0);
         // along the movable part, so that supports stay where they are
+        let normal = &place.normal;
         shift(value, normal, (target - open) / dot(normal, normal));
         let mut moved = Self {
             open: target,
@@ -59,8 +194,9 @@ impl Moved {
         };
         let k = scale.powi(2) * rows[row];
         let mut start = [0.0; 2];
-        for (j, (direction, row, scale)) in touch.along().enumerate() {
-            start[j] = dot(&direction, value) - level.offset[row] / scale;
+        let conditions = touch.along().zip(place.along());
+        for (j, ((direction, ..), (own, offset))) in conditions.enumerate() {
+            start[j] = dot(own, value) - offset;
             moved.force[j] = dot(&direction, &point.friction_force);
         }
         // with the bound of the level, or with the friction force as the bound: whichever costs less
@@ -83,8 +219,8 @@ impl Moved {
             moved.change = change;
             moved.slip = nearest(size);
         }
-        for (j, (direction, ..)) in touch.along().enumerate() {
-            shift(value, &direction, moved.slip[j] - start[j]);
+        for (j, (direction, _)) in place.along().iter().enumerate() {
+            shift(value, direction, moved.slip[j] - start[j]);
         }
         moved
     }
@@ -100,24 +236,15 @@ impl Moved {
     }
 
     /// The node's share of the gap at its final position, which supports may have changed, J.
-    pub(crate) fn gap(
-        mut self,
-        level: &Level,
-        touch: &TouchPoint,
-        point: &PointState,
-        normal: &[f64; 3],
-        value: &[f64],
-    ) -> f64 {
+    pub(crate) fn gap(mut self, point: &PointState, place: &Place, value: &[f64]) -> f64 {
         let far = |a: f64, b: f64, size: f64| (a - b).abs() > ROUNDING * size;
         let size = value.iter().map(|v| v.abs()).fold(0.0, f64::max);
-        let offset = level.offset[touch.row] / touch.scale;
-        let open = normal_offset(level, touch, normal, value);
-        if far(open, self.open, size + offset.abs()) {
+        let open = place.depth(value);
+        if far(open, self.open, size + place.offset.abs()) {
             self.open = open;
         }
-        for (j, (direction, row, scale)) in touch.along().enumerate() {
-            let offset = level.offset[row] / scale;
-            let slip = dot(&direction, value) - offset;
+        for (j, (direction, offset)) in place.along().iter().enumerate() {
+            let slip = dot(direction, value) - offset;
             if far(slip, self.slip[j], size + offset.abs()) {
                 self.slip[j] = slip;
             }
@@ -150,28 +277,4 @@ fn shift(value: &mut [f64], direction: &[f64; 3], by: f64) {
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Moves a node out of the obstacle of a point, if it is inside.
-pub(crate) fn push_out(level: &Level, touch: &TouchPoint, normal: &[f64; 3], value: &mut [f64]) {
-    let depth = normal_offset(level, touch, normal, value).max(0.0);
-    shift(value, normal, -depth / dot(normal, normal));
-}
-
-/// `v_nu - g`, m. The offset of the row has the motion that supports prescribe along the normal already, so that
-/// only the movable part of the normal counts.
-fn normal_offset(level: &Level, touch: &TouchPoint, normal: &[f64; 3], value: &[f64]) -> f64 {
-    dot(normal, value) - level.offset[touch.row] / touch.scale
-}
-
-/// The normal without its parts along directions that supports fix: what the row of the point measures and moves. The
-/// normal itself where nothing is fixed.
-pub(crate) fn movable_normal(gluing: &Gluing, touch: &TouchPoint) -> [f64; 3] {
-    let mut movable = [0.0; 3];
-    for (_, dof, coefficient) in gluing.row(touch.row) {
-        movable[dof % 3] += coefficient / touch.scale;
-    }
-    let normal = touch.frame.normal;
-    let same = (0..3).all(|c| (movable[c] - normal[c]).abs() <= SAME);
-    if same { normal } else { movable }
 }

@@ -1,4 +1,4 @@
-//! The contact surface of a scene: where it is, how far the obstacle, and with which friction.
+//! The contact surface of a scene: where it is, how far the obstacle or the other body, and with which friction.
 
 use crate::error::ContactError;
 use crate::law::{Friction, PlaceField};
@@ -16,6 +16,8 @@ pub enum Gap {
     Constant(f64),
     /// Distance at a point, m; negative values mean that the body starts inside the obstacle.
     Field(PlaceField),
+    /// The distance between the nodes of two bodies, along the normal: what coordinates say.
+    Measured,
 }
 
 impl fmt::Debug for Gap {
@@ -24,6 +26,7 @@ impl fmt::Debug for Gap {
             Self::None => f.write_str("None"),
             Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
             Self::Field(_) => f.write_str("Field(..)"),
+            Self::Measured => f.write_str("Measured"),
         }
     }
 }
@@ -39,10 +42,12 @@ pub enum ContactNormal {
     Fixed([f64; 3]),
 }
 
-/// A part of the boundary that may touch a rigid obstacle.
+/// A part of the boundary that may touch a rigid obstacle, or another body.
 #[derive(Debug, Clone)]
 pub struct Contact {
     pub(crate) tags: Vec<FacetTag>,
+    /// Facets of the other body; none for a rigid obstacle.
+    pub(crate) partner: Vec<FacetTag>,
     pub(crate) gap: Gap,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
@@ -61,12 +66,61 @@ impl Contact {
     pub fn rigid(tag: FacetTag) -> Self {
         Self {
             tags: vec![tag],
+            partner: Vec::new(),
             gap: Gap::None,
             normal: ContactNormal::Body,
             friction: Friction::None,
             crease: CREASE,
             motion: None,
         }
+    }
+
+    /// Contact of two elastic bodies whose meshes match: facets with `tag`, and facets of the other body with the tag `partner`.
+    ///
+    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a hundredth of
+    /// the size of its facets. The other side may have more nodes. All quantities of a contact point are those of the body with
+    /// `tag`: its outward normal, the force on it, its displacement *relative* to the partner; the force on the partner is
+    /// the opposite one. The gap is measured between the partners, unless [`with_gap`](Self::with_gap) or
+    /// [`with_gap_field`](Self::with_gap_field) tell another; partners may coincide. Displacements are small: a
+    /// node keeps its partner, however far it slides. Nodes may have partners on several bodies, and touch obstacles besides: each
+    /// is a contact of its own.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{brick, Brick, FacetTag, Hooke, Materials};
+    ///
+    /// // a cube on a cube; tags of the upper one are 10 larger
+    /// let lower = Brick::new([1.0, 1.0, 1.0], [2, 2, 2]).build()?;
+    /// let upper = lower
+    ///     .map_points(|[x, y, z]| [x, y, z + 1.0])?
+    ///     .map_tags(|tag| FacetTag(tag.0 + 10));
+    /// let top = FacetTag(brick::Z_MAX.0 + 10);
+    /// let scene = Scene::new(lower.append(&upper)?, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
+    ///     .with_support(Support::fixed(brick::Z_MIN))
+    ///     .with_load(Load::traction(top, [1e5, 0.0, -1e6]))
+    ///     .with_contact(
+    ///         Contact::between(FacetTag(brick::Z_MIN.0 + 10), brick::Z_MAX)
+    ///             .with_friction(Friction::coulomb(0.3)),
+    ///     );
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let frame = simulation.step()?;
+    /// assert!((frame.summary().normal_force - 1e6).abs() < 10.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
+        Self {
+            partner: vec![partner],
+            gap: Gap::Measured,
+            ..Self::rigid(tag)
+        }
+    }
+
+    /// More facets of the other body.
+    #[must_use]
+    pub fn and_partner(mut self, tag: FacetTag) -> Self {
+        self.partner.push(tag);
+        self
     }
 
     /// Contact with the half-space below a plane: gap and normal follow from the plane.
@@ -169,6 +223,12 @@ impl Contact {
         &self.tags
     }
 
+    /// The tags of the facets of the other body; none for a rigid obstacle.
+    #[must_use]
+    pub fn partner(&self) -> &[FacetTag] {
+        &self.partner
+    }
+
     /// The distance to the obstacle.
     #[must_use]
     pub fn gap(&self) -> &Gap {
@@ -181,12 +241,18 @@ impl Contact {
         self.normal
     }
 
-    /// The gap at a node, m, checked.
-    pub(crate) fn gap_at(&self, node: u32, position: [f64; 3]) -> Result<f64, ContactError> {
+    /// The gap at a node, m, checked; `measured` is the distance to its partner.
+    pub(crate) fn gap_at(
+        &self,
+        node: u32,
+        position: [f64; 3],
+        measured: f64,
+    ) -> Result<f64, ContactError> {
         let value = match &self.gap {
             Gap::None => 0.0,
             Gap::Constant(value) => *value,
             Gap::Field(field) => field(position),
+            Gap::Measured => measured,
         };
         if value.is_finite() {
             Ok(value)

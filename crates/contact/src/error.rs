@@ -160,6 +160,42 @@ pub enum ContactError {
         /// Number of nodes of the contact surface.
         nodes: usize,
     },
+    /// A contact node has no node of the other body on its normal.
+    #[error(
+        "contact {contact}: node {node} has no partner on the other body: the nearest node that faces it lies {beside:e} m beside its normal, {limit:e} m are allowed; meshes of both sides have to match, and the first side must not reach beyond the other one"
+    )]
+    NoPartner {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+        /// Mesh node.
+        node: u32,
+        /// Distance from the normal, m; infinite if no node faces it.
+        beside: f64,
+        /// What is allowed, m.
+        limit: f64,
+    },
+    /// Two contact nodes have the same partner.
+    #[error(
+        "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both sides have to match node by node"
+    )]
+    SharedPartner {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+        /// Node of the other body.
+        partner: u32,
+        /// Node of the first side.
+        first: u32,
+        /// Another one.
+        second: u32,
+    },
+    /// A contact between bodies has an obstacle that moves.
+    #[error(
+        "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its supports instead"
+    )]
+    MovedPartner {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+    },
     /// Two contact surfaces whose obstacles move differently meet a node along one direction.
     #[error(
         "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"

@@ -95,7 +95,10 @@ fn number(x: f64) -> u64 {
 fn point(point: &TouchPoint) -> impl Iterator<Item = u64> {
     let [a, b] = point.frame.tangents;
     let numbers = [point.frame.normal, a, b].into_iter().flatten();
-    std::iter::once(u64::from(point.node)).chain(numbers.chain([point.area]).map(number))
+    let nodes = std::iter::once(point.node).chain(point.opponent);
+    nodes
+        .map(u64::from)
+        .chain(numbers.chain([point.area]).map(number))
 }
 
 fn formula(formula: DifferenceFormula) -> u64 {

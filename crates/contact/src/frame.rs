@@ -28,6 +28,8 @@ pub enum ContactState {
 pub struct PointState {
     /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
     pub node: u32,
+    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
+    pub opponent: Option<u32>,
     /// Position of the contact surface in [`Scene::contacts`].
     pub surface: usize,
     /// What it does.
@@ -38,9 +40,9 @@ pub struct PointState {
     pub friction_force: [f64; 3],
     /// Slip bound, N; 0 without friction.
     pub slip_bound: f64,
-    /// Distance to the obstacle, m.
+    /// Distance to the obstacle or the partner, m.
     pub gap: f64,
-    /// Tangential displacement, m, in space.
+    /// Tangential displacement, m, in space; relative to the partner, if there is one.
     pub tangential_displacement: [f64; 3],
     /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static scene.
     pub difference: [f64; 3],
@@ -58,7 +60,8 @@ impl PointState {
     }
 }
 
-/// Sums over the contact surface at the end of a level.
+/// Sums over the contact surface at the end of a level. Between bodies, forces are those on the body that was named first
+/// ([`Contact::between`](crate::Contact::between)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ContactSummary {
@@ -384,6 +387,7 @@ pub(crate) fn point_state(
     let slip = difference[0].hypot(difference[1]);
     PointState {
         node: point.node,
+        opponent: point.opponent,
         surface: point.surface,
         state,
         normal_force,

@@ -10,7 +10,7 @@ use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
 use signorini_qp::vector;
-use signorini_tfeti::{FreeMotion, OrthonormalCoarse, RowWeights};
+use signorini_tfeti::{BodyMotion, FreeMotion, OrthonormalCoarse, RowWeights};
 
 /// Work on a free motion above this fraction of the size of the loads counts.
 const WORK: f64 = 1e-9;
@@ -24,10 +24,11 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
     if motions.is_empty() {
         return Ok(());
     }
-    // no row joins bodies: each is judged alone, by its own loads
+    // each body is judged alone, by its own loads, with those that it may touch
     let mut worst: Option<Escape> = None;
     for body in 0..model.bodies.count() {
-        let own = |m: &&FreeMotion| m.bodies.iter().any(|b| b.body == body);
+        let group = |b: &BodyMotion| model.bodies.of_body(b.body) == body;
+        let own = |m: &&FreeMotion| m.bodies.iter().any(group);
         let motions: Vec<&FreeMotion> = motions.iter().filter(own).collect();
         if motions.is_empty() {
             continue;
@@ -103,7 +104,7 @@ fn escapes(
             // the size of the loads counts
             if let Some(Separation { motion, given }) = cone.exceeded(&b) {
                 let force = vector::dot(&motion, &b);
-                return Ok(Some(escape(level, body, motions, &motion, force, given)));
+                return Ok(Some(escape(level, motions, &motion, force, given)));
             }
             continue;
         }
@@ -115,7 +116,7 @@ fn escapes(
         }
         if let Some(motion) = cone.separates(&b) {
             let force = length * vector::dot(&motion, &b);
-            return Ok(Some(escape(level, body, motions, &motion, force, 0.0)));
+            return Ok(Some(escape(level, motions, &motion, force, 0.0)));
         }
         approved = Some(b);
     }
@@ -123,17 +124,10 @@ fn escapes(
 }
 
 /// The way out: `given` is what given friction takes of the force.
-fn escape(
-    level: usize,
-    body: usize,
-    motions: &[&FreeMotion],
-    motion: &[f64],
-    force: f64,
-    given: f64,
-) -> Escape {
+fn escape(level: usize, motions: &[&FreeMotion], motion: &[f64], force: f64, given: f64) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-    let (mode, share) = describe(body, motions, &motion);
+    let (body, mode, share) = describe(motions, &motion);
     let mode = if given > 0.0 {
         format!(
             "{mode}, of which given friction holds {:.3e} N,",
@@ -195,16 +189,16 @@ fn generators(
     Ok(out)
 }
 
-/// What a message says of the motion of a body: the motion in words, of length one, and its length.
-fn describe(body: usize, motions: &[&FreeMotion], factors: &[f64]) -> (String, f64) {
-    // of parts that hinges join the one that moves most
-    let mut parts: Vec<(usize, f64, [f64; 6])> = Vec::new();
+/// What a message says of a motion: the body that moves most, its motion in words, of length one, and its length.
+fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (usize, String, f64) {
+    // by the first subdomain: parts that hinges join are one body
+    let mut parts: Vec<(usize, f64, [f64; 6], usize)> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
-        for part in motion.bodies.iter().filter(|b| b.body == body) {
+        for part in &motion.bodies {
             let at = match parts.iter().position(|p| p.0 == part.subdomain) {
                 Some(at) => at,
                 None => {
-                    parts.push((part.subdomain, part.radius, [0.0; 6]));
+                    parts.push((part.subdomain, part.radius, [0.0; 6], part.body));
                     parts.len() - 1
                 }
             };
@@ -214,9 +208,9 @@ fn describe(body: usize, motions: &[&FreeMotion], factors: &[f64]) -> (String, f
             }
         }
     }
-    let size = |p: &(usize, f64, [f64; 6])| vector::norm(&p.2);
+    let size = |p: &(usize, f64, [f64; 6], usize)| vector::norm(&p.2);
     let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-    let (_, radius, m) = most.copied().unwrap_or((0, 1.0, [0.0; 6]));
+    let (_, radius, m, body) = most.copied().unwrap_or((0, 1.0, [0.0; 6], 0));
     let length = vector::norm(&m);
     let rounded = |v: &f64| {
         let v = v / length;
@@ -232,7 +226,7 @@ fn describe(body: usize, motions: &[&FreeMotion], factors: &[f64]) -> (String, f
         .into_iter()
         .chain(turn)
         .collect();
-    (format!("its {}", parts.join(" with ")), length)
+    (body, format!("its {}", parts.join(" with ")), length)
 }
 
 /// The orthonormal coarse rows that the linear solver and the paper's methods need.

@@ -97,6 +97,7 @@ mod magnitude;
 mod model;
 mod observer;
 mod paper_solver;
+mod partners;
 mod plan;
 mod pool;
 mod precheck;

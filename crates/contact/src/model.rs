@@ -14,12 +14,14 @@ use signorini_qp::{ProductSet, RadiusSlope, Segment};
 use signorini_tfeti as tfeti;
 use signorini_tfeti::{Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
 
-/// A node that can touch an obstacle. A node in an edge or a corner is several, with other normals.
+/// A node that can touch an obstacle or a node of another body. A node in an edge or a corner is several, with other normals.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct TouchPoint {
     /// Mesh node.
     pub node: u32,
+    /// Its partner on another body; `None` for a rigid obstacle.
+    pub opponent: Option<u32>,
     /// Position of its contact surface in [`Scene::contacts`].
     pub surface: usize,
     /// Its position, m.
@@ -370,6 +372,7 @@ pub(crate) fn touch_points(
         };
         TouchPoint {
             node: info.node,
+            opponent: candidate.opponent,
             surface: candidate.surface,
             position: scene.mesh.points()[info.node as usize],
             frame: info.frame,

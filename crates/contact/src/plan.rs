@@ -37,6 +37,8 @@ pub struct Effects {
     pub contact: bool,
     /// A gap: offsets of the normal rows.
     pub gap: bool,
+    /// Contact between elastic bodies.
+    pub partners: bool,
     /// Friction.
     pub friction: FrictionKind,
     /// History: old tangential displacements.
@@ -138,13 +140,15 @@ impl Plan {
         let surfaces = surfaces(scene)?;
         let candidates = candidates(scene, &surfaces)?;
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
-        let free = |node: &u32| 3 - fixed.get(node).copied().unwrap_or(0).min(3);
-        let points = candidates.iter().filter(|point| free(&point.node) > 0);
+        let held = |node: u32| fixed.get(&node).copied().unwrap_or(0).min(3);
+        let free = |p: &Candidate| 3 - held(p.node).min(p.opponent.map_or(3, held));
+        let points = candidates.iter().filter(|point| free(point) > 0);
         let points: Vec<&Candidate> = points.collect();
-        let touching: BTreeSet<u32> = points.iter().map(|point| point.node).collect();
+        let both = |p: &&Candidate| std::iter::once(p.node).chain(p.opponent);
+        let touching: BTreeSet<u32> = points.iter().flat_map(both).collect();
         let normal_rows = points.len();
         let rough = |p: &&&Candidate| scene.contacts[p.surface].friction().is_some();
-        let tangential_rows = points.iter().filter(rough).map(|p| free(&p.node) - 1).sum();
+        let tangential_rows = points.iter().filter(rough).map(|p| free(p) - 1).sum();
         let kind = |friction: &Friction| match friction {
             Friction::None => FrictionKind::None,
             Friction::Given(_) => FrictionKind::Given,
@@ -155,7 +159,8 @@ impl Plan {
         let kind = kinds.max().unwrap_or(FrictionKind::None);
         let effects = Effects {
             contact: !scene.contacts.is_empty(),
-            gap: scene.contacts.iter().any(|c| !matches!(c.gap, Gap::None)),
+            gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, &candidates)),
+            partners: candidates.iter().any(|p| p.opponent.is_some()),
             friction: kind,
             history: kind != FrictionKind::None
                 && matches!(scene.analysis, Analysis::Quasistatic { .. }),
@@ -212,6 +217,17 @@ impl Plan {
             estimate,
         };
         Ok((plan, surfaces, candidates))
+    }
+}
+
+/// Whether the rows of a contact surface have offsets.
+fn has_gap(scene: &Scene, surface: usize, candidates: &[Candidate]) -> bool {
+    match scene.contacts[surface].gap {
+        Gap::None => false,
+        Gap::Measured => candidates
+            .iter()
+            .any(|p| p.surface == surface && p.gap != 0.0),
+        _ => true,
     }
 }
 
@@ -306,7 +322,8 @@ impl fmt::Display for Plan {
         } else {
             ""
         };
-        let contact = format!("{} nodes, {gap}{moving}", self.contact_nodes);
+        let partners = if e.partners { ", between bodies" } else { "" };
+        let contact = format!("{} nodes, {gap}{moving}{partners}", self.contact_nodes);
         writeln!(
             f,
             "  contact     {}",

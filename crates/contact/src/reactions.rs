@@ -72,7 +72,7 @@ pub struct Reactions {
     pub point: [f64; 3],
     /// What each support does, in the order of the scene.
     pub supports: Vec<SupportReaction>,
-    /// What the obstacle does: contact pressure and friction.
+    /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
     /// What the loads do.
     pub loads: Resultant,
@@ -128,7 +128,11 @@ pub(crate) fn about(
     };
     let mut contact = Resultant::default();
     for (state, touch) in points.iter().zip(&model.points) {
-        contact.add(arm(state.node), state.force(touch));
+        let force = state.force(touch);
+        contact.add(arm(state.node), force);
+        if let Some(opponent) = state.opponent {
+            contact.add(arm(opponent), force.map(|f| -f));
+        }
     }
     let mut loads = Resultant::default();
     for (factor, load) in level.factors.iter().zip(&model.loads) {

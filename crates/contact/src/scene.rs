@@ -416,11 +416,12 @@ impl Scene {
                 }
             }
         }
-        self.contacts.iter().try_for_each(|c| self.check(c))
+        let mut contacts = self.contacts.iter().enumerate();
+        contacts.try_for_each(|(index, c)| self.check(index, c))
     }
 
-    fn check(&self, contact: &Contact) -> Result<(), ContactError> {
-        for &tag in &contact.tags {
+    fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {
+        for &tag in contact.tags.iter().chain(&contact.partner) {
             if self.mesh.nodes_on(tag).is_empty() {
                 return Err(self.unknown_tag("contact", tag));
             }
@@ -430,6 +431,9 @@ impl Scene {
             if !(length.is_finite() && length > 0.0) {
                 return Err(ContactError::ObstacleNormal { normal });
             }
+        }
+        if contact.motion.is_some() && !contact.partner.is_empty() {
+            return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion
             && let Some(value) = displacement.iter().find(|c| !c.is_finite())

@@ -92,6 +92,7 @@ pub mod recovery;
 mod assembly;
 mod buckets;
 mod decomposition;
+mod disjoint;
 mod element;
 mod history;
 mod hooke;
@@ -110,6 +111,7 @@ pub use buckets::buckets;
 pub use decomposition::{
     Decomposition, DecompositionError, NodeCopy, Subdomain, split_disconnected,
 };
+pub use disjoint::DisjointSets;
 pub use element::{Element, element_stiffness};
 pub use fields::FieldError;
 pub use history::{History, HistoryError, interpolate};

@@ -24,8 +24,8 @@ pub struct ContactPoint {
 /// The contact points of a system.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactNodes {
-    /// The points. A node in an edge or a corner of rigid obstacles appears several times, with other normals; rows of such
-    /// a node may depend on one another. A node of a pair appears once.
+    /// The points. A node in an edge or a corner appears several times, with other normals or opponents; rows of such a node
+    /// may depend on one another.
     pub points: Vec<ContactPoint>,
 }
 
@@ -155,7 +155,7 @@ pub(crate) fn contact_rows(
     Ok(out)
 }
 
-/// The contact points of each node.
+/// The contact points of each node, or of each pair under its smaller node.
 struct Uses {
     /// Last point of a node, plus one; 0 for none.
     last: Vec<u32>,
@@ -171,34 +171,53 @@ impl Uses {
         }
     }
 
-    /// Takes a point in: only points against rigid obstacles, of different normals, may share a node.
+    /// Takes a point in: its node may have others, but none with the same opponent (or a rigid obstacle) along the same
+    /// normal.
     fn add(&mut self, index: usize, contact: &ContactNodes) -> Result<(), TfetiError> {
         let point = &contact.points[index];
         let nodes = self.last.len();
         for node in std::iter::once(point.node).chain(point.opponent) {
-            let Some(last) = self.last.get_mut(node as usize) else {
+            if node as usize >= nodes {
                 return Err(TfetiError::UnknownNode {
                     place: format!("contact point {index}"),
                     node,
                     nodes,
                 });
-            };
-            let mut earlier = *last as usize;
-            while earlier > 0 {
-                let other = &contact.points[earlier - 1];
-                let pair = other.opponent.is_some() || point.opponent.is_some();
-                if pair || dot(&other.frame.normal, &point.frame.normal) > SAME_NORMAL {
-                    return Err(TfetiError::ContactNodeTwice { node });
-                }
-                earlier = self.before[earlier - 1] as usize;
             }
-            if node == point.node {
-                self.before[index] = *last;
-            }
-            *last = index as u32 + 1;
         }
+        let twice = TfetiError::ContactNodeTwice { node: point.node };
+        if point.opponent == Some(point.node) {
+            return Err(twice);
+        }
+        let last = &mut self.last[first(point) as usize];
+        let mut earlier = *last as usize;
+        while earlier > 0 {
+            let other = &contact.points[earlier - 1];
+            let cosine = dot(&other.frame.normal, &point.frame.normal);
+            let same = match point.opponent {
+                None => other.opponent.is_none() && cosine > SAME_NORMAL,
+                Some(opponent) if other.node == point.node => {
+                    other.opponent == Some(opponent) && cosine > SAME_NORMAL
+                }
+                Some(opponent) => {
+                    (other.node, other.opponent) == (opponent, Some(point.node))
+                        && -cosine > SAME_NORMAL
+                }
+            };
+            if same {
+                return Err(twice);
+            }
+            earlier = self.before[earlier - 1] as usize;
+        }
+        self.before[index] = *last;
+        *last = index as u32 + 1;
         Ok(())
     }
+}
+
+/// The node under which a point is listed.
+fn first(point: &ContactPoint) -> u32 {
+    point.opponent.map_or(point.node, |o| o.min(point.node))
 }
 
 fn check_frame(index: usize, point: &ContactPoint) -> Result<(), TfetiError> {

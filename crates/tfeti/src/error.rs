@@ -108,7 +108,7 @@ pub enum TfetiError {
     },
     /// A node that takes part in two contact points of one normal, or of a pair.
     #[error(
-        "node {node} takes part in more than one contact point; a node may touch one opponent, or rigid obstacles of different normals"
+        "node {node} has two contact points with the same opponent along the same normal, or is its own opponent; give each pair of nodes, and each obstacle of a node, once"
     )]
     ContactNodeTwice {
         /// Mesh node.

@@ -14,7 +14,7 @@ use crate::copy_stiffness::CopyStiffness;
 use crate::error::TfetiError;
 use crate::rows::{RemovedRow, RowRanges, RowRule};
 use crate::supports::{MergedSupports, Support};
-use signorini_fem_mesh::{Decomposition, Frame};
+use signorini_fem_mesh::{Decomposition, DisjointSets, Frame};
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -264,6 +264,23 @@ impl Gluing {
         self.dependent.binary_search(&node).is_ok()
     }
 
+    /// Mesh nodes that contact points join.
+    pub(crate) fn node_groups(&self) -> NodeGroups {
+        let pairs = || {
+            self.contact
+                .iter()
+                .filter_map(|c| Some((c.node, c.opponent?)))
+        };
+        let most = pairs().map(|(a, b)| a.max(b)).max();
+        let mut sets = DisjointSets::new(most.map_or(0, |most| most as usize + 1));
+        pairs().for_each(|(a, b)| sets.join(a as usize, b as usize));
+        NodeGroups(
+            (0..most.map_or(0, |m| m + 1))
+                .map(|n| sets.first(n as usize) as u32)
+                .collect(),
+        )
+    }
+
     /// Whether `B B^T` is the identity, but for rows of dependent nodes.
     pub(crate) fn is_aligned(&self) -> bool {
         self.aligned
@@ -377,5 +394,14 @@ impl Gluing {
         } else {
             row - self.ranges.interface.len()
         }
+    }
+}
+
+/// For each mesh node the first of those that contact points join with it.
+pub(crate) struct NodeGroups(Vec<u32>);
+
+impl NodeGroups {
+    pub(crate) fn of(&self, node: u32) -> u32 {
+        self.0.get(node as usize).copied().unwrap_or(node)
     }
 }

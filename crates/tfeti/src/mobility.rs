@@ -11,6 +11,7 @@ use crate::joints::{joint_rows, rigid_pairs};
 use crate::kernel::{Kernel, displacement};
 use crate::matrices::ClassBase;
 use nalgebra::{DMatrix, SymmetricEigen};
+use signorini_fem_mesh::DisjointSets;
 use std::fmt;
 use std::sync::Arc;
 
@@ -98,21 +99,20 @@ impl Mobility {
         gluing: &Gluing,
         centres: Vec<[f64; 3]>,
     ) -> Self {
-        let mut parent: Vec<u32> = (0..centres.len() as u32).collect();
+        let mut sets = DisjointSets::new(centres.len());
         let position = |s: usize, local: usize| {
             let kernel = &bases[classes.place(s).0].kernel;
             let arm = kernel.arm(local);
             std::array::from_fn(|c| centres[s][c] + kernel.radius() * arm[c])
         };
         for (a, b) in rigid_pairs(gluing, position) {
-            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-            parent[a.max(b) as usize] = a.min(b);
+            sets.join(a as usize, b as usize);
         }
         let mut bodies: Vec<Body> = Vec::new();
         let mut part_of = vec![0; centres.len()];
         let mut members: Vec<Vec<usize>> = Vec::new();
         for s in 0..centres.len() {
-            let first = root(&mut parent, s as u32) as usize;
+            let first = sets.first(s);
             if first == s {
                 part_of[s] = bodies.len() as u32;
                 bodies.push(Body {
@@ -143,27 +143,12 @@ impl Mobility {
         let joints = joint_rows(gluing, &part_of);
         for row in &joints {
             for pair in row.windows(2) {
-                let (a, b) = (
-                    root(&mut parent, pair[0].subdomain),
-                    root(&mut parent, pair[1].subdomain),
-                );
-                parent[a.max(b) as usize] = a.min(b);
+                sets.join(pair[0].subdomain as usize, pair[1].subdomain as usize);
             }
-        }
-        let mut body_of = vec![0; centres.len()];
-        let mut count = 0;
-        for s in 0..centres.len() {
-            let first = root(&mut parent, s as u32) as usize;
-            body_of[s] = if first == s {
-                count += 1;
-                count - 1
-            } else {
-                body_of[first]
-            };
         }
         let mut out = Self {
             part_of,
-            body_of,
+            body_of: sets.numbers(),
             bodies,
             centres,
             classes,
@@ -246,20 +231,16 @@ impl Mobility {
         rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>,
     ) -> Vec<FreeMotion> {
         let rows: Vec<_> = rows.chain(self.joints.iter().cloned()).collect();
-        let mut parent: Vec<u32> = (0..self.bodies.len() as u32).collect();
+        let mut sets = DisjointSets::new(self.bodies.len());
         for row in &rows {
             for pair in row.windows(2) {
-                let (a, b) = (
-                    root(&mut parent, pair[0].0 as u32),
-                    root(&mut parent, pair[1].0 as u32),
-                );
-                parent[a.max(b) as usize] = a.min(b);
+                sets.join(pair[0].0, pair[1].0);
             }
         }
         let mut groups: Vec<Group> = (0..self.bodies.len()).map(|_| Group::default()).collect();
         let mut place = vec![0; self.bodies.len()];
         for body in 0..self.bodies.len() {
-            let group = &mut groups[root(&mut parent, body as u32) as usize];
+            let group = &mut groups[sets.first(body)];
             place[body] = group.bodies.len();
             group.bodies.push(body);
         }
@@ -364,12 +345,4 @@ impl Mobility {
         }
         springs
     }
-}
-
-fn root(parent: &mut [u32], mut s: u32) -> u32 {
-    while parent[s as usize] != s {
-        parent[s as usize] = parent[parent[s as usize] as usize];
-        s = parent[s as usize];
-    }
-    s
 }

@@ -34,19 +34,10 @@ impl Scaling {
             .collect();
         let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
         compliance.iter_mut().for_each(|v| *v /= smallest);
-        // Rows by group: a mesh node, or the two nodes of a contact pair.
-        let mut group: Vec<u32> = (0..system.nodes as u32).collect();
-        for info in gluing.contact() {
-            if let Some(opponent) = info.opponent {
-                group[opponent as usize] = info.node;
-            }
-        }
+        // Rows by group: a mesh node, or nodes that contact points join.
+        let groups = gluing.node_groups();
         let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
-            .filter_map(|row| {
-                gluing
-                    .node(row)
-                    .map(|node| (group[node as usize], row as u32))
-            })
+            .filter_map(|row| gluing.node(row).map(|node| (groups.of(node), row as u32)))
             .collect();
         members.sort_unstable();
         let mut out = Self {

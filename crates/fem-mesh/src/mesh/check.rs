@@ -1,5 +1,6 @@
 //! The checks that a table of nodes and tetrahedra must pass before it becomes a mesh.
 
+use crate::disjoint::DisjointSets;
 use std::collections::HashMap;
 
 use rayon::prelude::*;
@@ -114,7 +115,7 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), Me
     if pairs.is_empty() {
         return Ok(());
     }
-    let mut bodies = Bodies((0..points.len()).collect());
+    let mut bodies = DisjointSets::new(points.len());
     for tet in tets {
         tet[1..]
             .iter()
@@ -122,7 +123,7 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), Me
     }
     match pairs
         .into_iter()
-        .find(|&(a, b)| bodies.root(a) == bodies.root(b))
+        .find(|&(a, b)| bodies.first(a) == bodies.first(b))
     {
         Some((first, second)) => Err(MeshError::CoincidentNodes {
             first,
@@ -130,24 +131,6 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), Me
             distance: vec3::norm(vec3::sub(points[first], points[second])),
         }),
         None => Ok(()),
-    }
-}
-
-/// Nodes that are joined, as a forest: every node points towards the root of its body.
-struct Bodies(Vec<usize>);
-
-impl Bodies {
-    fn root(&mut self, mut node: usize) -> usize {
-        while self.0[node] != node {
-            self.0[node] = self.0[self.0[node]];
-            node = self.0[node];
-        }
-        node
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
     }
 }
 

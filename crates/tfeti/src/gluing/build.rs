@@ -132,16 +132,23 @@ impl Builder<'_> {
 
     /// Notes the nodes whose rows may depend on one another.
     fn dependent(&mut self, contact: &ContactNodes, points: &[PointRows]) {
-        let node = |k: &usize| contact.points[points[*k].point].node;
+        let of = |k: &usize| &contact.points[points[*k].point];
+        let groups = self.gluing.node_groups();
         let mut order: Vec<usize> = (0..points.len()).collect();
-        order.sort_by_key(node);
-        for same in order.chunk_by(|a, b| node(a) == node(b)) {
+        let group = |k: &usize| groups.of(of(k).node);
+        order.sort_by_key(group);
+        for same in order.chunk_by(|a, b| group(a) == group(b)) {
             let dragged = same.iter().any(|&k| points[k].dragged);
             if same.len() > 1 || dragged {
-                self.gluing.dependent.push(node(&same[0]));
-                self.gluing.orthonormal &= !dragged && separate(points, same);
+                let nodes = same.iter().map(of);
+                let nodes = nodes.flat_map(|p| std::iter::once(p.node).chain(p.opponent));
+                self.gluing.dependent.extend(nodes);
+                let pairs = same.iter().any(|k| of(k).opponent.is_some());
+                self.gluing.orthonormal &= !dragged && !pairs && separate(points, same);
             }
         }
+        self.gluing.dependent.sort_unstable();
+        self.gluing.dependent.dedup();
     }
 
     pub(super) fn interface(&mut self, nodes: usize) {
