@@ -4,15 +4,15 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use signorini::contact::ContactState;
+use signorini::fem_mesh::Surface;
 use signorini::fem_mesh::fields::{nodal_average, von_mises};
 use signorini::fem_mesh::output::{Field, PvdSeries};
-use signorini::fem_mesh::{Surface, brick};
 use signorini::prelude::Simulation;
 
 use crate::error::ExampleError;
 use crate::record::{RunRecord, StepRecord};
 use crate::run::Sink;
-use crate::snapshot::ContactPatch;
+use crate::snapshot::{ContactPatch, contact_surface};
 
 /// Writes `LABEL/body.pvd`, `LABEL/contact.pvd` with their VTU files, and `LABEL/steps.csv`.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl Sink for RunFiles {
         std::fs::create_dir_all(&folder).map_err(ExampleError::write(&folder))?;
         self.series = Some(Series {
             body: PvdSeries::create(&folder, "body")?,
-            surface: Surface::new(simulation.scene().mesh(), &[brick::Z_MIN])?,
+            surface: contact_surface(simulation)?,
             levels: simulation.plan().levels,
             contact: PvdSeries::create(&folder, "contact")?,
             folder,

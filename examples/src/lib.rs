@@ -6,6 +6,7 @@
 //! | `brick` | the benchmark of the paper's section 6, its table beside the paper's, pictures and files | [`app::execute`] |
 //! | `frictionless` | the same brick, static and without friction, product by product | [`frictionless::execute`] |
 //! | `tresca` | given friction: one quadratic program a level | [`tresca::execute`] |
+//! | `bodies` | two elastic bodies: a pad pressed on a rail and pulled along it | [`bodies::execute`] |
 //! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
 //! | `stability` | hard cases, what the library does with them, and what has to hold | [`stability::app::execute`] |
 //! | `effects` | one brick, its effects switched on one by one beside the plan's prediction; estimates, screening | [`effects::execute`] |
@@ -22,6 +23,7 @@
 
 pub mod accuracy;
 pub mod app;
+pub mod bodies;
 pub mod brick;
 pub mod dependence;
 pub mod effects;

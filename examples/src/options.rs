@@ -206,6 +206,27 @@ pub struct FrictionlessOptions {
     pub common: Common,
 }
 
+/// Options of `bodies`.
+#[derive(Debug, Clone, PartialEq, Parser)]
+#[command(
+    name = "bodies",
+    about = "Two elastic bodies: a pad is pressed on a rail and pulled along it"
+)]
+pub struct BodiesOptions {
+    /// Equal time steps in one second.
+    #[arg(long, default_value_t = 20, value_parser = positive)]
+    pub steps: usize,
+    /// Young's modulus of the rail over that of the pad.
+    #[arg(long, default_value_t = 10.0)]
+    pub softness: f64,
+    /// Write files for ParaView into this folder.
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// What all examples have.
+    #[command(flatten)]
+    pub common: Common,
+}
+
 /// Options of `tresca`.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(

@@ -1,6 +1,6 @@
 //! The last state of a run: surface, displacement, and what the contact surface carries.
 
-use signorini::contact::{ContactState, PointState};
+use signorini::contact::{Contact, ContactState, PointState};
 use signorini::fem_mesh::{Surface, brick};
 use signorini::prelude::Simulation;
 
@@ -47,6 +47,16 @@ pub struct ContactPatch {
     pub gap: Vec<f64>,
     /// What the node does.
     pub state: Vec<Option<ContactState>>,
+}
+
+/// The first contact surface of a scene; the bottom of the brick if there is none.
+///
+/// # Errors
+/// None for a scene that was set up.
+pub fn contact_surface(simulation: &Simulation) -> Result<Surface, ExampleError> {
+    let scene = simulation.scene();
+    let tags = scene.contact().map_or(&[brick::Z_MIN][..], Contact::tags);
+    Ok(Surface::new(scene.mesh(), tags)?)
 }
 
 impl ContactPatch {
@@ -120,7 +130,7 @@ impl Snapshot {
     ) -> Result<Self, ExampleError> {
         let mesh = simulation.scene().mesh();
         let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
-        let surface = Surface::new(mesh, &[brick::Z_MIN])?;
+        let surface = contact_surface(simulation)?;
         let displacement = frame.displacement();
         Ok(Self {
             label: label.to_owned(),

@@ -1,9 +1,9 @@
 //! The smaller examples, each with a number it must find.
 
 use clap::Parser;
-use signorini_examples::options::{FrictionlessOptions, TrescaOptions};
+use signorini_examples::options::{BodiesOptions, FrictionlessOptions, TrescaOptions};
 use signorini_examples::record::RunRecord;
-use signorini_examples::{frictionless, qp_only, tresca};
+use signorini_examples::{bodies, frictionless, qp_only, tresca};
 use signorini_qp::Expansion;
 
 #[test]
@@ -88,4 +88,27 @@ fn quadratic_programs_without_mechanics() {
     approx::assert_abs_diff_eq!(d.multiplier, -0.2, epsilon = 1e-8);
     assert!(d.kkt < 1e-9);
     qp_only::execute(&mut Vec::new()).expect("print");
+}
+
+#[test]
+fn a_pad_on_a_rail_sticks_then_slides() {
+    let folder = tempfile::tempdir().expect("folder");
+    let line = format!(
+        "bodies --cells 4 --steps 10 --quiet --out {}",
+        folder.path().display()
+    );
+    let options = BodiesOptions::try_parse_from(line.split_whitespace()).expect("options");
+    let outcome = bodies::execute(&options, &mut Vec::new()).expect("run");
+    let run = &outcome.record;
+    assert!(run.largest_certificate < 1e-6);
+    // pressed, then sheared while some of it sticks, then sliding as a whole
+    assert!(run.steps[2].stick > 0 && run.steps[2].slip > 0);
+    let last = run.steps.last().expect("levels");
+    assert_eq!((last.stick, last.slip), (0, last.active));
+    let ratio = bodies::final_ratio(run);
+    assert!((ratio / bodies::COEFFICIENT - 1.0).abs() < 0.01, "{ratio}");
+    assert!(run.n_m < 300, "{}", run.n_m);
+    for file in ["body.pvd", "contact.pvd", "steps.csv"] {
+        assert!(folder.path().join("n1-bodies").join(file).exists());
+    }
 }

@@ -1,12 +1,13 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time levels, fixed-point loops and certificates.
 //!
-//! An elastic body, cut into subdomains or not, is loaded slowly and may touch a rigid foundation. A [`Scene`] says what there
+//! Elastic bodies, cut into subdomains or not, are loaded slowly and may touch a rigid foundation or each other. A [`Scene`] says what there
 //! is, a [`Simulation`] solves it time level by time level, and a [`Frame`] holds what a level ended with. Only the effects
 //! that a scene has are set up: without friction there are no tangential rows, without history no traces.
 //!
 //! | you want | you use |
 //! |---|---|
 //! | a body on a foundation | [`Scene`], [`Support`], [`Load`], [`Contact`] with a [`Gap`] and a [`Friction`] law |
+//! | bodies that touch each other | [`Contact::between`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time levels | [`Analysis`] with a [`DifferenceFormula`]; one level alone: [`Analysis::Static`] |
 //! | to know the cost before any work | [`Plan`], [`Estimate`] |

@@ -152,10 +152,14 @@ impl Ledger {
             .collect();
         let mut applied = self.load(frame.time());
         for (state, point) in frame.points().iter().zip(touch) {
-            let at = 3 * state.node as usize;
-            for c in 0..3 {
-                applied[at + c] +=
-                    state.friction_force[c] + state.normal_force * point.frame.normal[c];
+            let force: [f64; 3] = std::array::from_fn(|c| {
+                state.friction_force[c] + state.normal_force * point.frame.normal[c]
+            });
+            let opponent = state.opponent.map(|node| (node, -1.0));
+            for (node, sign) in std::iter::once((state.node, 1.0)).chain(opponent) {
+                for c in 0..3 {
+                    applied[3 * node as usize + c] += sign * force[c];
+                }
             }
         }
         for (node, supported) in self.supported.iter().enumerate() {

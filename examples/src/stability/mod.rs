@@ -17,6 +17,7 @@ pub mod case;
 pub mod cases_bodies;
 pub mod cases_contact;
 pub mod cases_material;
+pub mod cases_partners;
 pub mod cases_restart;
 pub mod cases_shape;
 pub mod cases_time;
@@ -32,6 +33,7 @@ pub fn cases() -> Vec<case::Case> {
     all.extend(cases_contact::sliding());
     all.extend(cases_bodies::free());
     all.extend(cases_bodies::supports());
+    all.extend(cases_partners::cases());
     all.extend(cases_material::cases());
     all.extend(cases_shape::cases());
     all.extend(cases_time::cases());
