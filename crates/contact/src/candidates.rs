@@ -46,16 +46,14 @@ pub(crate) fn contact_nodes<'a>(
     scene: &Scene,
     candidates: impl Iterator<Item = &'a Candidate>,
 ) -> ContactNodes {
-    let point = |c: &Candidate| ContactPoint {
-        node: c.node,
-        opponent: c.opponent,
-        frame: c.frame,
-        friction: scene.contacts[c.surface].friction().is_some(),
-        moving: scene.contacts[c.surface].motion.is_some(),
+    let point = |c: &Candidate| {
+        let contact = &scene.contacts[c.surface];
+        ContactPoint::new(c.node, c.frame)
+            .with_opponent(c.opponent)
+            .with_friction(contact.friction().is_some())
+            .with_moving_obstacle(contact.motion.is_some())
     };
-    ContactNodes {
-        points: candidates.map(point).collect(),
-    }
+    candidates.map(point).collect()
 }
 
 /// The contact points of all surfaces: surface by surface, nodes ascending.

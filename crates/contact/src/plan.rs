@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// What kind of friction a scene has; of several the one with the most effects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FrictionKind {
     /// No tangential rows.
@@ -156,7 +156,7 @@ impl Plan {
             Friction::Coulomb(_) => FrictionKind::Coulomb,
         };
         let kinds = scene.contacts.iter().map(|c| kind(c.friction()));
-        let kind = kinds.max().unwrap_or(FrictionKind::None);
+        let kind = kinds.max_by_key(|k| *k as u8).unwrap_or(FrictionKind::None);
         let effects = Effects {
             contact: !scene.contacts.is_empty(),
             gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, &candidates)),

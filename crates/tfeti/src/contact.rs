@@ -8,6 +8,7 @@ use signorini_fem_mesh::Frame;
 
 /// A node that may touch a rigid obstacle, or a node of another body.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ContactPoint {
     /// Mesh node on the body whose outward normal is given.
     pub node: u32,
@@ -21,8 +22,44 @@ pub struct ContactPoint {
     pub moving: bool,
 }
 
+impl ContactPoint {
+    /// A node that may touch a rigid obstacle that does not move, without friction.
+    #[must_use]
+    pub fn new(node: u32, frame: Frame) -> Self {
+        Self {
+            node,
+            opponent: None,
+            frame,
+            friction: false,
+            moving: false,
+        }
+    }
+
+    /// Against a node of another body; `None` for a rigid obstacle.
+    #[must_use]
+    pub fn with_opponent(mut self, opponent: Option<u32>) -> Self {
+        self.opponent = opponent;
+        self
+    }
+
+    /// With friction or without.
+    #[must_use]
+    pub fn with_friction(mut self, friction: bool) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// Whether the obstacle moves along the surface.
+    #[must_use]
+    pub fn with_moving_obstacle(mut self, moving: bool) -> Self {
+        self.moving = moving;
+        self
+    }
+}
+
 /// The contact points of a system.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct ContactNodes {
     /// The points. A node in an edge or a corner appears several times, with other normals or opponents; rows of such a node
     /// may depend on one another.
@@ -33,15 +70,17 @@ impl ContactNodes {
     /// Points against a rigid obstacle, one frame per node.
     #[must_use]
     pub fn rigid(nodes: &[u32], frames: &[Frame], friction: bool) -> Self {
-        let point = |(&node, frame): (&u32, &Frame)| ContactPoint {
-            node,
-            opponent: None,
-            frame: *frame,
-            friction,
-            moving: false,
+        let point = |(&node, frame): (&u32, &Frame)| {
+            ContactPoint::new(node, *frame).with_friction(friction)
         };
+        nodes.iter().zip(frames).map(point).collect()
+    }
+}
+
+impl FromIterator<ContactPoint> for ContactNodes {
+    fn from_iter<I: IntoIterator<Item = ContactPoint>>(points: I) -> Self {
         Self {
-            points: nodes.iter().zip(frames).map(point).collect(),
+            points: points.into_iter().collect(),
         }
     }
 }

@@ -28,6 +28,7 @@ pub struct FreeMotion {
 
 /// Rigid motion of one body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct BodyMotion {
     /// Body number; bodies are numbered by their first subdomain. Parts of a body that hinges join move each in their way.
     pub body: usize,

@@ -227,17 +227,14 @@ fn dragged_nodes_keep_their_tangential_rows() {
 fn a_node_may_have_several_normals() {
     let b = Brick::new(1, 2);
     let node = b.bottom[0];
-    let points = |normals: &[[f64; 3]], friction| ContactNodes {
-        points: normals
+    let points = |normals: &[[f64; 3]], friction| -> ContactNodes {
+        normals
             .iter()
-            .map(|&normal| ContactPoint {
-                node,
-                opponent: None,
-                frame: Frame::from_normal(normal).unwrap(),
-                friction,
-                moving: false,
+            .map(|&normal| {
+                let frame = Frame::from_normal(normal).unwrap();
+                ContactPoint::new(node, frame).with_friction(friction)
             })
-            .collect(),
+            .collect()
     };
     let corner = [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
     let make = |normals: &[[f64; 3]], friction| {

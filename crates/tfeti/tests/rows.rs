@@ -87,16 +87,10 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         b.bottom[b.bottom.len() - 1],
         b.mesh.nodes_on(brick::Z_MAX)[4],
     );
-    let point = ContactPoint {
-        node: a,
-        opponent: Some(o),
-        frame: b.frames[0],
-        friction: true,
-        moving: false,
-    };
-    let contact = ContactNodes {
-        points: vec![point],
-    };
+    let point = ContactPoint::new(a, b.frames[0])
+        .with_opponent(Some(o))
+        .with_friction(true);
+    let contact: ContactNodes = std::iter::once(point).collect();
     let g = gluing(&b, &[], Some(&contact), RowRule::Orthonormal).unwrap();
     assert!(g.is_orthonormal());
     let (ka, ko) = (
@@ -131,6 +125,47 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         .map(|&(_, dof, v)| v * [1.0, 2.0, 3.0][dof % 3])
         .sum();
     assert!((action / info.scale + 3.0).abs() < 1e-13);
+}
+
+/// A node may have several opponents, and meet obstacles besides; the same pair along the same normal is one too many, from
+/// whichever side it is seen.
+#[test]
+fn nodes_of_pairs_may_have_other_points() {
+    let b = Brick::new(1, 2);
+    let (a, frame) = (b.bottom[1], b.frames[0]);
+    let [o, q] = [1, 4].map(|k| b.mesh.nodes_on(brick::Z_MAX)[k]);
+    let reversed = Frame::from_normal(frame.normal.map(|c| -c)).unwrap();
+    let sideways = Frame::from_normal([1.0, 0.0, 0.0]).unwrap();
+    let pair = |node, frame, opponent| ContactPoint::new(node, frame).with_opponent(opponent);
+    let make = |points: Vec<ContactPoint>| {
+        let contact: ContactNodes = points.into_iter().collect();
+        gluing(&b, &[], Some(&contact), RowRule::Orthonormal)
+    };
+    let first = || pair(a, frame, Some(o));
+    for second in [
+        pair(a, frame, Some(q)),
+        pair(a, sideways, Some(o)),
+        pair(a, frame, None),
+        pair(q, frame, Some(o)),
+        pair(o, frame, Some(a)),
+    ] {
+        let g = make(vec![first(), second.clone()]).unwrap();
+        assert_eq!(g.ranges().normal.len(), 2, "{second:?}");
+        assert!(!g.is_orthonormal() && smallest_eigenvalue(&gram(&g)) > 1e-6 || second.node == o);
+        let nodes = std::iter::once(second.node).chain(second.opponent);
+        for node in nodes.chain([a, o]) {
+            assert!(g.is_dependent(node), "{second:?}: {node}");
+        }
+    }
+    let alone = make(vec![first()]).unwrap();
+    assert!(alone.is_orthonormal() && alone.dependent_nodes().is_empty());
+    for second in [first(), pair(o, reversed, Some(a)), pair(q, frame, Some(q))] {
+        let error = make(vec![first(), second.clone()]).unwrap_err();
+        assert!(
+            matches!(error, TfetiError::ContactNodeTwice { .. }),
+            "{second:?}: {error}"
+        );
+    }
 }
 
 #[test]
