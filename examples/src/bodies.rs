@@ -28,6 +28,9 @@ pub const COEFFICIENT: f64 = 0.3;
 const DOWN: f64 = 1e-3;
 const ALONG: f64 = 2e-3;
 
+/// Most cells along the edge of a subdomain.
+const CELLS: usize = 5;
+
 /// What is added to the tags of the pad.
 const PAD: u32 = 100;
 
@@ -55,6 +58,7 @@ pub fn scene(cells: usize, steps: usize, softness: f64) -> Result<Scene, Error> 
         (1, Hooke::isotropic(RAIL / softness, POISSON)?),
     ])?;
     let back = pad(brick::Z_MAX);
+    let cut = cells.div_ceil(CELLS);
     let press = History::table(vec![(0.0, 0.0), (0.2, 1.0), (1.0, 1.0)])?;
     let pull = History::table(vec![(0.0, 0.0), (0.2, 0.0), (1.0, 1.0)])?;
     let scene = Scene::new(mesh.with_regions(regions)?, materials)
@@ -69,7 +73,7 @@ pub fn scene(cells: usize, steps: usize, softness: f64) -> Result<Scene, Error> 
             Contact::between(pad(brick::Z_MIN), brick::Z_MAX)
                 .with_friction(Friction::coulomb(COEFFICIENT)),
         )
-        .with_boxes([3, 1, 3]);
+        .with_boxes([3 * cut, cut, 3 * cut]);
     Ok(scene.with_analysis(
         Analysis::quasistatic(1.0, steps).with_formula(DifferenceFormula::BACKWARD_EULER),
     ))

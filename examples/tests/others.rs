@@ -107,7 +107,8 @@ fn a_pad_on_a_rail_sticks_then_slides() {
     assert_eq!((last.stick, last.slip), (0, last.active));
     let ratio = bodies::final_ratio(run);
     assert!((ratio / bodies::COEFFICIENT - 1.0).abs() < 0.01, "{ratio}");
-    assert!(run.n_m < 300, "{}", run.n_m);
+    // 176 when it was made; an eighth more or less
+    assert!((154..=198).contains(&run.n_m), "{}", run.n_m);
     for file in ["body.pvd", "contact.pvd", "steps.csv"] {
         assert!(folder.path().join("n1-bodies").join(file).exists());
     }

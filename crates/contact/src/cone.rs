@@ -5,7 +5,7 @@
 //! are motions, up to rounding.
 //!
 //! Given friction adds forces that are bounded whatever the pressure: a set of points `z` around the cone. Whether loads lie
-//! in the sum of both is asked by going towards them in steps (Frank and Wolfe): the residual `r` of `b - z` separates `b`
+//! in the sum of both is asked by going towards them in steps (Frank and Wolfe, as far as the distance falls): the residual `r` of `b - z` separates `b`
 //! if `b` works more on it than all friction can.
 
 use nalgebra::{DMatrix, DVector};
@@ -38,6 +38,8 @@ pub(crate) struct Cone {
     generators: Vec<Generators>,
     /// Norm of the largest generator.
     largest: f64,
+    /// What given friction took of the last loads.
+    held: Vec<f64>,
 }
 
 /// A residual below this fraction of the loads is rounding.
@@ -67,32 +69,46 @@ impl Cone {
             dim,
             generators,
             largest,
+            held: Vec::new(),
         }
     }
 
     /// Whether the loads `b`, N, are out of reach of cone and given friction.
     pub(crate) fn exceeded(&mut self, b: &[f64]) -> Option<Separation> {
         let size = norm(b);
-        let mut z = vec![0.0; b.len()];
-        for step in 0..STEPS {
+        // loads mostly follow one another
+        let mut z = std::mem::take(&mut self.held);
+        z.resize(b.len(), 0.0);
+        let mut found = None;
+        for _ in 0..STEPS {
             let rest: Vec<f64> = b.iter().zip(&z).map(|(b, z)| b - z).collect();
             let length = norm(&rest);
             if length <= MORE * size {
-                return None;
+                break;
             }
             let unit: Vec<f64> = rest.iter().map(|v| v / length).collect();
-            let motion = self.separates(&unit)?;
+            let Some(motion) = self.separates(&unit) else {
+                break;
+            };
             let most = self.most_given(&motion);
             let given = dot(&most, &motion);
             if dot(b, &motion) > given + MORE * size {
-                return Some(Separation { motion, given });
+                found = Some(Separation { motion, given });
+                break;
             }
-            let share = 2.0 / (step as f64 + 2.0);
-            for (z, m) in z.iter_mut().zip(&most) {
-                *z += share * (m - *z);
+            // the residual is at right angles to the closest point of the cone
+            let residual = dot(&motion, &rest);
+            if residual <= MORE * size {
+                break;
+            }
+            let way: Vec<f64> = most.iter().zip(&z).map(|(m, z)| m - z).collect();
+            let share = (residual * dot(&motion, &way) / dot(&way, &way)).clamp(0.0, 1.0);
+            for (z, w) in z.iter_mut().zip(&way) {
+                *z += share * w;
             }
         }
-        None
+        self.held = z;
+        found
     }
 
     /// The given friction that works most on a motion.
