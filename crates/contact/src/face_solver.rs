@@ -6,14 +6,17 @@
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::level::Level;
-use crate::model::{DISCS, Model, Tangential};
+use crate::model::{DISCS, INTERVALS, Model, Tangential, TouchPoint};
 use crate::paper_solver::PaperSolver;
 use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
 use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
-use signorini_qp::{FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Status, face, vector};
+use signorini_qp::{
+    FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Segment, Status, face, vector,
+};
 use signorini_tfeti::{DualOperator, FaceSpace};
+use std::collections::BTreeSet;
 
 /// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
 const SAFETY: f64 = 1.0;
@@ -29,6 +32,9 @@ const SHARED: f64 = 0.5;
 
 /// What a release would change, over the error of a solved face, from which on it is worth it.
 const CONTRADICTION: f64 = 10.0;
+
+/// Friction over its bound below which a point does not slide.
+const INSIDE: f64 = 1.0 - 1e-12;
 
 /// Solves of a level with contradicting points released.
 const TURNS: usize = 8;
@@ -219,7 +225,8 @@ impl FaceSolver {
 }
 
 /// Lets points slide that stick where other rows of their node move them: a solved face leaves their slip, since the rows
-/// contradict one another and no force can change it. Whether there are such points.
+/// contradict one another and no force can change it. They may stick at their bound on the wrong side, or next to it where
+/// their node is not where its obstacle is. Whether there are such points.
 fn release(
     model: &Model,
     set: &ProductSet,
@@ -229,20 +236,33 @@ fn release(
     lambda: &mut [f64],
 ) -> bool {
     let gluing = model.tfeti.gluing();
-    let Some(signorini_qp::Segment::Discs { radii }) = set.segments().get(DISCS) else {
+    let segments = set.segments();
+    let (Some(Segment::Discs { radii }), Some(Segment::Bounds { upper, .. })) =
+        (segments.get(DISCS), segments.get(INTERVALS))
+    else {
         return false;
     };
-    let start = gluing.ranges().discs.start;
+    let ranges = gluing.ranges();
     let mut any = false;
-    for point in model.points.iter().filter(|p| gluing.is_dependent(p.node)) {
-        let Tangential::Plane { row, .. } = point.tangential else {
-            continue;
+    let points = || model.points.iter().filter(|p| gluing.is_dependent(p.node));
+    // pressed, but not where the obstacle is
+    let off = |p: &&TouchPoint| lambda[p.row] < 0.0 && residual[p.row].abs() * scale[p.row] > limit;
+    let torn: BTreeSet<u32> = points().filter(off).map(|p| p.node).collect();
+    for point in points() {
+        let (rows, radius) = match point.tangential {
+            Tangential::None => continue,
+            Tangential::Plane { row, .. } => (row..row + 2, radii[(row - ranges.discs.start) / 2]),
+            Tangential::Line { row, .. } => (row..row + 1, upper[row - ranges.intervals.start]),
         };
-        let radius = radii[(row - start) / 2];
-        let slip = residual[row].hypot(residual[row + 1]);
-        let size = lambda[row].hypot(lambda[row + 1]);
-        if (slip * scale[row]).min(radius - size) > limit {
-            for k in row..row + 2 {
+        let slip = vector::norm(&residual[rows.clone()]);
+        let size = vector::norm(&lambda[rows.clone()]);
+        let along = vector::dot(&residual[rows.clone()], &lambda[rows.clone()]) > 0.0;
+        let most = match torn.contains(&point.node) {
+            true => radius * INSIDE,
+            false => radius - limit,
+        };
+        if slip * scale[rows.start] > limit && (along || size < most) {
+            for k in rows {
                 lambda[k] = -radius * residual[k] / slip;
             }
             any = true;
@@ -259,7 +279,7 @@ pub(crate) fn restore_sliding(
     sliding: &[bool],
     lambda: &mut [f64],
 ) {
-    let Some(signorini_qp::Segment::Discs { radii }) = set.segments().get(DISCS) else {
+    let Some(Segment::Discs { radii }) = set.segments().get(DISCS) else {
         return;
     };
     let start = model.tfeti.gluing().ranges().discs.start;

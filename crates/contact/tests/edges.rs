@@ -381,3 +381,44 @@ fn a_rough_corner_has_the_same_bits_on_any_number_of_threads() {
         }
     }
 }
+
+/// A wall pushes a block along a floor, and the nodes in the edge with it, however friction wants to hold them. Planes of
+/// symmetry leave some of them one direction along each.
+#[test]
+fn a_wall_pushes_a_rough_edge_along_a_floor() {
+    let ramp = History::ramp(1.0, 1.0).expect("ramp");
+    let contact = |tag, bound| Contact::rigid(tag).with_friction(Friction::given(bound));
+    for (bound, push) in [(50.0, 1e-4), (150.0, 3e-4), (1e3, 1e-3)] {
+        for shear in [0.0, 200.0, 400.0] {
+            for planes in [&[brick::Y_MIN][..], &[brick::Y_MAX, brick::Y_MIN]] {
+                for boxes in [[1, 1, 1], [2, 1, 2], [3, 3, 3]] {
+                    let wall = contact(brick::X_MIN, bound);
+                    let mut scene = Scene::new(cube(3), uniform(YOUNG, POISSON))
+                        .with_contact(contact(brick::Z_MIN, bound))
+                        .with_contact(wall.moved([push, 0.0, 0.0], ramp.clone()))
+                        .with_load(Load::pressure(brick::X_MAX, 1e3))
+                        .with_load(Load::traction(brick::Z_MAX, [shear, 0.0, -1e3]))
+                        .with_boxes(boxes)
+                        .with_analysis(
+                            Analysis::quasistatic(1.0, 2)
+                                .with_formula(DifferenceFormula::BACKWARD_EULER),
+                        );
+                    for &tag in planes {
+                        let held = Support::components(tag, [false, true, false]);
+                        scene = scene.with_support(held);
+                    }
+                    let mut simulation =
+                        Simulation::new(scene, Settings::default()).expect("set-up");
+                    while !simulation.is_finished() {
+                        let frame = simulation.step().expect("step");
+                        let found = frame.certificate().largest();
+                        assert!(
+                            frame.report().status.converged() && found < 3e-6,
+                            "{bound} {push} {shear} {planes:?} {boxes:?}: {found:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
