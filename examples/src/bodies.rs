@@ -8,10 +8,11 @@ use std::path::Path;
 
 use signorini::prelude::*;
 
-use crate::app::strict;
+use crate::app::{save, strict};
 use crate::error::ExampleError;
 use crate::files::RunFiles;
 use crate::options::BodiesOptions;
+use crate::pictures;
 use crate::progress::Progress;
 use crate::record::{RunRecord, write_json};
 use crate::run::{Header, Outcome, Sink, pool, run};
@@ -108,6 +109,10 @@ pub fn execute(options: &BodiesOptions, out: &mut impl Write) -> Result<Outcome,
     let pool = pool(options.common.threads)?;
     let outcome = pool.install(|| run(scene, settings, &header, &mut sinks))?;
     print(&outcome.record, out)?;
+    if let Some(folder) = &options.out {
+        let picture = folder.join(header.label()).join("steps.svg");
+        save(&picture, &pictures::steps(&outcome.record)?)?;
+    }
     if let Some(path) = &options.common.json {
         write_json(path, std::iter::once(&outcome.record))?;
     }

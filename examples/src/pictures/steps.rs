@@ -55,7 +55,7 @@ fn draw(record: &RunRecord, text: &mut String) -> Result<(), String> {
     )?;
     linear(
         forces,
-        "forces of the floor on the brick",
+        "contact forces on the body",
         "MN",
         &[
             ("normal", GREY_, curve(|s| 1e-6 * s.normal_force)),
