@@ -244,8 +244,8 @@ fn largest_ratio(scene: &Scene) -> Result<f64, ContactError> {
 /// Number of directions fixed at each node.
 fn fixed_directions(scene: &Scene) -> Result<BTreeMap<u32, usize>, ContactError> {
     let mut axes: BTreeMap<u32, ([bool; 3], usize)> = BTreeMap::new();
-    for support in &scene.supports {
-        for node in scene.nodes("support", &support.place)? {
+    for (index, support) in scene.supports.iter().enumerate() {
+        for node in scene.support_nodes(index)? {
             let entry = axes.entry(node).or_insert(([false; 3], 0));
             match &support.directions {
                 Directions::All => entry.0 = [true; 3],
