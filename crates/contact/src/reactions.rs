@@ -74,6 +74,9 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
+    /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the body with
+    /// the first tag ([`Contact::between`](crate::Contact::between)), which has the opposite on the partner.
+    pub contacts: Vec<Resultant>,
     /// What the loads do.
     pub loads: Resultant,
 }
@@ -127,9 +130,11 @@ pub(crate) fn about(
         [0, 1, 2].map(|c| place[c] - point[c])
     };
     let mut contact = Resultant::default();
-    for (state, touch) in points.iter().zip(&model.points) {
-        let force = state.force(touch);
+    let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
+    for state in points {
+        let force = state.force();
         contact.add(arm(state.node), force);
+        contacts[state.surface].add(arm(state.node), force);
         if let Some(opponent) = state.opponent {
             contact.add(arm(opponent), force.map(|f| -f));
         }
@@ -146,6 +151,7 @@ pub(crate) fn about(
         point,
         supports: by_support(model, &nodal(model, lambda), arm)?,
         contact,
+        contacts,
         loads,
     })
 }

@@ -240,3 +240,47 @@ fn a_free_body_on_a_floor_has_no_reactions_but_contact() {
     let field = simulation.frame().expect("frame").reaction_field();
     assert!(field.iter().all(|v| *v == 0.0));
 }
+
+/// A block on a block on a floor, pressed and pushed: each contact surface has its own force, and the field of contact forces
+/// has them at the nodes, opposite at partners.
+#[test]
+fn each_contact_surface_has_its_force() {
+    let second = |tag: FacetTag| FacetTag(tag.0 + 100);
+    let lower = block([1.0; 3], [2; 3]);
+    let upper = lower
+        .map_points(|[x, y, z]| [x, y, z + 1.0])
+        .expect("moved");
+    let count = lower.points().len();
+    let mesh = lower.append(&upper.map_tags(second)).expect("bodies");
+    let rough = |contact: Contact| contact.with_friction(Friction::coulomb(0.3));
+    let scene = Scene::new(mesh, uniform(1e4, 0.3))
+        .with_load(Load::traction(second(brick::Z_MAX), [1.0, 0.0, -10.0]))
+        .with_load(Load::body([0.0, 0.0, -2.0]))
+        .with_contact(rough(Contact::rigid(brick::Z_MIN)))
+        .with_contact(rough(Contact::between(second(brick::Z_MIN), brick::Z_MAX)))
+        .with_boxes([1, 1, 2]);
+    for screening in [Screening::Off, Screening::on()] {
+        let (simulation, _) = run(scene.clone(), tight().with_screening(screening));
+        let frame = simulation.frame().expect("frame");
+        let r = frame.reactions().expect("reactions");
+        let [floor, joint] = r.contacts[..] else {
+            panic!("two surfaces")
+        };
+        assert_eq!(r.contact.force, floor.force);
+        assert_close(&floor.force, &[-1.0, 0.0, 14.0], 1e-7, "floor");
+        assert_close(&joint.force, &[-1.0, 0.0, 12.0], 1e-7, "joint");
+        let field = frame.contact_force_field();
+        let sum = |nodes: std::ops::Range<usize>| {
+            let mut sum = [0.0; 3];
+            nodes.for_each(|n| (0..3).for_each(|c| sum[c] += field[3 * n + c]));
+            sum
+        };
+        assert_close(&sum(count..2 * count), &joint.force, 1e-12, "upper");
+        let lower = [0, 1, 2].map(|c| floor.force[c] - joint.force[c]);
+        assert_close(&sum(0..count), &lower, 1e-12, "lower");
+        for point in frame.points() {
+            assert_close(&point.normal, &[0.0, 0.0, -1.0], 1e-14, "normal");
+            assert!((point.force()[2] + point.normal_force).abs() <= 1e-12);
+        }
+    }
+}
