@@ -301,7 +301,7 @@ impl Frame<'_> {
     #[must_use]
     pub fn reaction_field(&self) -> Vec<f64> {
         let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
-        for (node, force) in reactions::nodal(self.model, self.held) {
+        for (node, force) in reactions::nodal(self.model, self.solved, self.held) {
             field[3 * node as usize..][..3].copy_from_slice(&force);
         }
         field

@@ -284,3 +284,50 @@ fn each_contact_surface_has_its_force() {
         }
     }
 }
+
+/// Supports that hold nodes in contact along directions with contact forces: the forces of obstacles and partners are not
+/// theirs.
+#[test]
+fn reactions_at_contact_nodes_have_no_contact_forces() {
+    let second = |tag: FacetTag| FacetTag(tag.0 + 100);
+    let lower = block([1.0; 3], [2; 3]);
+    let upper = lower
+        .map_points(|[x, y, z]| [x, y, z + 1.0])
+        .expect("moved");
+    let mesh = lower.append(&upper.map_tags(second)).expect("bodies");
+    // pushed by a face with contact nodes until it slides, on either side of the contact
+    for sides in [
+        [second(brick::Z_MIN), brick::Z_MAX],
+        [brick::Z_MAX, second(brick::Z_MIN)],
+    ] {
+        let joint = Contact::between(sides[0], sides[1]).with_friction(Friction::coulomb(0.3));
+        let push = Support::components(second(brick::X_MIN), [true, false, false]);
+        let scene = Scene::new(mesh.clone(), uniform(1e4, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_support(push.moved([0.1, 0.0, 0.0], ramp()))
+            .with_load(Load::pressure(second(brick::Z_MAX), 10.0))
+            .with_contact(joint)
+            .with_boxes([1, 1, 2]);
+        let (simulation, levels) = run(scene, tight());
+        assert_eq!(levels[0].summary.stick, 0);
+        assert_balance(&simulation, 1e-7, "between");
+        let r = reactions(&simulation, [0.0; 3]);
+        let [held, push] = [0, 1].map(|k| r.supports[k].resultant.force[0]);
+        assert!(
+            (push - 3.0).abs() < 1e-6 && (held + 3.0).abs() < 1e-6,
+            "{push} {held}"
+        );
+    }
+    // a guide that is oblique to the floor
+    let oblique = Directions::Vectors(vec![[1.0, 0.0, 1.0]]);
+    for friction in [Friction::None, Friction::coulomb(0.3)] {
+        let scene = Scene::new(lower.clone(), uniform(1e4, 0.3))
+            .with_support(Support::partial(brick::X_MIN, oblique.clone()))
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_load(Load::traction(brick::Z_MAX, [1.0, 0.0, -10.0]))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+            .with_boxes([2, 1, 1]);
+        let (simulation, _) = run(scene, tight());
+        assert_balance(&simulation, 1e-7, "oblique");
+    }
+}
