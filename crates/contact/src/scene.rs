@@ -29,6 +29,18 @@ impl From<Vec<u32>> for Place {
     }
 }
 
+impl From<&[u32]> for Place {
+    fn from(nodes: &[u32]) -> Self {
+        Self::Nodes(nodes.to_vec())
+    }
+}
+
+impl<const N: usize> From<[u32; N]> for Place {
+    fn from(nodes: [u32; N]) -> Self {
+        Self::Nodes(nodes.to_vec())
+    }
+}
+
 /// A support: directions of nodes that are fixed, or moved in a prescribed way.
 #[derive(Debug, Clone)]
 pub struct Support {
@@ -38,7 +50,21 @@ pub struct Support {
 }
 
 impl Support {
-    /// All components are zero.
+    /// All components are zero, on a tag or at nodes.
+    ///
+    /// ```
+    /// use signorini_contact::Support;
+    /// use signorini_fem_mesh::{brick, Brick};
+    ///
+    /// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+    /// let clamp = Support::fixed(brick::X_MIN);
+    /// let corners = Support::fixed([0, 4]);
+    /// // the nodes around a bolt
+    /// let near = |x: &[f64; 3]| (x[0] - 1.0).hypot(x[1] - 0.5) < 0.1;
+    /// let bolt: Vec<u32> = (0..).zip(mesh.points()).filter(|(_, x)| near(x)).map(|(n, _)| n).collect();
+    /// let bolt = Support::components(bolt, [true, true, false]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn fixed(place: impl Into<Place>) -> Self {
         Self {
