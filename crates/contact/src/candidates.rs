@@ -75,7 +75,7 @@ pub(crate) fn candidates(
         for (local, &node) in surface.nodes().iter().enumerate() {
             let partner = partners.get(local);
             let measured = partner.map_or(0.0, |p: &Partner| p.gap);
-            let gap = contact.gap_at(node, scene.mesh.points()[node as usize], measured)?;
+            let gap = contact.gap_at(index, node, scene.mesh.points()[node as usize], measured)?;
             let one = [(surface.frames()[local], surface.areas()[local])];
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {

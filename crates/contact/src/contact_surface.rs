@@ -131,7 +131,8 @@ impl Contact {
     #[must_use]
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let unit = outward.map(|c| c / length);
+        // what has no direction stays as it is, and is refused with the scene
+        let unit = outward.map(|c| if length > 0.0 { c / length } else { c });
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
         Self::rigid(tag)
             .with_normal(unit.map(|c| -c))
@@ -242,9 +243,24 @@ impl Contact {
         self.normal
     }
 
-    /// The gap at a node, m, checked; `measured` is the distance to its partner.
+    /// The angle of a crease, degrees.
+    #[must_use]
+    pub fn crease(&self) -> f64 {
+        self.crease
+    }
+
+    /// Displacement of the obstacle (m) and its history; `None` if it does not move.
+    #[must_use]
+    pub fn motion(&self) -> Option<([f64; 3], &History)> {
+        let (displacement, history) = self.motion.as_ref()?;
+        Some((*displacement, history))
+    }
+
+    /// The gap at a node, m, checked; `contact` is the position of the surface in the scene, `measured` the distance to the
+    /// partner of the node.
     pub(crate) fn gap_at(
         &self,
+        contact: usize,
         node: u32,
         position: [f64; 3],
         measured: f64,
@@ -258,7 +274,12 @@ impl Contact {
         if value.is_finite() {
             Ok(value)
         } else {
-            Err(ContactError::Gap { node, value })
+            Err(ContactError::Gap {
+                contact,
+                node,
+                position,
+                value,
+            })
         }
     }
 }

@@ -5,25 +5,48 @@ use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
 use thiserror::Error;
 
+/// How far from the normal of a node the nearest node of the other side is, in words.
+fn beside_words(beside: f64, limit: f64) -> String {
+    if beside.is_finite() {
+        format!(
+            "the nearest node that faces it lies {beside:.3e} m beside its normal, {limit:.3e} m are allowed"
+        )
+    } else {
+        "no node of the other side faces it (their normals have to be opposite)".to_owned()
+    }
+}
+
 /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ContactError {
     /// A coefficient of friction or a datum of its law.
     #[error(
-        "friction: the {what} is {value}; it must be finite and not negative (a decay rate positive)"
+        "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate positive)"
     )]
     Coefficient {
+        /// Position of the contact surface in the scene.
+        contact: usize,
         /// The datum.
         what: &'static str,
         /// Its value.
         value: f64,
     },
+    /// A table of coefficients without entries.
+    #[error(
+        "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate with its coefficient"
+    )]
+    EmptyTable {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+    },
     /// A slip rate of a table of coefficients is not finite or not larger than the one before.
     #[error(
-        "friction: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is not finite or out of order; give finite slip rates, each larger than the one before"
+        "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is not finite or out of order; give finite slip rates, each larger than the one before"
     )]
     TableRate {
+        /// Position of the contact surface in the scene.
+        contact: usize,
         /// Place in the table, from 0.
         entry: usize,
         /// The slip rate, m/s.
@@ -91,40 +114,52 @@ pub enum ContactError {
         first: f64,
     },
     /// A tag of a support or contact surface is on no facet.
-    #[error("{what}: no facet has the tag {tag}; the mesh has {known}")]
+    #[error("{what} {index}: no facet has the tag {tag}; the mesh has {known}")]
     UnknownTag {
-        /// What referred to it.
+        /// Support or contact.
         what: &'static str,
+        /// Its position in the scene.
+        index: usize,
         /// The tag.
         tag: u32,
         /// Tags of the mesh in words: `"the tags 1, 2"` or `"no tags"`.
         known: String,
     },
     /// A node number beyond the mesh.
-    #[error("{what}: node {node} does not exist, the mesh has {nodes} nodes")]
+    #[error(
+        "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0"
+    )]
     UnknownNode {
-        /// What referred to it.
-        what: &'static str,
+        /// Position of the support in the scene.
+        support: usize,
         /// The node.
         node: u32,
         /// Number of nodes.
         nodes: usize,
     },
-    /// A list of nodes and a list of values differ in length.
-    #[error("{what}: {values} values for {nodes} nodes; give one, or one a node")]
+    /// The nodes of a support and its displacements differ in number.
+    #[error(
+        "support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node"
+    )]
     ValueCount {
-        /// What they belong to.
-        what: &'static str,
+        /// Position of the support in the scene.
+        support: usize,
         /// Number of values.
         values: usize,
         /// Number of nodes.
         nodes: usize,
     },
     /// A gap is not finite.
-    #[error("contact at node {node}: the gap {value} m is not finite")]
+    #[error(
+        "contact {contact}: the gap at node {node}, at {position:?}, is {value} m; it must be finite at every node of the surface"
+    )]
     Gap {
+        /// Position of the contact surface in the scene.
+        contact: usize,
         /// Mesh node.
         node: u32,
+        /// Its place, m.
+        position: [f64; 3],
         /// The gap.
         value: f64,
     },
@@ -162,7 +197,8 @@ pub enum ContactError {
     },
     /// A contact node has no node of the other body on its normal.
     #[error(
-        "contact {contact}: node {node} has no partner on the other body: the nearest node that faces it lies {beside:e} m beside its normal, {limit:e} m are allowed; meshes of both sides have to match, and the first side must not reach beyond the other one"
+        "contact {contact}: node {node} has no partner on the other body: {}; meshes of both sides have to match, and the first side must not reach beyond the other one nor be finer (name the smaller or coarser side first)",
+        beside_words(*beside, *limit)
     )]
     NoPartner {
         /// Position of the contact surface in the scene.
@@ -176,7 +212,7 @@ pub enum ContactError {
     },
     /// Two contact nodes have the same partner.
     #[error(
-        "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both sides have to match node by node"
+        "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both sides have to match node by node, and no tag may be on both sides (TetMesh::map_tags before append keeps those of two bodies apart)"
     )]
     SharedPartner {
         /// Position of the contact surface in the scene.

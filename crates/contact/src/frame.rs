@@ -34,6 +34,8 @@ pub struct PointState {
     pub surface: usize,
     /// What it does.
     pub state: ContactState,
+    /// Unit normal out of the body, into the obstacle or the partner: the direction in which gap and normal force are measured.
+    pub normal: [f64; 3],
     /// Normal force on the body `lambda_nu`, N, not positive.
     pub normal_force: f64,
     /// Friction force on the body, N, in space.
@@ -53,10 +55,10 @@ pub struct PointState {
 }
 
 impl PointState {
-    /// The whole contact force on the body, N, in space.
-    pub(crate) fn force(&self, touch: &TouchPoint) -> [f64; 3] {
-        let normal = touch.frame.normal;
-        [0, 1, 2].map(|c| self.friction_force[c] + self.normal_force * normal[c])
+    /// The whole contact force on the body, pressure and friction, N, in space. A partner has the opposite one.
+    #[must_use]
+    pub fn force(&self) -> [f64; 3] {
+        [0, 1, 2].map(|c| self.friction_force[c] + self.normal_force * self.normal[c])
     }
 }
 
@@ -299,8 +301,23 @@ impl Frame<'_> {
     #[must_use]
     pub fn reaction_field(&self) -> Vec<f64> {
         let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
-        for (node, force) in reactions::nodal(self.model, self.held) {
+        for (node, force) in reactions::nodal(self.model, self.solved, self.held) {
             field[3 * node as usize..][..3].copy_from_slice(&force);
+        }
+        field
+    }
+
+    /// Contact forces at the mesh nodes, `3 node + component`, N: a field for output. Pressure and friction of all contact
+    /// surfaces together, so that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
+    #[must_use]
+    pub fn contact_force_field(&self) -> Vec<f64> {
+        let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
+        for point in self.solved {
+            let force = point.force();
+            for (node, sign) in [(Some(point.node), 1.0), (point.opponent, -1.0)] {
+                let Some(node) = node else { continue };
+                (0..3).for_each(|c| field[3 * node as usize + c] += sign * force[c]);
+            }
         }
         field
     }
@@ -390,6 +407,7 @@ pub(crate) fn point_state(
         opponent: point.opponent,
         surface: point.surface,
         state,
+        normal: point.frame.normal,
         normal_force,
         friction_force: space(friction),
         slip_bound: bound,
@@ -418,7 +436,7 @@ pub(crate) fn summarise(
         s.slip += usize::from(point.state == ContactState::Slip);
         s.normal_force -= point.normal_force;
         s.normal_norm += point.normal_force.powi(2);
-        let force = point.force(touch);
+        let force = point.force();
         for c in 0..3 {
             s.friction_force[c] += point.friction_force[c];
             s.resultant[c] += force[c];

@@ -156,10 +156,15 @@ impl Coefficient {
         .filter(|v| v.is_finite() && *v >= 0.0)
     }
 
-    /// Checks what can be checked without a place.
-    pub(crate) fn validate(&self) -> Result<(), ContactError> {
-        let bad =
-            |name: &'static str, value: f64| Err(ContactError::Coefficient { what: name, value });
+    /// Checks what can be checked without a place; `contact` is whose law it is.
+    pub(crate) fn validate(&self, contact: usize) -> Result<(), ContactError> {
+        let bad = |what: &'static str, value: f64| {
+            Err(ContactError::Coefficient {
+                contact,
+                what,
+                value,
+            })
+        };
         let good = |value: f64| value.is_finite() && value >= 0.0;
         match self {
             Self::Constant(value) if !good(*value) => bad("coefficient", *value),
@@ -180,12 +185,16 @@ impl Coefficient {
             }
             Self::Table(points) => {
                 if points.is_empty() {
-                    return bad("length of the table", 0.0);
+                    return Err(ContactError::EmptyTable { contact });
                 }
                 let mut before = f64::NEG_INFINITY;
                 for (entry, &(rate, value)) in points.iter().enumerate() {
                     if !(rate.is_finite() && rate > before) {
-                        return Err(ContactError::TableRate { entry, rate });
+                        return Err(ContactError::TableRate {
+                            contact,
+                            entry,
+                            rate,
+                        });
                     }
                     if !good(value) {
                         return bad("coefficient in the table", value);
@@ -265,7 +274,7 @@ mod tests {
             kinetic: 0.1,
             decay: 0.05,
         };
-        law.validate().unwrap();
+        law.validate(0).unwrap();
         assert!((law.value(0, [0.0; 3], 0.0).unwrap() - 0.3).abs() < 1e-15);
         assert!(
             (law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15
@@ -305,7 +314,7 @@ mod tests {
             Coefficient::Table(vec![(1.0, 0.1), (1.0, 0.2)]),
             Coefficient::Table(vec![(0.0, f64::INFINITY)]),
         ] {
-            assert!(law.validate().is_err(), "{law:?}");
+            assert!(law.validate(0).is_err(), "{law:?}");
         }
         for (rates, at) in [
             ([f64::NAN, 1.0, 2.0], 0),
@@ -313,7 +322,7 @@ mod tests {
             ([0.0, 1.0, f64::INFINITY], 2),
             ([0.0, 2.0, 1.0], 2),
         ] {
-            let error = Coefficient::Table(rates.map(|r| (r, 0.3)).to_vec()).validate();
+            let error = Coefficient::Table(rates.map(|r| (r, 0.3)).to_vec()).validate(0);
             assert!(
                 matches!(error, Err(ContactError::TableRate { entry, .. }) if entry == at),
                 "{error:?}"

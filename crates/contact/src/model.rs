@@ -326,8 +326,8 @@ impl Model {
 pub(crate) fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), ContactError> {
     let mut motions: Vec<History> = Vec::new();
     let mut out = Vec::with_capacity(scene.supports.len());
-    for support in &scene.supports {
-        let nodes = scene.nodes("support", &support.place)?;
+    for (index, support) in scene.supports.iter().enumerate() {
+        let nodes = scene.support_nodes(index)?;
         let mut one = tfeti::Support::partial(nodes, support.directions.clone());
         if let Some((values, history)) = &support.motion {
             let case = match motions.iter().position(|known| known == history) {

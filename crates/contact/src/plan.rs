@@ -74,6 +74,9 @@ pub struct Plan {
     /// Contact points that can touch: nodes, those in edges and corners counted once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
     pub contact_nodes: usize,
+    /// Smallest and largest gap of these points at the start, m; a negative one is inside the obstacle or the partner. `None`
+    /// without points.
+    pub gaps: Option<[f64; 2]>,
     /// Rows of `N`.
     pub normal_rows: usize,
     /// Rows of `T`.
@@ -206,6 +209,10 @@ impl Plan {
             primal,
             slenderness: sizes.slenderness,
             contact_nodes: normal_rows,
+            gaps: points.iter().map(|p| p.gap).fold(None, |range, gap| {
+                let [low, high] = range.unwrap_or([gap; 2]);
+                Some([gap.min(low), gap.max(high)])
+            }),
             normal_rows,
             tangential_rows,
             interface_rows,
@@ -244,8 +251,8 @@ fn largest_ratio(scene: &Scene) -> Result<f64, ContactError> {
 /// Number of directions fixed at each node.
 fn fixed_directions(scene: &Scene) -> Result<BTreeMap<u32, usize>, ContactError> {
     let mut axes: BTreeMap<u32, ([bool; 3], usize)> = BTreeMap::new();
-    for support in &scene.supports {
-        for node in scene.nodes("support", &support.place)? {
+    for (index, support) in scene.supports.iter().enumerate() {
+        for node in scene.support_nodes(index)? {
             let entry = axes.entry(node).or_insert(([false; 3], 0));
             match &support.directions {
                 Directions::All => entry.0 = [true; 3],
@@ -312,10 +319,12 @@ impl fmt::Display for Plan {
                 "free body"
             )
         )?;
-        let gap = if e.gap {
-            "with gap"
-        } else {
-            "no gap: zero offset"
+        let gap = match self.gaps.filter(|_| e.gap) {
+            None => "no gap: zero offset".to_owned(),
+            Some([low, high]) => {
+                let inside = if low < 0.0 { ", starts inside" } else { "" };
+                format!("gaps {low:.3e} to {high:.3e} m{inside}")
+            }
         };
         let moving = if e.moving_obstacle {
             ", moving obstacle"

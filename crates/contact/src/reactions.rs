@@ -7,7 +7,7 @@ use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::frame::PointState;
 use crate::level::Level;
-use crate::model::{Model, supports};
+use crate::model::{Model, TouchPoint, supports};
 use signorini_tfeti::{HeldDirection, Support, held_directions};
 use std::collections::BTreeMap;
 
@@ -74,6 +74,9 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
+    /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the body with
+    /// the first tag ([`Contact::between`](crate::Contact::between)), which has the opposite on the partner.
+    pub contacts: Vec<Resultant>,
     /// What the loads do.
     pub loads: Resultant,
 }
@@ -97,8 +100,18 @@ impl Reactions {
     }
 }
 
+/// Share of a contact force below which a difference is rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Forces of all supports by node, from the multipliers of the support rows.
-pub(crate) fn nodal(model: &Model, lambda: &[f64]) -> BTreeMap<u32, [f64; 3]> {
+///
+/// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it; it is
+/// taken out here.
+pub(crate) fn nodal(
+    model: &Model,
+    points: &[PointState],
+    lambda: &[f64],
+) -> BTreeMap<u32, [f64; 3]> {
     let gluing = model.tfeti.gluing();
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     for (row, lambda) in gluing.ranges().dirichlet.clone().zip(lambda) {
@@ -110,7 +123,34 @@ pub(crate) fn nodal(model: &Model, lambda: &[f64]) -> BTreeMap<u32, [f64; 3]> {
             force[dof % 3] += lambda * coefficient;
         }
     }
+    for (state, touch) in points.iter().zip(&model.points) {
+        let whole = state.force();
+        let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
+        for (node, sign) in [(Some(state.node), 1.0), (state.opponent, -1.0)] {
+            let Some((node, force)) = node.and_then(|n| Some((n, forces.get_mut(&n)?))) else {
+                continue;
+            };
+            let mut rest = whole.map(|f| sign * f);
+            take_rows(model, touch, &whole, node, &mut rest);
+            if rest.iter().any(|f| f.abs() > ROUNDING * size) {
+                (0..3).for_each(|c| force[c] -= rest[c]);
+            }
+        }
+    }
     forces
+}
+
+/// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
+fn take_rows(model: &Model, touch: &TouchPoint, whole: &[f64; 3], node: u32, rest: &mut [f64; 3]) {
+    let subdomains = model.decomposition.subdomains();
+    for (direction, row, scale) in touch.directions() {
+        let lambda = dot(whole, &direction) / scale;
+        for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
+            if subdomains[subdomain].nodes[dof / 3] == node {
+                rest[dof % 3] -= lambda * coefficient;
+            }
+        }
+    }
 }
 
 /// All resultants about a point; `points` are those of the model.
@@ -127,9 +167,11 @@ pub(crate) fn about(
         [0, 1, 2].map(|c| place[c] - point[c])
     };
     let mut contact = Resultant::default();
-    for (state, touch) in points.iter().zip(&model.points) {
-        let force = state.force(touch);
+    let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
+    for state in points {
+        let force = state.force();
         contact.add(arm(state.node), force);
+        contacts[state.surface].add(arm(state.node), force);
         if let Some(opponent) = state.opponent {
             contact.add(arm(opponent), force.map(|f| -f));
         }
@@ -144,8 +186,9 @@ pub(crate) fn about(
     }
     Ok(Reactions {
         point,
-        supports: by_support(model, &nodal(model, lambda), arm)?,
+        supports: by_support(model, &nodal(model, points, lambda), arm)?,
         contact,
+        contacts,
         loads,
     })
 }

@@ -29,6 +29,18 @@ impl From<Vec<u32>> for Place {
     }
 }
 
+impl From<&[u32]> for Place {
+    fn from(nodes: &[u32]) -> Self {
+        Self::Nodes(nodes.to_vec())
+    }
+}
+
+impl<const N: usize> From<[u32; N]> for Place {
+    fn from(nodes: [u32; N]) -> Self {
+        Self::Nodes(nodes.to_vec())
+    }
+}
+
 /// A support: directions of nodes that are fixed, or moved in a prescribed way.
 #[derive(Debug, Clone)]
 pub struct Support {
@@ -38,7 +50,21 @@ pub struct Support {
 }
 
 impl Support {
-    /// All components are zero.
+    /// All components are zero, on a tag or at nodes.
+    ///
+    /// ```
+    /// use signorini_contact::Support;
+    /// use signorini_fem_mesh::{brick, Brick};
+    ///
+    /// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+    /// let clamp = Support::fixed(brick::X_MIN);
+    /// let corners = Support::fixed([0, 4]);
+    /// // the nodes around a bolt
+    /// let near = |x: &[f64; 3]| (x[0] - 1.0).hypot(x[1] - 0.5) < 0.1;
+    /// let bolt: Vec<u32> = (0..).zip(mesh.points()).filter(|(_, x)| near(x)).map(|(n, _)| n).collect();
+    /// let bolt = Support::components(bolt, [true, true, false]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn fixed(place: impl Into<Place>) -> Self {
         Self {
@@ -328,17 +354,13 @@ impl Scene {
         })
     }
 
-    /// Nodes of a place, checked; `what` names who asks.
-    pub(crate) fn nodes(
-        &self,
-        what: &'static str,
-        place: &Place,
-    ) -> Result<Vec<u32>, ContactError> {
-        match place {
+    /// Nodes of the support at a position, checked.
+    pub(crate) fn support_nodes(&self, support: usize) -> Result<Vec<u32>, ContactError> {
+        match &self.supports[support].place {
             Place::Tag(tag) => {
                 let nodes = self.mesh.nodes_on(*tag);
                 if nodes.is_empty() {
-                    return Err(self.unknown_tag(what, *tag));
+                    return Err(self.unknown_tag("support", support, *tag));
                 }
                 Ok(nodes)
             }
@@ -346,7 +368,7 @@ impl Scene {
                 let count = self.mesh.points().len();
                 match nodes.iter().find(|&&n| n as usize >= count) {
                     Some(&node) => Err(ContactError::UnknownNode {
-                        what,
+                        support,
                         node,
                         nodes: count,
                     }),
@@ -356,10 +378,11 @@ impl Scene {
         }
     }
 
-    pub(crate) fn unknown_tag(&self, what: &'static str, tag: FacetTag) -> ContactError {
+    fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
         let known: Vec<String> = self.mesh.tags().iter().map(|t| t.0.to_string()).collect();
         ContactError::UnknownTag {
             what,
+            index,
             tag: tag.0,
             known: match &known[..] {
                 [] => "no tags".into(),
@@ -371,15 +394,15 @@ impl Scene {
     /// Checks what needs no computation.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         self.analysis.validate()?;
-        for support in &self.supports {
-            let nodes = self.nodes("support", &support.place)?;
+        for (index, support) in self.supports.iter().enumerate() {
+            let nodes = self.support_nodes(index)?;
             if let Some((values, _)) = &support.motion
                 && values.len() != 1
                 && values.len() != nodes.len()
             {
                 let (values, nodes) = (values.len(), nodes.len());
                 return Err(ContactError::ValueCount {
-                    what: "support",
+                    support: index,
                     values,
                     nodes,
                 });
@@ -423,7 +446,7 @@ impl Scene {
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {
         for &tag in contact.tags.iter().chain(&contact.partner) {
             if self.mesh.nodes_on(tag).is_empty() {
-                return Err(self.unknown_tag("contact", tag));
+                return Err(self.unknown_tag("contact", index, tag));
             }
         }
         if let ContactNormal::Fixed(normal) = contact.normal {
@@ -452,7 +475,7 @@ impl Scene {
             });
         }
         if let Friction::Coulomb(coefficient) = &contact.friction {
-            coefficient.validate()?;
+            coefficient.validate(index)?;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ mod bytes;
 /// What one level hands to the next.
 ///
 /// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Clone, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Levels solved.
@@ -39,6 +39,17 @@ pub struct State {
     unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
     origin: Option<Fingerprint>,
+}
+
+/// How far it is and how large; not its vectors.
+impl std::fmt::Debug for State {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("State")
+            .field("level", &self.level)
+            .field("bytes", &self.bytes())
+            .field("unconverged_history", &self.unconverged)
+            .finish_non_exhaustive()
+    }
 }
 
 /// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
@@ -303,17 +314,30 @@ impl State {
         points: usize,
     ) -> Result<(), ContactError> {
         let fit = |v: &Vec<f64>, n: usize| v.is_empty() || v.len() == n;
-        let good = self
-            .lambda
-            .iter()
-            .chain(&self.f_lambda)
-            .all(|v| fit(v, rows))
-            && self.multiplier.iter().all(|v| fit(v, coarse))
-            && self.trace.iter().all(|v| fit(v, tangential))
-            && fit(&self.rate, points)
-            && (self.sliding.is_empty() || self.sliding.len() == points)
-            && self.gaps.iter().all(|v| fit(v, points))
-            && (self.active.is_empty() || self.active.len() == points);
+        let pairs = |v: &[Vec<f64>; 2], n: usize| v.iter().all(|v| fit(v, n));
+        let flags = |v: &[bool]| v.is_empty() || v.len() == points;
+        // what is most telling first
+        let parts = [
+            (
+                "number of contact points",
+                fit(&self.rate, points)
+                    && flags(&self.sliding)
+                    && pairs(&self.gaps, points)
+                    && flags(&self.active),
+            ),
+            (
+                "number of directions with friction (a coefficient that is zero everywhere is no friction)",
+                pairs(&self.trace, tangential),
+            ),
+            (
+                "number of rows (gluing, supports, contact)",
+                pairs(&self.lambda, rows) && pairs(&self.f_lambda, rows),
+            ),
+            (
+                "number of rigid motions of subdomains",
+                pairs(&self.multiplier, coarse),
+            ),
+        ];
         let numbers = [
             &self.lambda,
             &self.f_lambda,
@@ -327,14 +351,17 @@ impl State {
             .chain([&self.rate])
             .flatten()
             .all(|v| v.is_finite());
-        if !good {
+        if let Some((part, _)) = parts.iter().find(|(_, good)| !good) {
             return Err(ContactError::Checkpoint {
-                reason: "it belongs to another scene: sizes differ".to_owned(),
+                reason: format!(
+                    "it belongs to another scene, with another {part}; continue with the scene that it was stored with"
+                ),
             });
         }
         if !finite {
             return Err(ContactError::Checkpoint {
-                reason: "it contains NaN or infinity".to_owned(),
+                reason: "it contains NaN or infinity; use an earlier checkpoint or start anew"
+                    .to_owned(),
             });
         }
         if self.unconverged.is_some_and(|k| k >= self.level) {
@@ -403,7 +430,16 @@ pub(crate) mod tests {
     fn sizes_and_numbers_are_checked() {
         let mut state = state();
         assert!(state.fits(2, 6, 1, 1).is_ok());
-        assert!(state.fits(3, 6, 1, 1).is_err());
+        for (sizes, part) in [
+            ([3, 6, 1, 1], "rows"),
+            ([2, 6, 2, 1], "directions with friction"),
+            ([2, 6, 1, 2], "contact points"),
+        ] {
+            let [rows, coarse, tangential, points] = sizes;
+            let error = state.fits(rows, coarse, tangential, points).unwrap_err();
+            assert!(error.to_string().contains(part), "{error}");
+        }
+        assert!(format!("{state:?}").starts_with("State { level: 1, bytes: "));
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             let mut other = state.clone();
             other.peaks = vec![Peak {

@@ -208,6 +208,29 @@ fn translates_share_their_factors() {
 }
 
 /// What the plan promises is what the set-up finds.
+/// A mesh in other units or in another place shows in the plan.
+#[test]
+fn the_plan_tells_the_range_of_the_gaps() {
+    let plan = |contact: Contact| {
+        let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel()).with_contact(contact);
+        Plan::new(&scene, &Settings::default()).expect("plan")
+    };
+    let touching = plan(Contact::rigid(brick::Z_MIN));
+    assert_eq!(touching.gaps, Some([0.0; 2]));
+    assert!(touching.to_string().contains("no gap"));
+    let wedge = plan(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 0.25 * x[0] - 0.125));
+    assert_eq!(wedge.gaps, Some([-0.125, 0.375]));
+    let text = wedge.to_string();
+    assert!(
+        text.contains("gaps -1.250e-1 to 3.750e-1 m, starts inside"),
+        "{text}"
+    );
+    let scene =
+        Scene::new(block([1.0; 3], [2; 3]), steel()).with_support(Support::fixed(brick::X_MIN));
+    let none = Plan::new(&scene, &Settings::default()).expect("plan");
+    assert_eq!(none.gaps, None);
+}
+
 #[test]
 fn the_plan_predicts_the_rows() {
     for scene in [

@@ -240,3 +240,94 @@ fn a_free_body_on_a_floor_has_no_reactions_but_contact() {
     let field = simulation.frame().expect("frame").reaction_field();
     assert!(field.iter().all(|v| *v == 0.0));
 }
+
+/// A block on a block on a floor, pressed and pushed: each contact surface has its own force, and the field of contact forces
+/// has them at the nodes, opposite at partners.
+#[test]
+fn each_contact_surface_has_its_force() {
+    let second = |tag: FacetTag| FacetTag(tag.0 + 100);
+    let lower = block([1.0; 3], [2; 3]);
+    let upper = lower
+        .map_points(|[x, y, z]| [x, y, z + 1.0])
+        .expect("moved");
+    let count = lower.points().len();
+    let mesh = lower.append(&upper.map_tags(second)).expect("bodies");
+    let rough = |contact: Contact| contact.with_friction(Friction::coulomb(0.3));
+    let scene = Scene::new(mesh, uniform(1e4, 0.3))
+        .with_load(Load::traction(second(brick::Z_MAX), [1.0, 0.0, -10.0]))
+        .with_load(Load::body([0.0, 0.0, -2.0]))
+        .with_contact(rough(Contact::rigid(brick::Z_MIN)))
+        .with_contact(rough(Contact::between(second(brick::Z_MIN), brick::Z_MAX)))
+        .with_boxes([1, 1, 2]);
+    for screening in [Screening::Off, Screening::on()] {
+        let (simulation, _) = run(scene.clone(), tight().with_screening(screening));
+        let frame = simulation.frame().expect("frame");
+        let r = frame.reactions().expect("reactions");
+        let [floor, joint] = r.contacts[..] else {
+            panic!("two surfaces")
+        };
+        assert_eq!(r.contact.force, floor.force);
+        assert_close(&floor.force, &[-1.0, 0.0, 14.0], 1e-7, "floor");
+        assert_close(&joint.force, &[-1.0, 0.0, 12.0], 1e-7, "joint");
+        let field = frame.contact_force_field();
+        let sum = |nodes: std::ops::Range<usize>| {
+            let mut sum = [0.0; 3];
+            nodes.for_each(|n| (0..3).for_each(|c| sum[c] += field[3 * n + c]));
+            sum
+        };
+        assert_close(&sum(count..2 * count), &joint.force, 1e-12, "upper");
+        let lower = [0, 1, 2].map(|c| floor.force[c] - joint.force[c]);
+        assert_close(&sum(0..count), &lower, 1e-12, "lower");
+        for point in frame.points() {
+            assert_close(&point.normal, &[0.0, 0.0, -1.0], 1e-14, "normal");
+            assert!((point.force()[2] + point.normal_force).abs() <= 1e-12);
+        }
+    }
+}
+
+/// Supports that hold nodes in contact along directions with contact forces: the forces of obstacles and partners are not
+/// theirs.
+#[test]
+fn reactions_at_contact_nodes_have_no_contact_forces() {
+    let second = |tag: FacetTag| FacetTag(tag.0 + 100);
+    let lower = block([1.0; 3], [2; 3]);
+    let upper = lower
+        .map_points(|[x, y, z]| [x, y, z + 1.0])
+        .expect("moved");
+    let mesh = lower.append(&upper.map_tags(second)).expect("bodies");
+    // pushed by a face with contact nodes until it slides, on either side of the contact
+    for sides in [
+        [second(brick::Z_MIN), brick::Z_MAX],
+        [brick::Z_MAX, second(brick::Z_MIN)],
+    ] {
+        let joint = Contact::between(sides[0], sides[1]).with_friction(Friction::coulomb(0.3));
+        let push = Support::components(second(brick::X_MIN), [true, false, false]);
+        let scene = Scene::new(mesh.clone(), uniform(1e4, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_support(push.moved([0.1, 0.0, 0.0], ramp()))
+            .with_load(Load::pressure(second(brick::Z_MAX), 10.0))
+            .with_contact(joint)
+            .with_boxes([1, 1, 2]);
+        let (simulation, levels) = run(scene, tight());
+        assert_eq!(levels[0].summary.stick, 0);
+        assert_balance(&simulation, 1e-7, "between");
+        let r = reactions(&simulation, [0.0; 3]);
+        let [held, push] = [0, 1].map(|k| r.supports[k].resultant.force[0]);
+        assert!(
+            (push - 3.0).abs() < 1e-6 && (held + 3.0).abs() < 1e-6,
+            "{push} {held}"
+        );
+    }
+    // a guide that is oblique to the floor
+    let oblique = Directions::Vectors(vec![[1.0, 0.0, 1.0]]);
+    for friction in [Friction::None, Friction::coulomb(0.3)] {
+        let scene = Scene::new(lower.clone(), uniform(1e4, 0.3))
+            .with_support(Support::partial(brick::X_MIN, oblique.clone()))
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_load(Load::traction(brick::Z_MAX, [1.0, 0.0, -10.0]))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+            .with_boxes([2, 1, 1]);
+        let (simulation, _) = run(scene, tight());
+        assert_balance(&simulation, 1e-7, "oblique");
+    }
+}

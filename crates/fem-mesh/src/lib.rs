@@ -120,7 +120,7 @@ pub use load::{LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
 pub use locate::{Locator, energy_of_difference};
 pub use materials::{MaterialError, Materials};
 pub use mesh::{
-    BoundaryFacet, Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets,
+    BoundaryFacet, Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, merge_nodes, orient_tets,
 };
 pub use norms::{h1_seminorm_error, l2_error};
 pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error, energy_of_error};

@@ -6,7 +6,7 @@ mod error;
 mod faces;
 
 pub(crate) use check::numbered;
-pub use edit::{drop_unused_nodes, orient_tets};
+pub use edit::{drop_unused_nodes, merge_nodes, orient_tets};
 pub use error::MeshError;
 pub(crate) use faces::{NONE, connected_sets};
 

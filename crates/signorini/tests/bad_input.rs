@@ -185,8 +185,8 @@ fn decompositions_supports_and_loads() {
         "parts for other elements": attempt(good().with_parts(vec![0; tets - 1])) => Error::Contact(ContactError::Decomposition(DecompositionError::PartCount { .. })), "part numbers";
         "a part number left out": attempt(good().with_parts(vec![1; tets])) => Error::Contact(ContactError::Decomposition(DecompositionError::EmptyPart { part: 0, .. })), "part 0";
         "a part in two pieces": attempt(good().with_parts(ends)) => Error::Contact(ContactError::Decomposition(DecompositionError::DisconnectedPart { part: 0, .. })), "part 0", "2 pieces";
-        "a support on an unknown tag": attempt(good().with_support(Support::fixed(FacetTag(99)))) => Error::Contact(ContactError::UnknownTag { tag: 99, .. }), "support", "99", "the tags 1, 2, 3";
-        "a support at an unknown node": attempt(good().with_support(Support::fixed(vec![5, 1000]))) => Error::Contact(ContactError::UnknownNode { node: 1000, .. }), "support", "1000";
+        "a support on an unknown tag": attempt(good().with_support(Support::fixed(FacetTag(99)))) => Error::Contact(ContactError::UnknownTag { tag: 99, .. }), "support 1", "99", "the tags 1, 2, 3";
+        "a support at an unknown node": attempt(good().with_support(Support::fixed(vec![5, 1000]))) => Error::Contact(ContactError::UnknownNode { node: 1000, .. }), "support 1", "1000", "from 0";
         "a support without nodes": attempt(good().with_support(Support::fixed(Vec::new()))) => Error::Contact(ContactError::Tfeti(TfetiError::EmptySupport { support: 1, .. })), "support 1";
         "a support without directions": attempt(good().with_support(Support::components(brick::X_MAX, [false; 3]))) => Error::Contact(ContactError::Tfeti(TfetiError::EmptySupport { .. })), "directions";
         "a direction of length zero": attempt(good().with_support(Support::partial(brick::X_MAX, Directions::Vectors(vec![[0.0; 3]])))) => Error::Contact(ContactError::Tfeti(TfetiError::BadDirection { support: 1, .. })), "support 1";
@@ -195,7 +195,7 @@ fn decompositions_supports_and_loads() {
         ) => Error::Contact(ContactError::Tfeti(TfetiError::ContradictorySupports { first: 0, second: 1, .. })), "supports 0 and 1", "node";
         "displacements for other nodes": attempt(
             good().with_support(Support::fixed(brick::X_MAX).moved_each(vec![[0.0; 3]; 3], History::constant(1.0)))
-        ) => Error::Contact(ContactError::ValueCount { values: 3, .. }), "support", "3 values";
+        ) => Error::Contact(ContactError::ValueCount { values: 3, .. }), "support 1", "3 displacements";
         "a displacement that is NaN": attempt(
             good().with_support(Support::fixed(brick::X_MAX).moved([nan, 0.0, 0.0], History::constant(1.0)))
         ) => Error::Contact(ContactError::Tfeti(TfetiError::BadMotion { support: 1, .. })), "support 1";
@@ -224,20 +224,21 @@ fn decompositions_supports_and_loads() {
 fn contact_and_friction() {
     let nan = f64::NAN;
     let count = check(cases! {
-        "contact on an unknown tag": attempt(good().replace_contact(Some(Contact::rigid(FacetTag(9))))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact", "tag 9";
+        "contact on an unknown tag": attempt(good().replace_contact(Some(Contact::rigid(FacetTag(9))))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact 0", "tag 9";
         "a crease of no angle": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_crease(0.0)))) => Error::Contact(ContactError::Setting { name: "crease", .. }), "crease", "(0, 180]";
         "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).and_tag(brick::Z_MIN)))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
         "a normal of length zero": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
-        "a half-space without a direction": attempt(good().replace_contact(Some(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal";
+        "a half-space without a direction": attempt(good().replace_contact(Some(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "0.0";
         "a gap that is NaN": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(nan)))) => Error::Contact(ContactError::Gap { .. }), "node", "gap";
-        "a gap field that is infinite": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 1.0 / x[2])))) => Error::Contact(ContactError::Gap { .. }), "node";
-        "a negative coefficient": attempt(coulomb(Coefficient::Constant(-0.3))) => Error::Contact(ContactError::Coefficient { .. }), "coefficient", "-0.3";
+        "a gap field that is infinite": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 1.0 / x[2])))) => Error::Contact(ContactError::Gap { .. }), "contact 0", "node 0", "[0.0, 0.0, 0.0]", "inf";
+        "a negative coefficient": attempt(coulomb(Coefficient::Constant(-0.3))) => Error::Contact(ContactError::Coefficient { .. }), "contact 0", "coefficient", "-0.3";
+        "a negative coefficient of the second surface": attempt(good().with_contact(Contact::rigid(brick::Y_MIN).with_friction(Friction::coulomb(-0.3)))) => Error::Contact(ContactError::Coefficient { .. }), "contact 1";
         "a coefficient that is NaN": attempt(coulomb(Coefficient::Constant(nan))) => Error::Contact(ContactError::Coefficient { .. }), "coefficient", "NaN";
         "a field of negative coefficients": attempt(coulomb(Coefficient::field(|x| 1.0 - x[0]))) => Error::Contact(ContactError::CoefficientAt { .. }), "node", "coefficient";
         "a law that is NaN": attempt(coulomb(Coefficient::rate_field(|_, _| f64::NAN))) => Error::Contact(ContactError::CoefficientAt { .. }), "node", "slip rate";
         "a decay rate of zero": attempt(coulomb(Coefficient::Exponential { fixed: 0.3, kinetic: 0.1, decay: 0.0 })) => Error::Contact(ContactError::Coefficient { .. }), "decay rate";
         "a negative kinetic coefficient": attempt(coulomb(Coefficient::Exponential { fixed: 0.3, kinetic: -0.1, decay: 1.0 })) => Error::Contact(ContactError::Coefficient { .. }), "kinetic";
-        "an empty table": attempt(coulomb(Coefficient::Table(Vec::new()))) => Error::Contact(ContactError::Coefficient { .. }), "table";
+        "an empty table": attempt(coulomb(Coefficient::Table(Vec::new()))) => Error::Contact(ContactError::EmptyTable { .. }), "contact 0", "table", "at least one";
         "a table out of order": attempt(coulomb(Coefficient::Table(vec![(1.0, 0.3), (0.0, 0.2)]))) => Error::Contact(ContactError::TableRate { entry: 1, .. }), "order";
         "a negative slip bound": attempt(given(SlipBound::Stress(-1.0))) => Error::Contact(ContactError::SlipBound { .. }), "node", "slip bound";
         "a slip bound that is NaN": attempt(given(SlipBound::StressField(std::sync::Arc::new(|x| (x[0] - 1.5).sqrt())))) => Error::Contact(ContactError::SlipBound { .. }), "node";
@@ -256,7 +257,7 @@ fn contact_and_friction() {
                 .with_analysis(Analysis::quasistatic(1.0, 4))
         ) => Error::Contact(ContactError::NotHeld { level: 2, .. }), "level 2";
     });
-    assert_eq!(count, 21);
+    assert_eq!(count, 22);
 }
 
 #[test]

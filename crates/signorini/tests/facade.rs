@@ -130,7 +130,7 @@ fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
 fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
     let plan = Plan::new(&scene(4)?, &Settings::default())?;
     let text = plan.to_string();
-    for part in ["Coulomb", "with gap", "4 levels", "face"] {
+    for part in ["Coulomb", "gaps 1.000e-1 to 1.000e-1 m", "4 levels", "face"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
     Ok(())

@@ -111,7 +111,7 @@ pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshErr
 /// allowed, since bodies in contact may have matching nodes. Here tetrahedra with a common node
 /// belong to the same body.
 pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError> {
-    let pairs = coincident_pairs(points);
+    let pairs = close_pairs(points, 0.0);
     if pairs.is_empty() {
         return Ok(());
     }
@@ -134,10 +134,10 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), Me
     }
 }
 
-/// Pairs of nodes closer than the tolerance, through a hash of grid cells.
-fn coincident_pairs(points: &[Vec3]) -> Vec<(usize, usize)> {
+/// Pairs of nodes that are no farther apart than `distance`, or that coincide, through a hash of grid cells.
+pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)> {
     let (low, high) = extent(points);
-    let tolerance = COINCIDENT * vec3::norm(vec3::sub(high, low));
+    let tolerance = distance.max(COINCIDENT * vec3::norm(vec3::sub(high, low)));
     let cell = 4.0 * tolerance;
     if cell <= 0.0 || !cell.is_finite() {
         return Vec::new();

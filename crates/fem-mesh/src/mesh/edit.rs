@@ -1,6 +1,7 @@
 //! Meshes from meshes: tagging, moving and joining, and repair of raw tables.
 
 use super::{Facet, FacetTag, MeshError, TetMesh};
+use crate::disjoint::DisjointSets;
 use crate::vec3;
 
 impl TetMesh {
@@ -88,6 +89,49 @@ pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
         }
     }
     turned
+}
+
+/// Makes one node of nodes that are no farther apart than `distance` (m; those that coincide, with 0), for parts that were
+/// meshed apart but are to be one body, and returns how many are gone. Tetrahedra and facets then use the first
+/// of them; the others stay in the table for [`drop_unused_nodes`].
+///
+/// Meshes of the parts have to match where they meet. Facets there, which are inside now, have to be left out. Bodies that are to
+/// slide on one another must not be merged.
+///
+/// ```
+/// use signorini_fem_mesh::{Brick, TetMesh, drop_unused_nodes, merge_nodes};
+///
+/// let lower = Brick::new([1.0; 3], [2, 2, 2]).build()?;
+/// let upper = lower.map_points(|[x, y, z]| [x, y, z + 1.0])?;
+/// let both = lower.append(&upper)?;
+/// assert!(both.components().contains(&1));
+///
+/// let (mut points, mut tets) = (both.points().to_vec(), both.tets().to_vec());
+/// assert_eq!(merge_nodes(&points, &mut tets, &mut [], 1e-9), 9);
+/// drop_unused_nodes(&mut points, &mut tets, &mut []);
+/// let one = TetMesh::new(points, tets, Vec::new())?.with_regions(both.regions().to_vec())?;
+/// assert!(!one.components().contains(&1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn merge_nodes(
+    points: &[[f64; 3]],
+    tets: &mut [[u32; 4]],
+    facets: &mut [Facet],
+    distance: f64,
+) -> usize {
+    let pairs = super::check::close_pairs(points, distance);
+    let mut sets = DisjointSets::new(points.len());
+    for (a, b) in pairs {
+        sets.join(a, b);
+    }
+    let first: Vec<u32> = (0..points.len()).map(|n| sets.first(n) as u32).collect();
+    // numbers out of range are left for TetMesh::new to report
+    let renumber = |node: u32| first.get(node as usize).copied().unwrap_or(node);
+    tets.iter_mut().for_each(|t| *t = t.map(renumber));
+    facets
+        .iter_mut()
+        .for_each(|f| f.nodes = f.nodes.map(renumber));
+    (0..first.len()).filter(|&n| first[n] as usize != n).count()
 }
 
 /// Removes nodes that no tetrahedron uses and renumbers the others in the same order. Returns,

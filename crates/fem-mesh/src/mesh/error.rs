@@ -114,7 +114,7 @@ pub enum MeshError {
     },
     /// Two nodes of one body lie at the same place.
     #[error(
-        "nodes {first} and {second} of the same body coincide (distance {distance:e}); merge them, otherwise the body is cut open there"
+        "nodes {first} and {second} of the same body coincide (distance {distance:e}); merge them (merge_nodes), otherwise the body is cut open there"
     )]
     CoincidentNodes {
         /// The smaller node number.
