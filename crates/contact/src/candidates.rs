@@ -65,7 +65,7 @@ pub(crate) fn candidates(
     // points of each node, where there may be more than one
     let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
-        let fixed = fixed_frame(contact, surface)?;
+        let fixed = fixed_frame(index, contact, surface)?;
         let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
         let sides = match fixed {
             None if partners.is_empty() => creases(&scene.mesh, surface, contact.crease),
@@ -107,14 +107,22 @@ pub(crate) fn candidates(
 }
 
 /// The one frame of all nodes of a contact with a fixed direction.
-fn fixed_frame(contact: &Contact, surface: &Surface) -> Result<Option<Frame>, ContactError> {
+fn fixed_frame(
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+) -> Result<Option<Frame>, ContactError> {
     let ContactNormal::Fixed(normal) = contact.normal else {
         return Ok(None);
     };
-    let frame = Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal { normal })?;
+    let frame = Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal {
+        contact: index,
+        normal,
+    })?;
     let outside = |own: &Frame| frame.normal_part(own.normal) > ALONG;
     if !surface.frames().iter().any(outside) {
         return Err(ContactError::ObstacleSide {
+            contact: index,
             direction: normal,
             nodes: surface.nodes().len(),
         });

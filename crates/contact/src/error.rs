@@ -180,16 +180,20 @@ pub enum ContactError {
         gap: f64,
     },
     /// An obstacle has no usable normal.
-    #[error("contact: the obstacle's normal {normal:?} must be finite and not zero")]
+    #[error("contact {contact}: the obstacle's normal {normal:?} must be finite and not zero")]
     ObstacleNormal {
+        /// Position of the contact surface in the scene.
+        contact: usize,
         /// The normal.
         normal: [f64; 3],
     },
     /// The direction into the obstacle points into the body.
     #[error(
-        "contact: the direction into the obstacle {direction:?} is not on the outer side of the body at any of its {nodes} contact nodes, so the body would pass through; turn the direction round (a half-space needs the normal that points out of the obstacle, up for a floor)"
+        "contact {contact}: the direction into the obstacle {direction:?} is not on the outer side of the body at any of its {nodes} contact nodes, so the body would pass through; turn the direction round (a half-space needs the normal that points out of the obstacle, up for a floor)"
     )]
     ObstacleSide {
+        /// Position of the contact surface in the scene.
+        contact: usize,
         /// The direction given.
         direction: [f64; 3],
         /// Number of nodes of the contact surface.
@@ -209,6 +213,22 @@ pub enum ContactError {
         beside: f64,
         /// What is allowed, m.
         limit: f64,
+    },
+    /// Two bodies overlap by more than their facets.
+    #[error(
+        "contact {contact}: node {node} lies {depth:.3e} m inside the other body, seen from its partner {partner}, deeper than its facets are large ({size:.3e} m); give sides that face each other across the gap, or, if they are to be pressed apart, tell how far by with_gap"
+    )]
+    Overlap {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+        /// Mesh node.
+        node: u32,
+        /// Node of the other body.
+        partner: u32,
+        /// Depth along the normal of the node, m.
+        depth: f64,
+        /// Root of the area of the node, m.
+        size: f64,
     },
     /// Two contact nodes have the same partner.
     #[error(

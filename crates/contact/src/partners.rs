@@ -4,7 +4,7 @@
 //! and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of
 //! its far side on the same normal.
 
-use crate::contact_surface::Contact;
+use crate::contact_surface::{Contact, Gap};
 use crate::error::ContactError;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Frame, Surface, TetMesh};
@@ -62,6 +62,15 @@ pub(crate) fn partners(
                 beside,
                 limit: BESIDE * size,
             })?;
+            if matches!(contact.gap, Gap::Measured) && -partner.gap > size {
+                return Err(ContactError::Overlap {
+                    contact: index,
+                    node,
+                    partner: partner.node,
+                    depth: -partner.gap,
+                    size,
+                });
+            }
             let gap = if partner.gap.abs() > rounding {
                 partner.gap
             } else {

@@ -119,7 +119,7 @@ pub enum Preconditioner {
 /// | `sharing` | whether equal subdomains share factors | | translates | |
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
-/// | `max_fallback_products` | most products with F of one call of SMALSE's fall-back, after which a level ends as `IterationLimit` | >= 1 | 20,000 | |
+/// | `max_fallback_products` | most products with F of one call of the face method's fall-back (SMALSE), after which a level ends as `IterationLimit` | >= 1 | 20,000 | |
 /// | `screening` | whether contact points that stay open leave the dual problem | [`Screening`] | off | |
 /// | `busy_waiting` | whether idle threads stay awake during a level | | false | |
 #[derive(Debug, Clone)]

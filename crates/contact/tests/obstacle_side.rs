@@ -42,7 +42,11 @@ fn a_direction_into_the_body_or_along_its_surface_is_refused() {
                 "{text}"
             );
             match error {
-                ContactError::ObstacleSide { direction, nodes } => {
+                ContactError::ObstacleSide {
+                    contact: 0,
+                    direction,
+                    nodes,
+                } => {
                     assert_eq!(direction.map(|c| c + 0.0), expected);
                     assert_eq!(nodes, 9);
                 }

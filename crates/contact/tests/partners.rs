@@ -379,6 +379,15 @@ fn what_cannot_be_paired_is_refused() {
         matches!(error, ContactError::MovedPartner { contact: 0 }),
         "{error}"
     );
+    // bodies that lie behind each other, unless that is what is meant
+    let behind = Contact::between(brick::Z_MIN, second(brick::Z_MAX));
+    let error = fails(column([2; 3]), behind.clone());
+    assert!(
+        matches!(error, ContactError::Overlap { depth, .. } if (depth - 2.0).abs() < 1e-12),
+        "{error}"
+    );
+    let scene = Scene::new(column([2; 3]), uniform(1e9, 0.3)).with_contact(behind.with_gap(-1e-3));
+    assert!(Simulation::new(scene, Settings::default()).is_ok());
     let error = fails(column([2; 3]), joint().and_partner(FacetTag(999)));
     assert!(error.to_string().contains("999"), "{error}");
 }

@@ -50,6 +50,9 @@ pub enum Error {
     /// Quadratic programming.
     #[error(transparent)]
     Qp(#[from] signorini_qp::QpError),
+    /// Files that a program reads or writes besides.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
     /// Result files.
     #[cfg(feature = "vtu")]
     #[error(transparent)]

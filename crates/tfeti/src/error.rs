@@ -24,9 +24,9 @@ pub enum TfetiError {
         subdomain: usize,
     },
     /// The material of an element is unknown or unusable.
-    #[error("element {element}: {message}")]
+    #[error("tetrahedron {element}: {message}")]
     Material {
-        /// Element (tetrahedron) number in the mesh.
+        /// Number of the tetrahedron in the mesh.
         element: usize,
         /// What the material table answered.
         message: String,
