@@ -97,8 +97,12 @@ impl Reactions {
     }
 }
 
-/// Forces of all supports by node, from the multipliers of the support rows.
-pub(crate) fn nodal(model: &Model, lambda: &[f64]) -> BTreeMap<u32, [f64; 3]> {
+/// Forces of all supports by node, from the multipliers of the support rows and the states of the touch points.
+pub(crate) fn nodal(
+    model: &Model,
+    points: &[PointState],
+    lambda: &[f64],
+) -> BTreeMap<u32, [f64; 3]> {
     let gluing = model.tfeti.gluing();
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     for (row, lambda) in gluing.ranges().dirichlet.clone().zip(lambda) {
@@ -108,6 +112,33 @@ pub(crate) fn nodal(model: &Model, lambda: &[f64]) -> BTreeMap<u32, [f64; 3]> {
         let force = forces.entry(node).or_default();
         for (_, dof, coefficient) in gluing.row(row) {
             force[dof % 3] += lambda * coefficient;
+        }
+    }
+    // between bodies rows leave out what supports of one side fix: that part of the force goes straight into the support
+    let subdomains = model.decomposition.subdomains();
+    for (state, touch) in points.iter().zip(&model.points) {
+        let Some(opponent) = touch.opponent else {
+            continue;
+        };
+        let whole = state.force(touch);
+        if ![touch.node, opponent]
+            .iter()
+            .any(|n| forces.contains_key(n))
+        {
+            continue;
+        }
+        let mut missing = [(touch.node, whole), (opponent, whole.map(|f| -f))];
+        for (direction, row, scale) in touch.directions() {
+            let lambda = dot(&direction, &whole) / scale;
+            for (subdomain, dof, coefficient) in gluing.row(row) {
+                let second = subdomains[subdomain].nodes[dof / 3] == opponent;
+                missing[usize::from(second)].1[dof % 3] -= lambda * coefficient;
+            }
+        }
+        for (node, part) in missing {
+            if let Some(force) = forces.get_mut(&node) {
+                (0..3).for_each(|c| force[c] -= part[c]);
+            }
         }
     }
     forces
@@ -144,7 +175,7 @@ pub(crate) fn about(
     }
     Ok(Reactions {
         point,
-        supports: by_support(model, &nodal(model, lambda), arm)?,
+        supports: by_support(model, &nodal(model, points, lambda), arm)?,
         contact,
         loads,
     })
