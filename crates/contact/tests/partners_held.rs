@@ -162,3 +162,30 @@ fn the_algebraic_error_is_estimated_where_both_sides_are_held() {
         }
     }
 }
+
+/// Where supports fix the normal displacement of one side its rows are of the other body alone. Friction joins both all the same:
+/// a body that its supports press on another one is held by friction.
+#[test]
+fn friction_joins_bodies_that_no_normal_row_joins() {
+    let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX)
+        .with_gap(-1e-3)
+        .with_friction(Friction::coulomb(0.3));
+    let scene = |push: f64| {
+        let scene = Scene::new(block_on(&block([1.0; 3], [2; 3])), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_load(Load::traction(second(brick::Z_MAX), [push, 0.0, 0.0]))
+            .with_contact(contact.clone());
+        held(scene, second(brick::Z_MIN), &[[0.0, 0.0, 1.0]])
+    };
+    let reference = solve(scene(1e5), tight());
+    let force = reference.summary;
+    assert!((force.resultant[0] + 1e5).abs() < 1.0, "{force:?}");
+    assert!(force.normal_force > 4e5, "{force:?}");
+    for method in methods() {
+        let level = solve(
+            scene(1e5).with_boxes([2, 1, 2]),
+            tight().with_method(method),
+        );
+        assert_close(&level.displacement, &reference.displacement, 1e-6, "cut");
+    }
+}
