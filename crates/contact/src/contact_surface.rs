@@ -77,8 +77,8 @@ impl Contact {
 
     /// Contact of two elastic bodies whose meshes match: facets with `tag`, and facets of the other body with the tag `partner`.
     ///
-    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a hundredth of
-    /// the size of its facets. The other side may have more nodes. All quantities of a contact point are those of the body with
+    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a fiftieth of
+    /// the size of its facets (the root of the area of the node). The other side may have more nodes. All quantities of a contact point are those of the body with
     /// `tag`: its outward normal, the force on it, its displacement *relative* to the partner; the force on the partner is
     /// the opposite one. The gap is measured between the partners, unless [`with_gap`](Self::with_gap) or
     /// [`with_gap_field`](Self::with_gap_field) tell another; partners may coincide. Displacements are small: a
@@ -116,9 +116,12 @@ impl Contact {
         }
     }
 
-    /// More facets of the other body.
+    /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
     #[must_use]
     pub fn and_partner(mut self, tag: FacetTag) -> Self {
+        if self.partner.is_empty() && matches!(self.gap, Gap::None) {
+            self.gap = Gap::Measured;
+        }
         self.partner.push(tag);
         self
     }

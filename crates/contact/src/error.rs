@@ -174,6 +174,22 @@ pub enum ContactError {
         /// What is allowed, m.
         limit: f64,
     },
+    /// Two bodies overlap by more than their facets are large.
+    #[error(
+        "contact {contact}: node {node} and its partner {partner} overlap by {depth:e} m, more than the facets are large ({limit:e} m): sides that look away from each other are no partners; choose tags of facing sides, or tell the gap by with_gap"
+    )]
+    DeepOverlap {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+        /// Mesh node.
+        node: u32,
+        /// Node of the other body.
+        partner: u32,
+        /// Overlap along the normal, m.
+        depth: f64,
+        /// What is allowed, m.
+        limit: f64,
+    },
     /// Two contact nodes have the same partner.
     #[error(
         "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both sides have to match node by node"

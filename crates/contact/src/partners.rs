@@ -4,7 +4,7 @@
 //! and to the normals of curved surfaces. Nodes on sides that do not face each other are no partners: a thin body has nodes of
 //! its far side on the same normal.
 
-use crate::contact_surface::Contact;
+use crate::contact_surface::{Contact, Gap};
 use crate::error::ContactError;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Frame, Surface, TetMesh};
@@ -15,6 +15,9 @@ const BESIDE: f64 = 0.02;
 
 /// Cosine between a normal and that of the other side reversed above which they face each other.
 const FACING: f64 = 0.1;
+
+/// Depth of measured overlap over the size of the facets from which on a node belongs to some far side: interference is small.
+const DEEP: f64 = 1.0;
 
 /// Gaps below this share of the largest coordinate are rounding errors.
 const ROUNDING: f64 = 1e-12;
@@ -48,7 +51,8 @@ pub(crate) fn partners(
         .enumerate()
         .map(|(local, &node)| {
             let normal = fixed.unwrap_or(&surface.frames()[local]).normal;
-            let limit = BESIDE * surface.areas()[local].sqrt();
+            let size = surface.areas()[local].sqrt();
+            let limit = BESIDE * size;
             let (partner, beside) = nearest(mesh, &other, node, normal, limit);
             let partner = partner.ok_or(ContactError::NoPartner {
                 contact: index,
@@ -56,6 +60,15 @@ pub(crate) fn partners(
                 beside,
                 limit,
             })?;
+            if matches!(contact.gap, Gap::Measured) && partner.gap < -DEEP * size {
+                return Err(ContactError::DeepOverlap {
+                    contact: index,
+                    node,
+                    partner: partner.node,
+                    depth: -partner.gap,
+                    limit: DEEP * size,
+                });
+            }
             let gap = if partner.gap.abs() > rounding {
                 partner.gap
             } else {
@@ -95,7 +108,7 @@ fn nearest(
     limit: f64,
 ) -> (Option<Partner>, f64) {
     let at = mesh.points()[node as usize];
-    let (mut found, mut least) = (None::<Partner>, f64::INFINITY);
+    let (mut found, mut shortest, mut least) = (None, f64::INFINITY, f64::INFINITY);
     for (&candidate, frame) in other.nodes().iter().zip(other.frames()) {
         if candidate == node || -frame.normal_part(normal) < FACING {
             continue;
@@ -106,7 +119,10 @@ fn nearest(
         let side = [0, 1, 2].map(|c| way[c] - gap * normal[c]);
         let beside = side.iter().map(|c| c * c).sum::<f64>().sqrt();
         least = least.min(beside);
-        if beside <= limit && found.is_none_or(|f| gap.abs() < f.gap.abs()) {
+        // of slender facets several nodes may be close enough to the normal
+        let distance = gap.hypot(beside);
+        if beside <= limit && distance < shortest {
+            shortest = distance;
             found = Some(Partner {
                 node: candidate,
                 gap,
