@@ -194,8 +194,7 @@ impl Solved<'_> {
         let places = || self.points.iter().zip(&model.points).zip(&weights.movable);
         let moved: Vec<Moved> = places()
             .map(|((point, touch), movable)| {
-                let place = movable.place(self.level, touch, &v);
-                Moved::new(touch, point, &place, &weights.rows, movable.value(&mut v))
+                Moved::new(touch, point, (self.level, movable), &weights.rows, &mut v)
             })
             .collect();
         self.support(&mut v);
@@ -344,8 +343,7 @@ impl Solved<'_> {
         on_planes(v);
         for _ in 0..SWEEPS {
             for (touch, movable) in places.clone().filter(dependent) {
-                let place = movable.place(self.level, touch, v);
-                place.push_out(movable.value(v));
+                movable.push_out(self.level, touch, v);
             }
         }
         on_planes(v);

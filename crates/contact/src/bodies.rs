@@ -10,7 +10,7 @@ use crate::level::Level;
 use crate::model::Model;
 use crate::solver::Iterate;
 use signorini_fem_mesh::DisjointSets;
-use signorini_tfeti::{Gluing, Tfeti};
+use signorini_tfeti::{Gluing, TangentialRows, Tfeti};
 
 /// To which body rows and subdomains belong. With one body there are no tables.
 #[derive(Debug, Default)]
@@ -129,13 +129,22 @@ impl Bodies {
     }
 }
 
-/// A number for each of so many bodies: the same for those that contact points join.
+/// A number for each of so many bodies: the same for those that contact points join. Where supports hold one side, a row may be
+/// of one body alone; friction joins its rows to the normal one all the same.
 fn joined(bodies: usize, body_of: &[u32], gluing: &Gluing) -> Vec<u32> {
     let mut sets = DisjointSets::new(bodies);
     for info in gluing.contact().iter().filter(|c| c.opponent.is_some()) {
-        for pair in gluing.row(info.row).windows(2) {
-            let [a, b] = [pair[0].0, pair[1].0].map(|s| body_of[s] as usize);
-            sets.join(a, b);
+        let along = match info.tangential {
+            TangentialRows::Interval { row, .. } => row..row + 1,
+            TangentialRows::Disc { row, .. } => row..row + 2,
+            _ => 0..0,
+        };
+        let rows = std::iter::once(info.row).chain(along);
+        let mut bodies = rows
+            .flat_map(|row| gluing.row(row))
+            .map(|entry| body_of[entry.0] as usize);
+        if let Some(first) = bodies.next() {
+            bodies.for_each(|other| sets.join(first, other));
         }
     }
     sets.numbers()

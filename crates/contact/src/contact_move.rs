@@ -1,14 +1,19 @@
 //! The best admissible position of one contact node, and its share of the duality gap; see the [algebraic
 //! error](crate::AlgebraicError).
 //!
-//! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more freedom.
+//! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more freedom. Where
+//! it is not free either, both move, each where it can.
 
 use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
+use nalgebra::{DMatrix, Vector3};
 
 /// Rounding of directions.
 const SAME: f64 = 1e-12;
+
+/// Freedom of a node that supports take counts above this.
+const HELD: f64 = 1e-8;
 
 /// Rounding of differences of positions, relative.
 const ROUNDING: f64 = 1e-12;
@@ -31,7 +36,17 @@ impl Side {
         let all = [self.normal, self.along[0], self.along[1]];
         all.iter().map(|d| dot(d, d)).sum()
     }
+
+    fn direction(&self, k: usize) -> &[f64; 3] {
+        match k {
+            0 => &self.normal,
+            k => &self.along[k - 1],
+        }
+    }
 }
+
+/// For each row how both nodes move so that the row grows by one, and the others do not.
+type Shifts = [[[f64; 3]; 2]; 3];
 
 /// The node of a contact point that moves, and its partner, which stays.
 #[derive(Debug, Clone)]
@@ -40,6 +55,8 @@ pub(crate) struct Movable {
     pub(crate) node: u32,
     own: Side,
     still: Option<(u32, Side)>,
+    /// Where supports hold both nodes in part.
+    both: Option<Box<Shifts>>,
 }
 
 impl Movable {
@@ -75,19 +92,51 @@ impl Movable {
                     node: touch.node,
                     own: first,
                     still: None,
+                    both: None,
                 }
             }
-            Some(opponent) if second.freedom() > first.freedom() + SAME => Self {
-                node: opponent,
-                own: second,
-                still: Some((touch.node, first)),
-            },
-            Some(opponent) => Self {
-                node: touch.node,
-                own: first,
-                still: Some((opponent, second)),
-            },
+            Some(opponent) => {
+                let swap = second.freedom() > first.freedom() + SAME;
+                let (node, own, still) = if swap {
+                    (opponent, second, (touch.node, first))
+                } else {
+                    (touch.node, first, (opponent, second))
+                };
+                let rows = touch.directions().count();
+                let held = own.freedom() < rows as f64 - HELD;
+                Self {
+                    node,
+                    own,
+                    still: Some(still),
+                    both: held.then(|| shifts(&own, &still.1, rows)).flatten(),
+                }
+            }
         }
+    }
+
+    /// Moves the node such that row `k`, the normal one or those along the surface, grows by so many metres.
+    pub(crate) fn shift(&self, v: &mut [f64], k: usize, by: f64) {
+        if let (Some(shifts), Some((still, _))) = (&self.both, &self.still) {
+            for (node, direction) in [self.node, *still].into_iter().zip(&shifts[k]) {
+                shift(&mut v[3 * node as usize..][..3], direction, by);
+            }
+            return;
+        }
+        let direction = self.own.direction(k);
+        // along the movable part, so that supports stay where they are
+        let by = if k == 0 {
+            by / dot(direction, direction)
+        } else {
+            by
+        };
+        shift(self.value(v), direction, by);
+    }
+
+    /// Moves the node out of the obstacle, if it is inside.
+    pub(crate) fn push_out(&self, level: &Level, touch: &TouchPoint, v: &mut [f64]) {
+        let place = self.place(level, touch, v);
+        let depth = place.depth(self.value(v)).max(0.0);
+        self.shift(v, 0, -depth);
     }
 
     /// The displacement of the node that moves.
@@ -140,16 +189,6 @@ impl Place {
     fn depth(&self, value: &[f64]) -> f64 {
         dot(&self.normal, value) - self.offset
     }
-
-    /// Moves the node out of the obstacle, if it is inside.
-    pub(crate) fn push_out(&self, value: &mut [f64]) {
-        let depth = self.depth(value).max(0.0);
-        shift(
-            value,
-            &self.normal,
-            -depth / dot(&self.normal, &self.normal),
-        );
-    }
 }
 
 /// A contact node after its move.
@@ -172,16 +211,17 @@ impl Moved {
     pub(crate) fn new(
         touch: &TouchPoint,
         point: &PointState,
-        place: &Place,
+        (level, movable): (&Level, &Movable),
         rows: &[f64],
-        value: &mut [f64],
+        v: &mut [f64],
     ) -> Self {
         let k = touch.scale.powi(2) * rows[touch.row];
-        let open = place.depth(value);
+        let place = movable.place(level, touch, v);
+        let open = place.depth(movable.value(v));
         let target = (open - point.normal_force / k).min(0.0);
-        // along the movable part, so that supports stay where they are
-        let normal = &place.normal;
-        shift(value, normal, (target - open) / dot(normal, normal));
+        movable.shift(v, 0, target - open);
+        let place = movable.place(level, touch, v);
+        let value = movable.value(v);
         let mut moved = Self {
             open: target,
             slip: [0.0; 2],
@@ -219,8 +259,8 @@ impl Moved {
             moved.change = change;
             moved.slip = nearest(size);
         }
-        for (j, (direction, _)) in place.along().iter().enumerate() {
-            shift(value, direction, moved.slip[j] - start[j]);
+        for j in 0..place.along().len() {
+            movable.shift(v, 1 + j, moved.slip[j] - start[j]);
         }
         moved
     }
@@ -263,6 +303,23 @@ impl Moved {
         };
         (self.bound - size).max(0.0) * way + angle
     }
+}
+
+/// How both nodes move for each of so many rows, as little as possible; `None` if nothing makes the rows independent.
+fn shifts(own: &Side, still: &Side, rows: usize) -> Option<Box<Shifts>> {
+    let matrix = DMatrix::from_fn(rows, 6, |k, c| {
+        if c < 3 {
+            own.direction(k)[c]
+        } else {
+            still.direction(k)[c - 3]
+        }
+    });
+    let inverse = matrix.pseudo_inverse(HELD).ok()?;
+    let mut out = Shifts::default();
+    for (k, shift) in out.iter_mut().enumerate().take(rows) {
+        *shift = [0, 3].map(|at| Vector3::from_fn(|c, _| inverse[(at + c, k)]).into());
+    }
+    Some(Box::new(out))
 }
 
 fn length(w: [f64; 2]) -> f64 {

@@ -117,9 +117,12 @@ impl Contact {
         }
     }
 
-    /// More facets of the other body.
+    /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
     #[must_use]
     pub fn and_partner(mut self, tag: FacetTag) -> Self {
+        if self.partner.is_empty() && matches!(self.gap, Gap::None) {
+            self.gap = Gap::Measured;
+        }
         self.partner.push(tag);
         self
     }

@@ -3,7 +3,7 @@
 use crate::algebraic::{AlgebraicError, Solved};
 use crate::certificate::{Certificate, slip_bound};
 use crate::error::ContactError;
-use crate::level::Level;
+use crate::level::{Level, at};
 use crate::model::{Model, Tangential, TouchPoint};
 use crate::reactions::{self, Reactions};
 use crate::report::LevelReport;
@@ -345,6 +345,8 @@ pub(crate) struct Rows<'a> {
     pub(crate) displacement: &'a [f64],
     /// `c`.
     pub(crate) offset: &'a [f64],
+    /// The part of it between bodies that comes from supports.
+    pub(crate) prescribed: &'a [f64],
 }
 
 /// Evaluates the touch points: `rows` is `B u` in row units.
@@ -358,6 +360,7 @@ pub(crate) fn point_states(
         lambda: Some(lambda),
         displacement: rows,
         offset: &level.offset,
+        prescribed: &level.prescribed,
     };
     let state = |(k, point): (usize, &TouchPoint)| {
         let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
@@ -388,7 +391,7 @@ pub(crate) fn point_state(
         for j in 0..count {
             let u = rows.displacement[row + j];
             friction[j] = scale * lambda(row + j);
-            displacement[j] = u / scale;
+            displacement[j] = (u - at(rows.prescribed, row + j)) / scale;
             difference[j] = alpha * (u - rows.offset[row + j]) / scale;
         }
         on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
@@ -449,7 +452,8 @@ pub(crate) fn summarise(
         s.max_penetration = s.max_penetration.max(-point.gap);
         for (direction, k, scale) in touch.along() {
             let old = before.get(k - start).copied().unwrap_or(0.0);
-            let new = rows[k] / scale - level.carried(touch.surface, &direction);
+            let moved = rows[k] - at(&level.prescribed, k);
+            let new = moved / scale - level.carried(touch.surface, &direction);
             s.friction_work -= scale * lambda[k] * (new - old);
         }
         if let (Some(now), Some(old)) = (

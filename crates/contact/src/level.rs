@@ -32,6 +32,9 @@ pub(crate) struct Level {
     pub(crate) rhs: Vec<f64>,
     /// Displacement of the obstacle of each contact surface, now and at the level before; empty where none moves.
     pub(crate) obstacles: [Vec<[f64; 3]>; 2],
+    /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not in `B u`.
+    /// By contact row, in row units; empty where no support moves such a point.
+    pub(crate) prescribed: Vec<f64>,
     /// Largest sizes of each body at earlier levels.
     pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
@@ -89,6 +92,10 @@ impl Level {
             .collect();
         self.offset = model.tfeti.prescribed_offsets(&cases);
         self.driven = model.driven(&self.offset);
+        self.prescribed.clear();
+        if model.plan.effects.motion && model.plan.effects.partners {
+            self.prescribed = between_bodies(&model.points, &self.offset);
+        }
         if model.plan.effects.gap {
             for point in &model.points {
                 self.offset[point.row] += point.scale * point.gap;
@@ -214,4 +221,21 @@ impl Level {
 /// Pressing force at a point in newtons, not negative.
 pub(crate) fn normal_force(point: &TouchPoint, lambda: &[f64]) -> f64 {
     (-point.scale * lambda[point.row]).max(0.0)
+}
+
+/// Of offsets that supports alone have made those of tangential rows between bodies; all others are zero.
+pub(crate) fn between_bodies(points: &[TouchPoint], offset: &[f64]) -> Vec<f64> {
+    let mut out = Vec::new();
+    for point in points.iter().filter(|p| p.opponent.is_some()) {
+        for (_, row, _) in point.along() {
+            out.resize(out.len().max(row + 1), 0.0);
+            out[row] = offset[row];
+        }
+    }
+    out
+}
+
+/// A value by row of a table that may end before; zero there.
+pub(crate) fn at(table: &[f64], row: usize) -> f64 {
+    table.get(row).copied().unwrap_or(0.0)
 }

@@ -19,7 +19,7 @@ use crate::contact_surface::Contact;
 use crate::error::ContactError;
 use crate::frame::{PointState, Rows, point_state};
 use crate::law::Friction;
-use crate::level::Level;
+use crate::level::{Level, at, between_bodies};
 use crate::model::{Model, TouchPoint, supports, touch_points};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -229,15 +229,8 @@ impl Screen {
         torn: &[f64],
     ) -> Vec<PointState> {
         let contact = self.entries.len();
-        let mut offset = vec![0.0; contact];
-        for (case, history) in model.motions.iter().enumerate() {
-            let factor = history.value(level.time);
-            for &(row, value) in self.gluing.prescribed(case) {
-                if let Some(offset) = offset.get_mut(row as usize) {
-                    *offset += factor * value;
-                }
-            }
-        }
+        let mut offset = self.prescribed(model, level);
+        let prescribed = between_bodies(&self.points, &offset);
         let formula = model.scene.analysis.formula();
         let start = self.gluing.ranges().tangential().start;
         let mut displacement = vec![0.0; contact];
@@ -269,6 +262,7 @@ impl Screen {
                 lambda: None,
                 displacement: &displacement,
                 offset: &offset,
+                prescribed: &prescribed,
             };
             out.push(point_state(model, level, point, &rows, 0.0));
         }
@@ -276,14 +270,29 @@ impl Screen {
     }
 
     /// Tangential displacements of the points left out, written into a complete trace.
-    pub(crate) fn fill_trace(&self, level: &Level, torn: &[f64], trace: &mut [f64]) {
+    pub(crate) fn fill_trace(&self, model: &Model, level: &Level, torn: &[f64], trace: &mut [f64]) {
         let start = self.gluing.ranges().tangential().start;
+        let prescribed = between_bodies(&self.points, &self.prescribed(model, level));
         for (point, _) in self.points.iter().zip(&self.active).filter(|(_, a)| !**a) {
             for (direction, k, scale) in point.along() {
-                trace[k - start] =
-                    self.times(k, torn) / scale - level.carried(point.surface, &direction);
+                let moved = self.times(k, torn) - at(&prescribed, k);
+                trace[k - start] = moved / scale - level.carried(point.surface, &direction);
             }
         }
+    }
+
+    /// Offsets of all contact rows that come from supports.
+    fn prescribed(&self, model: &Model, level: &Level) -> Vec<f64> {
+        let mut offset = vec![0.0; self.entries.len()];
+        for (case, history) in model.motions.iter().enumerate() {
+            let factor = history.value(level.time);
+            for &(row, value) in self.gluing.prescribed(case) {
+                if let Some(offset) = offset.get_mut(row as usize) {
+                    *offset += factor * value;
+                }
+            }
+        }
+        offset
     }
 
     /// The complete trace of the tangential rows that are in.

@@ -12,7 +12,7 @@ use crate::face_solver::restore_sliding;
 use crate::fingerprint::Fingerprint;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::law::Friction;
-use crate::level::Level;
+use crate::level::{Level, at};
 use crate::model::{Model, TouchPoint};
 use crate::plan::Plan;
 use crate::pool::on_pool;
@@ -376,10 +376,11 @@ impl Simulation {
             trace.resize(self.model.tangential_rows(), 0.0);
             let start = self.model.tangential_start();
             for point in &self.model.points {
-                // relative to the obstacle
+                // relative to the obstacle or the other body
                 for (direction, k, scale) in point.along() {
+                    let moved = rows[k] - at(&self.level.prescribed, k);
                     trace[k - start] =
-                        rows[k] / scale - self.level.carried(point.surface, &direction);
+                        moved / scale - self.level.carried(point.surface, &direction);
                 }
             }
             sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));
@@ -424,7 +425,7 @@ impl Simulation {
             (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
             if effects.history {
                 trace = screen.expand_trace(&trace, self.model.tangential_start());
-                screen.fill_trace(&self.level, &self.torn, &mut trace);
+                screen.fill_trace(&self.model, &self.level, &self.torn, &mut trace);
             }
         }
         state.advance(

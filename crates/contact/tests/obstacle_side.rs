@@ -38,7 +38,7 @@ fn a_direction_into_the_body_or_along_its_surface_is_refused() {
             let error = result(contact.clone(), settings).expect_err("refused");
             let text = error.to_string();
             assert!(
-                text.starts_with("contact:") && text.contains("turn the direction round"),
+                text.starts_with("contact 0:") && text.contains("turn the direction round"),
                 "{text}"
             );
             match error {

@@ -374,6 +374,13 @@ fn what_cannot_be_paired_is_refused() {
         matches!(error, ContactError::SharedPartner { .. }),
         "{error}"
     );
+    // sides that look away from each other
+    let outer = Contact::between(second(brick::Z_MAX), brick::Z_MIN);
+    let error = fails(column([2; 3]), outer);
+    assert!(
+        matches!(error, ContactError::Overlap { contact: 0, depth, .. } if (depth - 2.0).abs() < 1e-9),
+        "{error}"
+    );
     let error = fails(column([2; 3]), joint().moved([1.0, 0.0, 0.0], ramp()));
     assert!(
         matches!(error, ContactError::MovedPartner { contact: 0 }),
@@ -390,6 +397,30 @@ fn what_cannot_be_paired_is_refused() {
     assert!(Simulation::new(scene, Settings::default()).is_ok());
     let error = fails(column([2; 3]), joint().and_partner(FacetTag(999)));
     assert!(error.to_string().contains("999"), "{error}");
+}
+
+/// Facets so slender that neighbours are closer to a normal than is allowed for partners; a gap that a rigid contact has not told.
+#[test]
+fn partners_are_the_nearest_nodes() {
+    let lower = block([1.0, 100.0, 1.0], [40, 2, 1]);
+    let upper = lower
+        .map_points(|[x, y, z]| [x, y, z + 1.5])
+        .expect("moved");
+    let rigid = Contact::rigid(second(brick::Z_MIN)).and_partner(brick::Z_MAX);
+    for contact in [joint(), rigid] {
+        let scene = Scene::new(with(&lower, &upper), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_support(Support::fixed(second(brick::Z_MAX)))
+            .with_contact(contact);
+        let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        for point in simulation.touch_points() {
+            let places = simulation.scene().mesh().points();
+            let opponent = point.opponent.expect("a partner");
+            let [a, b] = [point.node, opponent].map(|node| places[node as usize]);
+            assert_eq!([a[0], a[1]], [b[0], b[1]]);
+            assert!((point.gap - 0.5).abs() < 1e-12, "{}", point.gap);
+        }
+    }
 }
 
 /// Two blocks side by side under a third, in a corner of two walls with friction: nodes where three bodies or two bodies and
