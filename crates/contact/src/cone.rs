@@ -76,6 +76,11 @@ impl Cone {
     /// Whether the loads `b`, N, are out of reach of cone and given friction.
     pub(crate) fn exceeded(&mut self, b: &[f64]) -> Option<Separation> {
         let size = norm(b);
+        // what friction of any size cannot hold: friction much larger than the loads would take many steps to tell
+        let unit: Vec<f64> = b.iter().map(|v| v / size).collect();
+        if let Some(motion) = self.separated(&unit, true) {
+            return Some(Separation { motion, given: 0.0 });
+        }
         // loads mostly follow one another
         let mut z = std::mem::take(&mut self.held);
         z.resize(b.len(), 0.0);
@@ -131,6 +136,11 @@ impl Cone {
     /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies in the
     /// cone, or if that remains open.
     pub(crate) fn separates(&mut self, b: &[f64]) -> Option<Vec<f64>> {
+        self.separated(b, false)
+    }
+
+    /// The same; with `unbounded`, given friction may be as large as it likes.
+    fn separated(&mut self, b: &[f64], unbounded: bool) -> Option<Vec<f64>> {
         let mut used: Vec<Vec<f64>> = Vec::new();
         let mut factors: Vec<f64> = Vec::new();
         for _ in 0..ROUNDS {
@@ -144,7 +154,7 @@ impl Cone {
             if length <= RESIDUAL {
                 return None;
             }
-            let Some((gain, column)) = self.best(&r) else {
+            let Some((gain, column)) = self.best(&r, unbounded) else {
                 // no contact force at all: every load separates
                 r.iter_mut().for_each(|v| *v /= length);
                 return Some(r);
@@ -164,7 +174,7 @@ impl Cone {
     }
 
     /// The generator with the largest product with `r`; `None` if there is none.
-    fn best(&self, r: &[f64]) -> Option<(f64, Vec<f64>)> {
+    fn best(&self, r: &[f64], unbounded: bool) -> Option<(f64, Vec<f64>)> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let mut offer = |gain: f64, column: &dyn Fn() -> Vec<f64>| {
             if best.as_ref().is_none_or(|b| gain > b.0) {
@@ -185,7 +195,8 @@ impl Cone {
                 }
                 out
             };
-            let bound = g.coefficient.unwrap_or(0.0);
+            let coefficient = g.coefficient.filter(|_| !(unbounded && g.given > 0.0));
+            let bound = coefficient.unwrap_or(0.0);
             offer(dot(&g.normal, r) + bound * friction, &|| {
                 let mut out = direction(bound);
                 for (o, n) in out.iter_mut().zip(&g.normal) {
@@ -193,7 +204,7 @@ impl Cone {
                 }
                 out
             });
-            if g.coefficient.is_none() {
+            if coefficient.is_none() {
                 offer(friction, &|| direction(1.0));
             }
         }
@@ -281,6 +292,21 @@ mod tests {
         }
         // what lifts the body off is not held by it
         assert!(cone.exceeded(&[-1.0, 0.0, 0.0]).is_some());
+    }
+
+    /// Friction a million times the loads does not hide what it cannot hold.
+    #[test]
+    fn huge_given_friction_holds_no_lift() {
+        for given in [1.0, 1e6, 1e12] {
+            let mut cone = two_points(0.0);
+            for g in &mut cone.generators {
+                g.given = given;
+            }
+            let found = cone.exceeded(&[-1.0, 0.3, 0.1]).expect("lifts off");
+            assert_eq!(found.given, 0.0);
+            assert!(found.motion[0] < -0.5 && found.motion[1].abs() < 1e-6);
+            assert_eq!(cone.exceeded(&[1.0, 0.3, 0.1]), None);
+        }
     }
 
     fn held(cone: &mut Cone, b: [f64; 3]) -> bool {
