@@ -292,13 +292,15 @@ pub enum ContactError {
     },
     /// Loads that nothing can balance.
     #[error(
-        "level {level}: body {body} cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push along it with {force:.3e} N; add a support, contact or friction, or balance the loads"
+        "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push along it with {force:.3e} N; add a support, contact or friction, or balance the loads"
     )]
     NotHeld {
         /// Time level, from 0.
         level: usize,
-        /// The body (part of the mesh that hangs together).
+        /// The body (part of the mesh that hangs together; of bodies that may touch each other the one that moves most).
         body: usize,
+        /// One of its mesh nodes.
+        node: u32,
         /// The rigid motion, in words: translation of the centre of the body, and rotation in metres at its radius.
         mode: String,
         /// Work of the loads per metre of the motion, N. For a translation it is the force along it, for a rotation the

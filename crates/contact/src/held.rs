@@ -45,7 +45,8 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
     worst.map_or(Ok(()), |w| {
         Err(ContactError::NotHeld {
             level: w.level,
-            body: w.body,
+            body: w.way.body,
+            node: model.decomposition.subdomains()[w.way.subdomain].nodes[0],
             mode: w.mode,
             force: w.force,
         })
@@ -55,7 +56,7 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
 /// Where and how a body gets away.
 struct Escape {
     level: usize,
-    body: usize,
+    way: Part,
     mode: String,
     force: f64,
 }
@@ -127,7 +128,7 @@ fn escapes(
 fn escape(level: usize, motions: &[&FreeMotion], motion: &[f64], force: f64, given: f64) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-    let (body, mode, share) = describe(motions, &motion);
+    let (way, mode, share) = describe(motions, &motion);
     let mode = if given > 0.0 {
         format!(
             "{mode}, of which given friction holds {:.3e} N,",
@@ -138,7 +139,7 @@ fn escape(level: usize, motions: &[&FreeMotion], motion: &[f64], force: f64, giv
     };
     Escape {
         level,
-        body,
+        way,
         mode,
         force: force * share,
     }
@@ -189,29 +190,44 @@ fn generators(
     Ok(out)
 }
 
-/// What a message says of a motion: the body that moves most, its motion in words, of length one, and its length.
-fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (usize, String, f64) {
-    // by the first subdomain: parts that hinges join are one body
-    let mut parts: Vec<(usize, f64, [f64; 6], usize)> = Vec::new();
+/// A rigid part: a body, or what hinges join to one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Part {
+    body: usize,
+    /// Its first subdomain.
+    subdomain: usize,
+    radius: f64,
+    /// Translation, and rotation times the radius.
+    motion: [f64; 6],
+}
+
+/// What a message says of a motion: the part that moves most, its motion in words, of length one, and its length.
+fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (Part, String, f64) {
+    let mut parts: Vec<Part> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
         for part in &motion.bodies {
-            let at = match parts.iter().position(|p| p.0 == part.subdomain) {
+            let at = match parts.iter().position(|p| p.subdomain == part.subdomain) {
                 Some(at) => at,
                 None => {
-                    parts.push((part.subdomain, part.radius, [0.0; 6], part.body));
+                    parts.push(Part {
+                        body: part.body,
+                        subdomain: part.subdomain,
+                        radius: part.radius,
+                        motion: [0.0; 6],
+                    });
                     parts.len() - 1
                 }
             };
             for c in 0..3 {
-                parts[at].2[c] += factor * part.translation[c];
-                parts[at].2[3 + c] += factor * part.rotation[c];
+                parts[at].motion[c] += factor * part.translation[c];
+                parts[at].motion[3 + c] += factor * part.rotation[c];
             }
         }
     }
-    let size = |p: &(usize, f64, [f64; 6], usize)| vector::norm(&p.2);
+    let size = |p: &Part| vector::norm(&p.motion);
     let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
-    let (_, radius, m, body) = most.copied().unwrap_or((0, 1.0, [0.0; 6], 0));
-    let length = vector::norm(&m);
+    let most = most.copied().unwrap_or_default();
+    let (m, radius, length) = (most.motion, most.radius, size(&most));
     let rounded = |v: &f64| {
         let v = v / length;
         if v.abs() < 5e-4 { 0.0 } else { v }
@@ -226,7 +242,7 @@ fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (usize, String, f64) {
         .into_iter()
         .chain(turn)
         .collect();
-    (body, format!("its {}", parts.join(" with ")), length)
+    (most, format!("its {}", parts.join(" with ")), length)
 }
 
 /// The orthonormal coarse rows that the linear solver and the paper's methods need.

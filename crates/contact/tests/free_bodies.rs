@@ -35,6 +35,7 @@ fn not_held(scene: Scene) -> (usize, usize, String, f64) {
             body,
             mode,
             force,
+            ..
         } => {
             assert!(
                 text.contains(&format!("{force:.3e} N;")) && text.contains(&mode),
