@@ -6,6 +6,7 @@ use crate::fingerprint::Fingerprint;
 
 #[cfg(feature = "checkpoint")]
 mod bytes;
+mod debug;
 
 /// What one level hands to the next.
 ///
@@ -39,17 +40,6 @@ pub struct State {
     unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
     origin: Option<Fingerprint>,
-}
-
-/// How far it is and how large; not its vectors.
-impl std::fmt::Debug for State {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("State")
-            .field("level", &self.level)
-            .field("bytes", &self.bytes())
-            .field("unconverged_history", &self.unconverged)
-            .finish_non_exhaustive()
-    }
 }
 
 /// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.

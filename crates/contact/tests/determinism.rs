@@ -6,8 +6,10 @@ use common::{
     benchmark, bits, methods, rest, small_benchmark, state_bits, step, up_down_up, weakening,
 };
 use signorini_contact::{
-    Analysis, DifferenceFormula, Friction, Method, Scene, Settings, Simulation,
+    Analysis, Contact, DifferenceFormula, Friction, Load, Method, Scene, Settings, Simulation,
+    Support,
 };
+use signorini_fem_mesh::{FacetTag, brick};
 
 /// Bits of all levels and of the state at the end.
 fn fingerprint(scene: Scene, settings: Settings) -> (Vec<Vec<u64>>, String) {
@@ -80,6 +82,31 @@ fn threads_change_no_bit_where_every_subdomain_is_different() {
         .with_analysis(Analysis::quasistatic(1.0, 3));
     let run = |threads| with_threads(threads, || fingerprint(scene.clone(), Settings::default()));
     assert!(run(1) == run(2));
+}
+
+/// Contact between bodies, with partners that are looked for in parallel.
+#[test]
+fn threads_change_no_bit_between_bodies() {
+    let other = |tag: FacetTag| FacetTag(tag.0 + 100);
+    let lower = common::block([1.0; 3], [4; 3]);
+    let upper = lower
+        .map_points(|[x, y, z]| [x, y, z + 1.0])
+        .expect("moved");
+    let mesh = lower.append(&upper.map_tags(other)).expect("two bodies");
+    let scene = Scene::new(mesh, common::steel())
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_load(Load::traction(other(brick::Z_MAX), [2e8, 0.0, -1e9]).with_history(up_down_up()))
+        .with_contact(
+            Contact::between(other(brick::Z_MIN), brick::Z_MAX).with_friction(weakening()),
+        )
+        .with_boxes([2, 2, 4])
+        .with_analysis(Analysis::quasistatic(1.0, 4));
+    let run = |threads| with_threads(threads, || fingerprint(scene.clone(), Settings::default()));
+    let one = run(1);
+    assert!(one.1.len() > 10_000, "all numbers of the state");
+    for threads in [2, 3] {
+        assert!(one == run(threads), "{threads} threads");
+    }
 }
 
 #[test]

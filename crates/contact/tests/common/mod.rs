@@ -186,7 +186,7 @@ pub(crate) fn bits(level: &Level) -> Vec<u64> {
 /// All bits of a stored state: multipliers, traces, rates.
 pub(crate) fn state_bits(state: &State) -> String {
     // the shortest decimals that give the same numbers back, with the sign of zero
-    format!("{state:?}")
+    format!("{state:#?}")
 }
 
 /// `axis` and `angle` to a rotation matrix.
