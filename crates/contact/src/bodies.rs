@@ -6,11 +6,12 @@
 //! problem of a level is solved with forces and displacements of each body divided by it. The conditions are homogeneous,
 //! so that only data change (`d`, `e`, given slip bounds), operators do not; units are powers of two, so that no digit changes.
 
+use crate::candidates::Candidate;
 use crate::level::Level;
 use crate::model::Model;
 use crate::solver::Iterate;
-use signorini_fem_mesh::DisjointSets;
-use signorini_tfeti::{Gluing, TangentialRows, Tfeti};
+use signorini_fem_mesh::{Decomposition, DisjointSets};
+use signorini_tfeti::Tfeti;
 
 /// To which body rows and subdomains belong. With one body there are no tables.
 #[derive(Debug, Default)]
@@ -23,9 +24,13 @@ pub(crate) struct Bodies {
 }
 
 impl Bodies {
-    pub(crate) fn new(tfeti: &Tfeti) -> Self {
+    pub(crate) fn new(
+        tfeti: &Tfeti,
+        decomposition: &Decomposition,
+        candidates: &[Candidate],
+    ) -> Self {
         let (coarse, gluing) = (tfeti.coarse(), tfeti.gluing());
-        let numbers = joined(coarse.bodies(), coarse.body_of(), gluing);
+        let numbers = joined(tfeti, decomposition, candidates);
         let count = numbers.iter().max().map_or(0, |last| *last as usize + 1);
         if count <= 1 {
             return Self {
@@ -129,23 +134,20 @@ impl Bodies {
     }
 }
 
-/// A number for each of so many bodies: the same for those that contact points join. Where supports hold one side, a row may be
-/// of one body alone; friction joins its rows to the normal one all the same.
-fn joined(bodies: usize, body_of: &[u32], gluing: &Gluing) -> Vec<u32> {
-    let mut sets = DisjointSets::new(bodies);
-    for info in gluing.contact().iter().filter(|c| c.opponent.is_some()) {
-        let along = match info.tangential {
-            TangentialRows::Interval { row, .. } => row..row + 1,
-            TangentialRows::Disc { row, .. } => row..row + 2,
-            _ => 0..0,
-        };
-        let rows = std::iter::once(info.row).chain(along);
-        let mut bodies = rows
-            .flat_map(|row| gluing.row(row))
-            .map(|entry| body_of[entry.0] as usize);
-        if let Some(first) = bodies.next() {
-            bodies.for_each(|other| sets.join(first, other));
-        }
+/// A number for each body of the coarse space: the same for those that may touch each other, whether the points that may are in
+/// the dual problem or not.
+fn joined(tfeti: &Tfeti, decomposition: &Decomposition, candidates: &[Candidate]) -> Vec<u32> {
+    let coarse = tfeti.coarse();
+    let mut sets = DisjointSets::new(coarse.bodies());
+    let body = |node: u32| {
+        let copy = decomposition.copies(node as usize)[0];
+        coarse.body_of()[copy.subdomain as usize] as usize
+    };
+    for (node, opponent) in candidates
+        .iter()
+        .filter_map(|c| Some((c.node, c.opponent?)))
+    {
+        sets.join(body(node), body(opponent));
     }
     sets.numbers()
 }

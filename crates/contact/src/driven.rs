@@ -5,15 +5,13 @@
 
 use crate::candidates::{Candidate, contact_nodes};
 use crate::error::ContactError;
+use crate::magnitude::rounding;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
 use signorini_tfeti::{HeldPoint, Support, held_points};
 
 /// Depth above this share of the displacement or the gap counts.
 const RELATIVE: f64 = 1e-9;
-
-/// Depth below this share of the largest coordinate is rounding of a gap that was computed from coordinates.
-const ROUNDING: f64 = 1e-12;
 
 /// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some time level.
 pub(crate) fn check(
@@ -34,8 +32,7 @@ pub(crate) fn check(
     if held.is_empty() {
         return Ok(());
     }
-    let largest = |m: f64, v: &f64| m.max(v.abs());
-    let rounding = ROUNDING * points.iter().flatten().fold(0.0, largest);
+    let rounding = rounding(&scene.mesh);
     let times = (0..scene.analysis.levels()).filter_map(|level| scene.analysis.time(level));
     for time in times {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();

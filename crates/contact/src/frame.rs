@@ -450,10 +450,10 @@ pub(crate) fn summarise(
             s.max_slip_rate = s.max_slip_rate.max(point.slip_rate);
         }
         s.max_penetration = s.max_penetration.max(-point.gap);
-        for (direction, k, scale) in touch.along() {
-            let old = before.get(k - start).copied().unwrap_or(0.0);
-            let moved = rows[k] - at(&level.prescribed, k);
-            let new = moved / scale - level.carried(touch.surface, &direction);
+        for along in touch.along() {
+            let (_, k, scale) = along;
+            let old = at(before, k - start);
+            let new = level.relative(touch.surface, along, rows[k], &level.prescribed);
             s.friction_work -= scale * lambda[k] * (new - old);
         }
         if let (Some(now), Some(old)) = (

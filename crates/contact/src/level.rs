@@ -148,6 +148,18 @@ impl Level {
             .map_or(0.0, |w| dot(w, direction))
     }
 
+    /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m: `value` is
+    /// what `B u` has of it, `prescribed` what supports do beside that.
+    pub(crate) fn relative(
+        &self,
+        surface: usize,
+        (direction, row, scale): ([f64; 3], usize, f64),
+        value: f64,
+        prescribed: &[f64],
+    ) -> f64 {
+        (value - at(prescribed, row)) / scale - self.carried(surface, &direction)
+    }
+
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its motion.
     pub(crate) fn rest(&self, body: usize) -> f64 {
         self.at_rest(body, |p| p.multipliers)

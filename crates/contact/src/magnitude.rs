@@ -5,7 +5,7 @@ use crate::candidates::Candidate;
 use crate::clock::Analysis;
 use crate::error::ContactError;
 use crate::scene::Scene;
-use signorini_fem_mesh::History;
+use signorini_fem_mesh::{History, TetMesh};
 use signorini_qp::vector;
 use signorini_tfeti::LoadResponse;
 
@@ -37,6 +37,15 @@ fn largest(analysis: &Analysis, history: &History) -> (f64, f64) {
             worst
         }
     })
+}
+
+/// Distances below this share of the largest coordinate are rounding errors of what was computed from coordinates.
+const ROUNDING: f64 = 1e-12;
+
+/// What of a distance between points of a mesh may be rounding, m.
+pub(crate) fn rounding(mesh: &TetMesh) -> f64 {
+    let largest = |m: f64, v: &f64| m.max(v.abs());
+    ROUNDING * mesh.points().iter().flatten().fold(0.0, largest)
 }
 
 /// Motions of supports and obstacles.

@@ -239,10 +239,10 @@ impl Model {
         ])
         .map_err(signorini_qp::QpError::from)?;
         Ok(Self {
+            bodies: Bodies::new(&tfeti, &decomposition, &candidates),
             scene,
             plan,
             decomposition,
-            bodies: Bodies::new(&tfeti),
             tfeti,
             loads,
             motions,

@@ -6,8 +6,10 @@
 
 use crate::contact_surface::{Contact, Gap};
 use crate::error::ContactError;
+use crate::magnitude::rounding;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Frame, Surface, TetMesh};
+use signorini_qp::vector;
 use std::collections::HashMap;
 
 /// Distance of a partner from the normal, over the size of the facets (the root of the area of a node), that is allowed;
@@ -21,9 +23,6 @@ const FACING: f64 = 0.1;
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
-
-/// Gaps below this share of the largest coordinate are rounding errors.
-const ROUNDING: f64 = 1e-12;
 
 /// The partner of a contact node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +45,8 @@ pub(crate) fn partners(
         return Ok(Vec::new());
     }
     let other = Side::new(mesh, Surface::new(mesh, &contact.partner)?);
-    let largest = |m: f64, v: &f64| m.max(v.abs());
-    let rounding = ROUNDING * mesh.points().iter().flatten().fold(0.0, largest);
-    let found: Result<Vec<Partner>, ContactError> = surface
+    let rounding = rounding(mesh);
+    let found: Vec<Result<Partner, ContactError>> = surface
         .nodes()
         .par_iter()
         .enumerate()
@@ -56,10 +54,10 @@ pub(crate) fn partners(
             let normal = fixed.unwrap_or(&surface.frames()[local]).normal;
             let size = surface.areas()[local].sqrt();
             let partner = other.partner(mesh, node, normal, size);
-            let partner = partner.map_err(|beside| ContactError::NoPartner {
+            let partner = partner.ok_or_else(|| ContactError::NoPartner {
                 contact: index,
                 node,
-                beside,
+                beside: other.beside(mesh, node, normal),
                 limit: BESIDE * size,
             })?;
             if matches!(contact.gap, Gap::Measured) && -partner.gap > size {
@@ -79,7 +77,8 @@ pub(crate) fn partners(
             Ok(Partner { gap, ..partner })
         })
         .collect();
-    let found = found?;
+    // of several errors the first, whichever thread has found one
+    let found: Vec<Partner> = found.into_iter().collect::<Result<_, _>>()?;
     let mut owners = HashMap::new();
     for (partner, &node) in found.iter().zip(surface.nodes()) {
         if let Some(first) = owners.insert(partner.node, node)
@@ -97,8 +96,8 @@ pub(crate) fn partners(
 }
 
 fn distance(mesh: &TetMesh, a: u32, b: u32) -> f64 {
-    let [a, b] = [a, b].map(|node| mesh.points()[node as usize]);
-    length([0, 1, 2].map(|c| a[c] - b[c]))
+    let [a, b] = [a, b].map(|node| &mesh.points()[node as usize]);
+    vector::distance(a, b)
 }
 
 /// The other side, with its nodes in the order of each coordinate.
@@ -121,25 +120,15 @@ impl Side {
         Self { surface, sorted }
     }
 
-    /// The nearest node at the normal of a node with facets of this size; else how far from the normal the best of all is.
-    fn partner(
-        &self,
-        mesh: &TetMesh,
-        node: u32,
-        normal: [f64; 3],
-        size: f64,
-    ) -> Result<Partner, f64> {
+    /// The nearest node at the normal of a node with facets of this size.
+    fn partner(&self, mesh: &TetMesh, node: u32, normal: [f64; 3], size: f64) -> Option<Partner> {
         let search = |most: f64| self.nearest(mesh, node, normal, size, most);
-        if let Ok((partner, distance)) = search(NEAR * size)
-            && distance <= NEAR * size
-        {
-            return Ok(partner);
-        }
-        search(f64::INFINITY).map(|found| found.0)
+        let near = search(NEAR * size).filter(|(_, distance)| *distance <= NEAR * size);
+        let found = near.or_else(|| search(f64::INFINITY));
+        found.map(|(partner, _)| partner)
     }
 
-    /// The nearest of the nodes that may be closer than `most`, with its distance; else how far from the normal the best of
-    /// them is.
+    /// The nearest of the nodes that may be closer than `most`, with its distance.
     fn nearest(
         &self,
         mesh: &TetMesh,
@@ -147,7 +136,7 @@ impl Side {
         normal: [f64; 3],
         size: f64,
         most: f64,
-    ) -> Result<(Partner, f64), f64> {
+    ) -> Option<(Partner, f64)> {
         let at = mesh.points()[node as usize];
         // along the axis on which the normal is shortest
         let slope = |c: &usize| normal[*c].abs();
@@ -163,34 +152,50 @@ impl Side {
         let from = list.partition_point(|(x, _)| *x < at[axis] - reach);
         let near = list[from..].iter();
         let near = near.take_while(|(x, _)| *x <= at[axis] + reach);
-        let (mut found, mut best) = (None::<(Partner, f64)>, f64::INFINITY);
-        for local in near.map(|(_, local)| *local as usize) {
-            let candidate = self.surface.nodes()[local];
-            let facing = -self.surface.frames()[local].normal_part(normal);
-            if candidate == node || facing < FACING {
+        let mut found = None::<(Partner, f64)>;
+        for &(_, local) in near {
+            let Some((partner, beside)) = self.seen(mesh, node, normal, local as usize) else {
                 continue;
-            }
-            let to = mesh.points()[candidate as usize];
-            let way = [0, 1, 2].map(|c| to[c] - at[c]);
-            let gap = (0..3).map(|c| way[c] * normal[c]).sum::<f64>();
-            let beside = length([0, 1, 2].map(|c| way[c] - gap * normal[c]));
-            best = best.min(beside);
-            let distance = length(way);
-            let allowed = BESIDE * size + (TILT * gap.abs()).min(MOST * size);
+            };
+            let distance = partner.gap.hypot(beside);
+            let allowed = BESIDE * size + (TILT * partner.gap.abs()).min(MOST * size);
             if beside <= allowed && found.is_none_or(|f| distance < f.1) {
-                let partner = Partner {
-                    node: candidate,
-                    gap,
-                };
                 found = Some((partner, distance));
             }
         }
-        found.ok_or(best)
+        found
     }
-}
 
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+    /// How far from the normal of a node the next of all nodes that face it is, m; infinite if none does.
+    fn beside(&self, mesh: &TetMesh, node: u32, normal: [f64; 3]) -> f64 {
+        let all = 0..self.surface.nodes().len();
+        let seen = all.filter_map(|local| self.seen(mesh, node, normal, local));
+        seen.fold(f64::INFINITY, |least, (_, beside)| least.min(beside))
+    }
+
+    /// A node of the other side as it is seen from a node: along its normal, and beside it. `None` if it does not face it.
+    fn seen(
+        &self,
+        mesh: &TetMesh,
+        node: u32,
+        normal: [f64; 3],
+        local: usize,
+    ) -> Option<(Partner, f64)> {
+        let candidate = self.surface.nodes()[local];
+        let facing = -self.surface.frames()[local].normal_part(normal);
+        if candidate == node || facing < FACING {
+            return None;
+        }
+        let [at, to] = [node, candidate].map(|n| mesh.points()[n as usize]);
+        let way = [0, 1, 2].map(|c| to[c] - at[c]);
+        let gap = vector::dot(&way, &normal);
+        let beside = vector::norm(&[0, 1, 2].map(|c| way[c] - gap * normal[c]));
+        let partner = Partner {
+            node: candidate,
+            gap,
+        };
+        Some((partner, beside))
+    }
 }
 
 #[cfg(test)]

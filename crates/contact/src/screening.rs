@@ -19,7 +19,7 @@ use crate::contact_surface::Contact;
 use crate::error::ContactError;
 use crate::frame::{PointState, Rows, point_state};
 use crate::law::Friction;
-use crate::level::{Level, at, between_bodies};
+use crate::level::{Level, between_bodies};
 use crate::model::{Model, TouchPoint, supports, touch_points};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -274,9 +274,10 @@ impl Screen {
         let start = self.gluing.ranges().tangential().start;
         let prescribed = between_bodies(&self.points, &self.prescribed(model, level));
         for (point, _) in self.points.iter().zip(&self.active).filter(|(_, a)| !**a) {
-            for (direction, k, scale) in point.along() {
-                let moved = self.times(k, torn) - at(&prescribed, k);
-                trace[k - start] = moved / scale - level.carried(point.surface, &direction);
+            for along in point.along() {
+                let k = along.1;
+                let value = self.times(k, torn);
+                trace[k - start] = level.relative(point.surface, along, value, &prescribed);
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::face_solver::restore_sliding;
 use crate::fingerprint::Fingerprint;
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::law::Friction;
-use crate::level::{Level, at};
+use crate::level::Level;
 use crate::model::{Model, TouchPoint};
 use crate::plan::Plan;
 use crate::pool::on_pool;
@@ -377,10 +377,12 @@ impl Simulation {
             let start = self.model.tangential_start();
             for point in &self.model.points {
                 // relative to the obstacle or the other body
-                for (direction, k, scale) in point.along() {
-                    let moved = rows[k] - at(&self.level.prescribed, k);
+                for along in point.along() {
+                    let k = along.1;
+                    let prescribed = &self.level.prescribed;
                     trace[k - start] =
-                        moved / scale - self.level.carried(point.surface, &direction);
+                        self.level
+                            .relative(point.surface, along, rows[k], prescribed);
                 }
             }
             sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));

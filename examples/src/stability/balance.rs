@@ -52,6 +52,7 @@ impl Balance {
 /// Keeps what the balances of successive levels need.
 pub struct Ledger {
     rows: Vec<Vec<(usize, f64)>>,
+    diagonal: Vec<f64>,
     loads: Vec<(Vec<f64>, History)>,
     supported: Vec<bool>,
     arms: Vec<[f64; 3]>,
@@ -79,6 +80,8 @@ impl Ledger {
         let mesh = scene.mesh();
         let hookes = scene.materials().of_tets(mesh.regions())?;
         let stiffness = assemble_stiffness(mesh.points(), mesh.tets(), |t| hookes[t])?;
+        let diagonal = (0..stiffness.rows()).map(|i| stiffness.get(i, i).copied().unwrap_or(0.0));
+        let diagonal = diagonal.collect();
         let rows = stiffness
             .outer_iterator()
             .map(|row| row.iter().map(|(j, v)| (j, *v)).collect())
@@ -115,6 +118,7 @@ impl Ledger {
         let arm = |p: &[f64; 3]| std::array::from_fn(|c| (p[c] - 0.5 * (low[c] + high[c])) / half);
         Ok(Self {
             rows,
+            diagonal,
             loads: nodal,
             supported,
             arms: mesh.points().iter().map(arm).collect(),
@@ -143,7 +147,7 @@ impl Ledger {
     }
 
     /// Enters a level.
-    pub fn enter(&mut self, frame: &Frame<'_>, touch: &[signorini::contact::TouchPoint]) {
+    pub fn enter(&mut self, frame: &Frame<'_>) {
         let u = frame.displacement();
         let internal: Vec<f64> = self
             .rows
@@ -151,10 +155,8 @@ impl Ledger {
             .map(|row| row.iter().map(|&(j, v)| v * u[j]).sum())
             .collect();
         let mut applied = self.load(frame.time());
-        for (state, point) in frame.points().iter().zip(touch) {
-            let force: [f64; 3] = std::array::from_fn(|c| {
-                state.friction_force[c] + state.normal_force * point.frame.normal[c]
-            });
+        for state in frame.points() {
+            let force = state.force();
             let opponent = state.opponent.map(|node| (node, -1.0));
             for (node, sign) in std::iter::once((state.node, 1.0)).chain(opponent) {
                 for c in 0..3 {
@@ -179,10 +181,9 @@ impl Ledger {
         }
         // rounding errors of K u, where the body moves without strain
         let (mut stiff, mut worked) = (0.0, 0.0);
-        for (i, row) in self.rows.iter().enumerate() {
-            let k = row.iter().find(|(j, _)| *j == i).map_or(0.0, |(_, v)| *v);
-            stiff += k * u[i].abs();
-            worked += k * u[i] * u[i];
+        for (k, u) in self.diagonal.iter().zip(&u) {
+            stiff += k * u.abs();
+            worked += k * u * u;
         }
         size = size.max(ROUNDED * stiff);
         let b = &mut self.balance;

@@ -151,7 +151,6 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
     measured.subdomains = simulation.plan().subdomains;
     measured.rows = simulation.tfeti().dual_dim();
     let scene = simulation.scene().clone();
-    let touch = simulation.touch_points().to_vec();
     let mut ledger = Ledger::new(&scene, &setup.loads, &simulation)?;
     if resumed {
         ledger.skip_first_step();
@@ -177,7 +176,7 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
         }
         // a level that did not converge balances nothing, and neither does the step after it
         if worst.0.converged() {
-            ledger.enter(&frame, &touch);
+            ledger.enter(&frame);
         }
         let s = *frame.summary();
         measured.contact = (s.active, s.slip);
