@@ -1,5 +1,6 @@
 //! What the face method asks of the equality constraint `G x = e`.
 
+use crate::balanced::LooseMode;
 use crate::error::QpError;
 
 /// The constraint `G x = e` seen from a face: weighted (oblique) projectors on `Ker G`.
@@ -77,8 +78,7 @@ pub trait CoarseSpace {
     /// Multiplier of `G`: `out = -(G W Gᵀ)⁻¹ G W g`, so that `g + Gᵀ out = P_Wᵀ g`.
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]);
 
-    /// The least change of unconstrained components (weights of the last
-    /// [`set_weights`](Self::set_weights) where those alone do not suffice) that restores `G x = e`.
+    /// The least change of unconstrained components that restores `G x = e`, but for [loose](Self::loose) modes.
     fn repair(&mut self, x: &mut [f64], e: &[f64]);
 
     /// A step of an iteration in which the leading components change further: `to = from + change`, with what
@@ -90,19 +90,16 @@ pub trait CoarseSpace {
         to.iter_mut().zip(from).for_each(|(t, f)| *t += f);
     }
 
-    /// Whether [`repair`](Self::repair) changes unconstrained components only.
-    fn repairs_apart(&self) -> bool {
-        true
+    /// Modes that no unconstrained component stops: [`repair`](Self::repair) leaves them as they are, and constrained
+    /// components have to balance them.
+    fn loose(&self) -> &[LooseMode] {
+        &[]
     }
 
-    /// The change of components with weights `w`, least in their metric, that restores `G x = e`; constrained ones may
-    /// leave their set. A space that can [`repair`](Self::repair) apart may use the weights of its last face.
-    ///
-    /// # Errors
-    /// [`QpError::CoarseDeficient`] if these components do not hold every rigid mode.
-    fn balance(&mut self, x: &mut [f64], e: &[f64], _w: &[f64]) -> Result<(), QpError> {
+    /// The change of weighted components, least in their metric, that restores `G x = e`; constrained ones may leave their
+    /// set.
+    fn balance(&mut self, x: &mut [f64], e: &[f64]) {
         self.repair(x, e);
-        Ok(())
     }
 }
 

@@ -1,10 +1,10 @@
 //! The iterate on its present face: what conjugate gradients, and the moves between faces, work on.
 
+use crate::balanced::Search;
 use crate::coarse_space::CoarseSpace;
 use crate::error::QpError;
 use crate::face::FaceProblem;
 use crate::face_settings::{FaceReport, FaceWorkspace};
-use crate::guard::restore;
 use crate::natural_map::NaturalMap;
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
@@ -136,15 +136,39 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
         rho
     }
 
-    /// Brings `x`, moved from the mark, back to set and equality by components with the weights `z`; the product follows.
-    /// Returns how far constrained components have moved; where set and equality do not meet, this does not fall.
-    pub(crate) fn restore(&mut self) -> Result<f64, QpError> {
+    /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained components
+    /// have moved; where set and equality do not meet, this does not fall.
+    pub(crate) fn restore(&mut self) -> f64 {
         let (rhs, constrained) = (self.problem.rhs, self.constrained());
-        restore(self.coarse, self.set, self.x, rhs, &self.work.z)?;
+        if self.coarse.loose().is_empty() {
+            self.set.project(self.x);
+            self.coarse.balance(self.x, rhs);
+            self.set.project(self.x);
+        } else {
+            self.project();
+        }
+        self.coarse.repair(self.x, rhs);
         let moved = vector::distance(&self.x[..constrained], &self.work.t[..constrained]);
         let jump = moved.max(self.set.violation(self.x));
         self.correct();
-        Ok(jump)
+        jump
+    }
+
+    /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in the metric
+    /// of the preconditioner. Where there is none, the equality comes first.
+    pub(crate) fn project(&mut self) {
+        let constrained = self.constrained();
+        if self.coarse.loose().is_empty() {
+            self.set.project(self.x);
+            return;
+        }
+        let near = (&self.x[..constrained], &self.problem.scale[..constrained]);
+        let search = Search::new(self.coarse.loose(), self.set, self.problem.rhs, near);
+        let (point, balanced) = search.run();
+        self.x[..constrained].copy_from_slice(&point);
+        if !balanced {
+            self.coarse.balance(self.x, self.problem.rhs);
+        }
     }
 
     /// Estimated errors: the lengths of `z`.

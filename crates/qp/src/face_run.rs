@@ -7,7 +7,7 @@ use crate::face_cg::Goal;
 use crate::face_iterate::{Iterate, Lengths, constrained_length, natural_map, shape};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
 use crate::face_view::{FacePreconditioner, FaceView};
-use crate::guard::{Guard, SHORT, SHORTEST, restore};
+use crate::guard::{Guard, SHORT, SHORTEST};
 use crate::natural_map::settle_bounds;
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
@@ -31,6 +31,9 @@ const VERY_SHORT: f64 = 16.0;
 
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
+
+/// Times that a body which constraints alone hold is balanced with a set that follows.
+const ROUNDS: usize = 3;
 
 /// Part of the limits that `x` may be off the equality, after steps that round.
 const DRIFT: f64 = 0.03;
@@ -63,8 +66,7 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     hook: &'s mut FaceHook<'h>,
     /// Kind and length of each segment.
     shapes: Vec<(u8, usize)>,
-    /// Whether [`CoarseSpace::repair`] leaves constrained components alone, known once it has its first weights. Bodies that
-    /// only contact holds are touchier: every move of theirs changes constrained components.
+    /// Whether unconstrained components alone stop every rigid mode.
     apart: bool,
     forcing: f64,
     /// What the last move to a predicted face changed in the constrained components.
@@ -102,7 +104,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         work.face.resize(set);
         Self {
             shapes: set.segments().iter().map(shape).collect(),
-            apart: true,
+            apart: coarse.loose().is_empty(),
             settings,
             hook,
             forcing: settings.forcing,
@@ -135,12 +137,15 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if self.at.set_face(false)?.is_none() {
             // held by its constraints only: forces that balance with all of them at work tell the first face
             self.at.set_free()?;
-            self.at.coarse.repair(self.at.x, self.at.problem.rhs);
+            self.at.coarse.balance(self.at.x, self.at.problem.rhs);
             self.follow()?;
             self.guess();
             if self.at.set_face(false)?.is_none() {
                 self.at.set_free()?;
             }
+        }
+        if !self.apart {
+            self.settle_loose(true)?;
         }
         self.at.coarse.repair(self.at.x, self.at.problem.rhs);
         if ax_known {
@@ -148,7 +153,6 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         } else {
             self.at.multiply();
         }
-        self.apart = self.at.coarse.repairs_apart();
         self.peak = vector::norm(self.at.x);
         Ok(())
     }
@@ -166,7 +170,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
         at.classify(settings.natural_step);
-        let sparing = self.guard.is_some() || !self.apart;
+        let sparing = self.guard.is_some() && self.apart;
         match at.hold(sparing) {
             Ok(true) => at.residual(),
             Ok(false) => {}
@@ -196,6 +200,12 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             return Err(at.not_finite("the error estimate"));
         }
         let drift = self.guard.as_ref().map_or(f64::INFINITY, |g| g.drift);
+        if std::env::var("TRACE").is_ok() {
+            let f = &at.work.face;
+            let sl = f.discs.iter().filter(|d| matches!(d, crate::face_state::Disc::Sliding { .. })).count();
+            let fr = f.discs.iter().filter(|d| matches!(d, crate::face_state::Disc::Free)).count();
+            eprintln!("face {:3} p {:4} err {:.2e} ({:.2e}) lim {:.1e} jump {:.2e} slide {sl} stick {fr} free {} foll {} guard {} viol {:.1e} left {:.2e} waited {}", at.report.faces, at.report.products(), errors.all, errors.constrained, limits.constrained, self.jump, f.free_bounds, self.followed, self.guard.is_some(), at.set.violation(at.x), self.left.constrained, self.waited);
+        }
         Ok(Some(Place {
             rho,
             errors,
@@ -295,22 +305,12 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         self.waited >= self.settings.patience && self.guard.is_none()
     }
 
-    /// From now on faces are solved better, and moves have to descend. Whether `x` has moved.
-    pub(crate) fn start_guard(&mut self) -> Result<bool, QpError> {
+    /// From now on faces are solved better, and moves have to descend.
+    pub(crate) fn start_guard(&mut self) {
         self.guard = Some(Guard::new(self.at.x.len()));
         self.forcing *= FINER;
         self.best = self.last;
         self.waited = 0;
-        if self.apart {
-            return Ok(false);
-        }
-        let at = &mut self.at;
-        at.mark();
-        at.work.face.loose_weights(at.set, &mut at.work.z);
-        restore(at.coarse, at.set, at.x, at.problem.rhs, &at.work.z)?;
-        self.jump = self.jump.max(at.set.violation(at.x));
-        at.correct();
-        Ok(true)
     }
 
     /// Why the solve ends without a solution, if it does.
@@ -377,17 +377,39 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         }
         let at = &mut self.at;
         let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
-        at.work.face.settle_discs(at.set, at.x, &map);
+        if self.apart {
+            at.work.face.settle_discs(at.set, at.x, &map);
+        } else {
+            at.work.face.aim_discs(at.set, at.x, &map);
+            self.settle_loose(self.followed)?;
+        }
+        let at = &mut self.at;
         self.jump = vector::distance(&at.x[..constrained], &at.work.before);
-        self.balance(joint)?;
-        self.descend()
+        self.balance(joint);
+        self.descend();
+        Ok(())
+    }
+
+    /// Puts `x` into the set such that its constrained components balance, and lets the set `follow`.
+    fn settle_loose(&mut self, follow: bool) -> Result<(), QpError> {
+        let constrained = self.at.constrained();
+        let aim = self.at.x[..constrained].to_vec();
+        let rounds = if follow { ROUNDS } else { 1 };
+        for round in 1..=rounds {
+            self.at.x[..constrained].copy_from_slice(&aim);
+            self.at.project();
+            if round < rounds {
+                self.follow()?;
+            }
+        }
+        Ok(())
     }
 
     /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no move,
     /// and with a guard only what descends is taken. Whether there is one.
     fn joint_step(&mut self, length: f64) -> bool {
         let at = &mut self.at;
-        if at.constrained() == 0 || self.guard.is_some() || !self.apart {
+        if at.constrained() == 0 || self.guard.is_some() {
             return false;
         }
         let joint = self.settings.joint_step * length;
@@ -411,16 +433,10 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     }
 
     /// Makes `G x = e` hold again, and the product exact.
-    fn balance(&mut self, joint: bool) -> Result<(), QpError> {
+    fn balance(&mut self, joint: bool) {
         let at = &mut self.at;
         if let Some(guard) = &mut self.guard {
             guard.current = self.followed;
-            // z is free until the next face
-            at.work.face.loose_weights(at.set, &mut at.work.z);
-            if !self.apart {
-                self.jump = at.restore()?;
-                return Ok(());
-            }
         }
         if self.jump > 0.0 || joint && self.drifted {
             at.coarse.repair(at.x, at.problem.rhs);
@@ -429,27 +445,26 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if self.jump > 0.0 || joint {
             at.correct();
         }
-        Ok(())
     }
 
     /// With a guard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.
-    fn descend(&mut self) -> Result<(), QpError> {
+    fn descend(&mut self) {
         let at = &mut self.at;
         let Some(guard) = &mut self.guard else {
-            return Ok(());
+            return;
         };
         if guard.current {
             guard.drift = self.jump;
-            return Ok(());
+            return;
         }
         let mut t = 1.0;
         while t > SHORTEST && !guard.descends(at.x, at.ax, t) {
             guard.shorten(t, at.x, at.ax);
             at.mark();
-            self.jump = at.restore()?;
+            self.jump = at.restore();
             t *= 0.5;
         }
-        guard.held_up = if t > VERY_SHORT * SHORTEST || !self.apart {
+        guard.held_up = if t > VERY_SHORT * SHORTEST {
             0
         } else {
             guard.held_up + 1
@@ -457,7 +472,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let (rises, reach) = guard.judge(at.set, at.x, at.ax, t);
         if t >= SHORT {
             at.work.face.blocked.clear();
-            return Ok(());
+            return;
         }
         let (from, step) = guard.path();
         let more = at.work.face.block(at.set, from, step, reach);
@@ -465,7 +480,6 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             guard.back(at.x, at.ax);
             self.jump = f64::INFINITY;
         }
-        Ok(())
     }
 
     /// Calls the hook, which may change the data of segments but not the segments.

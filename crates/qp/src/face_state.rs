@@ -206,12 +206,6 @@ impl Face {
         });
     }
 
-    /// As [`weights`](Self::weights), with 1 on both components of sliding discs too.
-    pub(crate) fn loose_weights(&self, set: &ProductSet, w: &mut [f64]) {
-        self.weights(set, w);
-        self.for_sliding(set, |i, _, _| w[i..i + 2].fill(1.0));
-    }
-
     /// Drops the components of `v` that are not free on the face.
     pub(crate) fn restrict(&self, set: &ProductSet, v: &mut [f64]) {
         for_bounds(set, |i, k, _, _| {

@@ -10,8 +10,6 @@
 //! length descends, the point stays and more blocks are held. They are released when the problem with them is solved. All
 //! this holds between feasible points only: where set and equality hardly meet, moves that do not descend are taken, too.
 
-use crate::coarse_space::CoarseSpace;
-use crate::error::QpError;
 use crate::product::ProductSet;
 use crate::set::ConvexSet;
 use crate::vector;
@@ -159,42 +157,12 @@ impl Guard {
     }
 }
 
-/// Most rounds of [`restore`].
-const ROUNDS: usize = 500;
-
 /// Distance to the set over the norm of `x` that ends them.
 const INSIDE: f64 = 1e-11;
-
-/// Moves `x` into the set and to `G x = e`: once each where unconstrained components make up for the rest, else
-/// alternately (von Neumann's projections on two convex sets). `w` marks the components that may move.
-pub(crate) fn restore<C: CoarseSpace>(
-    coarse: &mut C,
-    set: &ProductSet,
-    x: &mut [f64],
-    e: &[f64],
-    w: &[f64],
-) -> Result<(), QpError> {
-    set.project(x);
-    coarse.balance(x, e, w)?;
-    if coarse.repairs_apart() {
-        set.project(x);
-        coarse.repair(x, e);
-        return Ok(());
-    }
-    for _ in 0..ROUNDS {
-        if set.violation(x) <= INSIDE * vector::norm(x) {
-            break;
-        }
-        set.project(x);
-        coarse.balance(x, e, w)?;
-    }
-    Ok(())
-}
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dense_coarse::DenseCoarseSpace;
     use crate::product::Segment;
 
     /// At zero with the cost `1/2 |x|² - sum x` on the way to its minimum, all ones.
@@ -272,16 +240,5 @@ mod tests {
             !guard.releases(true, true, 0.0, 1.0),
             "the point stays where it was"
         );
-    }
-
-    #[test]
-    fn points_are_brought_back_to_set_and_equality() {
-        // x0 + x1 = 1 with x0 <= 0
-        let set = half_space();
-        let mut coarse = DenseCoarseSpace::new(1, 2, vec![1.0, 1.0]).expect("a row");
-        coarse.set_weights(&[1.0; 2]).expect("weights");
-        let mut x = [3.0, 5.0];
-        restore(&mut coarse, &set, &mut x, &[1.0], &[1.0; 2]).expect("restored");
-        assert!(set.violation(&x) == 0.0 && (x[0] + x[1] - 1.0).abs() < 1e-14);
     }
 }

@@ -87,6 +87,7 @@
 //! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads
 //! changes no bit of a result. Loops over the set are serial.
 
+mod balanced;
 mod block;
 mod coarse_space;
 pub mod dense;
@@ -120,6 +121,7 @@ mod smalse_settings;
 pub mod spectrum;
 pub mod vector;
 
+pub use balanced::LooseMode;
 pub use coarse_space::{CoarseSpace, Line, NoCoarseSpace};
 pub use dense::{DenseEquality, DenseOperator};
 pub use dense_coarse::DenseCoarseSpace;

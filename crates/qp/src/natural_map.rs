@@ -99,6 +99,25 @@ impl Face {
             x[i + 1] = moved[1];
         });
     }
+
+    /// As [`settle_discs`](Self::settle_discs), without the projection on the discs: as far outside as the natural map says.
+    /// Along the circle the gradient is balanced by the curvature already.
+    pub(crate) fn aim_discs(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+        for_discs(set, |i, k, radius| {
+            let (at, a, g) = ([x[i], x[i + 1]], map.step * map.scale[i], map.on_disc(i));
+            let moved = if let Disc::Sliding { tau, .. } = self.discs[k] {
+                let slip = (g[1] * tau[0] - g[0] * tau[1]).max(0.0);
+                let length = at[0].hypot(at[1]);
+                let share = if length > 0.0 { (radius + a * slip) / length } else { 1.0 };
+                [share * at[0], share * at[1]]
+            } else {
+                let s = [at[0] - a * g[0], at[1] - a * g[1]];
+                if s[0].hypot(s[1]) > radius { s } else { at }
+            };
+            x[i] = moved[0];
+            x[i + 1] = moved[1];
+        });
+    }
 }
 
 /// Moves the bounded components of `x` by the natural map: onto their bound where it predicts that

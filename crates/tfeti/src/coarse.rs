@@ -12,6 +12,7 @@ use crate::mobility::{FreeMotion, Mobility};
 use crate::row_weights::RowWeights;
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::split_factor::{SplitBase, cheapest_tree};
+use signorini_qp::LooseMode;
 use std::sync::Arc;
 
 /// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.
@@ -162,6 +163,16 @@ impl Coarse {
             }
         }
         out
+    }
+
+    /// A motion of bodies as a mode of the leading `contact` rows.
+    pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
+        let mut row = vec![0.0; self.dim()];
+        let mut scratch = self.scratch();
+        self.0
+            .product_transpose(amplitudes, &mut row, &mut scratch.motions);
+        row.truncate(contact);
+        LooseMode::new(amplitudes.to_vec(), row)
     }
 
     /// Rigid motions of bodies that rows of positive weight leave free; all rows count if there are no weights.

@@ -7,7 +7,7 @@ use crate::error::TfetiError;
 use crate::row_weights::{LineWeight, RowWeights};
 use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use crate::split_solve::Digits;
-use signorini_qp::{CoarseSpace, Line, QpError};
+use signorini_qp::{CoarseSpace, Line, LooseMode, QpError};
 use std::sync::Arc;
 
 /// How `G W G^T` is factored when the face changes.
@@ -25,13 +25,15 @@ pub enum FaceFactor {
 
 /// `G x = e` with projectors weighted by the free rows of the current face, see [`CoarseSpace`].
 ///
-/// Repairs use the interface and support rows only, so they never touch a contact row, as long as these rows hold the
-/// bodies; otherwise they use the free rows of the face.
+/// Repairs use the interface and support rows only, so they never touch a contact row. Motions of bodies that these rows do
+/// not stop are [loose](CoarseSpace::loose).
 #[derive(Debug)]
 pub struct FaceSpace {
     coarse: Coarse,
-    /// Factor with the weights of always free rows, if those hold every body.
-    always: Option<CoarseFactor>,
+    /// Factor with the weights of always free rows.
+    always: CoarseFactor,
+    /// What these do not hold.
+    loose: Vec<LooseMode>,
     face: CoarseFactor,
     weights: Vec<f64>,
     /// Directions of the last face besides its weights.
@@ -40,8 +42,6 @@ pub struct FaceSpace {
     split: Option<Arc<SplitBase>>,
     /// Memory of the last but one factor.
     spare: Option<SplitFactor>,
-    /// Factor of the last balance where the always free rows do not hold the bodies, with its weights.
-    loose: Option<(Vec<f64>, CoarseFactor)>,
     fronts: Fronts,
     contact: ContactWeights,
     /// Weight of each row where it is free; `None` means 1.
@@ -112,12 +112,16 @@ impl FaceSpace {
         let (own, rows) = (split.as_ref(), contact_rows);
         let work = (&mut fronts, &mut contact);
         let factor = factor(coarse, own, row_weights, rows, None, work.0, work.1)?;
-        let always = factor.free_motions().is_empty().then(|| factor.clone());
         let mut scratch = factor.scratch();
+        let loose: Vec<_> = factor
+            .free_motions()
+            .iter()
+            .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
+            .collect();
         // weights that are added to those that hold every body leave the matrix better conditioned
-        let single = always
-            .as_ref()
-            .is_some_and(|f| f.has_short() && f.single_error(&mut scratch) <= ROUNDED);
+        let single = loose.is_empty()
+            && factor.has_short()
+            && factor.single_error(&mut scratch) <= ROUNDED;
         Ok(Self {
             digits: if single {
                 Digits::Single
@@ -126,14 +130,14 @@ impl FaceSpace {
             },
             scratch,
             coarse: coarse.clone(),
-            always,
+            always: factor.clone(),
+            loose,
             face: factor,
             weights,
             lines: Vec::new(),
             contact_rows,
             split,
             spare: None,
-            loose: None,
             fronts,
             contact,
             metric,
@@ -330,33 +334,21 @@ impl CoarseSpace for FaceSpace {
         self.face.amplitudes(g, out, &mut self.scratch);
     }
 
-    fn repairs_apart(&self) -> bool {
-        self.always.is_some()
+    fn loose(&self) -> &[LooseMode] {
+        &self.loose
     }
 
-    fn balance(&mut self, x: &mut [f64], e: &[f64], w: &[f64]) -> Result<(), QpError> {
-        if self.always.is_some() {
-            self.face.project(x, Some(e), &mut self.scratch);
-            return Ok(());
-        }
-        if self.loose.as_ref().is_none_or(|(old, _)| old != w) {
-            let weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
-            let factor = self.coarse.factor_weighted(weights).map_err(deficient)?;
-            self.loose = Some((w.to_vec(), factor));
-        }
-        if let Some((_, factor)) = &self.loose {
-            factor.project(x, Some(e), &mut self.scratch);
-        }
-        Ok(())
+    fn balance(&mut self, x: &mut [f64], e: &[f64]) {
+        self.face.project(x, Some(e), &mut self.scratch);
     }
 
     fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
-        let factor = self.always.as_ref().unwrap_or(&self.face);
+        let always = self.loose.is_empty();
+        let factor = if always { &self.always } else { &self.face };
         factor.compensate_to(self.digits, from, change, to, &mut self.scratch);
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {
-        let factor = self.always.as_ref().unwrap_or(&self.face);
-        factor.project(x, Some(e), &mut self.scratch);
+        self.always.project(x, Some(e), &mut self.scratch);
     }
 }

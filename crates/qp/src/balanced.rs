@@ -1,0 +1,250 @@
+//! The point of the set next to a given one that balances.
+//!
+//! Where constraints alone hold a body, a point that is projected on the set leaves `G x = e`, and a point that is put back
+//! to `G x = e` leaves the set: each undoes the other. The closest point that satisfies both has few unknowns, one
+//! amplitude for each mode that no unconstrained component stops. With the rows `c` of these modes it is
+//!
+//! ```text
+//! x(b) = P(y - a c b),     cᵀ x(b) = f
+//! ```
+//!
+//! `P` projects on the set, `a > 0` are lengths of steps. `f - cᵀ x(b)` is the gradient of a convex function of `b`, whose
+//! minimum Newton's method with a line search finds; no operator product is needed.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `b` | amplitudes |
+//! | `c`, `f` | rows of the modes on constrained components, and their right sides |
+//! | `s` | `y - a c b` |
+
+use crate::face_state::{Constrained, for_constrained};
+use crate::product::ProductSet;
+
+/// A mode that no unconstrained component stops: a combination of the rows of `G` that vanishes on all of them.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LooseMode {
+    /// Factor of each row of `G`.
+    pub amplitudes: Vec<f64>,
+    /// The combination on the leading, constrained components.
+    pub row: Vec<f64>,
+}
+
+impl LooseMode {
+    /// From the factors of the rows of `G`, and what they make of the constrained components.
+    #[must_use]
+    pub fn new(amplitudes: Vec<f64>, row: Vec<f64>) -> Self {
+        Self { amplitudes, row }
+    }
+}
+
+/// Most Newton steps, and most halvings of one.
+const STEPS: usize = 50;
+const HALVINGS: usize = 30;
+
+/// Imbalance, over the absolute values of its terms, that is rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// Imbalance up to which a point counts as balanced.
+const BALANCED: f64 = 1e-10;
+
+/// Share of its diagonal that is added to the matrix of second derivatives, for modes that nothing holds.
+const SHIFT: f64 = 1e-12;
+
+/// Share of the linear decrease that a step has to keep.
+const SUFFICIENT: f64 = 1e-4;
+
+/// The search for the amplitudes.
+pub(crate) struct Search<'a> {
+    modes: &'a [LooseMode],
+    set: &'a ProductSet,
+    /// `y` and `a` on constrained components.
+    y: &'a [f64],
+    a: &'a [f64],
+    f: Vec<f64>,
+    b: Vec<f64>,
+    /// `P(s)`.
+    x: Vec<f64>,
+    value: f64,
+    gradient: Vec<f64>,
+    /// Largest imbalance, over the absolute values of its terms.
+    imbalance: f64,
+    /// Second derivatives, by rows.
+    second: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    pub(crate) fn new(
+        modes: &'a [LooseMode],
+        set: &'a ProductSet,
+        e: &[f64],
+        (y, a): (&'a [f64], &'a [f64]),
+    ) -> Self {
+        let side = |m: &LooseMode| m.amplitudes.iter().zip(e).map(|(a, e)| a * e).sum();
+        Self {
+            modes,
+            set,
+            y,
+            a,
+            f: modes.iter().map(side).collect(),
+            b: vec![0.0; modes.len()],
+            x: y.to_vec(),
+            value: 0.0,
+            gradient: vec![0.0; modes.len()],
+            imbalance: f64::INFINITY,
+            second: vec![0.0; modes.len() * modes.len()],
+        }
+    }
+
+    /// The point, and whether it balances; if not, the set holds no point that does.
+    pub(crate) fn run(mut self) -> (Vec<f64>, bool) {
+        self.evaluate();
+        for _ in 0..STEPS {
+            if self.imbalance <= ROUNDING {
+                break;
+            }
+            self.differentiate();
+            let Some(step) = self.newton_step() else {
+                break;
+            };
+            if !self.advance(&step) {
+                break;
+            }
+        }
+        (self.x, self.imbalance <= BALANCED)
+    }
+
+    /// Point, value, gradient and imbalance at `b`.
+    fn evaluate(&mut self) {
+        let Self { modes, set, y, a, f, b, x, .. } = self;
+        x.copy_from_slice(y);
+        for (mode, b) in modes.iter().zip(&*b) {
+            let terms = x.iter_mut().zip(*a).zip(&mode.row);
+            terms.for_each(|((x, a), c)| *x -= a * c * b);
+        }
+        let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
+        for_constrained(set, |block| match block {
+            Constrained::Bound { i, lower, upper, .. } => {
+                let s = x[i];
+                x[i] = s.max(lower).min(upper);
+                value += x[i] * (2.0 * s - x[i]) / (2.0 * a[i]);
+            }
+            Constrained::Disc { i, radius, .. } => {
+                let length = x[i].hypot(x[i + 1]);
+                let kept = length.min(radius);
+                let share = if length > radius { radius / length } else { 1.0 };
+                x[i] *= share;
+                x[i + 1] *= share;
+                value += kept * (2.0 * length - kept) / (2.0 * a[i]);
+            }
+        });
+        self.value = value;
+        self.imbalance = 0.0;
+        for ((mode, f), g) in modes.iter().zip(&*f).zip(&mut self.gradient) {
+            let (mut sum, mut size) = (*f, f.abs());
+            for (c, x) in mode.row.iter().zip(&*x) {
+                sum -= c * x;
+                size += (c * x).abs();
+            }
+            *g = sum;
+            if size > 0.0 {
+                self.imbalance = self.imbalance.max(sum.abs() / size);
+            }
+        }
+    }
+
+    /// Second derivatives at the point of the last evaluation: `cᵀ P' a c`.
+    fn differentiate(&mut self) {
+        let Self { modes, set, y, a, b, second, .. } = self;
+        let k = modes.len();
+        second.fill(0.0);
+        let (mut along, mut across) = (vec![0.0; k], vec![0.0; k]);
+        let mut add = |weight: f64, c: &[f64]| {
+            for (r, cr) in c.iter().enumerate() {
+                for (s, cs) in second[r * k..(r + 1) * k].iter_mut().zip(c) {
+                    *s += weight * cr * cs;
+                }
+            }
+        };
+        let s = |i: usize| {
+            let moved: f64 = modes.iter().zip(&*b).map(|(m, b)| m.row[i] * b).sum();
+            y[i] - a[i] * moved
+        };
+        for_constrained(set, |block| match block {
+            Constrained::Bound { i, lower, upper, .. } => {
+                let s = s(i);
+                if s > lower && s < upper {
+                    modes.iter().zip(&mut along).for_each(|(m, c)| *c = m.row[i]);
+                    add(a[i], &along);
+                }
+            }
+            Constrained::Disc { i, radius, .. } => {
+                let s = [s(i), s(i + 1)];
+                let length = s[0].hypot(s[1]);
+                let n = if length > 0.0 { [s[0] / length, s[1] / length] } else { [1.0, 0.0] };
+                for ((m, along), across) in modes.iter().zip(&mut along).zip(&mut across) {
+                    let c = [m.row[i], m.row[i + 1]];
+                    *along = c[0] * n[0] + c[1] * n[1];
+                    *across = c[1] * n[0] - c[0] * n[1];
+                }
+                if length > radius {
+                    add(a[i] * radius / length, &across);
+                } else {
+                    add(a[i], &across);
+                    add(a[i], &along);
+                }
+            }
+        });
+    }
+
+    /// Minus the shifted second derivatives' inverse times the gradient, by Cholesky; `None` if nothing holds any mode.
+    fn newton_step(&mut self) -> Option<Vec<f64>> {
+        let k = self.modes.len();
+        let largest = (0..k).map(|r| self.second[r * k + r]).fold(0.0, f64::max);
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        let l = &mut self.second;
+        for r in 0..k {
+            l[r * k + r] += SHIFT * largest;
+            for s in 0..=r {
+                let known: f64 = (0..s).map(|j| l[r * k + j] * l[s * k + j]).sum();
+                let value = l[r * k + s] - known;
+                l[r * k + s] = if r == s {
+                    value.max(SHIFT * largest).sqrt()
+                } else {
+                    value / l[s * k + s]
+                };
+            }
+        }
+        let mut step: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
+        for r in 0..k {
+            let known: f64 = (0..r).map(|j| l[r * k + j] * step[j]).sum();
+            step[r] = (step[r] - known) / l[r * k + r];
+        }
+        for r in (0..k).rev() {
+            let known: f64 = (r + 1..k).map(|j| l[j * k + r] * step[j]).sum();
+            step[r] = (step[r] - known) / l[r * k + r];
+        }
+        step.iter().all(|s| s.is_finite()).then_some(step)
+    }
+
+    /// The longest of the halved steps that descends, or halves the imbalance; false if none does.
+    fn advance(&mut self, step: &[f64]) -> bool {
+        let slope: f64 = self.gradient.iter().zip(step).map(|(g, s)| g * s).sum();
+        let (start, value, imbalance) = (self.b.clone(), self.value, self.imbalance);
+        let mut t = 1.0;
+        for _ in 0..HALVINGS {
+            let both = start.iter().zip(step);
+            self.b = both.map(|(b, s)| b + t * s).collect();
+            self.evaluate();
+            if self.value <= value + SUFFICIENT * t * slope || self.imbalance <= 0.5 * imbalance {
+                return true;
+            }
+            t *= 0.5;
+        }
+        self.b = start;
+        self.evaluate();
+        false
+    }
+}
