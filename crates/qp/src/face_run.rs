@@ -145,7 +145,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             }
         }
         if !self.apart {
-            self.settle_loose(true)?;
+            self.settle_loose(false, true)?;
         }
         self.at.coarse.repair(self.at.x, self.at.problem.rhs);
         if ax_known {
@@ -368,20 +368,11 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let joint = self.joint_step(length);
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
-        self.settle_bounds();
         self.followed = (self.guard.is_none() || place.solved) && self.has_settled();
-        if self.followed {
-            self.follow()?;
-            // held components go with bounds that moved
-            self.settle_bounds();
-        }
-        let at = &mut self.at;
-        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
         if self.apart {
-            at.work.face.settle_discs(at.set, at.x, &map);
+            self.settle()?;
         } else {
-            at.work.face.aim_discs(at.set, at.x, &map);
-            self.settle_loose(self.followed)?;
+            self.settle_loose(true, self.followed)?;
         }
         let at = &mut self.at;
         self.jump = vector::distance(&at.x[..constrained], &at.work.before);
@@ -390,14 +381,33 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         Ok(())
     }
 
-    /// Puts `x` into the set such that its constrained components balance, and lets the set `follow`.
-    fn settle_loose(&mut self, follow: bool) -> Result<(), QpError> {
+    /// Moves `x` into the set as the natural map says, and lets the set follow.
+    fn settle(&mut self) -> Result<(), QpError> {
+        self.settle_bounds();
+        if self.followed {
+            self.follow()?;
+            // held components go with bounds that moved
+            self.settle_bounds();
+        }
+        let at = &mut self.at;
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        at.work.face.settle_discs(at.set, at.x, &map);
+        Ok(())
+    }
+
+    /// The same such that constrained components balance; to the point of the set next to `x` if it does not `aim`.
+    fn settle_loose(&mut self, aim: bool, follow: bool) -> Result<(), QpError> {
         let constrained = self.at.constrained();
-        let aim = self.at.x[..constrained].to_vec();
+        let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { ROUNDS } else { 1 };
         for round in 1..=rounds {
-            self.at.x[..constrained].copy_from_slice(&aim);
-            self.at.project();
+            let at = &mut self.at;
+            at.x[..constrained].copy_from_slice(&from);
+            if aim {
+                let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+                at.work.face.aim(at.set, at.x, &map);
+            }
+            at.project();
             if round < rounds {
                 self.follow()?;
             }

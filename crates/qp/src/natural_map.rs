@@ -100,9 +100,15 @@ impl Face {
         });
     }
 
-    /// As [`settle_discs`](Self::settle_discs), without the projection on the discs: as far outside as the natural map says.
-    /// Along the circle the gradient is balanced by the curvature already.
-    pub(crate) fn aim_discs(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+    /// Where `x` goes before it is projected on the set: as far outside as the natural map says, else it stays. Along circles
+    /// the gradient is balanced by the curvature already.
+    pub(crate) fn aim(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+        for_bounds(set, |i, _, lo, hi| {
+            let s = map.of(x, i);
+            if s <= lo || s >= hi {
+                x[i] = s;
+            }
+        });
         for_discs(set, |i, k, radius| {
             let (at, a, g) = ([x[i], x[i + 1]], map.step * map.scale[i], map.on_disc(i));
             let moved = if let Disc::Sliding { tau, .. } = self.discs[k] {
