@@ -8,7 +8,7 @@
 //! x(b) = P(y - a c b),     cᵀ x(b) = f
 //! ```
 //!
-//! `P` projects on the set, `a > 0` are lengths of steps. `f - cᵀ x(b)` is the gradient of a convex function of `b`, whose
+//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. `f - cᵀ x(b)` is the gradient of a convex function of `b`, whose
 //! minimum Newton's method with a line search finds; no operator product is needed.
 //!
 //! | local | meaning |
@@ -127,7 +127,9 @@ impl<'a> Search<'a> {
             Constrained::Bound { i, lower, upper, .. } => {
                 let s = x[i];
                 x[i] = s.max(lower).min(upper);
-                value += x[i] * (2.0 * s - x[i]) / (2.0 * a[i]);
+                if a[i] > 0.0 {
+                    value += x[i] * (2.0 * s - x[i]) / (2.0 * a[i]);
+                }
             }
             Constrained::Disc { i, radius, .. } => {
                 let length = x[i].hypot(x[i + 1]);

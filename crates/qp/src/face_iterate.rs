@@ -6,6 +6,7 @@ use crate::error::QpError;
 use crate::face::FaceProblem;
 use crate::face_settings::{FaceReport, FaceWorkspace};
 use crate::natural_map::NaturalMap;
+use crate::face_state::{Constrained, ON_CIRCLE, for_constrained};
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
 use crate::set::ConvexSet;
@@ -168,6 +169,41 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
         self.x[..constrained].copy_from_slice(&point);
         if !balanced {
             self.coarse.balance(self.x, self.problem.rhs);
+        }
+    }
+
+    /// The same for a start: components at their bounds stay there, and points on their circles stay on them, as long as the
+    /// others suffice.
+    pub(crate) fn project_start(&mut self) {
+        let constrained = self.constrained();
+        let mut y = self.x[..constrained].to_vec();
+        let mut lengths = self.problem.scale[..constrained].to_vec();
+        for_constrained(self.set, |block| match block {
+            Constrained::Bound {
+                i, lower, upper, ..
+            } => {
+                if y[i] <= lower || y[i] >= upper {
+                    lengths[i] = 0.0;
+                }
+            }
+            Constrained::Disc { i, radius, .. } => {
+                if y[i].hypot(y[i + 1]) >= radius * (1.0 - ON_CIRCLE) {
+                    y[i] *= 2.0;
+                    y[i + 1] *= 2.0;
+                }
+            }
+        });
+        let search = Search::new(
+            self.coarse.loose(),
+            self.set,
+            self.problem.rhs,
+            (&y, &lengths),
+        );
+        let (point, balanced) = search.run();
+        if balanced {
+            self.x[..constrained].copy_from_slice(&point);
+        } else {
+            self.project();
         }
     }
 

@@ -406,8 +406,10 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             if aim {
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
                 at.work.face.aim(at.set, at.x, &map);
+                at.project();
+            } else {
+                at.project_start();
             }
-            at.project();
             if round < rounds {
                 self.follow()?;
             }
