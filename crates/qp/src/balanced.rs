@@ -116,7 +116,16 @@ impl<'a> Search<'a> {
 
     /// Point, value, gradient and imbalance at `b`.
     fn evaluate(&mut self) {
-        let Self { modes, set, y, a, f, b, x, .. } = self;
+        let Self {
+            modes,
+            set,
+            y,
+            a,
+            f,
+            b,
+            x,
+            ..
+        } = self;
         x.copy_from_slice(y);
         for (mode, b) in modes.iter().zip(&*b) {
             let terms = x.iter_mut().zip(*a).zip(&mode.row);
@@ -124,7 +133,9 @@ impl<'a> Search<'a> {
         }
         let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
         for_constrained(set, |block| match block {
-            Constrained::Bound { i, lower, upper, .. } => {
+            Constrained::Bound {
+                i, lower, upper, ..
+            } => {
                 let s = x[i];
                 x[i] = s.max(lower).min(upper);
                 if a[i] > 0.0 {
@@ -134,7 +145,11 @@ impl<'a> Search<'a> {
             Constrained::Disc { i, radius, .. } => {
                 let length = x[i].hypot(x[i + 1]);
                 let kept = length.min(radius);
-                let share = if length > radius { radius / length } else { 1.0 };
+                let share = if length > radius {
+                    radius / length
+                } else {
+                    1.0
+                };
                 x[i] *= share;
                 x[i + 1] *= share;
                 value += kept * (2.0 * length - kept) / (2.0 * a[i]);
@@ -157,7 +172,15 @@ impl<'a> Search<'a> {
 
     /// Second derivatives at the point of the last evaluation: `cᵀ P' a c`.
     fn differentiate(&mut self) {
-        let Self { modes, set, y, a, b, second, .. } = self;
+        let Self {
+            modes,
+            set,
+            y,
+            a,
+            b,
+            second,
+            ..
+        } = self;
         let k = modes.len();
         second.fill(0.0);
         let (mut along, mut across) = (vec![0.0; k], vec![0.0; k]);
@@ -173,17 +196,26 @@ impl<'a> Search<'a> {
             y[i] - a[i] * moved
         };
         for_constrained(set, |block| match block {
-            Constrained::Bound { i, lower, upper, .. } => {
+            Constrained::Bound {
+                i, lower, upper, ..
+            } => {
                 let s = s(i);
                 if s > lower && s < upper {
-                    modes.iter().zip(&mut along).for_each(|(m, c)| *c = m.row[i]);
+                    modes
+                        .iter()
+                        .zip(&mut along)
+                        .for_each(|(m, c)| *c = m.row[i]);
                     add(a[i], &along);
                 }
             }
             Constrained::Disc { i, radius, .. } => {
                 let s = [s(i), s(i + 1)];
                 let length = s[0].hypot(s[1]);
-                let n = if length > 0.0 { [s[0] / length, s[1] / length] } else { [1.0, 0.0] };
+                let n = if length > 0.0 {
+                    [s[0] / length, s[1] / length]
+                } else {
+                    [1.0, 0.0]
+                };
                 for ((m, along), across) in modes.iter().zip(&mut along).zip(&mut across) {
                     let c = [m.row[i], m.row[i + 1]];
                     *along = c[0] * n[0] + c[1] * n[1];
@@ -248,5 +280,83 @@ impl<'a> Search<'a> {
         self.b = start;
         self.evaluate();
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::product::Segment;
+    use crate::set::ConvexSet;
+
+    /// Bounds and discs with modes that are sums of components, as translations are.
+    fn set() -> ProductSet {
+        ProductSet::new(vec![
+            Segment::upper(vec![0.0; 4]),
+            Segment::discs(vec![1.0, 2.0, 0.5]),
+        ])
+        .expect("a set")
+    }
+
+    fn modes() -> Vec<LooseMode> {
+        let sums = [
+            [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0],
+            [1.0, -1.0, 0.5, -0.5, 0.3, -0.2, 0.1, 0.6, -0.4, 0.2],
+        ];
+        let unit = |k: usize| (0..4).map(|j| f64::from(u8::from(j == k))).collect();
+        let mode = |(k, row): (usize, [f64; 10])| LooseMode::new(unit(k), row.to_vec());
+        sums.into_iter().enumerate().map(mode).collect()
+    }
+
+    fn project(y: &[f64; 10], e: &[f64; 4]) -> (Vec<f64>, bool) {
+        let a: Vec<f64> = (0..10).map(|k| 0.5 + 0.1 * f64::from(k / 2)).collect();
+        Search::new(&modes(), &set(), e, (y, &a)).run()
+    }
+
+    #[test]
+    fn finds_the_closest_point_that_balances() {
+        let y = [-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6];
+        let e = [-4.0, 2.5, 0.6, 0.2];
+        let (x, balances) = project(&y, &e);
+        assert!(balances && set().violation(&x) <= 1e-15);
+        for (mode, e) in modes().iter().zip(e) {
+            let sum: f64 = mode.row.iter().zip(&x).map(|(c, x)| c * x).sum();
+            assert!((sum - e).abs() < 1e-12);
+        }
+        // no other feasible point that balances is closer: it is where alternating projections in this metric end
+        let distance = |p: &[f64]| -> f64 {
+            let term = |k: usize| (p[k] - y[k]).powi(2) / (0.5 + 0.1 * (k / 2) as f64);
+            (0..10).map(term).sum()
+        };
+        let best = distance(&x);
+        for k in 0..200_u32 {
+            let other: [f64; 10] = std::array::from_fn(|j| {
+                let angle = f64::from(k) * 0.37 + j as f64 * 1.3;
+                y[j] + 0.8 * (angle.sin() + (1.7 * angle).cos())
+            });
+            let (other, balances) = project(&other, &e);
+            assert!(balances && distance(&other) >= best * (1.0 - 1e-12));
+        }
+    }
+
+    #[test]
+    fn says_when_the_set_holds_no_balance() {
+        let far = [-4.0, 9.0, 0.0, 0.0];
+        let (x, balances) = project(&[0.0; 10], &far);
+        assert!(!balances && set().violation(&x) <= 1e-15);
+        assert!(x.iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn held_components_stay_and_modes_that_nothing_holds_do_no_harm() {
+        let set = ProductSet::new(vec![Segment::upper(vec![0.0; 2])]).expect("a set");
+        let modes = [
+            LooseMode::new(vec![1.0, 0.0], vec![1.0, 1.0]),
+            LooseMode::new(vec![0.0, 1.0], vec![0.0, 0.0]),
+        ];
+        let search = Search::new(&modes, &set, &[-3.0, 0.0], (&[0.0, -1.0], &[0.0, 1.0]));
+        assert_eq!(search.run(), (vec![0.0, -3.0], true));
     }
 }

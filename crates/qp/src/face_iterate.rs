@@ -5,8 +5,8 @@ use crate::coarse_space::CoarseSpace;
 use crate::error::QpError;
 use crate::face::FaceProblem;
 use crate::face_settings::{FaceReport, FaceWorkspace};
-use crate::natural_map::NaturalMap;
 use crate::face_state::{Constrained, ON_CIRCLE, for_constrained};
+use crate::natural_map::NaturalMap;
 use crate::operator::SymmetricOperator;
 use crate::product::{ProductSet, Segment};
 use crate::set::ConvexSet;
@@ -159,22 +159,20 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
     /// of the preconditioner. Where there is none, the equality comes first.
     pub(crate) fn project(&mut self) {
         let constrained = self.constrained();
-        if self.coarse.loose().is_empty() {
-            self.set.project(self.x);
-            return;
-        }
-        let near = (&self.x[..constrained], &self.problem.scale[..constrained]);
-        let search = Search::new(self.coarse.loose(), self.set, self.problem.rhs, near);
-        let (point, balanced) = search.run();
-        self.x[..constrained].copy_from_slice(&point);
-        if !balanced {
-            self.coarse.balance(self.x, self.problem.rhs);
+        let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
+        let point = self.balanced(y, lengths);
+        match point {
+            Ok(point) => self.x[..constrained].copy_from_slice(&point),
+            Err(point) => {
+                self.x[..constrained].copy_from_slice(&point);
+                self.coarse.balance(self.x, self.problem.rhs);
+            }
         }
     }
 
-    /// The same for a start: components at their bounds stay there, and points on their circles stay on them, as long as the
-    /// others suffice.
-    pub(crate) fn project_start(&mut self) {
+    /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on them.
+    /// Leaves `x` alone and returns false if the others do not suffice.
+    pub(crate) fn project_start(&mut self) -> bool {
         let constrained = self.constrained();
         let mut y = self.x[..constrained].to_vec();
         let mut lengths = self.problem.scale[..constrained].to_vec();
@@ -188,23 +186,21 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
             }
             Constrained::Disc { i, radius, .. } => {
                 if y[i].hypot(y[i + 1]) >= radius * (1.0 - ON_CIRCLE) {
-                    y[i] *= 2.0;
-                    y[i + 1] *= 2.0;
+                    y[i..i + 2].iter_mut().for_each(|y| *y *= 2.0);
                 }
             }
         });
-        let search = Search::new(
-            self.coarse.loose(),
-            self.set,
-            self.problem.rhs,
-            (&y, &lengths),
-        );
-        let (point, balanced) = search.run();
-        if balanced {
-            self.x[..constrained].copy_from_slice(&point);
-        } else {
-            self.project();
+        let point = self.balanced(&y, &lengths);
+        if let Ok(point) = &point {
+            self.x[..constrained].copy_from_slice(point);
         }
+        point.is_ok()
+    }
+
+    fn balanced(&self, y: &[f64], lengths: &[f64]) -> Result<Vec<f64>, Vec<f64>> {
+        let (modes, rhs) = (self.coarse.loose(), self.problem.rhs);
+        let (point, balances) = Search::new(modes, self.set, rhs, (y, lengths)).run();
+        if balances { Ok(point) } else { Err(point) }
     }
 
     /// Estimated errors: the lengths of `z`.

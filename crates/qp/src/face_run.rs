@@ -134,18 +134,24 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
         self.at.mark();
         self.guess();
-        if self.at.set_face(false)?.is_none() {
+        let held = if self.apart {
+            self.at.set_face(false)?.is_some()
+        } else {
+            self.at.project_start()
+        };
+        if !held {
             // held by its constraints only: forces that balance with all of them at work tell the first face
             self.at.set_free()?;
             self.at.coarse.balance(self.at.x, self.at.problem.rhs);
             self.follow()?;
             self.guess();
-            if self.at.set_face(false)?.is_none() {
-                self.at.set_free()?;
-            }
         }
         if !self.apart {
-            self.settle_loose(false, true)?;
+            self.settle_loose(true, true)?;
+            self.at.work.face.guess(self.at.set, self.at.x);
+        }
+        if !(held && self.apart) && self.at.set_face(false)?.is_none() {
+            self.at.set_free()?;
         }
         self.at.coarse.repair(self.at.x, self.at.problem.rhs);
         if ax_known {
@@ -200,12 +206,6 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             return Err(at.not_finite("the error estimate"));
         }
         let drift = self.guard.as_ref().map_or(f64::INFINITY, |g| g.drift);
-        if std::env::var("TRACE").is_ok() {
-            let f = &at.work.face;
-            let sl = f.discs.iter().filter(|d| matches!(d, crate::face_state::Disc::Sliding { .. })).count();
-            let fr = f.discs.iter().filter(|d| matches!(d, crate::face_state::Disc::Free)).count();
-            eprintln!("face {:3} p {:4} err {:.2e} ({:.2e}) lim {:.1e} jump {:.2e} slide {sl} stick {fr} free {} foll {} guard {} viol {:.1e} left {:.2e} waited {}", at.report.faces, at.report.products(), errors.all, errors.constrained, limits.constrained, self.jump, f.free_bounds, self.followed, self.guard.is_some(), at.set.violation(at.x), self.left.constrained, self.waited);
-        }
         Ok(Some(Place {
             rho,
             errors,
@@ -372,7 +372,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if self.apart {
             self.settle()?;
         } else {
-            self.settle_loose(true, self.followed)?;
+            self.settle_loose(false, self.followed)?;
         }
         let at = &mut self.at;
         self.jump = vector::distance(&at.x[..constrained], &at.work.before);
@@ -395,20 +395,20 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         Ok(())
     }
 
-    /// The same such that constrained components balance; to the point of the set next to `x` if it does not `aim`.
-    fn settle_loose(&mut self, aim: bool, follow: bool) -> Result<(), QpError> {
+    /// The same such that constrained components balance. At the `start` there is no natural map yet.
+    fn settle_loose(&mut self, start: bool, follow: bool) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { ROUNDS } else { 1 };
         for round in 1..=rounds {
             let at = &mut self.at;
             at.x[..constrained].copy_from_slice(&from);
-            if aim {
+            if !start {
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
                 at.work.face.aim(at.set, at.x, &map);
                 at.project();
-            } else {
-                at.project_start();
+            } else if !at.project_start() {
+                at.project();
             }
             if round < rounds {
                 self.follow()?;

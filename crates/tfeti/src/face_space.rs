@@ -119,9 +119,8 @@ impl FaceSpace {
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
         // weights that are added to those that hold every body leave the matrix better conditioned
-        let single = loose.is_empty()
-            && factor.has_short()
-            && factor.single_error(&mut scratch) <= ROUNDED;
+        let single =
+            loose.is_empty() && factor.has_short() && factor.single_error(&mut scratch) <= ROUNDED;
         Ok(Self {
             digits: if single {
                 Digits::Single
@@ -343,9 +342,8 @@ impl CoarseSpace for FaceSpace {
     }
 
     fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
-        let always = self.loose.is_empty();
-        let factor = if always { &self.always } else { &self.face };
-        factor.compensate_to(self.digits, from, change, to, &mut self.scratch);
+        self.always
+            .compensate_to(self.digits, from, change, to, &mut self.scratch);
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {
