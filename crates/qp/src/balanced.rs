@@ -164,8 +164,10 @@ impl<'a> Search<'a> {
                 size += (c * x).abs();
             }
             *g = sum;
-            if size > 0.0 {
-                self.imbalance = self.imbalance.max(sum.abs() / size);
+            let share = if size == 0.0 { 0.0 } else { sum.abs() / size };
+            // `max` drops what is not a number
+            if share > self.imbalance || share.is_nan() {
+                self.imbalance = share;
             }
         }
     }
@@ -223,7 +225,7 @@ impl<'a> Search<'a> {
                 }
                 if length > radius {
                     add(a[i] * radius / length, &across);
-                } else {
+                } else if radius > 0.0 {
                     add(a[i], &across);
                     add(a[i], &along);
                 }
@@ -272,7 +274,8 @@ impl<'a> Search<'a> {
             let both = start.iter().zip(step);
             self.b = both.map(|(b, s)| b + t * s).collect();
             self.evaluate();
-            if self.value <= value + SUFFICIENT * t * slope || self.imbalance <= 0.5 * imbalance {
+            let descends = self.value <= value + SUFFICIENT * t * slope;
+            if self.imbalance.is_finite() && (descends || self.imbalance <= 0.5 * imbalance) {
                 return true;
             }
             t *= 0.5;

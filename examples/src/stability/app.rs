@@ -49,7 +49,9 @@ pub fn run_all(cases: &[Case], mut progress: impl FnMut(&Line<'_>)) -> Vec<Line<
     let mut lines = Vec::with_capacity(cases.len());
     for case in cases {
         let measured = runner::run(case);
-        let complaint = measured.complaint(case.expect);
+        let complaint = measured
+            .complaint(case.expect)
+            .or_else(|| measured.excess(case.at_most?));
         let line = Line {
             case,
             measured,

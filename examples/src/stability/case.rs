@@ -42,6 +42,8 @@ pub struct Case {
     pub hard: &'static str,
     /// What is acceptable.
     pub expect: Expect,
+    /// Most products a level in the mean, without a fall-back.
+    pub at_most: Option<usize>,
     /// Left out of the short run.
     pub long: bool,
     /// A case with the same answer in dimensionless figures, and how close it has to be.
@@ -71,6 +73,7 @@ impl Case {
             name: name.into(),
             hard,
             expect: Expect::Certified(1e-5),
+            at_most: None,
             long: false,
             same_as: None,
             build: Box::new(build),
@@ -81,6 +84,13 @@ impl Case {
     #[must_use]
     pub fn expect(mut self, expect: Expect) -> Self {
         self.expect = expect;
+        self
+    }
+
+    /// Sets the most products a level in the mean; no level may need the fall-back.
+    #[must_use]
+    pub fn at_most(mut self, products: usize) -> Self {
+        self.at_most = Some(products);
         self
     }
 

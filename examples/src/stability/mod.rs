@@ -20,6 +20,7 @@ pub mod cases_material;
 pub mod cases_partners;
 pub mod cases_restart;
 pub mod cases_shape;
+pub mod cases_sliding;
 pub mod cases_time;
 pub mod locking;
 pub mod report;
@@ -31,6 +32,7 @@ pub fn cases() -> Vec<case::Case> {
     let mut all = cases_contact::friction();
     all.extend(cases_contact::sets());
     all.extend(cases_contact::sliding());
+    all.extend(cases_sliding::cases());
     all.extend(cases_bodies::free());
     all.extend(cases_bodies::supports());
     all.extend(cases_partners::cases());

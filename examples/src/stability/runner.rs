@@ -95,6 +95,22 @@ impl Measured {
     }
 }
 
+impl Measured {
+    /// What is wrong where products a level are limited to this mean and no level may need the fall-back.
+    #[must_use]
+    pub fn excess(&self, at_most: usize) -> Option<String> {
+        let most = at_most * self.levels;
+        (self.products > most || self.fallbacks > 0).then(|| {
+            let Self {
+                products,
+                fallbacks,
+                ..
+            } = self;
+            format!("{products} products, {fallbacks} fall-backs; at most {most} and none")
+        })
+    }
+}
+
 /// Whether `a` is above `b` or no number.
 pub(super) fn above(a: f64, b: f64) -> bool {
     a.is_nan() || a > b
