@@ -1,0 +1,549 @@
+//! The check of one level: displacement, contact forces and reactions that the library reports, against all conditions of
+//! the recipe. It shares no code with the library's model.
+//!
+//! | condition | relative to |
+//! |---|---|
+//! | equilibrium at nodes: strained tetrahedra = loads + contact forces + reactions | norm of the nodal forces of strained subdomains and of the loads |
+//! | forces and moments of the whole | the same; moments: times the size of the mesh |
+//! | copies of a node, supports, penetration, reported gaps and slips | largest displacement |
+//! | pulling, cone, friction off the surface, reported slip bounds | largest contact force at a node |
+//! | force times open gap; slip and friction that are not opposite (`abs(r s + abs(s) t)`) | the product of both |
+//!
+//! Sizes are those of the bodies that may touch each other, at the level. The displacement is at least what the load of a node would do to it
+//! with all others held, the contact force at least 1e-4 of all forces, and both at least a thousandth of those at earlier
+//! levels; forces are at least 1e-8 of displacements times stiffness, below which they are rounding.
+
+use crate::mechanics::{Mechanics, groups};
+use crate::recipe::{Clock, Recipe};
+use crate::spots::{Spot, spots};
+use crate::vec3::{Vec3, across, add, at, cross, dot, norm, scale, sub, unit};
+use signorini::contact::Reactions;
+use signorini::prelude::*;
+
+/// A condition and how much it is violated, relative.
+pub(crate) type Violation = (&'static str, f64);
+
+/// Directions closer than this are one.
+const SAME: f64 = 1.0 - 1e-9;
+/// Sizes of earlier levels count by this part, contact forces by that part of all forces.
+const REST: f64 = 1e-3;
+const SMALL_PART: f64 = 1e-4;
+/// Forces below this part of displacement times stiffness are rounding.
+const ROUNDED: f64 = 1e-8;
+
+/// What violations of bodies that may touch each other are relative to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Size {
+    displacement: f64,
+    contact: f64,
+    forces: f64,
+}
+
+/// The judge of a run: it keeps the history of slips by itself.
+pub(crate) struct Judge<'a> {
+    recipe: &'a Recipe,
+    mechanics: Mechanics,
+    spots: Vec<Spot>,
+    /// Whether supports fix all directions along the surface of each spot: then there is no friction.
+    stuck: Vec<bool>,
+    /// Group of bodies of each node.
+    group: Vec<usize>,
+    /// Displacement of each spot relative to its obstacle or partner at the last level and the one before.
+    ways: [Vec<Vec3>; 2],
+    /// Slip rate of each spot at the last level.
+    rates: Vec<f64>,
+    before: f64,
+    peaks: Vec<Size>,
+    /// Extent of the mesh.
+    extent: f64,
+}
+
+/// One level as the library reports it.
+struct Report<'f> {
+    points: &'f [PointState],
+    u: Vec<f64>,
+    reactions: Reactions,
+    time: f64,
+}
+
+/// Collects the worst of each condition.
+#[derive(Default)]
+struct Worst(Vec<Violation>);
+
+impl Worst {
+    fn add(&mut self, name: &'static str, value: f64, size: f64) {
+        let relative = if value <= 0.0 { 0.0 } else { value / size };
+        match self.0.iter_mut().find(|v| v.0 == name) {
+            Some(v) if relative > v.1 || relative.is_nan() => v.1 = relative,
+            Some(_) => {}
+            None => self.0.push((name, relative)),
+        }
+    }
+}
+
+impl<'a> Judge<'a> {
+    pub(crate) fn new(recipe: &'a Recipe) -> Self {
+        let mechanics = Mechanics::new(recipe);
+        let spots = spots(recipe, &mechanics);
+        let nodes = mechanics.points.len();
+        let bodies = (0..).zip(&mechanics.body).map(|(n, b)| (n, *b as u32));
+        let touching = spots.iter().filter_map(|s| Some((s.node, s.partner?)));
+        let touching = touching.filter(|p| p.1 != u32::MAX);
+        let group = groups(nodes, bodies.chain(touching));
+        let extent = (0..3).map(|c| {
+            let values = || mechanics.points.iter().map(move |p| p[c]);
+            values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
+        });
+        Self {
+            ways: [vec![[0.0; 3]; spots.len()], vec![[0.0; 3]; spots.len()]],
+            rates: vec![0.0; spots.len()],
+            peaks: vec![Size::default(); nodes],
+            extent: extent.fold(0.0, f64::max),
+            before: 0.0,
+            stuck: stuck(recipe, &spots, nodes),
+            recipe,
+            mechanics,
+            spots,
+            group,
+        }
+    }
+
+    /// Judges a level and takes it into the history.
+    pub(crate) fn level(&mut self, frame: &Frame<'_>) -> Result<Vec<Violation>, Error> {
+        let report = Report {
+            points: frame.points(),
+            u: frame.displacement(),
+            reactions: frame.reactions()?,
+            time: frame.time(),
+        };
+        let mut worst = Worst::default();
+        let load = self.load(report.time);
+        let torn = self.torn(frame);
+        let sizes = self.sizes(&report, &load, &torn);
+        self.copies(frame, &report.u, &sizes, &mut worst);
+        self.equilibrium(&report, &load, &torn.0, &sizes, &mut worst);
+        self.balance(&report, &load, &sizes, &mut worst);
+        self.supports(&report, &sizes, &mut worst);
+        let slips = self.slips(&report);
+        let of = self.assign(report.points);
+        self.contact(&report, &of, &slips, &sizes, &mut worst);
+        self.sums(frame, &of, &sizes, &mut worst);
+        // history
+        let step = report.time - self.before;
+        let quasistatic = matches!(self.recipe.clock, Clock::Steps { .. });
+        self.rates = slips
+            .iter()
+            .map(|s| {
+                if quasistatic {
+                    norm(s.slip) / step
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        self.ways.swap(0, 1);
+        self.ways[0] = slips.iter().map(|s| s.way).collect();
+        self.before = report.time;
+        if frame.report().status.converged() {
+            for (peak, size) in self.peaks.iter_mut().zip(&sizes) {
+                peak.displacement = peak.displacement.max(size.displacement);
+                peak.contact = peak.contact.max(size.contact);
+                peak.forces = peak.forces.max(size.forces);
+            }
+        }
+        Ok(worst.0)
+    }
+
+    fn load(&self, time: f64) -> Vec<f64> {
+        let mut sum = vec![0.0; 3 * self.mechanics.points.len()];
+        for (push, load) in self.recipe.pushes.iter().zip(&self.mechanics.loads) {
+            let factor = push.course.value(time);
+            sum.iter_mut().zip(load).for_each(|(s, l)| *s += factor * l);
+        }
+        sum
+    }
+
+    /// Nodal forces of the strained tetrahedra: at the nodes, and their squares summed over the copies of each node.
+    fn torn(&self, frame: &Frame<'_>) -> (Vec<f64>, Vec<f64>) {
+        let nodes = self.mechanics.points.len();
+        let (mut whole, mut squares) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
+        let mut start = 0;
+        for subdomain in frame.decomposition().subdomains() {
+            let own = &frame.torn_displacement()[start..start + 3 * subdomain.nodes.len()];
+            let mut force = vec![0.0; own.len()];
+            for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
+                let forces = self
+                    .mechanics
+                    .strain(element as usize, tet.map(|n| at(own, n)));
+                for (n, f) in tet.iter().zip(forces) {
+                    (0..3).for_each(|c| force[3 * *n as usize + c] += f[c]);
+                }
+            }
+            for (local, &node) in (0..).zip(&subdomain.nodes) {
+                let f = at(&force, local);
+                squares[node as usize] += dot(f, f);
+                (0..3).for_each(|c| whole[3 * node as usize + c] += f[c]);
+            }
+            start += own.len();
+        }
+        (whole, squares)
+    }
+
+    fn sizes(&self, report: &Report<'_>, load: &[f64], torn: &(Vec<f64>, Vec<f64>)) -> Vec<Size> {
+        let nodes = self.mechanics.points.len();
+        let mut sizes = vec![Size::default(); nodes];
+        let mut rounding = vec![0.0; nodes];
+        for node in 0..nodes {
+            let group = self.group[node];
+            let (u, f) = (at(&report.u, node as u32), at(load, node as u32));
+            let k = self.mechanics.stiffness[node];
+            let size = &mut sizes[group];
+            size.displacement = size.displacement.max(norm(u)).max(norm(f) / k);
+            size.forces += torn.1[node] + dot(f, f);
+            rounding[group] += k * k * dot(u, u);
+        }
+        for point in report.points {
+            let size = &mut sizes[self.group[point.node as usize]];
+            size.contact = size.contact.max(norm(point.force()));
+        }
+        for ((size, peak), rounding) in sizes.iter_mut().zip(&self.peaks).zip(rounding) {
+            let rounding = ROUNDED * rounding.sqrt();
+            size.displacement = size.displacement.max(REST * peak.displacement);
+            size.forces = size.forces.sqrt().max(REST * peak.forces).max(rounding);
+            let least = (SMALL_PART * size.forces).max(REST * peak.contact);
+            size.contact = size.contact.max(least).max(rounding);
+        }
+        sizes
+    }
+
+    fn size<'s>(&self, sizes: &'s [Size], node: u32) -> &'s Size {
+        &sizes[self.group[node as usize]]
+    }
+
+    /// Copies of a node are where their mean is.
+    fn copies(&self, frame: &Frame<'_>, u: &[f64], sizes: &[Size], worst: &mut Worst) {
+        let mut start = 0;
+        for subdomain in frame.decomposition().subdomains() {
+            for (local, &node) in (0..).zip(&subdomain.nodes) {
+                let own = at(&frame.torn_displacement()[start..], local);
+                let off = norm(sub(own, at(u, node)));
+                worst.add("continuity", off, self.size(sizes, node).displacement);
+            }
+            start += 3 * subdomain.nodes.len();
+        }
+    }
+
+    fn equilibrium(
+        &self,
+        report: &Report<'_>,
+        load: &[f64],
+        strained: &[f64],
+        sizes: &[Size],
+        worst: &mut Worst,
+    ) {
+        let mut rest: Vec<Vec3> = (0..self.mechanics.points.len() as u32)
+            .map(|n| sub(at(strained, n), at(load, n)))
+            .collect();
+        for point in report.points {
+            let force = point.force();
+            let own = &mut rest[point.node as usize];
+            *own = sub(*own, force);
+            if let Some(partner) = point.opponent {
+                let other = &mut rest[partner as usize];
+                *other = add(*other, force);
+            }
+        }
+        for reaction in report.reactions.supports.iter().flat_map(|s| &s.nodes) {
+            let own = &mut rest[reaction.node as usize];
+            *own = sub(*own, reaction.force);
+        }
+        let mut squares = vec![0.0; rest.len()];
+        for (node, rest) in rest.iter().enumerate() {
+            squares[self.group[node]] += dot(*rest, *rest);
+        }
+        for (group, square) in squares.iter().enumerate() {
+            worst.add("equilibrium", square.sqrt(), sizes[group].forces);
+        }
+    }
+
+    /// Loads, contact and supports as the library sums them up.
+    fn balance(&self, report: &Report<'_>, load: &[f64], sizes: &[Size], worst: &mut Worst) {
+        let places = &self.mechanics.points;
+        let forces = sizes.iter().map(|s| s.forces.powi(2)).sum::<f64>().sqrt();
+        let far = places.iter().map(|x| norm(*x)).fold(self.extent, f64::max);
+        let mut sums = [[[0.0; 3]; 2]; 3];
+        let mut put = |which: usize, node: u32, force: Vec3| {
+            let moment = cross(places[node as usize], force);
+            sums[which][0] = add(sums[which][0], force);
+            sums[which][1] = add(sums[which][1], moment);
+        };
+        (0..places.len() as u32).for_each(|n| put(0, n, at(load, n)));
+        for point in report.points {
+            put(1, point.node, point.force());
+            if let Some(partner) = point.opponent {
+                put(1, partner, scale(-1.0, point.force()));
+            }
+        }
+        for support in &report.reactions.supports {
+            let mut own = [[0.0; 3]; 2];
+            for node in &support.nodes {
+                put(2, node.node, node.force);
+                own[0] = add(own[0], node.force);
+                own[1] = add(own[1], cross(places[node.node as usize], node.force));
+            }
+            let said = [support.resultant.force, support.resultant.moment];
+            worst.add("reaction sums", norm(sub(own[0], said[0])), forces);
+            worst.add("reaction sums", norm(sub(own[1], said[1])), far * forces);
+        }
+        let said = [&report.reactions.loads, &report.reactions.contact];
+        for (own, said) in sums.iter().zip(said) {
+            worst.add("reaction sums", norm(sub(own[0], said.force)), forces);
+            worst.add(
+                "reaction sums",
+                norm(sub(own[1], said.moment)),
+                far * forces,
+            );
+        }
+        let [force, moment] = [0, 1].map(|k| norm(add(sums[0][k], add(sums[1][k], sums[2][k]))));
+        worst.add("balance", force, forces);
+        worst.add("balance", moment, far * forces);
+    }
+
+    /// Supports move as they are told, and push along what they fix only.
+    fn supports(&self, report: &Report<'_>, sizes: &[Size], worst: &mut Worst) {
+        let mut held: Vec<Vec<Vec3>> = vec![Vec::new(); self.mechanics.points.len()];
+        let supports = self.recipe.holds.iter().zip(&report.reactions.supports);
+        for (hold, reaction) in supports {
+            let vectors = hold.fixed.vectors();
+            for (place, node) in hold.nodes(&self.recipe.mesh).into_iter().enumerate() {
+                let size = self.size(sizes, node);
+                let told = hold.displacement(place, report.time);
+                let off = sub(at(&report.u, node), told);
+                let force = reaction.nodes.iter().find(|n| n.node == node);
+                let force = force.map_or([0.0; 3], |n| n.force);
+                // an earlier support has what it fixes
+                let earlier = &mut held[node as usize];
+                for d in earlier.iter() {
+                    worst.add("reaction direction", dot(force, *d).abs(), size.forces);
+                }
+                for v in &vectors {
+                    let d = unit(*v);
+                    worst.add("support", dot(off, d).abs(), size.displacement);
+                    let rest = earlier.iter().fold(d, |d, e| across(d, *e));
+                    if norm(rest) > 1e-6 {
+                        earlier.push(unit(rest));
+                    }
+                }
+                let free = earlier.iter().fold(force, |f, e| across(f, *e));
+                worst.add("reaction direction", norm(free), size.forces);
+            }
+        }
+    }
+
+    /// Where the spots are now and how they have slid.
+    fn slips(&self, report: &Report<'_>) -> Vec<Slip> {
+        let [a, b, c] = match self.recipe.clock {
+            Clock::Static(_) => [1.0, 0.0, 0.0],
+            Clock::Steps { weights, .. } => weights,
+        };
+        let slip = |(k, spot): (usize, &Spot)| {
+            let touch = &self.recipe.touches[spot.contact];
+            let mut way = sub(at(&report.u, spot.node), touch.carried(report.time));
+            if let Some(partner) = spot.partner.filter(|p| *p != u32::MAX) {
+                way = sub(way, at(&report.u, partner));
+            }
+            let sum = add(
+                scale(a, way),
+                add(scale(b, self.ways[0][k]), scale(c, self.ways[1][k])),
+            );
+            Slip {
+                way,
+                gap: spot.gap - dot(spot.normal, way),
+                slip: across(sum, spot.normal),
+            }
+        };
+        self.spots.iter().enumerate().map(slip).collect()
+    }
+
+    /// The spot of each reported point.
+    fn assign(&self, points: &[PointState]) -> Vec<Option<usize>> {
+        let same = |p: &PointState, s: &Spot| {
+            s.contact == p.surface
+                && s.node == p.node
+                && s.partner == p.opponent
+                && dot(s.normal, p.normal) > SAME
+        };
+        let of = |p: &PointState| self.spots.iter().position(|s| same(p, s));
+        points.iter().map(of).collect()
+    }
+
+    /// Area that a reported point stands for: surfaces that meet a node along one direction may be one point.
+    fn area(&self, points: &[PointState], spot: &Spot) -> f64 {
+        let own = |node: u32, partner: Option<u32>, normal: Vec3| {
+            node == spot.node && partner == spot.partner && dot(normal, spot.normal) > SAME
+        };
+        let reported = points.iter().filter(|p| own(p.node, p.opponent, p.normal));
+        if reported.count() > 1 {
+            return spot.area;
+        }
+        let all = self
+            .spots
+            .iter()
+            .filter(|s| own(s.node, s.partner, s.normal));
+        let tags = |s: &Spot| &self.recipe.touches[s.contact].tags;
+        let mut known: Vec<&Spot> = Vec::new();
+        for s in all {
+            if !known
+                .iter()
+                .any(|k| tags(k).iter().any(|t| tags(s).contains(t)))
+            {
+                known.push(s);
+            }
+        }
+        known.iter().map(|s| s.area).sum()
+    }
+
+    fn contact(
+        &self,
+        report: &Report<'_>,
+        of: &[Option<usize>],
+        slips: &[Slip],
+        sizes: &[Size],
+        worst: &mut Worst,
+    ) {
+        for (spot, slip) in self.spots.iter().zip(slips) {
+            worst.add("gap", -slip.gap, self.size(sizes, spot.node).displacement);
+        }
+        for (point, spot) in report.points.iter().zip(of) {
+            let Some(k) = *spot else {
+                worst.add("a point that no contact of the scene has", 1.0, 1.0);
+                continue;
+            };
+            let (spot, slip) = (&self.spots[k], &slips[k]);
+            let size = self.size(sizes, spot.node);
+            let (f, u) = (size.contact, size.displacement);
+            let (force, friction) = (point.normal_force, point.friction_force);
+            worst.add("sign", force, f);
+            worst.add("complementarity", (force * slip.gap.max(0.0)).abs(), f * u);
+            worst.add(
+                "friction off the surface",
+                dot(friction, spot.normal).abs(),
+                f,
+            );
+            let law = &self.recipe.touches[spot.contact].law;
+            let area = self.area(report.points, spot);
+            let x = self.mechanics.points[spot.node as usize];
+            let bound = law.bound(x, area, (-force).max(0.0), self.rates[k]);
+            worst.add("cone", norm(friction) - bound, f);
+            // a node held by a support along its normal has neither
+            if law.is_some() && force != 0.0 {
+                let off = add(scale(bound, slip.slip), scale(norm(slip.slip), friction));
+                worst.add("direction", norm(off), f.max(bound) * u);
+                let none = self.stuck[k] && point.slip_bound == 0.0;
+                let said = if none { bound } else { point.slip_bound };
+                worst.add("reported bound", (said - bound).abs(), f.max(bound));
+            }
+            self.reported(point, spot, slip, size, worst);
+            worst.add("reported area", (point.area - area).abs(), 1e4 * area);
+        }
+    }
+
+    /// What is reported of a point is what follows from the displacement.
+    fn reported(
+        &self,
+        point: &PointState,
+        spot: &Spot,
+        slip: &Slip,
+        size: &Size,
+        worst: &mut Worst,
+    ) {
+        let u = size.displacement;
+        worst.add(
+            "reported gap",
+            (point.gap - slip.gap).abs(),
+            u.max(spot.gap.abs()),
+        );
+        let open = point.state == ContactState::Open;
+        let wrong = open != (point.normal_force >= 0.0);
+        worst.add("reported state", f64::from(u8::from(wrong)), 1.0);
+        if self.recipe.touches[spot.contact].law.is_some() && point.slip_bound > 0.0 {
+            let off = norm(sub(point.difference, slip.slip));
+            worst.add("reported slip", off, u);
+        }
+    }
+
+    /// The sums of the frame.
+    fn sums(&self, frame: &Frame<'_>, of: &[Option<usize>], sizes: &[Size], worst: &mut Worst) {
+        let said = frame.summary();
+        let contact = sizes.iter().map(|s| s.contact).sum::<f64>();
+        let (mut active, mut pressed, mut sum, mut work, mut way) = (0, 0.0, [0.0; 3], 0.0, 0.0);
+        for (point, spot) in frame.points().iter().zip(of) {
+            active += usize::from(point.normal_force < 0.0);
+            pressed -= point.normal_force;
+            sum = add(sum, point.force());
+            let Some(k) = spot else { continue };
+            let touch = &self.recipe.touches[self.spots[*k].contact];
+            let (now, before) = (touch.carried(frame.time()), self.carried_before(touch));
+            work += dot(point.force(), sub(now, before));
+            way += norm(point.force()) * (norm(now) + norm(before));
+        }
+        let size = pressed.abs().max(contact);
+        worst.add("summary", f64::from(u8::from(active != said.active)), 1.0);
+        worst.add("summary", (pressed - said.normal_force).abs(), size);
+        worst.add("summary", norm(sub(sum, said.resultant)), size);
+        worst.add(
+            "obstacle work",
+            (work - said.obstacle_work).abs(),
+            way.max(f64::MIN_POSITIVE),
+        );
+    }
+
+    fn carried_before(&self, touch: &crate::recipe::Touch) -> Vec3 {
+        if self.before == 0.0 {
+            [0.0; 3]
+        } else {
+            touch.carried(self.before)
+        }
+    }
+}
+
+/// Whether supports fix all directions along the surface, at the node and its partner.
+fn stuck(recipe: &Recipe, spots: &[Spot], nodes: usize) -> Vec<bool> {
+    let mut held: Vec<Vec<Vec3>> = vec![Vec::new(); nodes];
+    for hold in &recipe.holds {
+        for node in hold.nodes(&recipe.mesh) {
+            for v in hold.fixed.vectors() {
+                let held = &mut held[node as usize];
+                let rest = held.iter().fold(unit(v), |d, e| across(d, *e));
+                if norm(rest) > 1e-6 {
+                    held.push(unit(rest));
+                }
+            }
+        }
+    }
+    let fixes = |node: u32, normal: Vec3| {
+        // what is left of space without normal and held directions
+        let mut basis = vec![normal];
+        for d in &held[node as usize] {
+            let rest = basis.iter().fold(*d, |d, e| across(d, *e));
+            if norm(rest) > 1e-6 {
+                basis.push(unit(rest));
+            }
+        }
+        basis.len() == 3
+    };
+    let both = |s: &Spot| {
+        let partner = s.partner.filter(|p| *p != u32::MAX);
+        fixes(s.node, s.normal) && partner.is_none_or(|p| fixes(p, s.normal))
+    };
+    spots.iter().map(both).collect()
+}
+
+/// A spot at a level.
+struct Slip {
+    /// Displacement relative to the obstacle or the partner.
+    way: Vec3,
+    gap: f64,
+    /// The tangential difference.
+    slip: Vec3,
+}

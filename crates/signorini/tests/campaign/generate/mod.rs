@@ -1,0 +1,100 @@
+//! Random scenes over what the public interface can say.
+//!
+//! What is known to go wrong, and is not said for that reason, stands in [`KNOWN`].
+
+mod bodies;
+mod contacts;
+mod laws;
+mod loads;
+mod material;
+mod settings;
+mod supports;
+
+use crate::dice::Dice;
+use crate::recipe::{Course, Recipe};
+
+/// Known faults and limits that the generator stays clear of. An entry goes when its fault is mended.
+pub(crate) const KNOWN: [(&str, &str); 4] = [
+    (
+        "acute edges",
+        "sides of two contacts that meet at an edge by less than the angle of a crease are one point with the mean normal: \
+         sides lean by at most 0.3",
+    ),
+    (
+        "curved parts",
+        "parts of one curved side that are two contacts have the mean normal at their border: only plane sides are split",
+    ),
+    (
+        "moved fields",
+        "an obstacle given by a gap field that is moved along the surface stays where it was: it is moved along its normal only",
+    ),
+    (
+        "oblique supports",
+        "supports neither along nor across the normal of a contact node with friction: such nodes are taken out of the support",
+    ),
+];
+
+/// The scene with a number.
+pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
+    let mut dice = Dice::new(seed, number);
+    let dice = &mut dice;
+    let world = bodies::world(dice);
+    let clock = settings::clock(dice);
+    let duration = clock.times().last().copied().unwrap_or(1.0);
+    let (mesh, elastic, material) = material::materials(dice, &world);
+    let mut recipe = Recipe {
+        pieces: settings::pieces(dice, &mesh),
+        mesh,
+        elastic,
+        holds: Vec::new(),
+        pushes: Vec::new(),
+        touches: Vec::new(),
+        how: settings::how(dice, clock.times().len()),
+        clock,
+        words: world.words.clone(),
+    };
+    recipe.words.push(material);
+    let shaft = Shaft {
+        duration,
+        static_: recipe.clock.times().len() == 1,
+    };
+    contacts::contacts(dice, &world, &shaft, &mut recipe);
+    supports::supports(dice, &world, &shaft, &mut recipe);
+    loads::loads(dice, &world, &shaft, &mut recipe);
+    settings::describe(&mut recipe);
+    recipe
+}
+
+/// How fast things go.
+pub(crate) struct Shaft {
+    pub(crate) duration: f64,
+    static_: bool,
+}
+
+impl Shaft {
+    /// A factor in time of about one at most.
+    pub(crate) fn course(&self, dice: &mut Dice) -> Course {
+        let end = self.duration;
+        match dice.whole(0, 9) {
+            _ if self.static_ && dice.chance(0.5) => Course::Constant(1.0),
+            0 => Course::Constant(1.0),
+            1..=3 => Course::Table(vec![(0.0, 0.0), (end, 1.0)]),
+            4 | 5 => Course::Table(vec![
+                (0.0, 0.0),
+                (0.4 * end, 1.0),
+                (0.7 * end, dice.between(-0.2, 0.5)),
+                (end, 1.0),
+            ]),
+            6 | 7 => Course::Table(vec![
+                (0.0, dice.between(0.0, 1.0)),
+                (0.5 * end, 1.0),
+                (end, dice.between(0.0, 1.0)),
+            ]),
+            _ => Course::Wave {
+                size: 1.0,
+                pace: dice.between(1.0, 8.0) / end,
+                phase: dice.between(0.0, 1.0),
+            },
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! A campaign of random scenes as a property test: whatever the public interface can say, a level that is said to be solved
+//! obeys all conditions of contact, by a check that shares no code with the library's model.
+//!
+//! ```text
+//! cargo test --release -p signorini --test campaign                              # a few hundred scenes
+//! SIGNORINI_SCENES=2000 cargo test --release -p signorini --test campaign        # any number, from SIGNORINI_SEED, _FROM
+//! SIGNORINI_SCENE=137 cargo test --release -p signorini --test campaign -- --nocapture    # one, with its levels
+//! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
+//! ```
+
+mod check;
+mod dice;
+mod generate;
+mod mechanics;
+mod recipe;
+mod report;
+mod run;
+mod say;
+mod spots;
+mod vec3;
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Scenes of an ordinary run, and the seed of all numbers.
+const SCENES: u64 = 240;
+const SEED: u64 = 20_240_229;
+
+fn number(name: &str, default: u64) -> u64 {
+    std::env::var(name).map_or(default, |text| {
+        text.parse()
+            .unwrap_or_else(|e| panic!("{name}={text}: {e}"))
+    })
+}
+
+#[test]
+fn what_is_said_to_be_solved_is_solved() {
+    let seed = number("SIGNORINI_SEED", SEED);
+    if std::env::var("SIGNORINI_SCENE").is_ok() {
+        let number = number("SIGNORINI_SCENE", 0);
+        let recipe = generate::recipe(seed, number);
+        let outcome = run::run(&recipe);
+        report::print(number, &recipe, &outcome);
+        assert!(!report::is_wrong(&outcome));
+        return;
+    }
+    let from = number("SIGNORINI_FROM", 0);
+    let to = from + number("SIGNORINI_SCENES", SCENES);
+    let next = AtomicU64::new(from);
+    let tally = Mutex::new(report::Tally::default());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    if number >= to {
+                        break;
+                    }
+                    let recipe = generate::recipe(seed, number);
+                    let outcome = run::run(&recipe);
+                    let mut tally = tally.lock().expect("no panic while it is held");
+                    tally.add(number, recipe, outcome);
+                }
+            });
+        }
+    });
+    let mut tally = tally.into_inner().expect("no panic while it is held");
+    tally.sort();
+    println!("{tally}");
+    if let Ok(folder) = std::env::var("SIGNORINI_REPORT") {
+        tally.write(&folder).expect("report");
+    }
+    tally.assert(seed);
+}

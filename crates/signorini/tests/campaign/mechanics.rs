@@ -1,0 +1,284 @@
+//! Linear tetrahedra and loads, computed anew: no formula, table or rule is the library's.
+
+use crate::recipe::{Density, Elastic, Poly, Recipe};
+use crate::vec3::{Vec3, add, cross, dot, norm, scale, sub};
+use signorini::fem_mesh::FacetTag;
+use std::collections::HashMap;
+
+/// A tetrahedron with the gradients of its four functions.
+struct Element {
+    nodes: [u32; 4],
+    gradients: [Vec3; 4],
+    volume: f64,
+    law: usize,
+}
+
+/// A facet with a tag, outward.
+pub(crate) struct Side {
+    pub(crate) tag: FacetTag,
+    pub(crate) nodes: [u32; 3],
+    /// Outward, of the length of its area.
+    pub(crate) vector: Vec3,
+}
+
+/// The elastic bodies of a recipe.
+pub(crate) struct Mechanics {
+    pub(crate) points: Vec<Vec3>,
+    elements: Vec<Element>,
+    laws: Vec<[[f64; 6]; 6]>,
+    pub(crate) sides: Vec<Side>,
+    /// Nodal forces of each load for a factor of one.
+    pub(crate) loads: Vec<Vec<f64>>,
+    /// Mean diagonal stiffness of each node, N/m.
+    pub(crate) stiffness: Vec<f64>,
+    /// Body of each node.
+    pub(crate) body: Vec<usize>,
+}
+
+impl Mechanics {
+    pub(crate) fn new(recipe: &Recipe) -> Self {
+        let mesh = &recipe.mesh;
+        let points = mesh.points().to_vec();
+        let one = recipe.elastic.len() == 1;
+        let cells = mesh.tets().iter().zip(mesh.regions());
+        let elements: Vec<Element> = cells
+            .map(|(nodes, region)| {
+                let (gradients, volume) = shape(nodes.map(|n| points[n as usize]));
+                Element {
+                    nodes: *nodes,
+                    gradients,
+                    volume,
+                    law: if one { 0 } else { *region as usize },
+                }
+            })
+            .collect();
+        let mut mechanics = Self {
+            laws: recipe.elastic.iter().map(matrix).collect(),
+            sides: sides(recipe, &points),
+            body: bodies(&elements, points.len()),
+            stiffness: vec![0.0; points.len()],
+            loads: Vec::new(),
+            points,
+            elements,
+        };
+        mechanics.stiffness = mechanics.diagonal();
+        let densities = recipe.pushes.iter().map(|p| &p.density);
+        mechanics.loads = densities.map(|d| mechanics.load(d)).collect();
+        mechanics
+    }
+
+    /// Nodal forces that strain a tetrahedron to the displacements of its nodes, N.
+    pub(crate) fn strain(&self, element: usize, u: [Vec3; 4]) -> [Vec3; 4] {
+        let e = &self.elements[element];
+        let mut strain = [0.0; 6];
+        for (g, u) in e.gradients.iter().zip(u) {
+            let part = [
+                g[0] * u[0],
+                g[1] * u[1],
+                g[2] * u[2],
+                g[1] * u[2] + g[2] * u[1],
+                g[0] * u[2] + g[2] * u[0],
+                g[0] * u[1] + g[1] * u[0],
+            ];
+            (0..6).for_each(|k| strain[k] += part[k]);
+        }
+        let c = &self.laws[e.law];
+        let s: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| c[i][j] * strain[j]).sum());
+        let stress = [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]];
+        e.gradients
+            .map(|g| stress.map(|row| e.volume * dot(row, g)))
+    }
+
+    fn diagonal(&self) -> Vec<f64> {
+        let mut out = vec![0.0; self.points.len()];
+        for (k, element) in self.elements.iter().enumerate() {
+            for a in 0..4 {
+                for c in 0..3 {
+                    let mut u = [[0.0; 3]; 4];
+                    u[a][c] = 1.0;
+                    out[element.nodes[a] as usize] += self.strain(k, u)[a][c] / 3.0;
+                }
+            }
+        }
+        out
+    }
+
+    /// Consistent nodal forces of a density.
+    fn load(&self, density: &Density) -> Vec<f64> {
+        let mut out = vec![0.0; 3 * self.points.len()];
+        let mut put = |node: u32, force: Vec3| {
+            (0..3).for_each(|c| out[3 * node as usize + c] += force[c]);
+        };
+        match density {
+            Density::Body(value) => {
+                for e in &self.elements {
+                    let share = scale(e.volume / 4.0, *value);
+                    e.nodes.iter().for_each(|n| put(*n, share));
+                }
+            }
+            Density::BodyField(field) => {
+                for e in &self.elements {
+                    for (node, force) in self.spread(e.nodes, 6.0 * e.volume, |x| eval(field, x)) {
+                        put(node, force);
+                    }
+                }
+            }
+            Density::Nodes(forces) => forces.iter().for_each(|(node, force)| put(*node, *force)),
+            Density::Traction(tag, value) => {
+                for side in self.sides.iter().filter(|s| s.tag == *tag) {
+                    let share = scale(norm(side.vector) / 3.0, *value);
+                    side.nodes.iter().for_each(|n| put(*n, share));
+                }
+            }
+            Density::Pressure(tag, value) => {
+                for side in self.sides.iter().filter(|s| s.tag == *tag) {
+                    let share = scale(-value / 3.0, side.vector);
+                    side.nodes.iter().for_each(|n| put(*n, share));
+                }
+            }
+            Density::TractionField(tag, field, pull) => {
+                for side in self.sides.iter().filter(|s| s.tag == *tag) {
+                    let area = norm(side.vector);
+                    let normal = scale(1.0 / area, side.vector);
+                    let value = |x| add(eval(field, x), scale(pull.value(x), normal));
+                    for (node, force) in self.spread(side.nodes, 2.0 * area, value) {
+                        put(node, force);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Integral of a density times the linear functions of a simplex: a square or a cube of Gauss points is collapsed onto
+    /// it. `measure` is that of the whole square or cube.
+    fn spread<const N: usize>(
+        &self,
+        nodes: [u32; N],
+        measure: f64,
+        density: impl Fn(Vec3) -> Vec3,
+    ) -> Vec<(u32, Vec3)> {
+        let corners = nodes.map(|n| self.points[n as usize]);
+        let mut out: Vec<(u32, Vec3)> = nodes.iter().map(|n| (*n, [0.0; 3])).collect();
+        for k in 0..GAUSS.len().pow(N as u32 - 1) {
+            // the first coordinate cuts off the first corner, the second what is left of the second, ...
+            let (mut left, mut weight, mut shares) = (1.0, measure, [0.0; N]);
+            let mut digits = k;
+            for c in 0..N - 1 {
+                let (x, w) = GAUSS[digits % GAUSS.len()];
+                digits /= GAUSS.len();
+                weight *= w * left;
+                shares[c] = left * (1.0 - x);
+                left *= x;
+            }
+            shares[N - 1] = left;
+            let place = (0..N).fold([0.0; 3], |p, a| add(p, scale(shares[a], corners[a])));
+            let value = density(place);
+            for a in 0..N {
+                out[a].1 = add(out[a].1, scale(weight * shares[a], value));
+            }
+        }
+        out
+    }
+}
+
+/// Gauss points on [0, 1], exact to degree 7.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+fn eval(field: &[Poly; 3], x: Vec3) -> Vec3 {
+    [0, 1, 2].map(|c| field[c].value(x))
+}
+
+/// Gradients of the barycentric coordinates, and the volume.
+fn shape(x: [Vec3; 4]) -> ([Vec3; 4], f64) {
+    let mut gradients = [[0.0; 3]; 4];
+    let mut volume = 0.0;
+    for a in 0..4 {
+        // the gradient is the normal of the opposite face over the height
+        let [b, c, d] = [1, 2, 3].map(|k| x[(a + k) % 4]);
+        let normal = cross(sub(c, b), sub(d, b));
+        let height = dot(normal, sub(x[a], b));
+        gradients[a] = scale(1.0 / height, normal);
+        volume = height.abs() / 6.0;
+    }
+    (gradients, volume)
+}
+
+fn matrix(elastic: &Elastic) -> [[f64; 6]; 6] {
+    match elastic {
+        Elastic::Matrix(matrix) => **matrix,
+        Elastic::Isotropic(young, poisson) => {
+            // from the compliance: strain_i = (s_i - nu (s_j + s_k)) / E
+            let factor = young / (1.0 + poisson) / (1.0 - 2.0 * poisson);
+            let mut out = [[0.0; 6]; 6];
+            for i in 0..3 {
+                for j in 0..3 {
+                    out[i][j] = factor * if i == j { 1.0 - poisson } else { *poisson };
+                }
+                out[i + 3][i + 3] = 0.5 * factor * (1.0 - 2.0 * poisson);
+            }
+            out
+        }
+    }
+}
+
+/// Facets with tags, turned outward by the corner of their tetrahedron that is not on them.
+fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
+    let sorted = |mut n: [u32; 3]| {
+        n.sort_unstable();
+        n
+    };
+    let mut inner: HashMap<[u32; 3], u32> = HashMap::new();
+    for t in recipe.mesh.tets() {
+        for a in 0..4 {
+            let face = [1, 2, 3].map(|k| t[(a + k) % 4]);
+            inner.insert(sorted(face), t[a]);
+        }
+    }
+    let side = |facet: &signorini::fem_mesh::Facet| {
+        let [a, b, c] = facet.nodes.map(|n| points[n as usize]);
+        let vector = scale(0.5, cross(sub(b, a), sub(c, a)));
+        let inside = points[inner[&sorted(facet.nodes)] as usize];
+        let sign = if dot(vector, sub(inside, a)) > 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        Side {
+            tag: facet.tag,
+            nodes: facet.nodes,
+            vector: scale(sign, vector),
+        }
+    };
+    recipe.mesh.facets().iter().map(side).collect()
+}
+
+/// What hangs together through tetrahedra.
+fn bodies(elements: &[Element], nodes: usize) -> Vec<usize> {
+    let pairs = elements
+        .iter()
+        .flat_map(|e| [1, 2, 3].map(|k| (e.nodes[0], e.nodes[k])));
+    groups(nodes, pairs)
+}
+
+/// The smallest node of the group of each node, where pairs belong together.
+pub(crate) fn groups(nodes: usize, pairs: impl Iterator<Item = (u32, u32)>) -> Vec<usize> {
+    let mut of: Vec<usize> = (0..nodes).collect();
+    fn root(of: &mut [usize], mut k: usize) -> usize {
+        while of[k] != k {
+            of[k] = of[of[k]];
+            k = of[k];
+        }
+        k
+    }
+    for (a, b) in pairs {
+        let (a, b) = (root(&mut of, a as usize), root(&mut of, b as usize));
+        of[a.max(b)] = a.min(b);
+    }
+    (0..nodes).map(|k| root(&mut of, k)).collect()
+}

@@ -1,0 +1,116 @@
+//! Runs a scene and judges its levels.
+
+use crate::check::{Judge, Violation};
+use crate::recipe::Recipe;
+use crate::say;
+use signorini::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// A level that the library solved.
+#[derive(Debug, Clone)]
+pub(crate) struct Level {
+    pub(crate) status: LevelStatus,
+    pub(crate) products: usize,
+    pub(crate) faces: usize,
+    pub(crate) fallback: bool,
+    pub(crate) certificate: f64,
+    /// Whether an earlier level on which this one depends is not solved.
+    pub(crate) inherited: bool,
+    /// Largest violation that is accepted.
+    pub(crate) limit: f64,
+    pub(crate) violations: Vec<Violation>,
+}
+
+impl Level {
+    /// The condition that is violated most, by what it may be.
+    pub(crate) fn worst(&self) -> Violation {
+        let none = ("nothing", 0.0);
+        let worse = |a: Violation, b: Violation| if b.1 > a.1 || b.1.is_nan() { b } else { a };
+        self.violations.iter().copied().fold(none, worse)
+    }
+
+    /// Whether it is said to be solved, and what it depends on, too.
+    pub(crate) fn is_solved(&self) -> bool {
+        self.status.converged() && !self.inherited
+    }
+
+    /// Whether it is said to be solved and is not.
+    pub(crate) fn is_wrong(&self) -> bool {
+        let (_, worst) = self.worst();
+        self.is_solved() && !(worst <= self.limit)
+    }
+}
+
+/// How a scene ended.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// Refused before anything was solved: the kind of the error, and its words.
+    Refused(String, String),
+    Solved(Vec<Level>),
+    /// An error in a level that is [known](UNBOUNDED).
+    Known(&'static str),
+    /// A panic, or another error in a level.
+    Broken(String),
+}
+
+/// A known fault: successive approximations and the fall-back end in an error where a body just touches.
+const UNBOUNDED: &str = "unbounded below";
+
+/// Violations that a converged level may have.
+const LIMIT: f64 = 1e-4;
+
+pub(crate) fn run(recipe: &Recipe) -> Outcome {
+    match catch_unwind(AssertUnwindSafe(|| levels(recipe))) {
+        Ok(Ok(outcome)) => outcome,
+        Ok(Err(error)) if error.to_string().contains(UNBOUNDED) => Outcome::Known(UNBOUNDED),
+        Ok(Err(error)) => Outcome::Broken(error.to_string()),
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+            Outcome::Broken(format!("panic: {}", text.unwrap_or("?")))
+        }
+    }
+}
+
+fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
+    let scene = say::scene(recipe)?;
+    let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
+        Ok(simulation) => simulation,
+        Err(error) => {
+            let debug = format!("{error:?}");
+            let kind = |text: &str| text.split([' ', '(', '{']).next().unwrap_or("").to_owned();
+            let mut name = kind(&debug);
+            if let Some((_, inner)) = debug
+                .split_once('(')
+                .filter(|_| debug.starts_with("Tfeti("))
+            {
+                name = format!("{name}/{}", kind(inner));
+            }
+            return Ok(Outcome::Refused(name, error.to_string()));
+        }
+    };
+    let mut judge = Judge::new(recipe);
+    let mut out = Vec::new();
+    while !simulation.is_finished() {
+        if recipe.how.resume == Some(out.len()) {
+            let state = simulation.state().clone();
+            simulation = Simulation::new(scene.clone(), say::settings(recipe))?;
+            simulation.resume(state)?;
+        }
+        let frame = simulation.step()?;
+        let violations = judge.level(&frame)?;
+        let report = frame.report();
+        let certified = report.accuracy.map_or(0.0, |a| a.certificate_limit);
+        out.push(Level {
+            status: report.status,
+            products: report.counters.products,
+            faces: report.counters.faces,
+            fallback: report.fallback,
+            inherited: frame.unconverged_history().is_some(),
+            certificate: frame.certificate().largest(),
+            limit: LIMIT.max(10.0 * certified),
+            violations,
+        });
+    }
+    Ok(Outcome::Solved(out))
+}
