@@ -11,6 +11,9 @@
 //! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
 //! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force, or `r` if it is larger, times largest displacement |
 //!
+//! The gap is judged twice: at the contact points that have rows, and for each node of each contact against the obstacle of that
+//! contact alone. So it is the scene that is judged, not what was made of it.
+//!
 //! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
 //! held, so that a body that does not move has a scale too.
 //!
@@ -269,7 +272,40 @@ pub(crate) fn certify(
             contact_force.max(bound) * displacement,
         );
     }
+    judge(model, level, m.u, sizes, &mut c.gap);
     c
+}
+
+/// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each contact by itself,
+/// and mean displacements of its nodes.
+fn judge(model: &Model, level: &Level, u: &[f64], sizes: &[Sizes], gap: &mut Violation) {
+    let (tfeti, scene) = (&model.tfeti, &model.scene);
+    let weights = tfeti.copy_stiffness();
+    let along = |node: u32, normal: &[f64; 3]| {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for copy in model.decomposition.copies(node as usize) {
+            let first = tfeti.torn_range(copy.subdomain as usize).start;
+            let at = first + 3 * copy.local as usize;
+            let own = weights.weight(at / 3);
+            sum += own * vector::dot(&u[at..at + 3], normal);
+            weight += own;
+        }
+        sum / weight
+    };
+    for condition in &model.judged {
+        let normal = &condition.frame.normal;
+        let way = level.obstacles[0].get(condition.surface);
+        let open = condition.gap_after(scene, way.unwrap_or(&[0.0; 3]));
+        // no gap at all is no gap that holds
+        let open = open.unwrap_or(f64::NAN) + model.found.rounding;
+        let partner = condition.opponent.map_or(0.0, |node| along(node, normal));
+        let depth = along(condition.node, normal) - partner - open;
+        let copies = model.decomposition.copies(condition.node as usize);
+        let body = copies
+            .first()
+            .map_or(0, |c| model.bodies.of_subdomain(c.subdomain as usize));
+        gap.worsen(depth, sizes[body].displacement);
+    }
 }
 
 /// Slip bound of a point in newtons, from the level's own normal forces.

@@ -252,9 +252,23 @@ pub enum ContactError {
         /// Position of the contact surface in the scene.
         contact: usize,
     },
-    /// Two contact surfaces whose obstacles move differently meet a node along one direction.
+    /// A gap field moves far along a curved surface.
     #[error(
-        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"
+        "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way"
+    )]
+    MovedField {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+        /// Mesh node at which the surface is most curved.
+        node: u32,
+        /// Angle by which the normal turns on the way of the obstacle, degrees.
+        turn: f64,
+        /// What is allowed, degrees.
+        most: f64,
+    },
+    /// Two contact surfaces meet a node along one direction, and which obstacle is nearer changes with time.
+    #[error(
+        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently or bring other gaps, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"
     )]
     SharedNode {
         /// Mesh node.
