@@ -316,3 +316,76 @@ pub(crate) fn slip_bound(model: &Model, level: &Level, k: usize, lambda: &[f64])
     }
     Some(level.bound(k, point, lambda))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::state::State;
+    use crate::{Analysis, Contact, Scene, Support};
+    use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+
+    /// The gap of a certificate where all nodes are displaced alike, and the points of the model say nothing.
+    fn judged(scene: Scene, displacement: [f64; 3]) -> Violation {
+        let mut model = Model::new(scene, &Settings::default()).expect("model");
+        model.points.clear();
+        let mut level = Level::default();
+        level.prepare(&model, &State::default(), 0).expect("level");
+        let u = displacement.repeat(model.tfeti.torn_dim() / 3);
+        let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
+        let measured = Measured {
+            rows: &lambda,
+            u: &u,
+            force: &zero,
+            residual: &zero,
+        };
+        let sizes = sizes(&model, &level, &lambda, &measured);
+        certify(&model, &level, &lambda, &measured, &sizes).gap
+    }
+
+    fn cube() -> Scene {
+        let mesh = Brick::new([1.0; 3], [2, 2, 2]).build().expect("mesh");
+        let material = Hooke::isotropic(1e6, 0.3).expect("Hooke");
+        Scene::new(mesh, Materials::uniform(material)).with_boxes([2, 1, 1])
+    }
+
+    fn close(found: Violation, depth: f64, size: f64) {
+        assert!(
+            (found.value - depth).abs() < 1e-9 && found.reference == size,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn the_obstacles_of_the_scene_are_judged_whatever_points_there_are() {
+        let floor = Contact::rigid(brick::Z_MIN).with_gap(0.1);
+        let wall = Contact::rigid(brick::X_MAX).with_gap(0.3);
+        let scene = cube().with_contact(floor.clone()).with_contact(wall);
+        close(judged(scene.clone(), [0.2, 0.0, -0.25]), 0.15, 0.25);
+        close(judged(scene.clone(), [0.5, 0.0, -0.25]), 0.2, 0.5);
+        assert_eq!(judged(scene, [-1.0, 0.0, -0.1]).value, 0.0);
+        // on one side the nearer one, though one point stands for both
+        let both = cube()
+            .with_contact(floor.clone())
+            .with_contact(floor.clone().with_gap(0.05));
+        close(judged(both, [0.0, 0.0, -0.25]), 0.2, 0.25);
+        // nodes that supports hold are judged before anything is solved
+        let held = cube()
+            .with_contact(floor)
+            .with_support(Support::fixed(brick::Z_MIN));
+        assert_eq!(judged(held, [0.0, 0.0, -0.25]).value, 0.0);
+    }
+
+    #[test]
+    fn obstacles_are_judged_where_they_have_moved() {
+        let ramp = History::ramp(1.0, 1.0).expect("ramp");
+        let moving = Contact::rigid(brick::Z_MIN)
+            .with_gap_field(|x| 0.1 * x[0])
+            .moved([1.0, 0.0, 0.05], ramp);
+        let scene = cube()
+            .with_contact(moving)
+            .with_analysis(Analysis::quasistatic(1.0, 1));
+        // at x = 0 the gap is now -0.1 - 0.05
+        close(judged(scene, [0.0, 0.0, -0.25]), 0.4, 0.25);
+    }
+}
