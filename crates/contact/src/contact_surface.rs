@@ -180,7 +180,8 @@ impl Contact {
     /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
     /// default; in (0, 180], 180 for none). A node has one contact point with the mean normal of its facets; at a crease it
     /// has one for each side, so that an edge between floor and wall meets both. Ordinary meshes of curved surfaces have
-    /// smaller angles (45 with 8 facets around a cylinder). Without effect with [`with_normal`](Self::with_normal).
+    /// smaller angles (45 with 8 facets around a cylinder). Flat sides that meet at a smaller angle are to be contacts of their own, which
+    /// are kept apart at any angle: within one contact they count as curved. Without effect with [`with_normal`](Self::with_normal).
     #[must_use]
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
