@@ -1,23 +1,30 @@
 //! Where contact can happen: the contact points of all surfaces, with normal, area and gap.
 //!
-//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two surfaces
-//! meet at an edge one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all of
-//! their obstacles. Surfaces that go over into one another share a node with one point. Between bodies a node is one point,
-//! with a [partner](crate::partners).
+//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two contacts
+//! meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all of
+//! their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the conditions follows
+//! from the other. Between bodies a node is one point, with a [partner](crate::partners).
+//!
+//! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate judges the former.
 
 use crate::contact_surface::{Contact, ContactNormal};
 use crate::error::ContactError;
+use crate::magnitude::{largest, rounding};
 use crate::partners::{Partner, partners};
 use crate::scene::Scene;
 use signorini_fem_mesh::{Frame, Surface, TetMesh};
+use signorini_qp::vector;
 use signorini_tfeti::{ContactNodes, ContactPoint};
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// Cosine to the outward normal below which a direction counts as along the surface.
 const ALONG: f64 = 1e-9;
 
-/// Cosine above which two directions of contact are one.
-const SAME: f64 = 1.0 - 1e-6;
+/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
+/// angle (tests/edges_apart.rs). Within smaller ones a node would have twice the same row, which [`ContactNodes`] refuses, and one
+/// condition keeps the other to 1.4e-6 of the way along the surface, which the certificate sees.
+const SAME: f64 = 1.0 - 1e-12;
 
 /// A contact point before any row is made.
 #[derive(Debug, Clone)]
@@ -35,10 +42,62 @@ pub(crate) struct Candidate {
     pub(crate) gap: f64,
 }
 
-/// The surfaces of a scene's contacts.
-pub(crate) fn surfaces(scene: &Scene) -> Result<Vec<Surface>, ContactError> {
-    let surface = |contact: &Contact| Ok(Surface::new(&scene.mesh, &contact.tags)?);
-    scene.contacts.iter().map(surface).collect()
+impl Candidate {
+    /// The gap where the obstacle has moved by `way`, m.
+    pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
+        let contact = &scene.contacts[self.surface];
+        let at = scene.mesh.points()[self.node as usize];
+        let normal = &self.frame.normal;
+        let brought = contact.gap_brought(self.surface, self.node, at, normal, (self.gap, way))?;
+        Ok(brought + vector::dot(way, normal))
+    }
+}
+
+/// What a scene has of contact.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    /// The surfaces of its contacts.
+    pub(crate) surfaces: Vec<Surface>,
+    /// What the contacts say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
+    pub(crate) conditions: Vec<Candidate>,
+    /// The contact points that stand for them.
+    pub(crate) points: Vec<Candidate>,
+    /// What of a gap may be rounding, m.
+    pub(crate) rounding: f64,
+}
+
+impl Found {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
+        let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
+        let surfaces = scene.contacts.iter().map(surface);
+        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
+        let conditions = conditions(scene, &surfaces)?;
+        let rounding = rounding(&scene.mesh);
+        let points = points(scene, &conditions, rounding)?;
+        Ok(Self {
+            surfaces,
+            conditions,
+            points,
+            rounding,
+        })
+    }
+
+    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are judged elsewhere: of
+    /// nodes that supports hold ([`driven`](crate::driven)), and of points that screening has left out.
+    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<Candidate> {
+        let mut places = places.peekable();
+        let mut without: HashMap<u32, Vec<&Candidate>> = HashMap::new();
+        for (place, point) in self.points.iter().enumerate() {
+            if places.next_if_eq(&place).is_none() {
+                without.entry(point.node).or_default().push(point);
+            }
+        }
+        let left = |c: &&Candidate| {
+            let points = without.get(&c.node);
+            !points.is_some_and(|p| p.iter().any(|p| is_same(p, c)))
+        };
+        self.conditions.iter().filter(left).cloned().collect()
+    }
 }
 
 /// The points as `tfeti` wants them.
@@ -56,22 +115,16 @@ pub(crate) fn contact_nodes<'a>(
     candidates.map(point).collect()
 }
 
-/// The contact points of all surfaces: surface by surface, nodes ascending.
-pub(crate) fn candidates(
-    scene: &Scene,
-    surfaces: &[Surface],
-) -> Result<Vec<Candidate>, ContactError> {
+fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Candidate>, ContactError> {
     let mut out: Vec<Candidate> = Vec::new();
-    // points of each node, where there may be more than one
-    let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
+        let first = out.len();
         let fixed = fixed_frame(index, contact, surface)?;
         let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
         let sides = match fixed {
             None if partners.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
-        let alone = scene.contacts.len() == 1;
         for (local, &node) in surface.nodes().iter().enumerate() {
             let partner = partners.get(local);
             let measured = partner.map_or(0.0, |p: &Partner| p.gap);
@@ -79,27 +132,46 @@ pub(crate) fn candidates(
             let one = [(surface.frames()[local], surface.areas()[local])];
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
-                let candidate = Candidate {
+                out.push(Candidate {
                     surface: index,
                     node,
                     opponent: partner.map(|p| p.node),
                     frame: fixed.unwrap_or(frame),
                     area,
                     gap,
-                };
-                if alone && own.is_none() {
-                    out.push(candidate);
-                    continue;
-                }
-                let others = known.entry(node).or_default();
-                let same = |k: &&usize| is_same(scene, &out[**k], &candidate);
-                match others.iter().find(same) {
-                    Some(&k) => join(scene, &mut out[k], candidate)?,
-                    None => {
-                        others.push(out.len());
-                        out.push(candidate);
-                    }
-                }
+                });
+            }
+        }
+        check_turn(scene, index, surface, &out[first..])?;
+    }
+    Ok(out)
+}
+
+/// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
+fn points(
+    scene: &Scene,
+    conditions: &[Candidate],
+    rounding: f64,
+) -> Result<Vec<Candidate>, ContactError> {
+    let mut out: Vec<Candidate> = Vec::with_capacity(conditions.len());
+    // points of each node that there may be others of
+    let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
+    let mut count = vec![0u32; scene.mesh.points().len()];
+    conditions.iter().for_each(|c| count[c.node as usize] += 1);
+    for condition in conditions {
+        if count[condition.node as usize] == 1 {
+            out.push(condition.clone());
+            continue;
+        }
+        let others = known.entry(condition.node).or_default();
+        match others
+            .iter()
+            .find(|k| condition.opponent.is_none() && is_same(&out[**k], condition))
+        {
+            Some(&k) => join(scene, rounding, &mut out[k], condition)?,
+            None => {
+                others.push(out.len());
+                out.push(condition.clone());
             }
         }
     }
@@ -130,50 +202,130 @@ fn fixed_frame(
     Ok(Some(frame))
 }
 
-/// Whether two points of a node are one: the same direction, or surfaces that go over into one another. Sides of one surface
-/// have been told apart at its creases.
-fn is_same(scene: &Scene, a: &Candidate, b: &Candidate) -> bool {
-    if a.opponent.is_some() || b.opponent.is_some() {
-        return false;
-    }
-    let cosine = a.frame.normal_part(b.frame.normal);
-    if a.surface == b.surface {
-        return cosine > SAME;
-    }
-    let [x, y] = [a, b].map(|c| &scene.contacts[c.surface]);
-    let body = [x, y].iter().all(|c| c.normal == ContactNormal::Body);
-    cosine > SAME || (body && cosine > x.crease.min(y.crease).to_radians().cos())
+/// Whether two conditions of a node are on the same displacement: one of them then follows from the other.
+fn is_same(a: &Candidate, b: &Candidate) -> bool {
+    a.opponent == b.opponent && a.frame.normal_part(b.frame.normal) > SAME
 }
 
-/// Joins a point to an earlier one of the same node: the law is that of the nearer obstacle. Surfaces with a tag in common
-/// share its facets, whose area counts once.
-fn join(scene: &Scene, point: &mut Candidate, other: Candidate) -> Result<(), ContactError> {
-    let [x, y] = [&*point, &other].map(|c| &scene.contacts[c.surface]);
-    if x.motion != y.motion {
-        // which obstacle is nearer would change with time
+/// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are its own.
+/// Where both are as near the law is that of the first one, on the area of both; facets that they share count once.
+fn join(
+    scene: &Scene,
+    rounding: f64,
+    point: &mut Candidate,
+    other: &Candidate,
+) -> Result<(), ContactError> {
+    let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
+    let nearer = order(other.gap - point.gap, rounding);
+    if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
         return Err(ContactError::SharedNode {
             node: point.node,
             first: point.surface,
             second: other.surface,
         });
     }
-    let shared = point.surface != other.surface && x.tags.iter().any(|t| y.tags.contains(t));
-    let weights = point.area + other.area;
-    let area = if shared {
-        point.area.max(other.area)
+    match nearer {
+        Ordering::Equal => {
+            let shared = x.tags.iter().any(|t| y.tags.contains(t));
+            point.area = if shared && point.surface != other.surface {
+                point.area.max(other.area)
+            } else {
+                point.area + other.area
+            };
+        }
+        Ordering::Less => {
+            (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+        }
+        Ordering::Greater => {}
+    }
+    Ok(())
+}
+
+/// The sign of a difference of gaps.
+fn order(difference: f64, rounding: f64) -> Ordering {
+    if difference.abs() <= rounding {
+        Ordering::Equal
     } else {
-        weights
+        difference.total_cmp(&0.0)
+    }
+}
+
+/// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along may change that.
+fn stays(
+    scene: &Scene,
+    rounding: f64,
+    point: &Candidate,
+    other: &Candidate,
+    nearer: Ordering,
+) -> Result<bool, ContactError> {
+    let [x, y] = [point, other].map(|c| &scene.contacts[c.surface]);
+    if !x.carries_field() && !y.carries_field() {
+        return Ok(true);
+    }
+    for level in 0..scene.analysis.levels() {
+        let way = x.obstacle_at(scene.analysis.time(level).unwrap_or(0.0));
+        let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
+        if order(difference, rounding) != nearer {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a twentieth of
+/// the way.
+const TURN: f64 = 0.1;
+
+/// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
+fn check_turn(
+    scene: &Scene,
+    index: usize,
+    surface: &Surface,
+    own: &[Candidate],
+) -> Result<(), ContactError> {
+    let contact = &scene.contacts[index];
+    let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
+        return Ok(());
     };
-    if point.frame.normal_part(other.frame.normal) <= SAME {
-        let mean = [0, 1, 2].map(|c| {
-            (point.area * point.frame.normal[c] + other.area * other.frame.normal[c]) / weights
+    if contact.normal != ContactNormal::Body {
+        return Ok(());
+    }
+    let factor = largest(&scene.analysis, history).0;
+    let mut worst = (0.0, 0);
+    for triangle in surface.triangles() {
+        let flat = area_vector(&scene.mesh, surface, triangle);
+        let nodes = triangle.map(|n| surface.nodes()[n as usize]);
+        let places = nodes.map(|n| scene.mesh.points()[n as usize]);
+        let edge = |a: usize| {
+            let [from, to] = [1, 2].map(|k| places[(a + k) % 3]);
+            [0, 1, 2].map(|c| to[c] - from[c])
+        };
+        // of a node in a crease the side that the facet belongs to
+        let along = |node: u32| {
+            let from = own.partition_point(|c| c.node < node);
+            let sides = own[from..].iter().take_while(|c| c.node == node);
+            let facing = |c: &&Candidate| c.frame.normal_part(flat);
+            let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
+            side.map_or(0.0, |c| factor * c.frame.normal_part(way))
+        };
+        // length of the gradient of `n . way` on the facet
+        let mut sum = [0.0; 3];
+        for (a, &node) in nodes.iter().enumerate() {
+            vector::axpy(along(node), &edge(a), &mut sum);
+        }
+        let turn = vector::norm(&sum) / (2.0 * length(flat));
+        if turn > worst.0 {
+            worst = (turn, nodes[0]);
+        }
+    }
+    if worst.0 > TURN {
+        return Err(ContactError::MovedField {
+            contact: index,
+            node: worst.1,
+            turn: worst.0.to_degrees(),
+            most: TURN.to_degrees(),
         });
-        point.frame = Frame::from_normal(mean).unwrap_or(point.frame);
     }
-    if other.gap < point.gap {
-        (point.surface, point.gap) = (other.surface, other.gap);
-    }
-    point.area = area;
     Ok(())
 }
 

@@ -11,6 +11,9 @@
 //! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
 //! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force, or `r` if it is larger, times largest displacement |
 //!
+//! The gap is judged twice: at the contact points that have rows, and for each node of each contact against the obstacle of that
+//! contact alone. So it is the scene that is judged, not what was made of it.
+//!
 //! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
 //! held, so that a body that does not move has a scale too.
 //!
@@ -269,7 +272,40 @@ pub(crate) fn certify(
             contact_force.max(bound) * displacement,
         );
     }
+    judge(model, level, m.u, sizes, &mut c.gap);
     c
+}
+
+/// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each contact by itself,
+/// and mean displacements of its nodes.
+fn judge(model: &Model, level: &Level, u: &[f64], sizes: &[Sizes], gap: &mut Violation) {
+    let (tfeti, scene) = (&model.tfeti, &model.scene);
+    let weights = tfeti.copy_stiffness();
+    let along = |node: u32, normal: &[f64; 3]| {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for copy in model.decomposition.copies(node as usize) {
+            let first = tfeti.torn_range(copy.subdomain as usize).start;
+            let at = first + 3 * copy.local as usize;
+            let own = weights.weight(at / 3);
+            sum += own * vector::dot(&u[at..at + 3], normal);
+            weight += own;
+        }
+        sum / weight
+    };
+    for condition in &model.judged {
+        let normal = &condition.frame.normal;
+        let way = level.obstacles[0].get(condition.surface);
+        let open = condition.gap_after(scene, way.unwrap_or(&[0.0; 3]));
+        // no gap at all is no gap that holds
+        let open = open.unwrap_or(f64::NAN) + model.found.rounding;
+        let partner = condition.opponent.map_or(0.0, |node| along(node, normal));
+        let depth = along(condition.node, normal) - partner - open;
+        let copies = model.decomposition.copies(condition.node as usize);
+        let body = copies
+            .first()
+            .map_or(0, |c| model.bodies.of_subdomain(c.subdomain as usize));
+        gap.worsen(depth, sizes[body].displacement);
+    }
 }
 
 /// Slip bound of a point in newtons, from the level's own normal forces.
@@ -279,4 +315,77 @@ pub(crate) fn slip_bound(model: &Model, level: &Level, k: usize, lambda: &[f64])
         return None;
     }
     Some(level.bound(k, point, lambda))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::state::State;
+    use crate::{Analysis, Contact, Scene, Support};
+    use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+
+    /// The gap of a certificate where all nodes are displaced alike, and the points of the model say nothing.
+    fn judged(scene: Scene, displacement: [f64; 3]) -> Violation {
+        let mut model = Model::new(scene, &Settings::default()).expect("model");
+        model.points.clear();
+        let mut level = Level::default();
+        level.prepare(&model, &State::default(), 0).expect("level");
+        let u = displacement.repeat(model.tfeti.torn_dim() / 3);
+        let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
+        let measured = Measured {
+            rows: &lambda,
+            u: &u,
+            force: &zero,
+            residual: &zero,
+        };
+        let sizes = sizes(&model, &level, &lambda, &measured);
+        certify(&model, &level, &lambda, &measured, &sizes).gap
+    }
+
+    fn cube() -> Scene {
+        let mesh = Brick::new([1.0; 3], [2, 2, 2]).build().expect("mesh");
+        let material = Hooke::isotropic(1e6, 0.3).expect("Hooke");
+        Scene::new(mesh, Materials::uniform(material)).with_boxes([2, 1, 1])
+    }
+
+    fn close(found: Violation, depth: f64, size: f64) {
+        assert!(
+            (found.value - depth).abs() < 1e-9 && found.reference == size,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn the_obstacles_of_the_scene_are_judged_whatever_points_there_are() {
+        let floor = Contact::rigid(brick::Z_MIN).with_gap(0.1);
+        let wall = Contact::rigid(brick::X_MAX).with_gap(0.3);
+        let scene = cube().with_contact(floor.clone()).with_contact(wall);
+        close(judged(scene.clone(), [0.2, 0.0, -0.25]), 0.15, 0.25);
+        close(judged(scene.clone(), [0.5, 0.0, -0.25]), 0.2, 0.5);
+        assert_eq!(judged(scene, [-1.0, 0.0, -0.1]).value, 0.0);
+        // on one side the nearer one, though one point stands for both
+        let both = cube()
+            .with_contact(floor.clone())
+            .with_contact(floor.clone().with_gap(0.05));
+        close(judged(both, [0.0, 0.0, -0.25]), 0.2, 0.25);
+        // nodes that supports hold are judged before anything is solved
+        let held = cube()
+            .with_contact(floor)
+            .with_support(Support::fixed(brick::Z_MIN));
+        assert_eq!(judged(held, [0.0, 0.0, -0.25]).value, 0.0);
+    }
+
+    #[test]
+    fn obstacles_are_judged_where_they_have_moved() {
+        let ramp = History::ramp(1.0, 1.0).expect("ramp");
+        let moving = Contact::rigid(brick::Z_MIN)
+            .with_gap_field(|x| 0.1 * x[0])
+            .moved([1.0, 0.0, 0.05], ramp);
+        let scene = cube()
+            .with_contact(moving)
+            .with_analysis(Analysis::quasistatic(1.0, 1));
+        // at x = 0 the gap is now -0.1 - 0.05
+        close(judged(scene, [0.0, 0.0, -0.25]), 0.4, 0.25);
+    }
 }

@@ -57,6 +57,12 @@ const STEPS: usize = 200;
 /// Part by which loads must exceed given friction to count.
 const MORE: f64 = 1e-6;
 
+/// Friction so many times as large is none that a remedy could name.
+const MUCH: f64 = 1e3;
+
+/// Accuracy of the factor that is named, relative.
+const FACTOR: f64 = 1e-4;
+
 impl Cone {
     pub(crate) fn new(dim: usize, generators: Vec<Generators>) -> Self {
         let mut largest = 0.0_f64;
@@ -71,6 +77,33 @@ impl Cone {
             largest,
             held: Vec::new(),
         }
+    }
+
+    /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does not hold; `None` where no
+    /// friction could.
+    pub(crate) fn friction_needed(&self, b: &[f64]) -> Option<f64> {
+        let holds = |factor: f64| {
+            let scaled = self.generators.iter().map(|g| Generators {
+                coefficient: g.coefficient.map(|c| factor * c),
+                given: factor * g.given,
+                ..g.clone()
+            });
+            let mut cone = Self::new(self.dim, scaled.collect());
+            cone.exceeded(b).is_none()
+        };
+        let (mut low, mut high) = (1.0_f64, MUCH);
+        if !holds(high) {
+            return None;
+        }
+        while high > (1.0 + FACTOR) * low {
+            let middle = (low * high).sqrt();
+            if holds(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Some(low)
     }
 
     /// Whether the loads `b`, N, are out of reach of cone and given friction.
@@ -307,6 +340,22 @@ mod tests {
             assert!(found.motion[0] < -0.5 && found.motion[1].abs() < 1e-6);
             assert_eq!(cone.exceeded(&[1.0, 0.3, 0.1]), None);
         }
+    }
+
+    #[test]
+    fn the_friction_needed_is_named() {
+        let close = |found: Option<f64>, expected: f64| {
+            let found = found.expect("friction could");
+            assert!((found / expected - 1.0).abs() < 2e-4, "{found}");
+        };
+        close(two_points(0.3).friction_needed(&[2.0, 1.5, 0.0]), 2.5);
+        let mut cone = two_points(0.0);
+        cone.generators.iter_mut().for_each(|g| g.given = 5.0);
+        close(cone.friction_needed(&[2.0, 41.0, 0.0]), 4.1);
+        // lifted, tipped, or without any friction
+        assert_eq!(two_points(0.3).friction_needed(&[-1.0, 0.1, 0.0]), None);
+        assert_eq!(two_points(0.3).friction_needed(&[1.0, 0.1, 2.0]), None);
+        assert_eq!(two_points(0.0).friction_needed(&[1.0, 0.1, 0.0]), None);
     }
 
     fn held(cone: &mut Cone, b: [f64; 3]) -> bool {

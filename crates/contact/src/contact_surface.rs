@@ -3,6 +3,7 @@
 use crate::error::ContactError;
 use crate::law::{Friction, PlaceField};
 use signorini_fem_mesh::{FacetTag, History};
+use signorini_qp::vector;
 use std::fmt;
 use std::sync::Arc;
 
@@ -161,7 +162,8 @@ impl Contact {
         self
     }
 
-    /// A gap in m that depends on the place.
+    /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. It is asked at the nodes of
+    /// the surface and, where the obstacle [moves](Self::moved) along the surface, at the places that pass under them, which may lie beside it.
     #[must_use]
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Arc::new(gap));
@@ -178,7 +180,8 @@ impl Contact {
     /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
     /// default; in (0, 180], 180 for none). A node has one contact point with the mean normal of its facets; at a crease it
     /// has one for each side, so that an edge between floor and wall meets both. Ordinary meshes of curved surfaces have
-    /// smaller angles (45 with 8 facets around a cylinder). Without effect with [`with_normal`](Self::with_normal).
+    /// smaller angles (45 with 8 facets around a cylinder). Flat sides that meet at a smaller angle are to be contacts of their own, which
+    /// are kept apart at any angle: within one contact they count as curved. Without effect with [`with_normal`](Self::with_normal).
     #[must_use]
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
@@ -188,6 +191,12 @@ impl Contact {
     /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero before the first level, as
     /// that of the body. Along the normal it opens or closes the gap; along the surface it drags the body by friction: slip is
     /// the displacement of the body relative to the obstacle. A rotating obstacle is none of these.
+    ///
+    /// A gap [that depends on the place](Self::with_gap_field) moves along: where the obstacle has moved by `w`, the gap at `x` with the
+    /// normal `n` is `field(x - w_T) + n . w` with `w_T = w - (n . w) n`. That is exact for any way along a flat side, with
+    /// [`with_normal`](Self::with_normal), and along a side that the motion maps onto itself. Along other sides it holds for ways that are short
+    /// against the radius of curvature; longer ones are refused ([`MovedField`](ContactError::MovedField)). Friction laws that depend on the
+    /// place stay with the nodes of the body.
     #[must_use]
     pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
@@ -284,5 +293,28 @@ impl Contact {
                 value,
             })
         }
+    }
+
+    /// Whether the obstacle moves and takes a gap with it that depends on the place.
+    pub(crate) fn carries_field(&self) -> bool {
+        self.motion.is_some() && matches!(self.gap, Gap::Field(_))
+    }
+
+    /// The gap at a node, m, that is `initial` at first and to which the obstacle has brought another one by moving along the surface: that of
+    /// the place from which it comes. The part of the way along the normal, which opens the gap, is not in it.
+    pub(crate) fn gap_brought(
+        &self,
+        contact: usize,
+        node: u32,
+        position: [f64; 3],
+        normal: &[f64; 3],
+        (initial, way): (f64, &[f64; 3]),
+    ) -> Result<f64, ContactError> {
+        let out = vector::dot(way, normal);
+        let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
+        if !matches!(self.gap, Gap::Field(_)) || from == position {
+            return Ok(initial);
+        }
+        self.gap_at(contact, node, from, initial)
     }
 }

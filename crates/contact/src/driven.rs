@@ -39,8 +39,7 @@ pub(crate) fn check(
         let mut deepest: Option<(f64, u32, f64, f64)> = None;
         for (point, candidate) in &held {
             let contact = &scene.contacts[candidate.surface];
-            let carried = candidate.frame.normal_part(contact.obstacle_at(time));
-            let gap = candidate.gap + carried;
+            let gap = candidate.gap_after(scene, &contact.obstacle_at(time))?;
             let displacement: f64 = point
                 .normal
                 .iter()

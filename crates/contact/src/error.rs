@@ -16,6 +16,17 @@ fn beside_words(beside: f64, limit: f64) -> String {
     }
 }
 
+/// What would hold a body.
+fn held_remedy(friction: Option<f64>) -> String {
+    match friction {
+        Some(factor) => format!(
+            "friction would have to be more than {:.3} times as large: press harder, pull less, add a support, or move the body by its supports if it is to slide",
+            (1e3 * factor).floor() / 1e3
+        ),
+        None => "add a support, contact or friction, or balance the loads".to_owned(),
+    }
+}
+
 /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -252,9 +263,23 @@ pub enum ContactError {
         /// Position of the contact surface in the scene.
         contact: usize,
     },
-    /// Two contact surfaces whose obstacles move differently meet a node along one direction.
+    /// A gap field moves far along a curved surface.
     #[error(
-        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"
+        "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way"
+    )]
+    MovedField {
+        /// Position of the contact surface in the scene.
+        contact: usize,
+        /// Mesh node at which the surface is most curved.
+        node: u32,
+        /// Angle by which the normal turns on the way of the obstacle, degrees.
+        turn: f64,
+        /// What is allowed, degrees.
+        most: f64,
+    },
+    /// Two contact surfaces meet a node along one direction, and which obstacle is nearer changes with time.
+    #[error(
+        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently or bring other gaps, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"
     )]
     SharedNode {
         /// Mesh node.
@@ -292,7 +317,9 @@ pub enum ContactError {
     },
     /// Loads that nothing can balance.
     #[error(
-        "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push along it with {force:.3e} N; add a support, contact or friction, or balance the loads"
+        "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
+        if friction.is_some() { "beyond what friction can hold" } else { "held neither by supports nor by contact" },
+        held_remedy(*friction)
     )]
     NotHeld {
         /// Time level, from 0.
@@ -306,6 +333,9 @@ pub enum ContactError {
         /// Work of the loads per metre of the motion, N. For a translation it is the force along it, for a rotation the
         /// moment divided by the radius.
         force: f64,
+        /// By more than which factor friction (coefficients and given bounds) would have to be larger to hold the body; `None` where no friction on its
+        /// contact surfaces could.
+        friction: Option<f64>,
     },
     /// Loads in balance, or none, on a body that nothing holds.
     #[error(

@@ -94,7 +94,7 @@ pub struct ContactSummary {
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
     /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
-    /// the obstacle.
+    /// the obstacle, and normal forces times the change of a [gap that moves along](crate::Contact::moved).
     pub obstacle_work: f64,
 }
 
@@ -144,13 +144,13 @@ impl Frame<'_> {
     /// The first contact surface with all its nodes, fixed ones included; `None` without contact.
     #[must_use]
     pub fn surface(&self) -> Option<&Surface> {
-        self.model.surfaces.first()
+        self.model.found.surfaces.first()
     }
 
     /// All contact surfaces, in the order of [`Scene::contacts`].
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
-        &self.model.surfaces
+        &self.model.found.surfaces
     }
 
     /// How the level was solved.
@@ -430,7 +430,7 @@ pub(crate) fn summarise(
     lambda: &[f64],
     rows: &[f64],
     before: &[f64],
-) -> ContactSummary {
+) -> Result<ContactSummary, ContactError> {
     let mut s = ContactSummary::default();
     let start = model.tangential_start();
     for (point, touch) in points.iter().zip(&model.points) {
@@ -463,10 +463,16 @@ pub(crate) fn summarise(
             for c in 0..3 {
                 s.obstacle_work += force[c] * (now[c] - old[c]);
             }
+            if active {
+                let [now, old] = [Level::gap, Level::gap_before];
+                let scene = &model.scene;
+                s.obstacle_work +=
+                    point.normal_force * (now(level, scene, touch)? - old(level, scene, touch)?);
+            }
         }
     }
     s.stick = s.active - s.slip;
     s.normal_norm = s.normal_norm.sqrt();
     s.friction_norm = s.friction_norm.sqrt();
-    s
+    Ok(s)
 }

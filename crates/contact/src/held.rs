@@ -3,7 +3,8 @@
 //! Equilibrium of the rigid motions that supports leave free is necessary: contact forces must exist with `G lambda = e`,
 //! `lambda_nu <= 0` and friction in its cone. On these motions, six a free body at most, that is a small problem: the
 //! loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the cone
-//! is a motion on which the loads work and against which no contact force can.
+//! is a motion on which the loads work and against which no contact force can. Where larger friction could, the error says so, and by which
+//! factor.
 
 use crate::cone::{Cone, Generators, Separation};
 use crate::error::ContactError;
@@ -49,6 +50,7 @@ pub(crate) fn check(model: &Model) -> Result<(), ContactError> {
             node: model.decomposition.subdomains()[w.way.subdomain].nodes[0],
             mode: w.mode,
             force: w.force,
+            friction: w.friction,
         })
     })
 }
@@ -59,6 +61,8 @@ struct Escape {
     way: Part,
     mode: String,
     force: f64,
+    /// By which factor friction would have to be larger; `None` where no friction could hold the body.
+    friction: Option<f64>,
 }
 
 /// The first level at which nothing can hold a body.
@@ -105,7 +109,9 @@ fn escapes(
             // the size of the loads counts
             if let Some(Separation { motion, given }) = cone.exceeded(&b) {
                 let force = vector::dot(&motion, &b);
-                return Ok(Some(escape(level, motions, &motion, force, given)));
+                let friction = cone.friction_needed(&b);
+                let escape = escape(level, motions, &motion, (force, given), friction);
+                return Ok(Some(escape));
             }
             continue;
         }
@@ -117,7 +123,9 @@ fn escapes(
         }
         if let Some(motion) = cone.separates(&b) {
             let force = length * vector::dot(&motion, &b);
-            return Ok(Some(escape(level, motions, &motion, force, 0.0)));
+            let friction = cone.friction_needed(&b);
+            let escape = escape(level, motions, &motion, (force, 0.0), friction);
+            return Ok(Some(escape));
         }
         approved = Some(b);
     }
@@ -125,7 +133,13 @@ fn escapes(
 }
 
 /// The way out: `given` is what given friction takes of the force.
-fn escape(level: usize, motions: &[&FreeMotion], motion: &[f64], force: f64, given: f64) -> Escape {
+fn escape(
+    level: usize,
+    motions: &[&FreeMotion],
+    motion: &[f64],
+    (force, given): (f64, f64),
+    friction: Option<f64>,
+) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
     let (way, mode, share) = describe(motions, &motion);
@@ -142,6 +156,7 @@ fn escape(level: usize, motions: &[&FreeMotion], motion: &[f64], force: f64, giv
         way,
         mode,
         force: force * share,
+        friction,
     }
 }
 

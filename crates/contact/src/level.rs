@@ -4,6 +4,7 @@ use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::law::Friction;
 use crate::model::{Model, TouchPoint};
+use crate::scene::Scene;
 use crate::state::{Peak, REST, State};
 use signorini_qp::{ProductSet, vector};
 
@@ -96,9 +97,10 @@ impl Level {
         if model.plan.effects.motion && model.plan.effects.partners {
             self.prescribed = between_bodies(&model.points, &self.offset);
         }
+        self.find_obstacles(model, index);
         if model.plan.effects.gap {
             for point in &model.points {
-                self.offset[point.row] += point.scale * point.gap;
+                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
             }
         }
         if let (true, Some(formula)) = (model.plan.effects.history, analysis.formula()) {
@@ -113,7 +115,7 @@ impl Level {
                 }
             }
         }
-        self.move_obstacles(model, index);
+        self.move_obstacles(model);
         self.linear.resize(rows, 0.0);
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
             *d = c - l;
@@ -121,8 +123,8 @@ impl Level {
         self.friction(model, state)
     }
 
-    /// Offsets of the obstacles that move.
-    fn move_obstacles(&mut self, model: &Model, index: usize) {
+    /// Where the obstacles that move are.
+    fn find_obstacles(&mut self, model: &Model, index: usize) {
         if !model.plan.effects.moving_obstacle {
             return;
         }
@@ -134,11 +136,32 @@ impl Level {
                 .map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t)))
                 .collect()
         });
+    }
+
+    /// Offsets of the obstacles that move.
+    fn move_obstacles(&mut self, model: &Model) {
+        if self.obstacles[0].is_empty() {
+            return;
+        }
         for point in &model.points {
             for (direction, row, scale) in point.directions() {
                 self.offset[row] += scale * self.carried(point.surface, &direction);
             }
         }
+    }
+
+    /// The gap of a point with what an obstacle that moves along the surface has brought, without what it opens, m.
+    pub(crate) fn gap(&self, scene: &Scene, point: &TouchPoint) -> Result<f64, ContactError> {
+        gap_brought(scene, point, &self.obstacles[0])
+    }
+
+    /// The same at the level before.
+    pub(crate) fn gap_before(
+        &self,
+        scene: &Scene,
+        point: &TouchPoint,
+    ) -> Result<f64, ContactError> {
+        gap_brought(scene, point, &self.obstacles[1])
     }
 
     /// Displacement of the obstacle of a surface along a direction, m.
@@ -228,6 +251,25 @@ impl Level {
             _ => 0.0,
         }
     }
+}
+
+fn gap_brought(
+    scene: &Scene,
+    point: &TouchPoint,
+    obstacles: &[[f64; 3]],
+) -> Result<f64, ContactError> {
+    let Some(way) = obstacles.get(point.surface) else {
+        return Ok(point.gap);
+    };
+    let contact = &scene.contacts[point.surface];
+    let normal = &point.frame.normal;
+    contact.gap_brought(
+        point.surface,
+        point.node,
+        point.position,
+        normal,
+        (point.gap, way),
+    )
 }
 
 /// Pressing force at a point in newtons, not negative.

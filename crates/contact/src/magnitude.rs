@@ -1,7 +1,7 @@
 //! Loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
 //! only see norms that are infinite, and blame their tolerance.
 
-use crate::candidates::Candidate;
+use crate::candidates::Found;
 use crate::clock::Analysis;
 use crate::error::ContactError;
 use crate::scene::Scene;
@@ -27,7 +27,7 @@ fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<
 }
 
 /// The largest size of a history at the levels, and its time.
-fn largest(analysis: &Analysis, history: &History) -> (f64, f64) {
+pub(crate) fn largest(analysis: &Analysis, history: &History) -> (f64, f64) {
     let times = (0..analysis.levels()).filter_map(|level| analysis.time(level));
     times.fold((0.0, 0.0), |worst: (f64, f64), time| {
         let value = history.value(time).abs();
@@ -79,13 +79,22 @@ pub(crate) fn check_loads(scene: &Scene, loads: &[LoadResponse]) -> Result<(), C
     Ok(())
 }
 
-/// Gaps of all contact points.
-pub(crate) fn check_gaps(candidates: &[Candidate]) -> Result<(), ContactError> {
-    for c in candidates {
-        let node = c.node;
-        expect(c.gap.abs(), "m", || {
-            format!("contact at node {node}: the gap")
-        })?;
+/// Gaps at the start, and those that obstacles bring with them at the levels.
+pub(crate) fn check_gaps(scene: &Scene, found: &Found) -> Result<(), ContactError> {
+    for c in &found.conditions {
+        let place = || format!("contact at node {}: the gap", c.node);
+        expect(c.gap.abs(), "m", place)?;
+        let contact = &scene.contacts[c.surface];
+        if contact.carries_field() {
+            let times = (0..scene.analysis.levels()).filter_map(|l| scene.analysis.time(l));
+            for time in times {
+                expect(
+                    c.gap_after(scene, &contact.obstacle_at(time))?.abs(),
+                    "m",
+                    place,
+                )?;
+            }
+        }
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
 use crate::bodies::Bodies;
-use crate::candidates::{Candidate, contact_nodes};
+use crate::candidates::{Candidate, Found, contact_nodes};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
@@ -9,7 +9,7 @@ use crate::magnitude;
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, Surface, assemble_load};
+use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, assemble_load};
 use signorini_qp::{ProductSet, RadiusSlope, Segment};
 use signorini_tfeti as tfeti;
 use signorini_tfeti::{Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
@@ -108,10 +108,10 @@ pub(crate) struct Model {
     /// History of each displacement case.
     pub(crate) motions: Vec<History>,
     pub(crate) points: Vec<TouchPoint>,
-    /// Nodal areas and nodes of the whole contact surfaces, fixed nodes included.
-    pub(crate) surfaces: Vec<Surface>,
-    /// All points of the scene, those left out included.
-    pub(crate) candidates: Vec<Candidate>,
+    /// Contact surfaces, fixed nodes included, what contacts say of their nodes, and all points, those left out included.
+    pub(crate) found: Found,
+    /// What of that the certificate judges.
+    pub(crate) judged: Vec<Candidate>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
@@ -178,14 +178,10 @@ impl Model {
         kept: Option<&[usize]>,
         earlier: Option<&Self>,
     ) -> Result<Self, ContactError> {
-        let (decomposition, (plan, surfaces, candidates)) = match earlier {
+        let (decomposition, (plan, found)) = match earlier {
             Some(model) => (
                 model.decomposition.clone(),
-                (
-                    model.plan.clone(),
-                    model.surfaces.clone(),
-                    model.candidates.clone(),
-                ),
+                (model.plan.clone(), model.found.clone()),
             ),
             None => {
                 scene.validate()?;
@@ -197,9 +193,10 @@ impl Model {
             }
         };
         let (supports, motions) = supports(&scene)?;
+        let candidates = &found.points;
         if earlier.is_none() {
-            magnitude::check_gaps(&candidates)?;
-            driven::check(&scene, &candidates, &supports, &motions)?;
+            magnitude::check_gaps(&scene, &found)?;
+            driven::check(&scene, candidates, &supports, &motions)?;
         }
         let places: Vec<usize> = match kept {
             Some(kept) => kept.to_vec(),
@@ -226,7 +223,7 @@ impl Model {
             loads.push(tfeti.load_response(&local)?);
         }
         magnitude::check_loads(&scene, &loads)?;
-        let points = touch_points(&scene, &candidates, &places, tfeti.gluing());
+        let points = touch_points(&scene, candidates, &places, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let set = ProductSet::new(vec![
             Segment::upper(vec![0.0; ranges.normal.len()]),
@@ -239,7 +236,8 @@ impl Model {
         ])
         .map_err(signorini_qp::QpError::from)?;
         Ok(Self {
-            bodies: Bodies::new(&tfeti, &decomposition, &candidates),
+            bodies: Bodies::new(&tfeti, &decomposition, candidates),
+            judged: found.judged(points.iter().map(|p| p.place)),
             scene,
             plan,
             decomposition,
@@ -247,8 +245,7 @@ impl Model {
             loads,
             motions,
             points,
-            surfaces,
-            candidates,
+            found,
             set,
             weights: std::sync::OnceLock::new(),
             support_stiffness: std::sync::OnceLock::new(),

@@ -1,6 +1,6 @@
 //! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
 
-use crate::candidates::{Candidate, candidates, surfaces};
+use crate::candidates::{Candidate, Found};
 use crate::clock::Analysis;
 use crate::contact_surface::Gap;
 use crate::error::ContactError;
@@ -10,7 +10,7 @@ use crate::precheck;
 use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use crate::slender::slenderness;
-use signorini_fem_mesh::{Decomposition, Surface};
+use signorini_fem_mesh::Decomposition;
 use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -107,8 +107,8 @@ impl Plan {
         scene.validate()?;
         settings.validate()?;
         let decomposition = scene.decompose()?;
-        let (plan, _, candidates) = Self::with_decomposition(scene, settings, &decomposition)?;
-        precheck::check(scene, &decomposition, &candidates)?;
+        let (plan, found) = Self::with_decomposition(scene, settings, &decomposition)?;
+        precheck::check(scene, &decomposition, &found)?;
         Ok(plan)
     }
 
@@ -125,12 +125,12 @@ impl Plan {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.dirichlet_rows
     }
 
-    /// The plan, and the contact surfaces and points that it has found.
+    /// The plan, and what it has found of contact.
     pub(crate) fn with_decomposition(
         scene: &Scene,
         settings: &Settings,
         decomposition: &Decomposition,
-    ) -> Result<(Self, Vec<Surface>, Vec<Candidate>), ContactError> {
+    ) -> Result<(Self, Found), ContactError> {
         let fixed = fixed_directions(scene)?;
         let nodes = scene.mesh.points().len();
         let torn_nodes: usize = decomposition
@@ -140,8 +140,8 @@ impl Plan {
             .sum();
         let interface_rows = 3 * (torn_nodes - nodes);
         let dirichlet_rows: usize = fixed.values().copied().sum();
-        let surfaces = surfaces(scene)?;
-        let candidates = candidates(scene, &surfaces)?;
+        let found = Found::new(scene)?;
+        let candidates = &found.points;
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
         let held = |node: u32| fixed.get(&node).copied().unwrap_or(0).min(3);
         let free = |p: &Candidate| 3 - held(p.node).min(p.opponent.map_or(3, held));
@@ -162,7 +162,7 @@ impl Plan {
         let kind = kinds.max_by_key(|k| *k as u8).unwrap_or(FrictionKind::None);
         let effects = Effects {
             contact: !scene.contacts.is_empty(),
-            gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, &candidates)),
+            gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, candidates)),
             partners: candidates.iter().any(|p| p.opponent.is_some()),
             friction: kind,
             history: kind != FrictionKind::None
@@ -223,7 +223,7 @@ impl Plan {
             vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
             estimate,
         };
-        Ok((plan, surfaces, candidates))
+        Ok((plan, found))
     }
 }
 

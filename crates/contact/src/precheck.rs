@@ -3,7 +3,7 @@
 //! Only the set-up can judge whether supports and contact hold the body against its loads: that needs the rigid motions of
 //! all subdomains.
 
-use crate::candidates::{Candidate, contact_nodes};
+use crate::candidates::{Found, contact_nodes};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law;
@@ -18,12 +18,13 @@ use signorini_tfeti::held_points;
 pub(crate) fn check(
     scene: &Scene,
     decomposition: &Decomposition,
-    candidates: &[Candidate],
+    found: &Found,
 ) -> Result<(), ContactError> {
     magnitude::check_motions(scene)?;
     let (supports, motions) = supports(scene)?;
     let places = scene.mesh.points();
-    magnitude::check_gaps(candidates)?;
+    magnitude::check_gaps(scene, found)?;
+    let candidates = &found.points;
     driven::check(scene, candidates, &supports, &motions)?;
     // merges the supports, whether there is contact or not
     let nodes = contact_nodes(scene, candidates.iter());

@@ -255,9 +255,9 @@ impl Scene {
     /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall without.
     ///
     /// Surfaces may share nodes, and even tags (one surface between two obstacles). A node then has one contact point for
-    /// each direction of contact. Where the directions are one (two parts of a floor with different friction), or the body's
-    /// own normals differ by less than a [crease](Contact::with_crease), it has one for all of them, with the law of
-    /// the obstacle that is nearer, of the first one where both are as near.
+    /// each direction of contact, however little they differ. Only where the directions are the same (two parts of a flat floor with
+    /// different friction, to 1.4e-6 radians) it has one for all of them: of the obstacle that is nearer, with its law and area; where
+    /// both are as near, with the law of the contact that was added first and the area of both.
     #[must_use]
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);

@@ -94,7 +94,7 @@ impl Screen {
             return Ok(None);
         }
         let (supports, _) = supports(&model.scene)?;
-        let nodes = contact_nodes(&model.scene, model.candidates.iter());
+        let nodes = contact_nodes(&model.scene, model.found.points.iter());
         let mesh_nodes = model.scene.mesh.points().len();
         let gluing = Gluing::new(
             &model.decomposition,
@@ -104,8 +104,8 @@ impl Screen {
             settings.row_rule,
             model.tfeti.copy_stiffness(),
         )?;
-        let places: Vec<usize> = (0..model.candidates.len()).collect();
-        let points = touch_points(&model.scene, &model.candidates, &places, &gluing);
+        let places: Vec<usize> = (0..model.found.points.len()).collect();
+        let points = touch_points(&model.scene, &model.found.points, &places, &gluing);
         let entry = |(subdomain, dof, value): (usize, usize, f64)| {
             (model.tfeti.torn_range(subdomain).start + dof, value)
         };
@@ -227,7 +227,7 @@ impl Screen {
         state: &State,
         solved: &[PointState],
         torn: &[f64],
-    ) -> Vec<PointState> {
+    ) -> Result<Vec<PointState>, ContactError> {
         let contact = self.entries.len();
         let mut offset = self.prescribed(model, level);
         let prescribed = between_bodies(&self.points, &offset);
@@ -246,7 +246,7 @@ impl Screen {
             for row in std::iter::once(point.row).chain(own.clone()) {
                 displacement[row] = self.times(row, torn);
             }
-            offset[point.row] += point.scale * point.gap;
+            offset[point.row] += point.scale * level.gap(&model.scene, point)?;
             for (direction, row, scale) in point.directions() {
                 offset[row] += scale * level.carried(point.surface, &direction);
             }
@@ -266,7 +266,7 @@ impl Screen {
             };
             out.push(point_state(model, level, point, &rows, 0.0));
         }
-        out
+        Ok(out)
     }
 
     /// Tangential displacements of the points left out, written into a complete trace.

@@ -280,7 +280,7 @@ impl Simulation {
             &lambda,
             &rows,
             &before,
-        );
+        )?;
         Ok((report, lambda, rows))
     }
 

@@ -217,3 +217,37 @@ fn loads_beyond_given_slip_bounds_are_refused() {
         }
     }
 }
+
+/// Pulled with 4.1 kN where friction can hold 1.9 kN: the message says so, and how much is missing.
+#[test]
+fn a_pull_beyond_friction_is_named() {
+    let refused = |friction, pull: [f64; 3], weight: f64| {
+        let scene = cube()
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+            .with_load(Load::pressure(brick::Z_MAX, weight))
+            .with_load(Load::traction(brick::Z_MIN, pull));
+        match refused(scene) {
+            error @ ContactError::NotHeld { friction, .. } => (error.to_string(), friction),
+            error => panic!("{error}"),
+        }
+    };
+    use signorini_contact::Friction;
+    for (friction, weight) in [
+        (Friction::coulomb(0.19), 1e4),
+        (Friction::given(1.9e3), 1e5),
+    ] {
+        let (text, factor) = refused(friction.clone(), [2.46e3, 3.28e3, 0.0], weight);
+        let factor = factor.expect("friction could");
+        assert!((factor / (4.1 / 1.9) - 1.0).abs() < 2e-4, "{factor}");
+        assert!(text.contains("beyond what friction can hold"), "{text}");
+        assert!(text.contains("more than 2.157 times as large"), "{text}");
+        assert!(!text.contains("neither"), "{text}");
+        // what friction cannot hold at all
+        let (text, factor) = refused(friction, [4.1e3, 0.0, 1.5 * weight], weight);
+        assert_eq!(factor, None);
+        assert!(
+            text.contains("held neither by supports nor by contact"),
+            "{text}"
+        );
+    }
+}

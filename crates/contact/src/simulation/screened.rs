@@ -60,7 +60,7 @@ impl Simulation {
         let Some(screen) = &self.screen else {
             return Ok(false);
         };
-        self.all = screen.states(&self.model, &self.level, state, &self.points, &self.torn);
+        self.all = screen.states(&self.model, &self.level, state, &self.points, &self.torn)?;
         let Some(active) = screen.needed(&self.all, &self.torn) else {
             return Ok(false);
         };
