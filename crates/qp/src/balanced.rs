@@ -17,7 +17,7 @@
 //! | `c`, `f` | rows of the modes on constrained components, and their right sides |
 //! | `s` | `y - a c b` |
 
-use crate::face_state::{Constrained, for_constrained};
+use crate::face_state::{Constrained, for_constrained, for_discs};
 use crate::product::ProductSet;
 
 /// A mode that no unconstrained component stops: a combination of the rows of `G` that vanishes on all of them.
@@ -58,9 +58,10 @@ const SUFFICIENT: f64 = 1e-4;
 pub(crate) struct Search<'a> {
     modes: &'a [LooseMode],
     set: &'a ProductSet,
-    /// `y` and `a` on constrained components.
+    /// `y` on constrained components.
     y: &'a [f64],
-    a: &'a [f64],
+    /// `a`, one value for both components of a disc.
+    a: Vec<f64>,
     f: Vec<f64>,
     b: Vec<f64>,
     /// `P(s)`.
@@ -78,9 +79,11 @@ impl<'a> Search<'a> {
         modes: &'a [LooseMode],
         set: &'a ProductSet,
         e: &[f64],
-        (y, a): (&'a [f64], &'a [f64]),
+        (y, a): (&'a [f64], &[f64]),
     ) -> Self {
         let side = |m: &LooseMode| m.amplitudes.iter().zip(e).map(|(a, e)| a * e).sum();
+        let mut a = a.to_vec();
+        for_discs(set, |i, _, _| a[i + 1] = a[i]);
         Self {
             modes,
             set,
@@ -128,7 +131,7 @@ impl<'a> Search<'a> {
         } = self;
         x.copy_from_slice(y);
         for (mode, b) in modes.iter().zip(&*b) {
-            let terms = x.iter_mut().zip(*a).zip(&mode.row);
+            let terms = x.iter_mut().zip(&*a).zip(&mode.row);
             terms.for_each(|((x, a), c)| *x -= a * c * b);
         }
         let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
@@ -314,7 +317,10 @@ mod tests {
     }
 
     fn project(y: &[f64; 10], e: &[f64; 4]) -> (Vec<f64>, bool) {
-        let a: Vec<f64> = (0..10).map(|k| 0.5 + 0.1 * f64::from(k / 2)).collect();
+        // of the lengths of a disc the first one counts
+        let a: Vec<f64> = (0..10)
+            .map(|k| 0.5 + 0.1 * f64::from(k / 2) + f64::from(k % 2) * f64::from(u8::from(k > 3)))
+            .collect();
         Search::new(&modes(), &set(), e, (y, &a)).run()
     }
 
