@@ -4,10 +4,11 @@
 //! levels, and so may settings: the state is then where the changed scene goes on from.
 
 use crate::clock::{Analysis, DifferenceFormula};
-use crate::model::TouchPoint;
+use crate::model::{Model, TouchPoint};
+use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, TetMesh};
 use signorini_tfeti::Gluing;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,6 +100,44 @@ fn point(point: &TouchPoint) -> impl Iterator<Item = u64> {
     nodes
         .map(u64::from)
         .chain(numbers.chain([point.area]).map(number))
+}
+
+/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the
+/// numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made, which changes F on forces
+/// that are not in balance. `points` are all contact points.
+pub(crate) fn operator(
+    origin: &Fingerprint,
+    model: &Model,
+    settings: &Settings,
+    points: &[TouchPoint],
+) -> u64 {
+    let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
+    let body = [origin.points, origin.tets, origin.parts, origin.contact];
+    let regions: BTreeSet<u32> = mesh.regions().iter().copied().collect();
+    let laws = regions.into_iter().flat_map(|region| {
+        let law = model.scene.materials.get(region).ok();
+        law.into_iter().flat_map(|law| law.voigt()).flatten()
+    });
+    let rows = gluing.ranges().dirichlet.clone();
+    let entries = rows.flat_map(|row| gluing.row(row));
+    let entries = entries.flat_map(|(subdomain, dof, coefficient)| {
+        [subdomain as u64, dof as u64, number(coefficient)]
+    });
+    let scales = points.iter().flat_map(|point| {
+        let rows = point.directions();
+        rows.flat_map(|(direction, row, scale)| {
+            let numbers = direction.into_iter().chain([scale]).map(number);
+            std::iter::once(row as u64).chain(numbers)
+        })
+    });
+    let how = format!(
+        "{:?}",
+        (settings.row_rule, settings.sharing, settings.inverse)
+    );
+    let words = body.into_iter().chain(laws.map(|x| number(*x)));
+    let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
+    let words = words.chain(entries).chain(scales);
+    hash(words.chain(how.bytes().map(u64::from)))
 }
 
 fn formula(formula: DifferenceFormula) -> u64 {

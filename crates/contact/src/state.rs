@@ -40,6 +40,8 @@ pub struct State {
     unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
     origin: Option<Fingerprint>,
+    /// The F of the products, see [`operator`](crate::fingerprint::operator).
+    operator: u64,
 }
 
 /// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
@@ -133,6 +135,16 @@ impl State {
         self.origin = Some(origin);
     }
 
+    /// The F that its products are of.
+    pub(crate) fn operator(&self) -> u64 {
+        self.operator
+    }
+
+    /// Notes the F that its products are of.
+    pub(crate) fn set_operator(&mut self, operator: u64) {
+        self.operator = operator;
+    }
+
     /// Notes the time of the level that is being taken over.
     pub(crate) fn pass(&mut self, time: f64) {
         if let Some(origin) = &mut self.origin {
@@ -186,6 +198,7 @@ impl State {
             peaks: self.peaks.clone(),
             unconverged: self.unconverged,
             origin: self.origin,
+            operator: self.operator,
         }
     }
 
@@ -230,7 +243,7 @@ impl State {
         &self.f_lambda
     }
 
-    /// Multipliers and their products, to be checked.
+    /// Multipliers and their products, to be made anew.
     pub(crate) fn products_mut(&mut self) -> impl Iterator<Item = (&Vec<f64>, &mut Vec<f64>)> {
         self.lambda.iter().zip(&mut self.f_lambda)
     }

@@ -4,7 +4,7 @@ use super::State;
 use crate::error::ContactError;
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_4709;
+const MAGIC: u32 = 0x5349_470a;
 
 /// FNV-1a of 64 bits: any one changed byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {
