@@ -290,6 +290,20 @@ pub enum ContactError {
         /// The largest size that is taken.
         most: f64,
     },
+    /// A material is so stiff or so soft that squares of forces or displacements overflow or vanish.
+    #[error(
+        "region {region}: its material has a stiffness of {value:e} Pa, and squares of what follows from it would overflow or vanish (at least {least:e} Pa, at most {most:e} Pa); check the units of its material"
+    )]
+    Stiffness {
+        /// The region of the mesh.
+        region: u32,
+        /// Largest eigenvalue of its law on symmetric tensors, Pa.
+        value: f64,
+        /// The least that is taken.
+        least: f64,
+        /// The largest that is taken.
+        most: f64,
+    },
     /// Loads that nothing can balance.
     #[error(
         "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is held neither by supports nor by contact, and the loads push along it with {force:.3e} N; add a support, contact or friction, or balance the loads"
