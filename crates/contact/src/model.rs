@@ -191,10 +191,10 @@ impl Model {
             None => {
                 scene.validate()?;
                 settings.validate()?;
-                magnitude::check_materials(&scene)?;
-                magnitude::check_motions(&scene)?;
                 let decomposition = scene.decompose()?;
                 let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
+                magnitude::check_materials(&scene)?;
+                magnitude::check_motions(&scene)?;
                 (decomposition, plan)
             }
         };
