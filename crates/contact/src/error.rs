@@ -392,6 +392,16 @@ pub enum ContactError {
         /// What does not fit.
         reason: String,
     },
+    /// The file of a checkpoint cannot be read or written.
+    #[error("checkpoint: cannot {what} {}: {source}", path.display())]
+    CheckpointFile {
+        /// `"read"` or `"write"`.
+        what: &'static str,
+        /// The file.
+        path: std::path::PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
     /// Mesh.
     #[error(transparent)]
     Mesh(#[from] fem::MeshError),

@@ -94,6 +94,7 @@ mod buckets;
 mod decomposition;
 mod disjoint;
 mod element;
+mod files;
 mod history;
 mod hooke;
 mod load;
@@ -114,6 +115,7 @@ pub use decomposition::{
 pub use disjoint::DisjointSets;
 pub use element::{Element, element_stiffness};
 pub use fields::FieldError;
+pub use files::replace_file;
 pub use history::{History, HistoryError, interpolate};
 pub use hooke::{Hooke, HookeError};
 pub use load::{LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
