@@ -3,6 +3,7 @@
 use signorini_fem_mesh as fem;
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
+use std::fmt;
 use thiserror::Error;
 
 /// How far from the normal of a node the nearest node of the other side is, in words.
@@ -17,7 +18,7 @@ fn beside_words(beside: f64, limit: f64) -> String {
 }
 
 /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[non_exhaustive]
 pub enum ContactError {
     /// A coefficient of friction or a datum of its law.
@@ -431,4 +432,22 @@ pub enum ContactError {
     /// Quadratic programming.
     #[error(transparent)]
     Qp(#[from] QpError),
+}
+
+/// Prints its sentence, as with `{}`, and what its sources add to it: that is what a user sees of a `main` that returns it.
+impl fmt::Debug for ContactError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut said = self.to_string();
+        f.write_str(&said)?;
+        let mut next = std::error::Error::source(self);
+        while let Some(source) = next {
+            let text = source.to_string();
+            if !said.contains(&text) {
+                write!(f, "\n  because {text}")?;
+                said.push_str(&text);
+            }
+            next = source.source();
+        }
+        Ok(())
+    }
 }

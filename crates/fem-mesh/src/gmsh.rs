@@ -30,7 +30,7 @@ pub use names::GroupNames;
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
 
 /// A Gmsh file that cannot be read.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[non_exhaustive]
 pub enum GmshError {
     /// The file system refuses.
