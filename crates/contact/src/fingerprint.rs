@@ -77,6 +77,24 @@ impl Fingerprint {
     }
 }
 
+/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in lanes: it is
+/// taken at every level.
+pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
+    let mut lanes = [operator; 8];
+    for part in [lambda, f_lambda] {
+        for chunk in part.chunks(lanes.len()) {
+            for (lane, x) in lanes.iter_mut().zip(chunk) {
+                // an odd factor: a bijection of the lane for each word
+                *lane = (*lane ^ x.to_bits())
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                    .rotate_left(29);
+            }
+        }
+    }
+    let lengths = [lambda.len() as u64, f_lambda.len() as u64];
+    hash(lanes.into_iter().chain(lengths))
+}
+
 /// The finaliser of SplitMix64: a bijection that spreads every bit.
 fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -185,6 +203,22 @@ mod tests {
     fn the_mixer_is_that_of_splitmix64() {
         // published first output for seed 0
         assert_eq!(mix(0x9e37_79b9_7f4a_7c15), 0xe220_a839_7b1d_cdaf);
+    }
+
+    #[test]
+    fn one_bit_of_a_product_breaks_its_seal() {
+        let (x, y): (Vec<f64>, Vec<f64>) = ((0..19).map(f64::from).collect(), vec![0.5; 19]);
+        let base = seal(1, &x, &y);
+        assert_ne!(base, seal(2, &x, &y));
+        assert_ne!(base, seal(1, &y, &x));
+        for k in 0..19 {
+            for bit in [0, 31, 63] {
+                let mut other = y.clone();
+                other[k] = f64::from_bits(other[k].to_bits() ^ 1 << bit);
+                assert_ne!(base, seal(1, &x, &other), "{k} {bit}");
+            }
+        }
+        assert_ne!(seal(1, &[], &x), seal(1, &x, &[]));
     }
 
     #[test]

@@ -122,7 +122,6 @@ impl Simulation {
         let solver = solver?;
         let mut state = State::default();
         state.set_origin(origin);
-        state.set_operator(operator);
         Ok(Self {
             state: Arc::new(state),
             origin,
@@ -445,6 +444,7 @@ impl Simulation {
             rate,
             sliding,
         );
+        state.seal(self.operator);
         if let Some(accuracy) = &report.accuracy {
             self.controller.errors = accuracy.accumulated;
             state.set_controller(self.controller);

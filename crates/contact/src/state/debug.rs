@@ -22,7 +22,7 @@ impl fmt::Debug for State {
                 peaks,
                 unconverged,
                 origin,
-                operator,
+                seals,
             } = self;
             return f
                 .debug_struct("State")
@@ -39,7 +39,7 @@ impl fmt::Debug for State {
                 .field("peaks", peaks)
                 .field("unconverged", unconverged)
                 .field("origin", origin)
-                .field("operator", operator)
+                .field("seals", seals)
                 .finish();
         }
         f.debug_struct("State")
