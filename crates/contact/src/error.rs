@@ -3,6 +3,7 @@
 use signorini_fem_mesh as fem;
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
+use std::fmt;
 use thiserror::Error;
 
 /// How far from the normal of a node the nearest node of the other side is, in words.
@@ -28,7 +29,7 @@ fn held_remedy(friction: Option<f64>) -> String {
 }
 
 /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[non_exhaustive]
 pub enum ContactError {
     /// A coefficient of friction or a datum of its law.
@@ -315,6 +316,20 @@ pub enum ContactError {
         /// The largest size that is taken.
         most: f64,
     },
+    /// A material is so stiff or so soft that squares of forces or displacements overflow or vanish.
+    #[error(
+        "region {region}: its material has a stiffness of {value:e} Pa, and squares of what follows from it would overflow or vanish (at least {least:e} Pa, at most {most:e} Pa); check the units of its material"
+    )]
+    Stiffness {
+        /// The region of the mesh.
+        region: u32,
+        /// Largest eigenvalue of its law on symmetric tensors, Pa.
+        value: f64,
+        /// The least that is taken.
+        least: f64,
+        /// The largest that is taken.
+        most: f64,
+    },
     /// Loads that nothing can balance.
     #[error(
         "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
@@ -408,6 +423,16 @@ pub enum ContactError {
         /// What does not fit.
         reason: String,
     },
+    /// The file of a checkpoint cannot be read or written.
+    #[error("checkpoint: cannot {what} {}: {source}", path.display())]
+    CheckpointFile {
+        /// `"read"` or `"write"`.
+        what: &'static str,
+        /// The file.
+        path: std::path::PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
     /// Mesh.
     #[error(transparent)]
     Mesh(#[from] fem::MeshError),
@@ -437,4 +462,22 @@ pub enum ContactError {
     /// Quadratic programming.
     #[error(transparent)]
     Qp(#[from] QpError),
+}
+
+/// Prints its sentence, as with `{}`, and what its sources add to it: that is what a user sees of a `main` that returns it.
+impl fmt::Debug for ContactError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut said = self.to_string();
+        f.write_str(&said)?;
+        let mut next = std::error::Error::source(self);
+        while let Some(source) = next {
+            let text = source.to_string();
+            if !said.contains(&text) {
+                write!(f, "\n  because {text}")?;
+                said.push_str(&text);
+            }
+            next = source.source();
+        }
+        Ok(())
+    }
 }

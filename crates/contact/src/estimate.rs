@@ -44,6 +44,11 @@
 //! method did not give up and subdomains are neither slender nor large, so [`Estimate::fewest_products`] is 0.25 times (0.1 without contact) and [`Estimate::most_products`] 2.2 times it. Nothing in a plan tells whether a level falls back to
 //! SMALSE; one that does needs some hundreds to ten thousand products more.
 //!
+//! **Very small subdomains.** The coarse matrix has six unknowns a subdomain, and all subdomains at a node are coupled. Its factor is
+//! counted exactly but for contact between bodies: it is made twice (once for all rows, once for the free ones), a product reads it
+//! four times, and a change of the face does a part of it again. From some thousand subdomains on, or with such of a few tetrahedra, this is all of the time,
+//! and grows like the square of their number.
+//!
 //! Time is arithmetic plus traffic: a product costs its operations twice (operator and preconditioner) and about 100
 //! numbers moved a row (vectors, projections, tables) and 200,000 besides, a level 300 an unknown displacement for the recovery of
 //! the displacement and the certificate.
@@ -83,8 +88,15 @@ pub struct Estimate {
     primal: usize,
     levels: usize,
     setup_flops: f64,
+    coarse_flops: f64,
 }
 
+/// How often the coarse factor is made in a set-up, doubled: sparse factors are made at half the speed of dense products.
+const COARSE_FACTORS: f64 = 4.0;
+/// How often a product with all that belongs to it reads the coarse factor.
+const COARSE_READS: f64 = 4.0;
+/// Share of the coarse factor that a change of the face makes anew, times changes a product.
+const COARSE_CHANGES: f64 = 0.05;
 /// Numbers moved a row in a product with all that belongs to it.
 const NUMBERS_PER_ROW: f64 = 100.0;
 /// Time of a product that does not depend on its size, as numbers moved.
@@ -130,6 +142,7 @@ impl Estimate {
             primal: sizes.primal,
             levels,
             setup_flops: forecast.setup_flops(),
+            coarse_flops: forecast.coarse_flops,
         }
     }
 
@@ -144,12 +157,24 @@ impl Estimate {
     pub fn product_seconds(&self) -> f64 {
         2.0 * self.product_flops / self.rate.flops
             + (NUMBERS_PER_PRODUCT + NUMBERS_PER_ROW * self.rows as f64) / self.rate.numbers
+            + self.coarse_seconds()
+    }
+
+    /// The part of a product's seconds that the coarse problem takes.
+    fn coarse_seconds(&self) -> f64 {
+        COARSE_CHANGES * self.coarse_flops / self.rate.flops
+            + COARSE_READS * self.coarse_bytes as f64 / 8.0 / self.rate.numbers
+    }
+
+    /// Whether the coarse problem takes most of the time: subdomains are too small or too many.
+    pub(crate) fn is_mostly_coarse(&self) -> bool {
+        2.0 * self.coarse_seconds() > self.product_seconds()
     }
 
     /// Seconds of the set-up, on one processor.
     #[must_use]
     pub fn setup_seconds(&self) -> f64 {
-        self.setup_flops / self.rate.flops
+        (self.setup_flops + COARSE_FACTORS * self.coarse_flops) / self.rate.flops
             + (NUMBERS_OF_SETUP + NUMBERS_PER_SETUP * self.primal as f64) / self.rate.numbers
     }
 

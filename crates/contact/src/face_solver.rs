@@ -177,7 +177,8 @@ impl FaceSolver {
         };
         report.counters.slip_bound_updates += updates;
         report.status = level_status(status);
-        if report.status.converged() {
+        // where friction does not hold a body, given friction with any of its bounds has no solution either
+        if report.status.converged() || report.status == LevelStatus::NotHeld {
             iterate.known = true;
             iterate.alpha.resize(level.rhs.len(), 0.0);
             let mut residual = iterate.f_lambda.clone();

@@ -4,10 +4,11 @@
 //! levels, and so may settings: the state is then where the changed scene goes on from.
 
 use crate::clock::{Analysis, DifferenceFormula};
-use crate::model::TouchPoint;
+use crate::model::{Model, TouchPoint};
+use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, TetMesh};
 use signorini_tfeti::Gluing;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,6 +77,24 @@ impl Fingerprint {
     }
 }
 
+/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in lanes: it is
+/// taken at every level.
+pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
+    let mut lanes = [operator; 8];
+    for part in [lambda, f_lambda] {
+        for chunk in part.chunks(lanes.len()) {
+            for (lane, x) in lanes.iter_mut().zip(chunk) {
+                // an odd factor: a bijection of the lane for each word
+                *lane = (*lane ^ x.to_bits())
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                    .rotate_left(29);
+            }
+        }
+    }
+    let lengths = [lambda.len() as u64, f_lambda.len() as u64];
+    hash(lanes.into_iter().chain(lengths))
+}
+
 /// The finaliser of SplitMix64: a bijection that spreads every bit.
 fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -99,6 +118,44 @@ fn point(point: &TouchPoint) -> impl Iterator<Item = u64> {
     nodes
         .map(u64::from)
         .chain(numbers.chain([point.area]).map(number))
+}
+
+/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the
+/// numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made, which changes F on forces
+/// that are not in balance. `points` are all contact points.
+pub(crate) fn operator(
+    origin: &Fingerprint,
+    model: &Model,
+    settings: &Settings,
+    points: &[TouchPoint],
+) -> u64 {
+    let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
+    let body = [origin.points, origin.tets, origin.parts, origin.contact];
+    let regions: BTreeSet<u32> = mesh.regions().iter().copied().collect();
+    let laws = regions.into_iter().flat_map(|region| {
+        let law = model.scene.materials.get(region).ok();
+        law.into_iter().flat_map(|law| law.voigt()).flatten()
+    });
+    let rows = gluing.ranges().dirichlet.clone();
+    let entries = rows.flat_map(|row| gluing.row(row));
+    let entries = entries.flat_map(|(subdomain, dof, coefficient)| {
+        [subdomain as u64, dof as u64, number(coefficient)]
+    });
+    let scales = points.iter().flat_map(|point| {
+        let rows = point.directions();
+        rows.flat_map(|(direction, row, scale)| {
+            let numbers = direction.into_iter().chain([scale]).map(number);
+            std::iter::once(row as u64).chain(numbers)
+        })
+    });
+    let how = format!(
+        "{:?}",
+        (settings.row_rule, settings.sharing, settings.inverse)
+    );
+    let words = body.into_iter().chain(laws.map(|x| number(*x)));
+    let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
+    let words = words.chain(entries).chain(scales);
+    hash(words.chain(how.bytes().map(u64::from)))
 }
 
 fn formula(formula: DifferenceFormula) -> u64 {
@@ -146,6 +203,22 @@ mod tests {
     fn the_mixer_is_that_of_splitmix64() {
         // published first output for seed 0
         assert_eq!(mix(0x9e37_79b9_7f4a_7c15), 0xe220_a839_7b1d_cdaf);
+    }
+
+    #[test]
+    fn one_bit_of_a_product_breaks_its_seal() {
+        let (x, y): (Vec<f64>, Vec<f64>) = ((0..19).map(f64::from).collect(), vec![0.5; 19]);
+        let base = seal(1, &x, &y);
+        assert_ne!(base, seal(2, &x, &y));
+        assert_ne!(base, seal(1, &y, &x));
+        for k in 0..19 {
+            for bit in [0, 31, 63] {
+                let mut other = y.clone();
+                other[k] = f64::from_bits(other[k].to_bits() ^ 1 << bit);
+                assert_ne!(base, seal(1, &x, &other), "{k} {bit}");
+            }
+        }
+        assert_ne!(seal(1, &[], &x), seal(1, &x, &[]));
     }
 
     #[test]

@@ -103,7 +103,8 @@ pub struct FixedPointReport {
     pub rate: Option<f64>,
 }
 
-/// Iterates `x <- map(x)` until the relative change is below `tolerance` (0/0 counts as converged).
+/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance` (0/0 counts as
+/// converged). `least` is the norm below which `x` is taken to vanish.
 ///
 /// `map(x, change)` overwrites `x` and returns whether it evaluated with full accuracy; `change` is the last relative
 /// change, 1 at first, and tells how accurate the evaluation needs to be. Only an evaluation with full accuracy can end
@@ -114,6 +115,7 @@ pub struct FixedPointReport {
 pub fn successive_approximations<E>(
     x: &mut [f64],
     tolerance: f64,
+    least: f64,
     max_evaluations: usize,
     mut map: impl FnMut(&mut [f64], f64) -> Result<bool, E>,
 ) -> Result<FixedPointReport, E> {
@@ -129,7 +131,7 @@ pub fn successive_approximations<E>(
         let exact = map(x, change)?;
         evaluations += 1;
         let difference = signorini_qp::vector::distance(x, &old);
-        let size = signorini_qp::vector::norm(x);
+        let size = signorini_qp::vector::norm(x).max(least);
         contraction.record(difference);
         if exact {
             sharp.record(difference);
@@ -179,7 +181,7 @@ mod tests {
     fn one_node(mu: f64) -> (f64, FixedPointReport) {
         let (a, b, u0) = (2.0, 1.0, 1.0);
         let mut x = [0.0];
-        let report = successive_approximations(&mut x, 1e-12, 2000, |x, _| {
+        let report = successive_approximations(&mut x, 1e-12, 0.0, 2000, |x, _| {
             x[0] = -u0 / a + mu * b / a * x[0];
             Ok::<bool, ()>(true)
         })
@@ -214,7 +216,7 @@ mod tests {
     fn nothing_in_contact_is_a_fixed_point_at_once() {
         let mut x = [0.0; 3];
         let report =
-            successive_approximations(&mut x, 1e-6, 5, |_, _| Ok::<bool, ()>(true)).unwrap();
+            successive_approximations(&mut x, 1e-6, 0.0, 5, |_, _| Ok::<bool, ()>(true)).unwrap();
         assert_eq!(
             (report.verdict, report.evaluations),
             (Verdict::Converged, 1)

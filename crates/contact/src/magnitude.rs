@@ -1,5 +1,5 @@
-//! Loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
-//! only see norms that are infinite, and blame their tolerance.
+//! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
+//! only see norms that are infinite or vanish, and blame their tolerance.
 
 use crate::candidates::Found;
 use crate::clock::Analysis;
@@ -7,11 +7,44 @@ use crate::error::ContactError;
 use crate::scene::Scene;
 use signorini_fem_mesh::{History, TetMesh};
 use signorini_qp::vector;
-use signorini_tfeti::LoadResponse;
+use std::collections::BTreeSet;
 
 /// Largest force in N, displacement and gap in m. The squares of their products are formed (friction times slip): at most 1e308,
 /// so this leaves 28 digits for stiffness and sums.
 const MOST: f64 = 1e70;
+
+/// Materials of the regions in use.
+pub(crate) fn check_materials(scene: &Scene) -> Result<(), ContactError> {
+    for (region, stiffness) in stiffnesses(scene)? {
+        if !(1.0 / MOST..=MOST).contains(&stiffness) {
+            return Err(ContactError::Stiffness {
+                region,
+                value: stiffness,
+                least: 1.0 / MOST,
+                most: MOST,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Regions in use and the largest stiffness of each, Pa.
+fn stiffnesses(scene: &Scene) -> Result<Vec<(u32, f64)>, ContactError> {
+    let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
+    let bound = |region| Ok((region, scene.materials.get(region)?.bound()));
+    regions.into_iter().map(bound).collect()
+}
+
+/// The least and the largest stiffness of a region times the extent of the mesh, N/m.
+fn springs(scene: &Scene) -> Result<[f64; 2], ContactError> {
+    let (low, high) = scene.mesh.extent();
+    let extent = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+    let stiffnesses = stiffnesses(scene)?;
+    let ends = stiffnesses
+        .iter()
+        .fold([f64::INFINITY, 0.0], |[a, b], s| [a.min(s.1), b.max(s.1)]);
+    Ok(ends.map(|s| s * extent))
+}
 
 /// Refuses what is too large; what is not a number is left to others.
 fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
@@ -56,6 +89,10 @@ pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
             let size = vector::max_abs(values.as_flattened());
             let place = || format!("support {index} at time {time} s: its displacement");
             expect(factor * size, "m", place)?;
+            let place = || {
+                format!("support {index} at time {time} s: its displacement times the stiffness")
+            };
+            expect(factor * size * springs(scene)?[1], "N", place)?;
         }
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
@@ -68,15 +105,14 @@ pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// Loads, by their nodal forces.
-pub(crate) fn check_loads(scene: &Scene, loads: &[LoadResponse]) -> Result<(), ContactError> {
-    for (index, (load, response)) in scene.loads.iter().zip(loads).enumerate() {
-        let (factor, time) = largest(&scene.analysis, &load.history);
-        let size = vector::max_abs(&response.force);
-        let place = || format!("load {index} at time {time} s: its largest nodal force");
-        expect(factor * size, "N", place)?;
-    }
-    Ok(())
+/// A load, by its largest nodal force with factor one, N.
+pub(crate) fn check_load(scene: &Scene, index: usize, size: f64) -> Result<(), ContactError> {
+    let (factor, time) = largest(&scene.analysis, &scene.loads[index].history);
+    let place = || format!("load {index} at time {time} s: its largest nodal force");
+    expect(factor * size, "N", place)?;
+    let place =
+        || format!("load {index} at time {time} s: its largest nodal force over the stiffness");
+    expect(factor * size / springs(scene)?[0], "m", place)
 }
 
 /// Gaps at the start, and those that obstacles bring with them at the levels.

@@ -7,6 +7,7 @@ use crate::error::ContactError;
 use crate::law::Friction;
 use crate::magnitude;
 use crate::plan::Plan;
+use crate::precheck;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, assemble_load};
@@ -186,9 +187,10 @@ impl Model {
             None => {
                 scene.validate()?;
                 settings.validate()?;
-                magnitude::check_motions(&scene)?;
                 let decomposition = scene.decompose()?;
                 let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
+                magnitude::check_materials(&scene)?;
+                magnitude::check_motions(&scene)?;
                 (decomposition, plan)
             }
         };
@@ -220,9 +222,9 @@ impl Model {
         for (index, load) in scene.loads.iter().enumerate() {
             let local = assemble_load(&scene.mesh, &decomposition, &load.density)
                 .map_err(|source| ContactError::Load { index, source })?;
+            magnitude::check_load(&scene, index, precheck::largest_force(&local))?;
             loads.push(tfeti.load_response(&local)?);
         }
-        magnitude::check_loads(&scene, &loads)?;
         let points = touch_points(&scene, candidates, &places, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let set = ProductSet::new(vec![

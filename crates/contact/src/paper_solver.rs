@@ -186,6 +186,7 @@ impl PaperSolver {
         let outcome = successive_approximations(
             &mut x,
             settings.tolerance,
+            level.least()[1],
             settings.max_fixed_point,
             |x, change| {
                 // Small contact forces under large loads: changes that stall above the tolerance are
@@ -259,6 +260,9 @@ impl PaperSolver {
         let mut contraction = Contraction::new();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;
+        // bounds of normal forces that vanish
+        let coefficient = level.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let least = coefficient * level.least()[1];
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
             level.slip_bounds(model, step.x, set);
@@ -268,7 +272,7 @@ impl PaperSolver {
             last_change = if difference == 0.0 {
                 0.0
             } else {
-                difference / vector::norm(&new)
+                difference / vector::norm(&new).max(least)
             };
             contraction.record(difference);
             if last_change < tolerance {

@@ -295,6 +295,13 @@ impl fmt::Display for Plan {
                 "              large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
             )?;
         }
+        if self.estimate.is_mostly_coarse() {
+            writeln!(
+                f,
+                "              too small ones: their {} rigid motions take most of the time; some hundred tetrahedra each are faster",
+                self.coarse
+            )?;
+        }
         // the estimate of a brick of 3 : 1 has no part for bending
         if e.contact && self.slenderness > 1.2 * SLENDER {
             writeln!(

@@ -11,15 +11,17 @@ use crate::magnitude;
 use crate::model::supports;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, assemble_load};
+use signorini_qp::vector;
 use signorini_tfeti::held_points;
 
-/// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse of supports, contact, loads and laws, with the same error; not
-/// nodal forces that are too large, nor subdomains that cannot be factored.
+/// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse of materials, supports, contact, loads and laws, with the same
+/// error; not subdomains that cannot be factored.
 pub(crate) fn check(
     scene: &Scene,
     decomposition: &Decomposition,
     found: &Found,
 ) -> Result<(), ContactError> {
+    magnitude::check_materials(scene)?;
     magnitude::check_motions(scene)?;
     let (supports, motions) = supports(scene)?;
     let places = scene.mesh.points();
@@ -30,8 +32,9 @@ pub(crate) fn check(
     let nodes = contact_nodes(scene, candidates.iter());
     let held = held_points(&nodes, &supports, places.len())?;
     for (index, load) in scene.loads.iter().enumerate() {
-        assemble_load(&scene.mesh, decomposition, &load.density)
+        let local = assemble_load(&scene.mesh, decomposition, &load.density)
             .map_err(|source| ContactError::Load { index, source })?;
+        magnitude::check_load(scene, index, largest_force(&local))?;
     }
     let mut held = held.iter().map(|h| h.point).peekable();
     // both in the order of the points
@@ -43,4 +46,10 @@ pub(crate) fn check(
         let friction = scene.contacts[c.surface].friction();
         (friction, c.node, places[c.node as usize])
     }))
+}
+
+/// The largest component of the nodal forces of all subdomains, N; NaN if one is none.
+pub(crate) fn largest_force(local: &[Vec<f64>]) -> f64 {
+    let largest = local.iter().map(|f| vector::max_abs(f));
+    largest.fold(0.0, |a, b| if b.is_nan() { b } else { a.max(b) })
 }

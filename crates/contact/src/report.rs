@@ -19,6 +19,9 @@ pub enum LevelStatus {
     /// The Coulomb map is not contractive here: successive approximations have no limit from this start. The result is
     /// the last iterate, which solves the given-friction problem of the last slip bounds.
     NotContractive,
+    /// With the normal forces of this level friction does not hold a body: slip bounds and normal forces that agree
+    /// leave no balance with the loads. The set-up judges only whether any normal forces could.
+    NotHeld,
     /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance (with an
     /// [`Accuracy`](crate::Accuracy) by estimates, above [`certificate_limit`](crate::accuracy::AccuracyReport::certificate_limit)): mostly the
     /// problem is too badly conditioned for it. The parts of the certificate name the violated condition.
@@ -44,6 +47,9 @@ impl LevelStatus {
             Self::NotContractive => {
                 "the Coulomb problem may have no solution here: take a smaller coefficient or smaller steps"
             }
+            Self::NotHeld => {
+                "press the body more, take a larger coefficient, or hold it by a support"
+            }
             Self::NotCertified => {
                 "the parts of the certificate name the violated condition: take better shaped cells, Poisson's ratio \
                  further from 1/2, smaller steps, or Method::paper()"
@@ -59,6 +65,7 @@ impl fmt::Display for LevelStatus {
             Self::IterationLimit => "iteration limit",
             Self::Stagnated => "stagnated",
             Self::NotContractive => "not contractive",
+            Self::NotHeld => "not held by friction",
             Self::NotCertified => "not certified",
         })
     }

@@ -9,7 +9,7 @@ use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
-use crate::fingerprint::Fingerprint;
+use crate::fingerprint::{Fingerprint, operator};
 use crate::frame::{ContactState, ContactSummary, Frame, PointState, point_states, summarise};
 use crate::law::Friction;
 use crate::level::Level;
@@ -56,6 +56,8 @@ pub struct Simulation {
     state: Arc<State>,
     /// What numbers of states refer to.
     origin: Fingerprint,
+    /// What products with F depend on.
+    operator: u64,
     /// Whether the fields below belong to a level that was solved.
     solved: bool,
     level: Level,
@@ -112,15 +114,18 @@ impl Simulation {
         let origin = || {
             let (scene, gluing) = (&model.scene, model.tfeti.gluing());
             let decomposition = &model.decomposition;
-            Fingerprint::new(&scene.mesh, &scene.analysis, decomposition, gluing, points)
+            let origin =
+                Fingerprint::new(&scene.mesh, &scene.analysis, decomposition, gluing, points);
+            (origin, operator(&origin, &model, &settings, points))
         };
-        let (solver, origin) = rayon::join(|| Solver::new(&model, &settings), origin);
+        let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);
         let solver = solver?;
         let mut state = State::default();
         state.set_origin(origin);
         Ok(Self {
             state: Arc::new(state),
             origin,
+            operator,
             solved: false,
             level: Level::default(),
             iterate: Iterate::default(),
@@ -439,6 +444,7 @@ impl Simulation {
             rate,
             sliding,
         );
+        state.seal(self.operator);
         if let Some(accuracy) = &report.accuracy {
             self.controller.errors = accuracy.accumulated;
             state.set_controller(self.controller);

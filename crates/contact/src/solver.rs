@@ -85,6 +85,7 @@ impl Solver {
 pub(crate) fn level_status(status: Status) -> LevelStatus {
     match status {
         Status::Converged => LevelStatus::Converged,
+        Status::Infeasible => LevelStatus::NotHeld,
         Status::Stagnated | Status::Stopped => LevelStatus::Stagnated,
         _ => LevelStatus::IterationLimit,
     }

@@ -2,7 +2,7 @@
 
 use crate::accuracy::Controller;
 use crate::error::ContactError;
-use crate::fingerprint::Fingerprint;
+use crate::fingerprint::{Fingerprint, seal};
 
 #[cfg(feature = "checkpoint")]
 mod bytes;
@@ -40,6 +40,8 @@ pub struct State {
     unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
     origin: Option<Fingerprint>,
+    /// Of each product what it was made from and came to be, see [`seal`](crate::fingerprint::seal).
+    seals: [u64; 2],
 }
 
 /// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
@@ -133,6 +135,26 @@ impl State {
         self.origin = Some(origin);
     }
 
+    /// Notes that the product of the last level is one with this F.
+    pub(crate) fn seal(&mut self, operator: u64) {
+        self.seals[0] = seal(operator, &self.lambda[0], &self.f_lambda[0]);
+    }
+
+    /// Hands multipliers and their products to `renew` where they are not those that were stored with this F.
+    pub(crate) fn renew_products(
+        &mut self,
+        operator: u64,
+        mut renew: impl FnMut(&[f64], &mut Vec<f64>),
+    ) {
+        for k in 0..2 {
+            let (lambda, f_lambda) = (&self.lambda[k], &mut self.f_lambda[k]);
+            if !f_lambda.is_empty() && self.seals[k] != seal(operator, lambda, f_lambda) {
+                renew(lambda, f_lambda);
+                self.seals[k] = seal(operator, lambda, f_lambda);
+            }
+        }
+    }
+
     /// Notes the time of the level that is being taken over.
     pub(crate) fn pass(&mut self, time: f64) {
         if let Some(origin) = &mut self.origin {
@@ -186,6 +208,7 @@ impl State {
             peaks: self.peaks.clone(),
             unconverged: self.unconverged,
             origin: self.origin,
+            seals: self.seals,
         }
     }
 
@@ -230,11 +253,6 @@ impl State {
         &self.f_lambda
     }
 
-    /// Multipliers and their products, to be checked.
-    pub(crate) fn products_mut(&mut self) -> impl Iterator<Item = (&Vec<f64>, &mut Vec<f64>)> {
-        self.lambda.iter().zip(&mut self.f_lambda)
-    }
-
     pub(crate) fn multiplier(&self) -> &[Vec<f64>; 2] {
         &self.multiplier
     }
@@ -274,6 +292,7 @@ impl State {
         push(&mut self.lambda, lambda);
         push(&mut self.f_lambda, f_lambda);
         push(&mut self.multiplier, multiplier);
+        self.seals.swap(0, 1);
         // old tangential displacements are part of the model, not of the extrapolation
         self.trace.swap(0, 1);
         self.trace[0] = trace;

@@ -250,3 +250,29 @@ fn the_plan_predicts_the_rows() {
         assert_eq!(plan.primal, simulation.tfeti().torn_dim());
     }
 }
+
+/// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that outweighs all else.
+#[test]
+fn the_plan_knows_what_very_small_subdomains_cost() {
+    let plan = |n: usize, small: bool| {
+        let mesh = block([3.0, 1.0, 1.0], [3 * n, n, n]);
+        let parts = (0..mesh.tets().len() as u32).collect();
+        let scene = Scene::new(mesh, steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01));
+        let scene = if small {
+            scene.with_parts(parts)
+        } else {
+            scene.with_boxes([3, 1, 1])
+        };
+        Plan::new(&scene, &Settings::default()).expect("plan")
+    };
+    let seconds = |p: &Plan| p.estimate.setup_seconds() + p.estimate.solve_seconds();
+    let (coarse, fine) = (plan(3, true), plan(6, true));
+    // eight times as many subdomains, nearly their square
+    assert!(seconds(&fine) > 30.0 * seconds(&coarse));
+    assert!(seconds(&fine) > 30.0 * seconds(&plan(6, false)));
+    assert!(fine.to_string().contains("too small ones"), "{fine}");
+    assert!(!plan(6, false).to_string().contains("too small ones"));
+}

@@ -6,7 +6,7 @@ mod common;
 use common::{Level, block, small_benchmark, uniform};
 use signorini_contact::{
     AccumulatedError, Accuracy, AlgebraicError, Analysis, Contact, ContactError, DifferenceFormula,
-    Directions, Doubling, Friction, LevelStatus, Load, Method, Scene, Settings, Simulation,
+    Directions, Doubling, Friction, LevelStatus, Load, Method, Plan, Scene, Settings, Simulation,
     StepDoubling, Support,
 };
 use signorini_fem_mesh::{Brick, History, brick, fields};
@@ -313,6 +313,16 @@ fn what_weighs_little_in_the_energy_is_certified_too() {
     assert!(worst > 0.0 && worst <= 5.0, "{worst}");
 }
 
+/// The refusal of a scene, which starts with the place and speaks of units; the plan gives the same.
+fn refused(scene: Scene, place: &str) -> ContactError {
+    let plan = Plan::new(&scene, &Settings::default()).expect_err("the plan");
+    let error = Simulation::new(scene, Settings::default()).expect_err("the set-up");
+    let text = error.to_string();
+    assert!(text.starts_with(place) && text.contains("units"), "{text}");
+    assert_eq!(plan.to_string(), text);
+    error
+}
+
 #[test]
 fn sizes_whose_squares_overflow_are_named() {
     let large = |size: f64| History::function(move |_| size);
@@ -346,16 +356,55 @@ fn sizes_whose_squares_overflow_are_named() {
         (press(1e200), "load 0", "N"),
     ];
     for (scene, place, unit) in cases {
-        let error = Simulation::new(scene.with_analysis(steps(1)), Settings::default());
-        let error = error.expect_err("too large");
-        let text = error.to_string();
-        assert!(text.starts_with(place) && text.contains("units"), "{text}");
+        let error = refused(scene.with_analysis(steps(1)), place);
         assert!(matches!(error, ContactError::TooLarge { unit: u, .. } if u == unit));
+    }
+    // what follows from two sizes, each of which is taken
+    let solid = |young: f64| Scene::new(block([2.0, 1.0, 1.0], [2, 1, 1]), uniform(young, 0.3));
+    for (scene, place) in [
+        (
+            solid(1e60).with_support(Support::fixed(brick::X_MIN).moved([0.0, 1e40, 0.0], ramp())),
+            "support 0 at time 1 s: its displacement times",
+        ),
+        (
+            solid(1e-60)
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_load(Load::pressure(brick::Z_MAX, 1e40)),
+            "load 0 at time 1 s: its largest nodal force over",
+        ),
+    ] {
+        refused(scene.with_analysis(steps(1)), place);
+    }
+    // materials, whatever the method
+    for young in [1e300, 1e150, 1e-100, 1e-300] {
+        for method in common::methods() {
+            let scene = solid(young).with_support(Support::fixed(brick::X_MIN));
+            let load = Load::pressure(brick::Z_MAX, 1.0);
+            let scene = scene.with_load(load).with_contact(floor());
+            let settings = Settings::default().with_method(method);
+            let error = Simulation::new(scene, settings).expect_err("stiffness");
+            assert!(matches!(
+                error,
+                ContactError::Stiffness { region: 0, value, .. } if (0.5..4.0).contains(&(value / young))
+            ));
+            refused(
+                solid(young).with_support(Support::fixed(brick::X_MIN)),
+                "region 0: its material",
+            );
+        }
     }
     // what is taken is solved and estimated
     for scene in [
         press(1e60).with_contact(floor()),
         press(1.0).with_contact(floor().with_gap(1e60)),
+        solid(1e60)
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::pressure(brick::Z_MAX, 1e60))
+            .with_contact(floor()),
+        solid(1e-60)
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::pressure(brick::Z_MAX, 1e-3))
+            .with_contact(floor()),
     ] {
         for accuracy in [Accuracy::Tolerance, Accuracy::Relative(1e-5)] {
             let settings = Settings::default().with_accuracy(accuracy);

@@ -4,10 +4,10 @@ mod common;
 
 use common::{block, rest, state_bits, steel, up_down_up, weakening};
 use signorini_contact::{
-    Analysis, Contact, ContactError, DifferenceFormula, Directions, Friction, Load, Method, Scene,
-    Settings, Simulation, State, Support,
+    Accuracy, Analysis, Contact, ContactError, DifferenceFormula, Directions, Friction, Load,
+    Method, Scene, Screening, Settings, Simulation, State, Support,
 };
-use signorini_fem_mesh::{Facet, Frame, Hooke, Materials, TetMesh, brick};
+use signorini_fem_mesh::{Facet, Frame, History, Hooke, Materials, TetMesh, brick};
 use signorini_tfeti::RowRule;
 
 /// What the variants of the scene change.
@@ -258,6 +258,48 @@ fn another_scene_on_purpose_is_possible_by_name() {
     other.analysis = Analysis::quasistatic(1.0, 4);
     let found = text(other.simulation().resume(stored().without_origin()));
     assert!(found.contains("another number of rows"), "{found}");
+}
+
+/// A body that its support lowers to a floor: where nothing presses yet, products with F are rounding errors of the displacement, and
+/// kept all the same.
+#[test]
+fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
+    let down = History::table(vec![(0.0, 0.0), (0.5, 1.0), (0.8, 0.2), (1.0, 1.1)]);
+    let down = down.expect("table");
+    let parts = |steps| Parts {
+        mesh: block([2.0, 1.0, 1.0], [4, 2, 2]),
+        materials: common::uniform(1e9, 0.3),
+        boxes: [2, 1, 1],
+        supports: vec![Support::fixed(brick::Z_MAX).moved([2e-4, 1e-4, -1e-3], down.clone())],
+        contact: Contact::rigid(brick::Z_MIN)
+            .with_gap(4e-4)
+            .with_friction(Friction::coulomb(0.3)),
+        load: Load::traction(brick::Z_MIN, [0.0; 3]),
+        analysis: Analysis::quasistatic(1.0, steps),
+    };
+    for settings in [
+        Settings::default(),
+        Settings::default().with_screening(Screening::on()),
+        Settings::default().with_accuracy(Accuracy::Relative(1e-6)),
+    ] {
+        for steps in [5, 8] {
+            let new = || parts(steps).simulation_with(settings.clone());
+            let mut whole = new();
+            let (mut states, mut displacements) = (Vec::new(), Vec::new());
+            while !whole.is_finished() {
+                displacements.push(common::step(&mut whole).displacement);
+                states.push(whole.state().clone());
+            }
+            for (level, state) in states.into_iter().enumerate() {
+                let mut again = new();
+                again.resume(state.clone()).expect("resume");
+                assert_eq!(state_bits(again.state()), state_bits(&state), "{level}");
+                for (one, expected) in rest(&mut again).iter().zip(&displacements[level + 1..]) {
+                    assert_eq!(one.displacement, *expected, "{steps} steps, after {level}");
+                }
+            }
+        }
+    }
 }
 
 /// Before the first level a state says nothing that another scene could misread.

@@ -16,7 +16,7 @@ use crate::materials::{MaterialError, Materials};
 use crate::mesh::TetMesh;
 
 /// A stiffness that cannot be assembled.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum AssemblyError {
     /// A tetrahedron names a node that does not exist.

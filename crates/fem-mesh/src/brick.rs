@@ -65,7 +65,7 @@ pub struct Brick {
 }
 
 /// A brick that cannot be built.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BrickError {
     /// A number of the description is out of its range.

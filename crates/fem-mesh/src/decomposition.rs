@@ -55,7 +55,7 @@ pub struct NodeCopy {
 }
 
 /// A decomposition that cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum DecompositionError {
     /// The table of parts does not have one entry for each tetrahedron.

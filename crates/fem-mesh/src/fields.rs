@@ -11,7 +11,7 @@ use crate::materials::{MaterialError, Materials};
 use crate::mesh::TetMesh;
 
 /// A field that cannot be evaluated.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FieldError {
     /// A table has the wrong length.

@@ -11,7 +11,7 @@
 //! use signorini_fem_mesh::gmsh::read_named_gmsh;
 //!
 //! let (mesh, names) = read_named_gmsh("block.msh")?;
-//! let floor = names.surface("foundation").ok_or("the file has no surface \"foundation\"")?;
+//! let floor = names.surface("foundation")?;
 //! println!("{} nodes can touch", mesh.nodes_on(floor).len());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -30,7 +30,7 @@ pub use names::GroupNames;
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
 
 /// A Gmsh file that cannot be read.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[non_exhaustive]
 pub enum GmshError {
     /// The file system refuses.
@@ -69,6 +69,32 @@ pub enum GmshError {
     MissingSection {
         /// Name of the section.
         section: &'static str,
+    },
+    /// The file is partitioned: its groups belong to entities that are not read.
+    #[error(
+        "the Gmsh file is partitioned (section {section}), and groups of its parts are not read; save the mesh before it is partitioned (gmsh.model.mesh.unpartition), and cut it with Decomposition::boxes or from_parts"
+    )]
+    Partitioned {
+        /// Name of the section.
+        section: &'static str,
+    },
+    /// No element is a tetrahedron.
+    #[error(
+        "the Gmsh file has no tetrahedra: mesh in three dimensions (gmsh -3); if that was done, add a physical volume, or set Mesh.SaveAll = 1, since Gmsh saves only what is in physical groups as soon as there are some"
+    )]
+    NoTetrahedra,
+    /// No physical group has this name.
+    #[error(
+        "the Gmsh file has no physical {what} named {name:?}; {}",
+        listed(what, known)
+    )]
+    UnknownName {
+        /// `"surface"` or `"volume"`.
+        what: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The names that there are.
+        known: Vec<String>,
     },
     /// An element is neither a linear triangle nor a linear tetrahedron.
     #[error(
@@ -129,6 +155,17 @@ pub enum GmshError {
     /// The mesh in the file is not valid.
     #[error("the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}")]
     Mesh(#[from] MeshError),
+}
+
+/// The names that there are, in words.
+fn listed(what: &str, known: &[String]) -> String {
+    if known.is_empty() {
+        return format!(
+            "no {what} in it has a name, so name one (Physical Surface, Physical Volume)"
+        );
+    }
+    let names: Vec<String> = known.iter().map(|name| format!("{name:?}")).collect();
+    format!("the {what}s in it are {}", names.join(", "))
 }
 
 /// Reads a mesh with its tags and regions from a file.
@@ -226,6 +263,9 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<walk::Name>), GmshError>
                 _ => {}
             }
         }
+    }
+    if tets.is_empty() {
+        return Err(GmshError::NoTetrahedra);
     }
     orient_tets(&points, &mut tets);
     drop_unused_nodes(&mut points, &mut tets, &mut facets);

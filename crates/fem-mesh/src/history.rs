@@ -5,7 +5,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 /// A history that cannot be used.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HistoryError {
     /// The table has no points.

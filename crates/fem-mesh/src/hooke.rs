@@ -13,7 +13,7 @@ const SYMMETRY: f64 = 1e-9;
 const ELLIPTICITY: f64 = 1e-12;
 
 /// An elastic law that is not admissible.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HookeError {
     /// Young's modulus is not a positive number.

@@ -63,8 +63,8 @@
 //! Every type checks its input on construction and answers with a typed error that names the
 //! place and a remedy: [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`],
 //! [`AssemblyError`], [`DecompositionError`], [`SurfaceError`], [`LoadError`], [`HistoryError`],
-//! [`FieldError`]. Later steps rely on those checks and do not repeat them. Accessors that take
-//! an index panic if it is out of range, like a slice, and say so.
+//! [`FieldError`]. They print their sentence with `{:?}`, too, which is what a `main` that returns
+//! one shows. Later steps rely on those checks and do not repeat them. Accessors that take an index panic if it is out of range, like a slice, and say so.
 //!
 //! # Parallelism
 //!
@@ -94,6 +94,7 @@ mod buckets;
 mod decomposition;
 mod disjoint;
 mod element;
+mod files;
 mod history;
 mod hooke;
 mod load;
@@ -114,6 +115,7 @@ pub use decomposition::{
 pub use disjoint::DisjointSets;
 pub use element::{Element, element_stiffness};
 pub use fields::FieldError;
+pub use files::replace_file;
 pub use history::{History, HistoryError, interpolate};
 pub use hooke::{Hooke, HookeError};
 pub use load::{LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
@@ -125,3 +127,31 @@ pub use mesh::{
 pub use norms::{h1_seminorm_error, l2_error};
 pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error, energy_of_error};
 pub use surface::{Frame, Surface, SurfaceError};
+
+/// Errors print their sentence with `{:?}`, too: that is what a user sees of a `main` that returns one.
+macro_rules! debug_is_display {
+    ($($error:ty),+) => {$(
+        impl std::fmt::Debug for $error {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(self, f)
+            }
+        }
+    )+};
+}
+
+debug_is_display!(
+    MeshError,
+    BrickError,
+    HookeError,
+    MaterialError,
+    AssemblyError,
+    DecompositionError,
+    SurfaceError,
+    LoadError,
+    HistoryError,
+    FieldError
+);
+#[cfg(feature = "vtu")]
+debug_is_display!(output::OutputError);
+#[cfg(feature = "gmsh")]
+debug_is_display!(gmsh::GmshError);

@@ -119,7 +119,7 @@ impl std::fmt::Debug for LoadDensity {
 }
 
 /// A load that cannot be applied.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The decomposition was made from another mesh.

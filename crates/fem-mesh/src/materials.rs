@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::hooke::Hooke;
 
 /// A region without a material, or with two.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum MaterialError {
     /// A region has no material.

@@ -80,7 +80,7 @@ impl Field {
 }
 
 /// A file that cannot be written.
-#[derive(Debug, Error)]
+#[derive(Error)]
 #[non_exhaustive]
 pub enum OutputError {
     /// A field has the wrong number of values.

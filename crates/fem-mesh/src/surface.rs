@@ -79,7 +79,7 @@ fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
 }
 
 /// A surface that cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
     /// No tag is given.

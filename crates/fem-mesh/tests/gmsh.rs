@@ -158,9 +158,22 @@ fn names_of_groups() {
     );
     let (mesh, names) = parse_named_gmsh(more.as_bytes()).unwrap();
     assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap());
-    assert_eq!(names.surface("the foundation"), Some(FacetTag(3)));
-    assert_eq!(names.volume("upper"), Some(8));
-    assert_eq!(names.surface("upper").or(names.surface("an edge")), None);
+    assert_eq!(names.surface("the foundation").unwrap(), FacetTag(3));
+    assert_eq!(names.volume("upper").unwrap(), 8);
+    for name in ["upper", "an edge", "Side"] {
+        let error = names.surface(name).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains(name) && text.contains("surfaces in it are \"the foundation\""));
+        assert!(matches!(
+            error,
+            GmshError::UnknownName {
+                what: "surface",
+                ..
+            }
+        ));
+    }
+    let text = names.volume("middle").unwrap_err().to_string();
+    assert!(text.contains("volumes in it are \"lower ") && text.contains(", \"upper\""));
     assert_eq!(names.surfaces().count(), 1);
     let volumes: Vec<_> = names.volumes().collect();
     assert_eq!(volumes, [("lower \\u{e9}", 7), ("upper", 8)]);
@@ -170,6 +183,8 @@ fn names_of_groups() {
         let surfaces: Vec<_> = names.surfaces().collect();
         assert_eq!(surfaces, [("foundation", FacetTag(3))]);
         assert_eq!(names.volumes().count(), 0);
+        let text = names.volume("body").unwrap_err().to_string();
+        assert!(text.contains("no volume in it has a name"), "{text}");
     }
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), TEXT).unwrap();
@@ -194,6 +209,34 @@ fn names_of_groups() {
             }
         ));
     }
+}
+
+/// Gmsh saves no tetrahedra where surfaces are physical groups and volumes are not.
+#[test]
+fn a_file_without_tetrahedra_says_what_to_add() {
+    let surfaces = TEXT
+        .replace("5 6 1 6\n", "3 4 1 4\n")
+        .replace("3 1 4 1\n4 3 1 2 5\n3 2 4 1\n6 4 1 2 5\n", "");
+    let error = parse_gmsh(surfaces.as_bytes()).unwrap_err();
+    assert!(matches!(error, GmshError::NoTetrahedra), "{error}");
+    let text = error.to_string();
+    assert!(text.contains("physical volume") && text.contains("Mesh.SaveAll"));
+}
+
+/// Groups of a partitioned file stand in a section of their own.
+#[test]
+fn partitioned_files_are_refused_by_their_section() {
+    let section = "$PartitionedEntities
+2
+0
+0 0 0 1
+1 3 1 1 1 0 0 0 1 1 1 1 7 0
+$EndPartitionedEntities
+$Nodes";
+    let error = damaged("$Nodes", section);
+    assert!(matches!(error, GmshError::Partitioned { .. }), "{error}");
+    let text = error.to_string();
+    assert!(text.contains("$PartitionedEntities") && text.contains("unpartition"));
 }
 
 #[test]

@@ -223,6 +223,43 @@ fn a_step_whose_list_failed_is_written_again() {
     assert!(!beside.exists() && !folder.path().join("block_0002.vtu").exists());
 }
 
+/// A continued series replaces files that its old list names: each is whole at any moment.
+#[test]
+fn files_of_a_continued_series_are_whole_where_writing_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let field = |value: f64| Field::scalar("height", vec![value; mesh().points().len()]);
+    let mut series = PvdSeries::create(folder.path(), "block").unwrap();
+    for time in [0.0, 1.0, 2.0] {
+        series.write(time, &mesh(), &[field(time)], &[]).unwrap();
+    }
+    let file = folder.path().join("block_0001.vtu");
+    let beside = folder.path().join("block_0001.vtu.tmp");
+    let before = std::fs::read(&file).unwrap();
+    // the new file cannot be written
+    std::fs::create_dir(&beside).unwrap();
+    let mut again = PvdSeries::open_before(folder.path(), "block", 1.0).unwrap();
+    let error = again.write(1.5, &mesh(), &[field(7.0)], &[]).unwrap_err();
+    assert!(matches!(error, OutputError::Io { path, .. } if path == beside));
+    assert_eq!(std::fs::read(&file).unwrap(), before);
+    let list = PvdSeries::open(folder.path(), "block").unwrap();
+    assert_eq!(list.times(), [0.0, 1.0, 2.0]);
+    std::fs::remove_dir(&beside).unwrap();
+    // half a file that a kill left is no part of the series, and is taken over
+    std::fs::write(&beside, &before[..before.len() / 2]).unwrap();
+    again.write(1.5, &mesh(), &[field(7.0)], &[]).unwrap();
+    assert!(!beside.exists());
+    let [piece] = &pieces(&file)[..] else {
+        panic!("one piece is expected")
+    };
+    assert!(
+        values(&piece.data.point, "height")
+            .iter()
+            .all(|&h| h == 7.0)
+    );
+    let list = PvdSeries::open(folder.path(), "block").unwrap();
+    assert_eq!(list.times(), [0.0, 1.5]);
+}
+
 #[test]
 fn broken_lists_are_named() {
     let folder = tempfile::tempdir().unwrap();

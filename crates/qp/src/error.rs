@@ -2,8 +2,21 @@
 
 use thiserror::Error;
 
+/// Errors print their sentence with `{:?}`, too: that is what a user sees of a `main` that returns one.
+macro_rules! debug_is_display {
+    ($($error:ty),+) => {$(
+        impl std::fmt::Debug for $error {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(self, f)
+            }
+        }
+    )+};
+}
+
+debug_is_display!(SetError, QpError, crate::laws::LawViolation);
+
 /// The data of a convex set are wrong.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SetError {
     /// Lower and upper bounds have different lengths.
@@ -62,7 +75,7 @@ pub enum SetError {
 
 /// A solver was given wrong input or broke down. Not reaching a tolerance is no error, see
 /// [`Status`](crate::Status).
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QpError {
     /// The set is wrong.

@@ -156,18 +156,18 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
     }
 
     /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in the metric
-    /// of the preconditioner. Where there is none, the equality comes first.
-    pub(crate) fn project(&mut self) {
+    /// of the preconditioner. Where there is none, which is returned as false, the equality comes first.
+    pub(crate) fn project(&mut self) -> bool {
         let constrained = self.constrained();
         let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
         let point = self.balanced(y, lengths);
-        match point {
-            Ok(point) => self.x[..constrained].copy_from_slice(&point),
-            Err(point) => {
-                self.x[..constrained].copy_from_slice(&point);
-                self.coarse.balance(self.x, self.problem.rhs);
-            }
+        let balances = point.is_ok();
+        let (Ok(point) | Err(point)) = point;
+        self.x[..constrained].copy_from_slice(&point);
+        if !balances {
+            self.coarse.balance(self.x, self.problem.rhs);
         }
+        balances
     }
 
     /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on them.

@@ -73,6 +73,8 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
     peak: f64,
+    /// Moves in a row at which the set held no balance.
+    unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
     best: f64,
     last: f64,
@@ -110,6 +112,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             forcing: settings.forcing,
             jump: f64::INFINITY,
             peak: 0.0,
+            unbalanced: 0,
             best: f64::INFINITY,
             last: f64::INFINITY,
             waited: 0,
@@ -316,6 +319,9 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     /// Why the solve ends without a solution, if it does.
     pub(crate) fn gives_up(&self) -> Option<Status> {
         let (settings, report) = (self.settings, &self.at.report);
+        if self.unbalanced >= settings.patience.saturating_mul(LONGER) {
+            return Some(Status::Infeasible);
+        }
         let held_up = self.guard.as_ref().map_or(0, |guard| guard.held_up);
         if self.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
             return Some(Status::Stagnated);
@@ -406,7 +412,10 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             if !start {
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
                 at.work.face.aim(at.set, at.x, &map);
-                at.project();
+                let balances = at.project();
+                if round == rounds {
+                    self.unbalanced = if balances { 0 } else { self.unbalanced + 1 };
+                }
             } else if !at.project_start() {
                 at.project();
             }

@@ -34,6 +34,8 @@ use crate::vector;
 const SUFFICIENT: f64 = 1e-6;
 /// Curvature below minus this multiple of the norm is a breakdown.
 const NEGATIVE_CURVATURE: f64 = 1e-10;
+/// Gradients below this multiple of their rounding errors are nothing else.
+const ROUNDING: f64 = 1e3 * f64::EPSILON;
 /// Steps without a new smallest gradient after which the level of rounding is looked at.
 const PATIENCE: usize = 60;
 /// Failed verifications after which the recurrence is taken to be at the level of rounding.
@@ -193,7 +195,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         } else {
             waited += 1;
             if waited >= PATIENCE {
-                if measure <= 1e3 * f64::EPSILON * objective.norm() * vector::norm(x) {
+                if measure <= ROUNDING * objective.norm() * vector::norm(x) {
                     break Status::Stagnated;
                 }
                 waited = 0;
@@ -251,8 +253,15 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
         vector::copy(&v.phi, &mut v.p);
     }
 
-    /// `t` minimising the cost along `-p` for slope `gp = g·p` and curvature `pap = p·Ap`.
-    fn minimising(&self, gp: f64, pap: f64, p: &[f64], norm: f64) -> Result<f64, QpError> {
+    /// `t` minimising the cost along `-p` for slope `gp = g·p` and curvature `pap = p·Ap`. Infinite where the curvature is
+    /// below rounding; but where the slope is, too, the fixed step, which lowers the cost whatever the curvature is.
+    fn minimising(
+        &self,
+        objective: &impl Objective,
+        x: &[f64],
+        v: &Vectors,
+        (p, gp, pap): (&[f64], f64, f64),
+    ) -> Result<f64, QpError> {
         let products = self.products.total();
         if !(gp.is_finite() && pap.is_finite()) {
             return Err(QpError::NotFinite {
@@ -260,15 +269,19 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
                 products,
             });
         }
-        if pap > 0.0 {
+        let (norm, pp) = (objective.norm(), vector::dot(p, p));
+        if pap > 0.0 && !below_rounding(pap, norm, pp) {
             return Ok(gp / pap);
         }
-        let pp = vector::dot(p, p);
         if pap < -NEGATIVE_CURVATURE * norm * pp {
             return Err(QpError::Indefinite {
                 curvature: pap / pp,
                 products,
             });
+        }
+        let rounding = ROUNDING * (norm * vector::norm(x) + vector::norm(&v.g));
+        if gp <= rounding.max(objective.tolerance()) * pp.sqrt() {
+            return Ok(self.fixed);
         }
         Ok(f64::INFINITY)
     }
@@ -289,12 +302,16 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
         objective.direction(&v.p, &mut v.ap);
         self.products.cg += 1;
         let pap = vector::dot(&v.p, &v.ap);
-        let t_cg = self.minimising(gp, pap, &v.p, objective.norm())?;
+        let t_cg = self.minimising(objective, x, v, (&v.p, gp, pap))?;
         let t_f = self.set.feasible_step(x, &v.p);
         let t = t_cg.min(t_f);
         self.straight(objective, x, v, t, (gp, pap))?;
         if t_cg <= t_f {
             self.steps.cg += 1;
+            if below_rounding(pap, objective.norm(), vector::dot(&v.p, &v.p)) {
+                self.restart(x, v);
+                return Ok(());
+            }
             self.norms = self.set.split(x, &v.g, self.fixed, &mut v.phi);
             let gamma = vector::dot(&v.phi, &v.ap) / pap;
             vector::xpby(&v.phi, -gamma, &mut v.p);
@@ -353,7 +370,8 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
                 objective.direction(&v.phi, &mut v.ap);
                 self.products.expansion += 1;
                 let curvature = vector::dot(&v.phi, &v.ap);
-                let t = self.minimising(self.norms.free, curvature, &v.phi, objective.norm())?;
+                let slope = self.norms.free;
+                let t = self.minimising(objective, x, v, (&v.phi, slope, curvature))?;
                 if t <= self.set.feasible_step(x, &v.phi) && t.is_finite() {
                     self.set.advance(x, &v.phi, t);
                     vector::axpy(-t, &v.ap, &mut v.g);
@@ -370,7 +388,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
         if let Some(t) = length {
             vector::copy(&v.g, &mut v.ap);
             if self.settings.expansion == Expansion::ProjectedCg {
-                step_keeping_start(&mut v.p, x, t);
+                vector::step_keeping_start(&mut v.p, x, t);
             } else {
                 vector::copy(x, &mut v.p);
                 vector::axpy(-t, &v.phi, x);
@@ -427,7 +445,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
             // a straight line along -beta: the minimising length, gradient by recurrence
             objective.direction(&v.p, &mut v.ap);
             let (gp, pap) = (vector::dot(&v.p, &v.g), vector::dot(&v.p, &v.ap));
-            let t = self.minimising(gp, pap, &v.p, objective.norm())?.min(t_f);
+            let t = self.minimising(objective, x, v, (&v.p, gp, pap))?.min(t_f);
             self.straight(objective, x, v, t, (gp, pap))?;
         } else {
             self.release(objective, x, v);
@@ -472,11 +490,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
     }
 }
 
-/// `(p, x) = (x, x - t p)`: the step, with the point before it left in `p`.
-fn step_keeping_start(p: &mut [f64], x: &mut [f64], t: f64) {
-    for (pi, xi) in p.iter_mut().zip(x) {
-        let before = *xi;
-        *xi -= t * *pi;
-        *pi = before;
-    }
+/// Whether a curvature `p·Ap` is rounding error, or has underflowed.
+fn below_rounding(pap: f64, norm: f64, pp: f64) -> bool {
+    pap <= f64::EPSILON * norm * pp
 }

@@ -8,7 +8,7 @@ use crate::vector;
 use thiserror::Error;
 
 /// A law that an implementation violates.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[error("{law}: off by {error:e} in sample {sample}")]
 #[non_exhaustive]
 pub struct LawViolation {

@@ -12,6 +12,8 @@ pub enum Status {
     IterationLimit,
     /// No further progress: the gradient is at the level of rounding errors, above the tolerance.
     Stagnated,
+    /// The set, as it follows the solution, holds no point that satisfies the equality.
+    Infeasible,
     /// The caller's hook asked to stop.
     Stopped,
 }

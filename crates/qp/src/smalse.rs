@@ -125,7 +125,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
             a_scratch: &mut work.a_scratch,
             c_scratch: &mut work.c_scratch,
         },
-        e_norm: vector::norm(e),
+        least: vector::norm(e),
         set,
         settings,
         hook,
@@ -171,7 +171,8 @@ struct Run<'s, A: SymmetricOperator, C: Equality, S: ?Sized, H> {
     hook: &'s mut H,
     x: &'s mut [f64],
     v: &'s mut Vectors,
-    e_norm: f64,
+    /// What the equality is measured against if `x` is smaller: `|e|`, or what rounding errors of the load make of `x`.
+    least: f64,
     steps: Steps,
     products: Products,
     outer: usize,
@@ -211,7 +212,9 @@ where
     fn start(&mut self) -> Result<(), QpError> {
         let (o, settings) = (&mut self.o, self.settings);
         // eps_1 = eps |P h|
-        let reference = reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        let (reference, rounding) =
+            reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        self.least = self.least.max(rounding / o.norm);
         o.floor = usable(settings.tolerance.resolve(reference))?;
         o.cap = settings.gradient_cap * reference;
         self.set.project(self.x);
@@ -227,7 +230,7 @@ where
     }
 
     fn set_equality_tolerance(&mut self) {
-        let size = vector::norm(self.x).max(self.e_norm);
+        let size = vector::norm(self.x).max(self.least);
         self.o.equality_tolerance = self.settings.equality * size;
     }
 
@@ -361,15 +364,16 @@ where
     }
 }
 
-/// Reference of the tolerance: the caller's, or `|P (b - A C'e)|`, or `|P b|` for an absolute tolerance.
+/// Reference of the tolerance: the caller's, or `|P (b - A C'e)|`, or `|P b|` for an absolute tolerance; and what of it may be
+/// rounding errors of a load that the equality carries alone.
 fn reference<A: SymmetricOperator, C: Equality>(
     o: &mut Penalised<'_, A, C>,
     tolerance: Tolerance,
     h: &mut [f64],
     products: &mut Products,
-) -> f64 {
+) -> (f64, f64) {
     match tolerance {
-        Tolerance::RelativeTo { reference, .. } => return reference,
+        Tolerance::RelativeTo { reference, .. } => return (reference, 0.0),
         Tolerance::Relative(_) if o.e.iter().any(|v| *v != 0.0) => {
             o.c.apply_transpose(o.e, &mut o.s.y, o.c_scratch);
             o.a.apply(&o.s.y, h, o.a_scratch);
@@ -378,11 +382,10 @@ fn reference<A: SymmetricOperator, C: Equality>(
         }
         _ => vector::copy(o.b, h),
     }
-    let load = vector::norm(h) + o.norm * vector::norm(o.e);
+    let rounding = ROUNDING * (vector::norm(h) + o.norm * vector::norm(o.e));
     o.c.apply(h, &mut o.s.cx, o.c_scratch);
     o.c.apply_transpose(&o.s.cx, &mut o.s.y, o.c_scratch);
     o.s.projections += 1;
     vector::subtract(&o.s.y, h);
-    // a load that the equality carries alone leaves nothing but rounding
-    vector::norm(h).max(ROUNDING * load)
+    (vector::norm(h).max(rounding), rounding)
 }

@@ -51,7 +51,7 @@ impl Default for Update {
 /// | setting | meaning | relative to | range | default | the paper's letter |
 /// |---|---|---|---|---|---|
 /// | `tolerance` | projected gradient at the end | see [`Tolerance`] | >= 0 | 1e-6 | `eps_1` |
-/// | `equality` | `Cx - e` at the end | `max(|x|, |e|)` | > 0 | 1e-6 | `eps_1 M_0` |
+/// | `equality` | `Cx - e` at the end | `max(|x|, |e|)`, at least what rounding errors of `b` make of `x` | > 0 | 1e-6 | `eps_1 M_0` |
 /// | `penalty` | penalty | norm of `PAP` | > 0 | 3 | `rho` |
 /// | `precision` | inner tolerance over `Cx - e` | norm of `PAP` | > 0 | 1 | `M_0` |
 /// | `gradient_cap` | largest inner tolerance | reference of `tolerance` | > 0 | 0.1 | `eta` |
@@ -63,7 +63,8 @@ impl Default for Update {
 pub struct SmalseSettings {
     /// Projected gradient at the end.
     pub tolerance: Tolerance,
-    /// Residual of the equality at the end, relative to the larger of `|x|` and `|e|`.
+    /// Residual of the equality at the end, relative to the larger of `|x|` and `|e|`, and to no less than what rounding errors of `b` may
+    /// make of `x`.
     pub equality: f64,
     /// Penalty relative to the norm of `PAP`.
     pub penalty: f64,

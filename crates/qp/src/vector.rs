@@ -221,6 +221,15 @@ fn leaf(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
 }
 
+/// `(p, x) = (x, x - t p)`: the step, with the point before it left in `p`.
+pub(crate) fn step_keeping_start(p: &mut [f64], x: &mut [f64], t: f64) {
+    for (pi, xi) in p.iter_mut().zip(x) {
+        let before = *xi;
+        *xi -= t * *pi;
+        *pi = before;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

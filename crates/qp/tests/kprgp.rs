@@ -209,6 +209,27 @@ fn limits_and_rounding_are_statuses() {
     }
 }
 
+/// A direction so small that its curvature underflows, beside a disc so small that the gradient on it cannot be lowered.
+#[test]
+fn curvature_that_underflows_is_no_descent_for_ever() {
+    let a = DenseOperator::new(3, vec![1e-9, 0.0, 0.0, 0.0, 1e-9, 0.0, 0.0, 0.0, 1e-9]);
+    let a = a.expect("symmetric");
+    let set = ProductSet::new(vec![Segment::Free(1), Segment::discs(vec![1e-170])]).expect("set");
+    let mut work = KprgpWorkspace::new(&a);
+    for measure in [Measure::Projected, Measure::Reduced] {
+        let settings = KprgpSettings::default()
+            .with_measure(measure)
+            .with_max_products(500);
+        let mut x = [1e-150, 1e-170, 0.0];
+        let t = Tolerance::Relative(1e-10);
+        let b = [0.0, 0.0, 1.0];
+        let report = kprgp(&a, &b, &set, 1e-9, t, &settings, &mut x, &mut work).expect("solve");
+        assert!(x.iter().all(|v| v.is_finite()) && set.violation(&x) == 0.0);
+        let converges = measure == Measure::Reduced;
+        assert_eq!(report.status.converged(), converges, "{report:?}");
+    }
+}
+
 #[test]
 fn breakdowns_are_errors() {
     let settings = KprgpSettings::default();
@@ -223,6 +244,11 @@ fn breakdowns_are_errors() {
         run(&singular, &[0.0, 1.0], &free, &mut [0.0; 2], &settings),
         Err(QpError::Unbounded { .. })
     ));
+    // a slope that is nothing but rounding of what was subtracted is no descent
+    let residue = [1e20, 1e3];
+    let mut x = [1e20, 0.0];
+    let status = run(&singular, &residue, &free, &mut x, &settings);
+    assert!(status.is_ok(), "{status:?}");
     // a bound in the way makes it solvable
     let set = ProductSet::new(vec![Segment::upper(vec![5.0, 4.0])]).expect("set");
     let mut x = [0.0; 2];

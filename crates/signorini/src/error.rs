@@ -2,10 +2,22 @@
 
 use signorini_contact::ContactError;
 use signorini_fem_mesh as fem;
+use std::fmt;
 use thiserror::Error;
 
 /// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout.
-#[derive(Debug, Error)]
+///
+/// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is wrong and
+/// what to do about it. Programs match on its variants.
+///
+/// ```
+/// use signorini::prelude::*;
+///
+/// let error = Error::from(Hooke::isotropic(-1.0, 0.3).unwrap_err());
+/// assert_eq!(format!("{error:?}"), error.to_string());
+/// assert!(error.to_string().contains("Young's modulus"));
+/// ```
+#[derive(Error)]
 #[non_exhaustive]
 pub enum Error {
     /// Scene, settings, simulation.
@@ -61,4 +73,13 @@ pub enum Error {
     #[cfg(feature = "gmsh")]
     #[error(transparent)]
     Gmsh(#[from] fem::gmsh::GmshError),
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Contact(error) => fmt::Debug::fmt(error, f),
+            other => fmt::Display::fmt(other, f),
+        }
+    }
 }

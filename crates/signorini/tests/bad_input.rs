@@ -93,6 +93,8 @@ fn check(cases: Vec<Case>) -> usize {
             Err(error) => {
                 assert!((case.is)(error), "{}: another error: {error:?}", case.name);
                 let message = error.to_string();
+                // what a main that returns the error prints
+                assert_eq!(format!("{error:?}"), message, "{}", case.name);
                 for part in case.says {
                     assert!(
                         message.contains(part),

@@ -106,6 +106,34 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
     Ok(())
 }
 
+/// What a `main` that returns the error prints: the sentence, and what its sources add.
+#[test]
+fn errors_print_their_sentences() -> Result<(), Error> {
+    #[derive(Debug)]
+    struct Outer(std::io::Error);
+    impl std::fmt::Display for Outer {
+        fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("no frame was kept")
+        }
+    }
+    impl std::error::Error for Outer {
+        fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+            Some(&self.0)
+        }
+    }
+    let mut simulation = Simulation::new(scene(1)?, Settings::default())?;
+    let full = || Outer(std::io::Error::other("the disk is full"));
+    let outcome = simulation.run(&mut |_: &Frame<'_>| Flow::from(Err::<(), _>(full())));
+    let error = Error::from(outcome.expect_err("an observer that fails"));
+    assert_eq!(
+        format!("{error:?}"),
+        "observer, after level 0: no frame was kept\n  because the disk is full"
+    );
+    let io = Error::from(std::io::Error::other("the disk is full"));
+    assert_eq!(format!("{io:?}"), "the disk is full");
+    Ok(())
+}
+
 #[test]
 fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(1)?, Settings::default())?;

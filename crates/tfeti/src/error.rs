@@ -1,7 +1,7 @@
 //! What can go wrong while a T-FETI system is built.
 
 /// Errors of the set-up. Every message names the place and, where there is one, the remedy.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TfetiError {
     /// A subdomain has a motion without strain besides the six rigid ones.
@@ -212,4 +212,11 @@ pub enum TfetiError {
         /// How many.
         count: usize,
     },
+}
+
+/// Prints its sentence, as with `{}`: that is what a user sees of a `main` that returns it.
+impl std::fmt::Debug for TfetiError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        std::fmt::Display::fmt(self, f)
+    }
 }

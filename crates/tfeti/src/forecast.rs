@@ -1,16 +1,16 @@
 //! What a set-up will need, from counts alone: classes are found, no matrix is assembled.
 
 use crate::class::{Classes, Sharing};
+use crate::coarse_tree::patterns;
 use crate::cost::{InverseSettings, Size, choose};
 use crate::dense;
 use crate::error::TfetiError;
+use crate::sparse::minimum_degree;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::time::Instant;
 
 /// Numbers in the sparse factor of a subdomain with `n` unknowns, over `n^(4/3)`: nested dissection of a cube.
 const FACTOR: f64 = 7.3;
-/// The same for the coarse matrix.
-const COARSE: f64 = 9.0;
 /// Bytes of the gather tables an entry of `B`.
 const TABLE: f64 = 14.0;
 
@@ -44,6 +44,8 @@ pub struct Forecast {
     pub inverse_bytes: u64,
     /// Bytes of the coarse factor.
     pub coarse_bytes: u64,
+    /// Operations to factor the coarse matrix.
+    pub coarse_flops: f64,
     /// Bytes of the gather tables.
     pub table_bytes: u64,
 }
@@ -107,11 +109,11 @@ impl Forecast {
             }
         };
         let classes: Vec<ClassForecast> = sizes.iter().zip(dense).map(forecast).collect();
-        let coarse = 6 * subdomains.len();
-        let stored = ((COARSE * (coarse as f64).powf(4.0 / 3.0)) as usize).min(coarse * coarse);
+        let (stored, coarse_flops) = coarse_factor(decomposition);
         Ok(Self {
             inverse_bytes: classes.iter().map(|c| c.bytes).sum(),
-            coarse_bytes: 8 * stored as u64,
+            coarse_bytes: 8 * stored,
+            coarse_flops,
             table_bytes: (TABLE * entries as f64) as u64,
             classes,
         })
@@ -128,6 +130,41 @@ impl Forecast {
     pub fn setup_flops(&self) -> f64 {
         self.classes.iter().map(|c| c.setup_flops).sum()
     }
+}
+
+/// Numbers and operations of the factor of the coarse matrix, by elimination of its blocks of six: subdomains that share a node
+/// are coupled, be it by a corner only.
+fn coarse_factor(decomposition: &Decomposition) -> (u64, f64) {
+    let count = decomposition.subdomains().len();
+    let mut graph: Vec<Vec<u32>> = vec![Vec::new(); count];
+    let mut before: Vec<u32> = Vec::new();
+    for node in 0..decomposition.nodes() {
+        let copies = decomposition.copies(node).iter();
+        let own: Vec<u32> = copies.map(|copy| copy.subdomain).collect();
+        // nodes of a face follow one another
+        if own.len() > 1 && own != before {
+            for &a in &own {
+                graph[a as usize].extend(own.iter().filter(|b| **b != a));
+            }
+            before = own;
+        }
+    }
+    let (mut pointers, mut rows) = (vec![0], Vec::new());
+    for list in &mut graph {
+        list.sort_unstable();
+        list.dedup();
+        rows.extend(list.iter().map(|b| *b as usize));
+        pointers.push(rows.len());
+    }
+    let Ok(order) = minimum_degree(&pointers, &rows) else {
+        return (0, 0.0);
+    };
+    let order: Vec<u32> = order.into_iter().map(|b| b as u32).collect();
+    let columns = patterns(&graph, &order);
+    let border = columns.iter().map(|below| 6.0 * below.len() as f64);
+    let sums = border.map(|b| [6.0 * b + 21.0, 6.0 * b * b + 36.0 * b + 72.0]);
+    let [stored, flops] = sums.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    (stored as u64, flops)
 }
 
 /// A factor is at most a full triangle.
@@ -230,6 +267,29 @@ mod tests {
                     || near(2 * forecast.coarse_bytes, truth.coarse_bytes),
                 "{forecast:?} {truth:?}"
             );
+        }
+    }
+
+    /// Every tetrahedron a subdomain: a node couples up to thirty of them.
+    #[test]
+    fn the_coarse_factor_of_very_small_subdomains_is_counted() {
+        let mut last = 0.0;
+        for n in [2, 3] {
+            let mesh = brick::Brick::new([3.0, 1.0, 1.0], [3 * n, n, n]).build();
+            let mesh = mesh.unwrap();
+            let count = mesh.tets().len() as u32;
+            let decomposition =
+                Decomposition::from_parts(&mesh, &(0..count).collect::<Vec<_>>()).unwrap();
+            let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).unwrap());
+            let system = TfetiBuilder::new(&mesh, &decomposition, &materials).build();
+            let truth = system.unwrap().report().coarse_bytes as f64;
+            let (stored, flops) = coarse_factor(&decomposition);
+            let ratio = 8.0 * stored as f64 / truth;
+            assert!((0.5..2.0).contains(&ratio), "{n}: {ratio}");
+            // a dense matrix would be an upper bound
+            let dim = 6.0 * f64::from(count);
+            assert!(flops < dim.powi(3) / 3.0 && flops > 10.0 * last, "{flops}");
+            last = flops;
         }
     }
 

@@ -4,11 +4,8 @@ use super::Simulation;
 use crate::error::ContactError;
 use crate::screening::Screen;
 use crate::state::State;
-use signorini_qp::{SymmetricOperator, vector};
+use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
-
-/// Relative error of a stored `F lambda` above which it belongs to another scene.
-const FOREIGN: f64 = 1e-6;
 
 impl Simulation {
     /// Continues from a stored state of the same scene.
@@ -54,38 +51,87 @@ impl Simulation {
             state.forget_products();
             state.set_active(&[]);
         }
+        self.check_products(&mut state);
         self.solved = false;
         self.state = Arc::new(state);
-        self.check_products();
         Ok(())
     }
 
-    /// Recomputes `F lambda` of a state that another scene left: solvers take it at its word.
-    fn check_products(&mut self) {
+    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its word. With
+    /// screening it is then forgotten: rows of points left out have none.
+    fn check_products(&self, state: &mut State) {
         let dual = self.model.tfeti.dual();
-        let mut scratch = dual.scratch();
+        let mut foreign = false;
+        state.renew_products(self.operator, |lambda, f_lambda| {
+            foreign = true;
+            if self.screen.is_none() {
+                dual.apply(lambda, f_lambda, &mut dual.scratch());
+            }
+        });
+        if foreign && self.screen.is_some() {
+            state.forget_products();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
+    use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+    use signorini_qp::{SymmetricOperator, vector};
+
+    fn simulation(young: f64) -> Simulation {
+        let mesh = Brick::new([2.0, 1.0, 1.0], [2, 1, 1])
+            .build()
+            .expect("mesh");
+        let hooke = Hooke::isotropic(young, 0.3).expect("Hooke");
+        let ramp = History::ramp(1.0, 1.0).expect("ramp");
+        let scene = Scene::new(mesh, Materials::uniform(hooke))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e6]).with_history(ramp))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
+            .with_boxes([2, 1, 1])
+            .with_analysis(Analysis::quasistatic(1.0, 4));
+        Simulation::new(scene, Settings::default()).expect("set-up")
+    }
+
+    /// Products of another material, and such as are none, are made anew, by name of the scene or without it; those of the same
+    /// one keep every bit.
+    #[test]
+    fn products_of_another_operator_are_made_anew() {
+        let mut stored = simulation(1e9);
+        for _ in 0..2 {
+            let _ = stored.step().expect("step");
+        }
+        let state = stored.state().clone();
+        for state in [state.clone(), state.clone().without_origin()] {
+            let mut same = simulation(1e9);
+            same.resume(state.clone()).expect("resume");
+            assert_eq!(same.state().f_lambda(), state.f_lambda());
+            // twice as stiff: half the displacement by the same forces
+            let mut other = simulation(2e9);
+            other.resume(state.clone()).expect("resume");
+            let (dual, found) = (other.tfeti().dual(), other.state());
+            for k in 0..2 {
+                let mut product = vec![0.0; dual.dim()];
+                dual.apply(&found.lambda()[k], &mut product, &mut dual.scratch());
+                assert_eq!(found.f_lambda()[k], product, "level {k} ago");
+                let [new, old] = [&product, &state.f_lambda()[k]].map(|v| vector::norm(v));
+                assert!((new / old - 0.5).abs() < 1e-6, "{new} {old}");
+            }
+            // stored once more it is a state of the stiffer body
+            let mut again = simulation(2e9);
+            again.resume(found.clone()).expect("resume");
+            assert_eq!(again.state(), found);
+        }
+        // garbage in the place of a product of the same scene
+        let mut garbage = state;
+        garbage.renew_products(0, |_, f_lambda| f_lambda.fill(1.0));
+        let mut same = simulation(1e9);
+        same.resume(garbage).expect("resume");
+        let (dual, found) = (same.tfeti().dual(), same.state());
         let mut product = vec![0.0; dual.dim()];
-        let mut foreign = |lambda: &[f64], f_lambda: &[f64]| {
-            if lambda.len() != product.len() || f_lambda.len() != product.len() {
-                return None;
-            }
-            dual.apply(lambda, &mut product, &mut scratch);
-            let off = vector::distance(&product, f_lambda);
-            let same = off <= FOREIGN * vector::norm(&product);
-            (!same).then(|| product.clone())
-        };
-        if let Some(screen) = &self.screen {
-            let view = screen.view(&self.state);
-            let pairs = view.lambda().iter().zip(view.f_lambda());
-            if pairs.filter_map(|(l, f)| foreign(l, f)).next().is_some() {
-                Arc::make_mut(&mut self.state).forget_products();
-            }
-            return;
-        }
-        for (lambda, f_lambda) in Arc::make_mut(&mut self.state).products_mut() {
-            if let Some(product) = foreign(lambda, f_lambda) {
-                *f_lambda = product;
-            }
-        }
+        dual.apply(&found.lambda()[0], &mut product, &mut dual.scratch());
+        assert_eq!(found.f_lambda()[0], product);
     }
 }

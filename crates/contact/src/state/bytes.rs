@@ -2,9 +2,10 @@
 
 use super::State;
 use crate::error::ContactError;
+use std::path::Path;
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_4709;
+const MAGIC: u32 = 0x5349_470a;
 
 /// FNV-1a of 64 bits: any one changed byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {
@@ -68,6 +69,40 @@ impl State {
             Err(damaged("more follows the state"))
         }
     }
+
+    /// Stores the state in a file (feature `checkpoint`). The file is complete at any moment: a kill or a full disk leaves the state that
+    /// was there before ([`replace_file`](signorini_fem_mesh::replace_file)).
+    ///
+    /// # Errors
+    /// [`ContactError::CheckpointFile`] if the file system refuses.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ContactError> {
+        signorini_fem_mesh::replace_file(&path, &self.to_bytes()?)
+            .map_err(|source| file_error(path.as_ref(), "write", source))
+    }
+
+    /// Reads what [`save`](Self::save) stored (feature `checkpoint`).
+    ///
+    /// # Errors
+    /// [`ContactError::CheckpointFile`] if the file system refuses, with [`NotFound`](std::io::ErrorKind::NotFound) where there is no file yet;
+    /// [`ContactError::Checkpoint`] as [`from_bytes`](Self::from_bytes), with the file.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, ContactError> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path).map_err(|source| file_error(path, "read", source))?;
+        Self::from_bytes(&bytes).map_err(|error| match error {
+            ContactError::Checkpoint { reason } => ContactError::Checkpoint {
+                reason: format!("{}: {reason}", path.display()),
+            },
+            other => other,
+        })
+    }
+}
+
+fn file_error(path: &Path, what: &'static str, source: std::io::Error) -> ContactError {
+    ContactError::CheckpointFile {
+        what,
+        path: path.into(),
+        source,
+    }
 }
 
 #[cfg(test)]
@@ -109,6 +144,40 @@ mod tests {
         bytes[3] = 0;
         let text = State::from_bytes(&bytes).unwrap_err().to_string();
         assert!(text.contains("no state"), "{text}");
+    }
+
+    #[test]
+    fn a_file_is_the_new_state_or_the_old_one() {
+        let folder = std::env::temp_dir().join(format!("signorini-state-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("state.bin");
+        let absent = State::load(&path).unwrap_err();
+        let text = absent.to_string();
+        assert!(text.contains("cannot read") && text.contains("state.bin"));
+        assert!(matches!(
+            absent,
+            ContactError::CheckpointFile { source, .. } if source.kind() == std::io::ErrorKind::NotFound
+        ));
+        state().save(&path).unwrap();
+        assert_eq!(State::load(&path).unwrap(), state());
+        // what is written beside it fails
+        let beside = folder.join("state.bin.tmp");
+        std::fs::create_dir(&beside).unwrap();
+        let mut other = state();
+        other.note_unconverged();
+        let error = other.save(&path).unwrap_err().to_string();
+        assert!(error.contains("cannot write") && error.contains("state.bin.tmp"));
+        assert_eq!(State::load(&path).unwrap(), state());
+        std::fs::remove_dir(&beside).unwrap();
+        // a cut file that a kill left beside it
+        std::fs::write(&beside, [1, 2, 3]).unwrap();
+        other.save(&path).unwrap();
+        assert_eq!(State::load(&path).unwrap(), other);
+        assert!(!beside.exists());
+        std::fs::write(&path, [0; 30]).unwrap();
+        let error = State::load(&path).unwrap_err().to_string();
+        assert!(error.contains("state.bin") && error.contains("no state"));
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

@@ -22,6 +22,7 @@ impl fmt::Debug for State {
                 peaks,
                 unconverged,
                 origin,
+                seals,
             } = self;
             return f
                 .debug_struct("State")
@@ -38,6 +39,7 @@ impl fmt::Debug for State {
                 .field("peaks", peaks)
                 .field("unconverged", unconverged)
                 .field("origin", origin)
+                .field("seals", seals)
                 .finish();
         }
         f.debug_struct("State")

@@ -16,15 +16,19 @@ pub struct GroupNames {
 
 impl GroupNames {
     /// Tag of the facets in the surface group of this name.
-    #[must_use]
-    pub fn surface(&self, name: &str) -> Option<FacetTag> {
-        self.surfaces.get(name).copied().map(FacetTag)
+    ///
+    /// # Errors
+    /// [`GmshError::UnknownName`] with the names that there are.
+    pub fn surface(&self, name: &str) -> Result<FacetTag, GmshError> {
+        look_up("surface", &self.surfaces, name).map(FacetTag)
     }
 
     /// Region of the tetrahedra in the volume group of this name.
-    #[must_use]
-    pub fn volume(&self, name: &str) -> Option<u32> {
-        self.volumes.get(name).copied()
+    ///
+    /// # Errors
+    /// [`GmshError::UnknownName`] with the names that there are.
+    pub fn volume(&self, name: &str) -> Result<u32, GmshError> {
+        look_up("volume", &self.volumes, name)
     }
 
     /// All named surface groups, by name.
@@ -60,4 +64,17 @@ impl GroupNames {
             _ => Ok(()),
         }
     }
+}
+
+fn look_up(
+    what: &'static str,
+    groups: &BTreeMap<String, u32>,
+    name: &str,
+) -> Result<u32, GmshError> {
+    let unknown = || GmshError::UnknownName {
+        what,
+        name: name.into(),
+        known: groups.keys().cloned().collect(),
+    };
+    groups.get(name).copied().ok_or_else(unknown)
 }

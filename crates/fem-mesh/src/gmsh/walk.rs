@@ -63,6 +63,11 @@ pub(super) fn node_tags_and_names(bytes: &[u8]) -> Result<(Vec<u64>, Vec<Name>),
                 walk.end(b"$EndElements")?;
                 elements = true;
             }
+            b"$PartitionedEntities" => {
+                return Err(GmshError::Partitioned {
+                    section: "$PartitionedEntities",
+                });
+            }
             other => walk.skip_section(other)?,
         }
     }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 /// A mesh that cannot be used, the place of the fault and its remedy.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// There are no nodes or no tetrahedra.

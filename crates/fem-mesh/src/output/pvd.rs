@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Field, OutputError, write_surface_vtu, write_vtu, write_vtu_pieces};
 use crate::decomposition::Decomposition;
+use crate::files::replace;
 use crate::mesh::TetMesh;
 use crate::surface::Surface;
 
@@ -21,9 +22,10 @@ const SAME_TIME: f64 = 1e-9;
 
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
 ///
-/// The list is written anew after every step, first to `name.pvd.tmp`, which then takes its place. It
-/// is therefore complete at any moment, also when the computation stops half way. A step whose
-/// writing failed does not count and can be written again.
+/// The list is written anew after every step. It and the files of the steps are written beside their place, with `.tmp` at
+/// the end of their names, and then take it ([`replace_file`](crate::replace_file)). They are therefore complete at any moment,
+/// also when the computation stops half way or the disk is full. A step whose writing failed does not count and can be
+/// written again.
 ///
 /// A run that is resumed continues its series with [`PvdSeries::open`] or
 /// [`PvdSeries::open_before`]:
@@ -85,7 +87,7 @@ impl PvdSeries {
     /// As [`PvdSeries::open`], without the steps at `time` and later (times that agree to a
     /// relative 1e-9 count as the same), for a run that is resumed from an earlier state and
     /// writes them again. The list and the files stay as they are until the next step is written.
-    /// Then the list ends with that step, and files of dropped steps are overwritten one by one.
+    /// Then the list ends with that step, and files of dropped steps are replaced one by one.
     ///
     /// # Errors
     /// [`OutputError`] as [`PvdSeries::open`], and if `time` is not finite.
@@ -215,14 +217,8 @@ impl PvdSeries {
             let _ = write!(xml, "\n{line}");
         }
         xml.push('\n');
-        let list = self.path();
-        let beside = self.folder.join(format!("{}.pvd.tmp", self.name));
-        let failed = |path: &Path, source| OutputError::Io {
-            path: path.to_path_buf(),
-            source,
-        };
-        fs::write(&beside, xml).map_err(|source| failed(&beside, source))?;
-        fs::rename(&beside, &list).map_err(|source| failed(&list, source))?;
+        replace(&self.path(), xml.as_bytes())
+            .map_err(|(path, source)| OutputError::Io { path, source })?;
         self.times.push(time);
         Ok(())
     }

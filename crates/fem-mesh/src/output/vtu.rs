@@ -1,7 +1,5 @@
 //! One VTU file.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use vtkio::model::{
@@ -12,6 +10,7 @@ use vtkio::xml::Compressor;
 
 use super::{Field, OutputError};
 use crate::decomposition::Decomposition;
+use crate::files::replace;
 use crate::mesh::TetMesh;
 use crate::surface::Surface;
 
@@ -198,10 +197,6 @@ fn attribute(field: &Field, chosen: impl Iterator<Item = usize>) -> Attribute {
 }
 
 fn write(path: &Path, pieces: Vec<UnstructuredGridPiece>) -> Result<(), OutputError> {
-    let io = |source| OutputError::Io {
-        path: path.into(),
-        source,
-    };
     let format = |message| OutputError::Format {
         path: path.into(),
         message,
@@ -228,9 +223,10 @@ fn write(path: &Path, pieces: Vec<UnstructuredGridPiece>) -> Result<(), OutputEr
     let xml = vtk
         .try_into_xml_format(compressor, level)
         .map_err(|e| format(e.to_string()))?;
-    let mut file = BufWriter::new(File::create(path).map_err(io)?);
-    xml.write(&mut file).map_err(|e| format(e.to_string()))?;
-    file.flush().map_err(io)
+    let mut contents = Vec::new();
+    xml.write(&mut contents)
+        .map_err(|e| format(e.to_string()))?;
+    replace(path, &contents).map_err(|(path, source)| OutputError::Io { path, source })
 }
 
 /// vtkio 0.7.0-rc2 compresses blocks of 32 KiB and puts an empty one behind the last full one,
