@@ -457,7 +457,8 @@ impl<'a> Judge<'a> {
         size: &Size,
         worst: &mut Worst,
     ) {
-        let u = size.displacement;
+        // where nothing moves, coordinates are the scale
+        let u = size.displacement.max(ROUNDED * self.extent);
         worst.add(
             "reported gap",
             (point.gap - slip.gap).abs(),
