@@ -37,7 +37,7 @@ impl Level {
     /// Whether it is said to be solved and is not.
     pub(crate) fn is_wrong(&self) -> bool {
         let (_, worst) = self.worst();
-        self.is_solved() && !(worst <= self.limit)
+        self.is_solved() && (worst > self.limit || worst.is_nan())
     }
 }
 
