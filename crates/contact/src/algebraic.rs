@@ -389,3 +389,53 @@ fn meet(planes: &[([f64; 3], f64)], x: &mut [f64]) {
         x.iter_mut().zip(by.iter()).for_each(|(x, b)| *x += b);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Friction;
+    use crate::model::example::block;
+    use crate::{Load, Settings, Simulation};
+    use signorini_fem_mesh::brick;
+
+    /// Where slip bounds are a little larger than the friction, what lies between is in the estimate.
+    #[test]
+    fn a_changed_slip_bound_is_worth_its_energy() {
+        let scene = block(0.0, Friction::coulomb(0.3))
+            .with_load(Load::traction(brick::Z_MIN, [4e3, 0.0, -4e3]));
+        let settings = Settings::default().with_tolerance(1e-11);
+        let mut simulation = Simulation::new(scene, settings).expect("set-up");
+        let frame = simulation.step().expect("step");
+        let estimate = |points: &[PointState]| {
+            let solved = Solved {
+                model: frame.model,
+                level: frame.level,
+                points,
+                certificate: frame.certificate,
+                torn: frame.torn,
+                residual: frame.residual,
+            };
+            solved.algebraic_error()
+        };
+        let gap = estimate(frame.solved).energy;
+        let mut points = frame.solved.to_vec();
+        let mut change = 0.0;
+        let weights = frame.model.weights.get().expect("made by the estimate");
+        for (point, touch) in points.iter_mut().zip(&frame.model.points) {
+            if point.state != crate::ContactState::Slip {
+                continue;
+            }
+            let more = 4e-3 * point.slip_bound;
+            point.slip_bound += more;
+            let (_, row, scale) = touch.along().next().expect("friction");
+            change += 0.5 * more.powi(2) / (scale.powi(2) * weights.rows[row]);
+        }
+        assert!(change > 1e4 * gap, "{change:e} {gap:e}");
+        let found = estimate(&points).energy;
+        let expected = (gap.sqrt() + change.sqrt()).powi(2);
+        assert!(
+            (found - expected).abs() <= 1e-2 * expected,
+            "{found:e} {expected:e}"
+        );
+    }
+}

@@ -320,6 +320,8 @@ pub(crate) fn slip_bound(model: &Model, level: &Level, k: usize, lambda: &[f64])
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::Friction;
+    use crate::model::example::{block, first_level};
     use crate::settings::Settings;
     use crate::state::State;
     use crate::{Analysis, Contact, Scene, Support};
@@ -387,5 +389,85 @@ mod tests {
             .with_analysis(Analysis::quasistatic(1.0, 1));
         // at x = 0 the gap is now -0.1 - 0.05
         close(judged(scene, [0.0, 0.0, -0.25]), 0.4, 0.25);
+    }
+
+    /// Each condition, violated alone by a known amount, is found with that amount, and no other one.
+    #[test]
+    fn each_condition_is_seen() {
+        const GAP: f64 = 1e-3;
+        let (model, level) = first_level(block(GAP, Friction::coulomb(0.3)));
+        let point = model.points[4].clone();
+        let (row, along, scale) = match point.tangential {
+            Tangential::Plane { row, scale } => (point.row, row, scale),
+            other => panic!("{other:?}"),
+        };
+        let support = model.tfeti.gluing().ranges().dirichlet.start;
+        let torn = model.tfeti.torn_dim();
+        // a name, multipliers, changes of the rows from where they want to be, residual, violation
+        type Case<'a> = (&'a str, &'a [(usize, f64)], &'a [(usize, f64)], f64, f64);
+        let at_floor = (row, 0.0);
+        let cases: [Case<'_>; 9] = [
+            ("none", &[(row, -2.0)], &[at_floor], 0.0, 0.0),
+            ("equilibrium", &[(row, -2.0)], &[at_floor], 3.0, 3.0),
+            ("continuity", &[], &[(support, 1e-4)], 0.0, 1e-4),
+            ("gap", &[], &[(row, 1e-4 * scale)], 0.0, 1e-4),
+            ("sign", &[(row, 2.0)], &[at_floor], 0.0, 2.0 * scale),
+            (
+                "complementarity",
+                &[(row, -2.0)],
+                &[],
+                0.0,
+                2.0 * scale * GAP,
+            ),
+            (
+                "cone",
+                &[(row, -2.0), (along, 0.7)],
+                &[at_floor],
+                0.0,
+                0.1 * scale,
+            ),
+            // sticks and moves
+            (
+                "direction",
+                &[(row, -2.0)],
+                &[at_floor, (along, 1e-4 * scale)],
+                0.0,
+                0.6e-4 * scale,
+            ),
+            // slides along its friction
+            (
+                "direction",
+                &[(row, -2.0), (along + 1, 0.6)],
+                &[at_floor, (along + 1, 1e-4 * scale)],
+                0.0,
+                1.2e-4 * scale,
+            ),
+        ];
+        for (name, multipliers, moves, off, expected) in cases {
+            let mut lambda = vec![0.0; model.tfeti.dual_dim()];
+            // open everywhere, and all else where it wants to be
+            let mut rows = level.offset.clone();
+            model.points.iter().for_each(|p| rows[p.row] = 0.0);
+            multipliers.iter().for_each(|&(k, value)| lambda[k] = value);
+            moves
+                .iter()
+                .for_each(|&(k, by)| rows[k] = level.offset[k] + by);
+            let mut residual = vec![0.0; torn];
+            residual[7] = off;
+            let measured = Measured {
+                rows: &rows,
+                u: &vec![1e-3; torn],
+                force: &vec![0.0; torn],
+                residual: &residual,
+            };
+            let sizes = sizes(&model, &level, &lambda, &measured);
+            let certificate = certify(&model, &level, &lambda, &measured, &sizes);
+            for (part, violation) in certificate.parts() {
+                let expected = if part == name { expected } else { 0.0 };
+                let near = (violation.value - expected).abs() <= 1e-12 * expected.max(1e-9);
+                assert!(near, "{name}: {part} {violation:?}, not {expected:e}");
+                assert!(violation.reference > 0.0, "{part}: {violation:?}");
+            }
+        }
     }
 }

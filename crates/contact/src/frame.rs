@@ -476,3 +476,31 @@ pub(crate) fn summarise(
     s.friction_norm = s.friction_norm.sqrt();
     Ok(s)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Friction;
+    use crate::model::example::{block, first_level};
+
+    /// Sliding is friction on its bound, against the slip; friction along it is a wrong one, not sliding.
+    #[test]
+    fn friction_along_the_slip_is_no_sliding() {
+        let (model, level) = first_level(block(0.0, Friction::coulomb(0.5)));
+        let point = &model.points[4];
+        let (_, row, _) = point.along().next().expect("friction");
+        for (pressed, friction, slip, expected) in [
+            (1.0, 0.5, -1e-3, ContactState::Slip),
+            (1.0, 0.5, 1e-3, ContactState::Stick),
+            (1.0, 0.4, -1e-3, ContactState::Stick),
+            (0.0, 0.0, -1e-3, ContactState::Open),
+        ] {
+            let mut lambda = vec![0.0; model.tfeti.dual_dim()];
+            let mut rows = level.offset.clone();
+            (lambda[point.row], lambda[row]) = (-pressed, friction);
+            rows[row] += slip;
+            let states = point_states(&model, &level, &lambda, &rows);
+            assert_eq!(states[4].state, expected, "{friction} N, {slip} m");
+        }
+    }
+}

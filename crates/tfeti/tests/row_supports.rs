@@ -6,7 +6,7 @@ use common::{Brick, dot, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{Frame, brick};
 use signorini_tfeti::{
     ContactNodes, ContactPoint, Directions, Gluing, Motion, RemovalReason, RowKind, RowRule,
-    Support, TangentialRows, TfetiError,
+    Support, TangentialRows, TfetiError, held_points,
 };
 
 #[test]
@@ -259,4 +259,33 @@ fn a_node_may_have_several_normals() {
         make(&[[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]], true),
         Err(TfetiError::ContactNodeTwice { .. })
     ));
+}
+
+/// A contact point whose node and partner are both moved along the normal moves by the difference, whether with one history
+/// or with two.
+#[test]
+fn the_motion_of_a_partner_counts_against_that_of_the_node() {
+    let frame = Frame::from_normal([0.0, 0.0, -1.0]).unwrap();
+    let contact: ContactNodes =
+        std::iter::once(ContactPoint::new(0, frame).with_opponent(Some(5))).collect();
+    let (own, other) = (2e-3, 5e-4);
+    let moved = |node: u32, case: u32, by: f64| {
+        let values = vec![[0.0, 0.0, -by]];
+        Support::fixed(vec![node]).with_motion(Motion { case, values })
+    };
+    for (second, expected) in [
+        (0, vec![(0, own - other)]),
+        (1, vec![(0, own), (1, -other)]),
+    ] {
+        let supports = [moved(0, 0, own), moved(5, second, other)];
+        let held = held_points(&contact, &supports, 8).unwrap();
+        let [point] = &held[..] else {
+            panic!("one point, not {held:?}");
+        };
+        assert_eq!((point.point, point.node), (0, 0));
+        assert_eq!(point.normal.len(), expected.len(), "{held:?}");
+        for ((case, value), (own, expected)) in point.normal.iter().zip(&expected) {
+            assert!(case == own && (value - expected).abs() < 1e-16, "{held:?}");
+        }
+    }
 }

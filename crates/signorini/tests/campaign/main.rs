@@ -8,6 +8,7 @@
 //! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
 //! ```
 
+mod bites;
 mod check;
 mod dice;
 mod generate;

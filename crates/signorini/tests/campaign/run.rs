@@ -37,7 +37,7 @@ impl Level {
     /// Whether it is said to be solved and is not.
     pub(crate) fn is_wrong(&self) -> bool {
         let (_, worst) = self.worst();
-        self.is_solved() && !(worst <= self.limit)
+        self.is_solved() && (worst > self.limit || worst.is_nan())
     }
 }
 
@@ -57,7 +57,7 @@ pub(crate) enum Outcome {
 const UNBOUNDED: &str = "unbounded below";
 
 /// Violations that a converged level may have.
-const LIMIT: f64 = 1e-4;
+pub(crate) const LIMIT: f64 = 1e-4;
 
 pub(crate) fn run(recipe: &Recipe) -> Outcome {
     match catch_unwind(AssertUnwindSafe(|| levels(recipe))) {
@@ -72,7 +72,14 @@ pub(crate) fn run(recipe: &Recipe) -> Outcome {
     }
 }
 
-fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
+/// What refuses a scene: the kind of the error, and its words.
+type Refusal = (String, String);
+
+/// Shows all levels of a scene as they are solved; says what refuses it.
+pub(crate) fn each_level(
+    recipe: &Recipe,
+    mut see: impl FnMut(&Frame<'_>) -> Result<(), Error>,
+) -> Result<Option<Refusal>, Error> {
     let scene = say::scene(recipe)?;
     let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
         Ok(simulation) => simulation,
@@ -80,25 +87,30 @@ fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
             let debug = format!("{error:?}");
             let kind = |text: &str| text.split([' ', '(', '{']).next().unwrap_or("").to_owned();
             let mut name = kind(&debug);
-            if let Some((_, inner)) = debug
-                .split_once('(')
-                .filter(|_| debug.starts_with("Tfeti("))
-            {
+            if let Some((_, inner)) = debug.split_once('(').filter(|_| name == "Tfeti") {
                 name = format!("{name}/{}", kind(inner));
             }
-            return Ok(Outcome::Refused(name, error.to_string()));
+            return Ok(Some((name, error.to_string())));
         }
     };
-    let mut judge = Judge::new(recipe);
-    let mut out = Vec::new();
+    let mut solved = 0;
     while !simulation.is_finished() {
-        if recipe.how.resume == Some(out.len()) {
+        if recipe.how.resume == Some(solved) {
             let state = simulation.state().clone();
             simulation = Simulation::new(scene.clone(), say::settings(recipe))?;
             simulation.resume(state)?;
         }
-        let frame = simulation.step()?;
-        let violations = judge.level(&frame)?;
+        see(&simulation.step()?)?;
+        solved += 1;
+    }
+    Ok(None)
+}
+
+fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
+    let mut judge = Judge::new(recipe);
+    let mut out = Vec::new();
+    let refused = each_level(recipe, |frame| {
+        let violations = judge.level(frame)?;
         let report = frame.report();
         let certified = report.accuracy.map_or(0.0, |a| a.certificate_limit);
         out.push(Level {
@@ -111,6 +123,10 @@ fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
             limit: LIMIT.max(10.0 * certified),
             violations,
         });
-    }
-    Ok(Outcome::Solved(out))
+        Ok(())
+    })?;
+    Ok(match refused {
+        Some((kind, text)) => Outcome::Refused(kind, text),
+        None => Outcome::Solved(out),
+    })
 }

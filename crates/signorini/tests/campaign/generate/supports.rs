@@ -13,8 +13,9 @@ use std::collections::HashMap;
 pub(crate) fn supports(dice: &mut Dice, world: &World, shaft: &Shaft, recipe: &mut Recipe) {
     for body in 0..world.count {
         let base = body == 0 && world.count > 1;
-        match dice.whole(0, 19) {
-            0..=6 if base => hold(dice, world, recipe, side(body, brick::Z_MIN), "bed"),
+        let kind = dice.whole(0, 19);
+        match kind {
+            _ if base && kind <= 6 => hold(dice, world, recipe, side(body, brick::Z_MIN), "bed"),
             0..=5 => {
                 hold(dice, world, recipe, side(body, brick::X_MIN), "clamp");
                 if dice.chance(0.25) {

@@ -1,0 +1,121 @@
+//! The check bites: judged by a recipe that differs by a few per cent in one thing, solved levels violate something.
+
+use crate::check::Judge;
+use crate::generate;
+use crate::recipe::{Clock, Course, Distance, Elastic, Law, Recipe};
+use crate::run::{LIMIT, each_level};
+
+/// Share by which a datum is changed.
+const MORE: f64 = 1.02;
+
+fn scaled(course: &Course) -> Course {
+    match course {
+        Course::Constant(value) => Course::Constant(MORE * value),
+        Course::Table(points) => {
+            Course::Table(points.iter().map(|(t, v)| (*t, MORE * v)).collect())
+        }
+        Course::Wave { size, pace, phase } => Course::Wave {
+            size: MORE * size,
+            pace: *pace,
+            phase: *phase,
+        },
+    }
+}
+
+type Change = (&'static str, fn(&mut Recipe));
+
+/// What is changed, and how.
+const CHANGES: [Change; 8] = [
+    ("stiffness", |r| {
+        for elastic in &mut r.elastic {
+            match elastic {
+                Elastic::Isotropic(young, _) => *young *= MORE,
+                Elastic::Matrix(m) => m.iter_mut().flatten().for_each(|c| *c *= MORE),
+            }
+        }
+    }),
+    ("Poisson's ratio", |r| {
+        for elastic in &mut r.elastic {
+            if let Elastic::Isotropic(_, poisson) = elastic {
+                *poisson -= 0.02;
+            }
+        }
+    }),
+    ("loads", |r| {
+        r.pushes
+            .iter_mut()
+            .for_each(|p| p.course = scaled(&p.course));
+    }),
+    ("motions of supports", |r| {
+        let motions = r.holds.iter_mut().filter_map(|h| h.motion.as_mut());
+        motions.for_each(|m| m.1 = scaled(&m.1));
+    }),
+    ("motions of obstacles", |r| {
+        let motions = r.touches.iter_mut().filter_map(|t| t.motion.as_mut());
+        motions.for_each(|m| m.1 = scaled(&m.1));
+    }),
+    ("gaps", |r| {
+        for touch in &mut r.touches {
+            match &mut touch.distance {
+                Distance::Constant(gap) => *gap *= MORE,
+                Distance::Field(field) => field.value *= MORE,
+                _ => {}
+            }
+        }
+    }),
+    ("friction", |r| {
+        for touch in &mut r.touches {
+            match &mut touch.law {
+                Law::Given(value) | Law::Coulomb(value) => *value *= MORE,
+                Law::GivenField(field) | Law::CoulombField(field) | Law::RateField(field, _) => {
+                    field.value *= MORE;
+                }
+                Law::Exponential { decay, .. } => *decay *= MORE,
+                Law::Table(points) => points.iter_mut().for_each(|p| p.0 *= MORE),
+                Law::None => {}
+            }
+        }
+    }),
+    ("difference formula", |r| {
+        if let Clock::Steps { weights, .. } = &mut r.clock {
+            let [_, _, last] = *weights;
+            let other = last + 0.02;
+            *weights = [1.0 + other, -1.0 - 2.0 * other, other];
+        }
+    }),
+];
+
+#[test]
+fn other_recipes_do_not_fit() {
+    let mut found = [0; CHANGES.len()];
+    let mut number = 0;
+    let mut ran = 0;
+    while ran < 40 {
+        number += 1;
+        let recipe = generate::recipe(crate::SEED, number);
+        if !recipe.how.is_default() || recipe.words.iter().any(|w| w.starts_with("loose")) {
+            continue;
+        }
+        ran += 1;
+        let changed = CHANGES.map(|(_, change)| {
+            let mut other = recipe.clone();
+            change(&mut other);
+            other
+        });
+        let mut judges = changed.each_ref().map(Judge::new);
+        let mut worst = [0.0_f64; CHANGES.len()];
+        let outcome = each_level(&recipe, |frame| {
+            for (judge, worst) in judges.iter_mut().zip(&mut worst) {
+                let violations = judge.level(frame)?;
+                *worst = violations.iter().map(|v| v.1).fold(*worst, f64::max);
+            }
+            Ok(())
+        });
+        outcome.expect("scene");
+        for (found, worst) in found.iter_mut().zip(worst) {
+            *found += usize::from(worst > 3.0 * LIMIT);
+        }
+    }
+    let list: Vec<_> = CHANGES.iter().map(|c| c.0).zip(found).collect();
+    assert!(found.iter().all(|f| *f >= 4), "of {ran} scenes: {list:?}");
+}
