@@ -338,7 +338,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if let Some(guard) = &mut self.guard {
             guard.enter(at.x, at.ax, &at.work.residual);
         }
-        let free = self.followed && self.guard.is_none() && self.apart && !place.vanishes;
+        let free = self.followed && self.guard.is_none() && !place.vanishes;
         let error = at.report.constrained_error;
         at.work.coupling.begin(free, error, self.waited);
         let goal = Goal {
