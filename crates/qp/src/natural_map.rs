@@ -33,13 +33,14 @@ impl NaturalMap<'_> {
 }
 
 impl Face {
-    /// Classifies every block at the feasible point `x`.
+    /// Classifies every block at the feasible point `x`; bounds as [foreseen](Self::foresee), if they were.
     pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
         let Self {
             free,
             discs,
             blocked,
             near,
+            foreseen,
             ..
         } = self;
         let near = *near;
@@ -49,9 +50,10 @@ impl Face {
         for_bounds(set, |i, k, lo, hi| {
             let s = map.of(x, i);
             // a component is held only if it also is where it would be held
+            let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
             let held = lo >= hi
-                || (x[i] <= lo && (s <= lo || stays(k)))
-                || (x[i] >= hi && (s >= hi || stays(k)))
+                || (x[i] <= lo && agrees(s <= lo))
+                || (x[i] >= hi && agrees(s >= hi))
                 || (near && stays(k));
             changed += usize::from(free[k] == held);
             free[k] = !held;
@@ -66,8 +68,19 @@ impl Face {
                 state
             };
         });
+        foreseen.clear();
         self.changed = changed;
         self.free_bounds = free_bounds;
+    }
+
+    /// Notes the bounds that the natural map holds at `x`: those and no others the next [`classify`](Self::classify) holds.
+    pub(crate) fn foresee(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let foreseen = &mut self.foreseen;
+        foreseen.clear();
+        for_bounds(set, |i, _, lo, hi| {
+            let s = map.of(x, i);
+            foreseen.push(s <= lo || s >= hi);
+        });
     }
 
     /// Whether the natural map would free a held bound, and move it by more than `limit`.
