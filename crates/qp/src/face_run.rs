@@ -371,7 +371,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let joint = self.joint_step(length);
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
-        if self.guard.is_none() && self.waited >= UNSURE {
+        if self.guard.is_none() && self.apart && self.waited >= UNSURE {
             let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
             at.work.face.foresee(at.set, at.x, &map);
         }
