@@ -32,7 +32,7 @@ const VERY_SHORT: f64 = 16.0;
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
 
-/// Faces without progress after which the solved face tells which bounds hold next, not the point that it has moved to.
+/// Faces without progress after which the solved face tells what holds and slides next, not the point that it has moved to.
 const UNSURE: usize = 2;
 
 /// Part of the limits that `x` may be off the equality, after steps that round.
@@ -372,8 +372,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
         if self.guard.is_none() && self.apart && self.waited >= UNSURE {
-            let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
-            at.work.face.foresee(at.set, at.x, &map);
+            at.foresee(self.settings.natural_step);
         }
         self.settle_bounds();
         self.followed = (self.guard.is_none() || place.solved) && self.has_settled();

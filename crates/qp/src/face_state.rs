@@ -38,7 +38,8 @@ pub(crate) struct Face {
     pub(crate) discs: Vec<Disc>,
     /// Blocks that stopped a step at their boundary, bounds first, then discs; empty for none. They stay there.
     pub(crate) blocked: Vec<bool>,
-    /// Bounds that the next classification holds, see [`foresee`](Face::foresee); empty where its own residual tells.
+    /// Bounds that the next classification holds, then discs that slide, see [`foresee`](Face::foresee); empty where its own
+    /// residual tells.
     pub(crate) foreseen: Vec<bool>,
     /// Whether they stay where they are inside of their boundary, too.
     pub(crate) near: bool,

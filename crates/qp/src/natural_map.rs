@@ -33,7 +33,7 @@ impl NaturalMap<'_> {
 }
 
 impl Face {
-    /// Classifies every block at the feasible point `x`; bounds as [foreseen](Self::foresee), if they were.
+    /// Classifies every block at the feasible point `x`; as [foreseen](Self::foresee), if it was.
     pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
         let Self {
             free,
@@ -62,10 +62,13 @@ impl Face {
         for_discs(set, |i, k, radius| {
             let at = [x[i], x[i + 1]];
             let state = disc_state(at, map.on_disc(i), radius, map.scale[i]);
-            discs[k] = if stays(bounds + k) && state == Disc::Free {
-                along_circle(at, if near { 0.0 } else { radius })
-            } else {
-                state
+            discs[k] = match (foreseen.get(bounds + k), state) {
+                (Some(true), Disc::Free) => along_circle(at, radius),
+                (Some(false), Disc::Sliding { .. }) => Disc::Free,
+                (None, Disc::Free) if stays(bounds + k) => {
+                    along_circle(at, if near { 0.0 } else { radius })
+                }
+                _ => state,
             };
         });
         foreseen.clear();
@@ -73,13 +76,21 @@ impl Face {
         self.free_bounds = free_bounds;
     }
 
-    /// Notes the bounds that the natural map holds at `x`: those and no others the next [`classify`](Self::classify) holds.
+    /// Notes the bounds that the natural map holds at `x`, the solution of this face, and the discs that slide: those and no
+    /// others the next [`classify`](Self::classify) holds and lets slide.
     pub(crate) fn foresee(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
-        let foreseen = &mut self.foreseen;
+        let (foreseen, discs) = (&mut self.foreseen, &self.discs);
         foreseen.clear();
         for_bounds(set, |i, _, lo, hi| {
             let s = map.of(x, i);
             foreseen.push(s <= lo || s >= hi);
+        });
+        for_discs(set, |i, k, radius| {
+            let g = map.on_disc(i);
+            foreseen.push(match discs[k] {
+                Disc::Sliding { .. } => g[0] * x[i] + g[1] * x[i + 1] < 0.0,
+                _ => map.of(x, i).hypot(map.of(x, i + 1)) > radius,
+            });
         });
     }
 
