@@ -75,7 +75,7 @@ fn random_cells_become_round_ones_of_similar_size() {
         };
         let (before, after) = (sizes(&cells), sizes(&parts));
         assert!(
-            4 * before.0 < mean && 3 * after.0 >= 2 * mean,
+            2 * before.0 < mean && 3 * after.0 >= 2 * mean,
             "{before:?} {after:?} {mean}"
         );
         assert!(after.1 <= 3 * mean / 2, "{after:?}");
