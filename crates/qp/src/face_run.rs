@@ -35,6 +35,9 @@ const SHRUNK: f64 = 1e5;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 const ROUNDS: usize = 3;
 
+/// Faces without progress after which the solved face tells what holds and slides next, not the point that it has moved to.
+const UNSURE: usize = 2;
+
 /// Part of the limits that `x` may be off the equality, after steps that round.
 const DRIFT: f64 = 0.03;
 
@@ -374,6 +377,9 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let joint = self.joint_step(length);
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
+        if self.guard.is_none() && self.apart && self.waited >= UNSURE {
+            at.foresee(self.settings.natural_step);
+        }
         self.followed = (self.guard.is_none() || place.solved) && self.has_settled();
         if self.apart {
             self.settle()?;

@@ -33,13 +33,14 @@ impl NaturalMap<'_> {
 }
 
 impl Face {
-    /// Classifies every block at the feasible point `x`.
+    /// Classifies every block at the feasible point `x`; as [foreseen](Self::foresee), if it was.
     pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
         let Self {
             free,
             discs,
             blocked,
             near,
+            foreseen,
             ..
         } = self;
         let near = *near;
@@ -49,9 +50,10 @@ impl Face {
         for_bounds(set, |i, k, lo, hi| {
             let s = map.of(x, i);
             // a component is held only if it also is where it would be held
+            let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
             let held = lo >= hi
-                || (x[i] <= lo && (s <= lo || stays(k)))
-                || (x[i] >= hi && (s >= hi || stays(k)))
+                || (x[i] <= lo && agrees(s <= lo))
+                || (x[i] >= hi && agrees(s >= hi))
                 || (near && stays(k));
             changed += usize::from(free[k] == held);
             free[k] = !held;
@@ -60,14 +62,36 @@ impl Face {
         for_discs(set, |i, k, radius| {
             let at = [x[i], x[i + 1]];
             let state = disc_state(at, map.on_disc(i), radius, map.scale[i]);
-            discs[k] = if stays(bounds + k) && state == Disc::Free {
-                along_circle(at, if near { 0.0 } else { radius })
-            } else {
-                state
+            discs[k] = match (foreseen.get(bounds + k), state) {
+                (Some(true), Disc::Free) => along_circle(at, radius),
+                (Some(false), Disc::Sliding { .. }) => Disc::Free,
+                (None, Disc::Free) if stays(bounds + k) => {
+                    along_circle(at, if near { 0.0 } else { radius })
+                }
+                _ => state,
             };
         });
+        foreseen.clear();
         self.changed = changed;
         self.free_bounds = free_bounds;
+    }
+
+    /// Notes the bounds that the natural map holds at `x`, the solution of this face, and the discs that slide: those and no
+    /// others the next [`classify`](Self::classify) holds and lets slide.
+    pub(crate) fn foresee(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let (foreseen, discs) = (&mut self.foreseen, &self.discs);
+        foreseen.clear();
+        for_bounds(set, |i, _, lo, hi| {
+            let s = map.of(x, i);
+            foreseen.push(s <= lo || s >= hi);
+        });
+        for_discs(set, |i, k, radius| {
+            let g = map.on_disc(i);
+            foreseen.push(match discs[k] {
+                Disc::Sliding { .. } => g[0] * x[i] + g[1] * x[i + 1] < 0.0,
+                _ => map.of(x, i).hypot(map.of(x, i + 1)) > radius,
+            });
+        });
     }
 
     /// Whether the natural map would free a held bound, and move it by more than `limit`.
