@@ -128,6 +128,19 @@ fn blocks_and_equalities_together() {
     assert_eq!(other.worst, 2);
     near(other.primal_size, 2.0, "primal");
 
+    // the projection is farther from zero than the point: bounds 3 beside a disc of 4
+    let beside = vec![Segment::lower(vec![3.0]), Segment::discs(vec![9.0])];
+    near(
+        at(beside, &[0.0, 4.0, 0.0], &[0.0; 3]).primal_size,
+        5.0,
+        "projection",
+    );
+    // what is near a bound, against the largest component, is on it
+    for (off, dual) in [(5e-5, 0.0), (2e-4, 0.4)] {
+        let two = vec![Segment::lower(vec![0.0; 2])];
+        near(at(two, &[1e6, off], &[0.0, 0.4]).dual, dual, "near a bound");
+    }
+
     // x0 + x1 = 5 with rows of length one, by a multiplier
     let half = 0.5_f64.sqrt();
     let c = DenseEquality::orthonormal(1, 2, &[1.0, 1.0]).expect("row");
