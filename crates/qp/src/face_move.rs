@@ -14,7 +14,7 @@ use crate::vector;
 const VERY_SHORT: f64 = 16.0;
 
 /// Faces without progress after which the solved face tells what holds and slides next, not the point that it has moved to.
-const UNSURE: usize = 2;
+const UNSURE: usize = 4;
 
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 const ROUNDS: usize = 3;
