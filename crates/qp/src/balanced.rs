@@ -45,7 +45,8 @@ const HALVINGS: usize = 30;
 /// Imbalance, over the absolute values of its terms, that is rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Imbalance up to which a point counts as balanced.
+/// Imbalance, over the right side and the terms of the given point, up to which a point counts as balanced. Not over its own
+/// terms: forces that run away in a direction that hardly works on a mode would balance anything.
 const BALANCED: f64 = 1e-10;
 
 /// Share of its diagonal that is added to the matrix of second derivatives, for modes that nothing holds.
@@ -114,7 +115,17 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        (self.x, self.imbalance <= BALANCED)
+        let balances = self.balances();
+        (self.x, balances)
+    }
+
+    fn balances(&self) -> bool {
+        let modes = self.modes.iter().zip(&self.f).zip(&self.gradient);
+        let mut all = modes.map(|((mode, f), rest)| {
+            let terms = mode.row.iter().zip(self.y).map(|(c, y)| (c * y).abs());
+            rest.abs() <= BALANCED * (f.abs() + terms.sum::<f64>())
+        });
+        all.all(|balances| balances)
     }
 
     /// Point, value, gradient and imbalance at `b`.

@@ -73,7 +73,7 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
     peak: f64,
-    /// Moves in a row at which the set held no balance.
+    /// Moves in a row at which a set, as it followed, held no balance.
     unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
     best: f64,
@@ -275,9 +275,10 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         false
     }
 
-    /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes.
+    /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes. Where constraints
+    /// alone hold a body it follows again: rounds of balance and set may come back to the same point with another set.
     pub(crate) fn set_agrees(&mut self, place: &Place) -> Result<bool, QpError> {
-        if self.followed {
+        if self.followed && self.apart {
             return Ok(true);
         }
         let work = &mut *self.at.work;
@@ -324,7 +325,12 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         }
         let held_up = self.guard.as_ref().map_or(0, |guard| guard.held_up);
         if self.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
-            return Some(Status::Stagnated);
+            let balances = self.unbalanced < settings.patience;
+            return Some(if balances {
+                Status::Stagnated
+            } else {
+                Status::Infeasible
+            });
         }
         let longer = if self.guard.is_some() { LONGER } else { 1 };
         let faces = settings.max_faces.saturating_mul(longer);
@@ -406,6 +412,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { ROUNDS } else { 1 };
+        let mut unbalanced = false;
         for round in 1..=rounds {
             let at = &mut self.at;
             at.x[..constrained].copy_from_slice(&from);
@@ -413,9 +420,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
                 at.work.face.aim(at.set, at.x, &map);
                 let balances = at.project();
-                if round == rounds {
-                    self.unbalanced = if balances { 0 } else { self.unbalanced + 1 };
-                }
+                unbalanced |= !balances;
             } else if !at.project_start() {
                 at.project();
             }
@@ -423,6 +428,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
                 self.follow()?;
             }
         }
+        self.unbalanced = if unbalanced { self.unbalanced + 1 } else { 0 };
         Ok(())
     }
 
