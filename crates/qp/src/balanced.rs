@@ -45,9 +45,12 @@ const HALVINGS: usize = 30;
 /// Imbalance, over the absolute values of its terms, that is rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Imbalance, over the right side and the terms of the given point, up to which a point counts as balanced. Not over its own
-/// terms: forces that run away in a direction that hardly works on a mode would balance anything.
+/// Imbalance up to which a point counts as balanced.
 const BALANCED: f64 = 1e-10;
+
+/// Terms of the point over those of the given one and the right side from which on it balances by forces that run away in a
+/// direction that hardly works on a mode.
+const RUNAWAY: f64 = 1e8;
 
 /// Share of its diagonal that is added to the matrix of second derivatives, for modes that nothing holds.
 const SHIFT: f64 = 1e-12;
@@ -120,12 +123,14 @@ impl<'a> Search<'a> {
     }
 
     fn balances(&self) -> bool {
-        let modes = self.modes.iter().zip(&self.f).zip(&self.gradient);
-        let mut all = modes.map(|((mode, f), rest)| {
-            let terms = mode.row.iter().zip(self.y).map(|(c, y)| (c * y).abs());
-            rest.abs() <= BALANCED * (f.abs() + terms.sum::<f64>())
-        });
-        all.all(|balances| balances)
+        let terms = |mode: &LooseMode, x: &[f64]| {
+            let terms = mode.row.iter().zip(x).map(|(c, x)| (c * x).abs());
+            terms.sum::<f64>()
+        };
+        let mut modes = self.modes.iter().zip(&self.f);
+        let bounded =
+            modes.all(|(m, f)| terms(m, &self.x) <= RUNAWAY * (f.abs() + terms(m, self.y)));
+        self.imbalance <= BALANCED && bounded
     }
 
     /// Point, value, gradient and imbalance at `b`.

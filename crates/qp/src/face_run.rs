@@ -73,6 +73,8 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
     peak: f64,
+    /// What the last of the rounds in which balance and set follow each other changed: they may run in circles.
+    unrest: f64,
     /// Moves in a row at which a set, as it followed, held no balance.
     unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
@@ -112,6 +114,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             forcing: settings.forcing,
             jump: f64::INFINITY,
             peak: 0.0,
+            unrest: 0.0,
             unbalanced: 0,
             best: f64::INFINITY,
             last: f64::INFINITY,
@@ -249,7 +252,8 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
         let current = self.guard.as_ref().is_none_or(|guard| guard.current);
-        let settled = at.report.faces == 0 || current && self.jump <= limit.max(f64::MIN_POSITIVE);
+        let moved = self.jump.max(self.unrest);
+        let settled = at.report.faces == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
         let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
         place.errors.within(place.limits)
             && settled
@@ -275,10 +279,9 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         false
     }
 
-    /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes. Where constraints
-    /// alone hold a body it follows again: rounds of balance and set may come back to the same point with another set.
+    /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes.
     pub(crate) fn set_agrees(&mut self, place: &Place) -> Result<bool, QpError> {
-        if self.followed && self.apart {
+        if self.followed {
             return Ok(true);
         }
         let work = &mut *self.at.work;
@@ -294,7 +297,8 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     /// Compares the error with the smallest so far.
     pub(crate) fn note_progress(&mut self, place: &Place) {
         let (errors, limits) = (place.errors, place.limits);
-        let constrained = errors.constrained.max(self.jump.min(f64::MAX));
+        let moved = self.jump.max(self.unrest);
+        let constrained = errors.constrained.max(moved.min(f64::MAX));
         self.last = (errors.all / limits.all).max(constrained / limits.constrained);
         if self.last < LESS * self.best {
             self.best = self.last;
@@ -413,8 +417,10 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { ROUNDS } else { 1 };
         let mut unbalanced = false;
+        self.unrest = 0.0;
         for round in 1..=rounds {
             let at = &mut self.at;
+            let last = at.x[..constrained].to_vec();
             at.x[..constrained].copy_from_slice(&from);
             if !start {
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
@@ -423,6 +429,9 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
                 unbalanced |= !balances;
             } else if !at.project_start() {
                 at.project();
+            }
+            if round > 1 {
+                self.unrest = vector::distance(&at.x[..constrained], &last);
             }
             if round < rounds {
                 self.follow()?;
