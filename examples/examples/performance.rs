@@ -3,12 +3,14 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use signorini_examples::error;
 use signorini_examples::performance::{PerformanceOptions, execute};
+use signorini_examples::{cuts, error};
 
 fn main() -> ExitCode {
-    error::exit(execute(
-        &PerformanceOptions::parse(),
-        &mut std::io::stdout(),
-    ))
+    let options = PerformanceOptions::parse();
+    let mut out = std::io::stdout();
+    if options.cuts {
+        return error::exit(cuts::execute(&options, &mut out));
+    }
+    error::exit(execute(&options, &mut out))
 }

@@ -22,6 +22,14 @@ pub enum ExampleError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// A file could not be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// The terminal (or whatever stands in its place) refuses.
     #[error("cannot print: {0}")]
     Print(#[from] std::io::Error),
@@ -76,6 +84,9 @@ macro_rules! from_library {
 from_library!(
     ContactError,
     fem::BrickError,
+    fem::DecompositionError,
+    fem::MeshError,
+    fem::gmsh::GmshError,
     fem::HookeError,
     fem::HistoryError,
     fem::SurfaceError,

@@ -10,7 +10,7 @@
 //! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
 //! | `stability` | hard cases, what the library does with them, and what has to hold | [`stability::app::execute`] |
 //! | `effects` | one brick, its effects switched on one by one beside the plan's prediction; estimates, screening | [`effects::execute`] |
-//! | `performance` | from the paper's method to the default: products and time of each idea | [`performance::execute`] |
+//! | `performance` | from the paper's method to the default: products and time of each idea; `--cuts`: subdomains of every shape | [`performance::execute`], [`cuts::execute`] |
 //! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
 //! | `first` | the program of the README | |
 //!
@@ -25,6 +25,7 @@ pub mod accuracy;
 pub mod app;
 pub mod bodies;
 pub mod brick;
+pub mod cuts;
 pub mod dependence;
 pub mod effects;
 pub mod error;

@@ -34,6 +34,15 @@ pub struct PerformanceOptions {
     /// Only the default method and its neighbours, not the paper's.
     #[arg(long)]
     pub face_only: bool,
+    /// Subdomains of every shape instead, as they are given and made compact.
+    #[arg(long)]
+    pub cuts: bool,
+    /// With --cuts: a Gmsh mesh of the brick instead of the regular one.
+    #[arg(long, value_name = "FILE", requires = "cuts")]
+    pub mesh: Option<PathBuf>,
+    /// With --cuts: part numbers of the tetrahedra from a file, besides random ones.
+    #[arg(long, value_name = "FILE", requires = "cuts")]
+    pub parts: Option<PathBuf>,
     /// Draw the ladder into this SVG file.
     #[arg(long, value_name = "FILE")]
     pub chart: Option<PathBuf>,

@@ -6,6 +6,7 @@ use signorini::prelude::*;
 use signorini_examples::stability::app::{StabilityOptions, chosen, run_all};
 use signorini_examples::stability::block::Block;
 use signorini_examples::stability::case::Case;
+use signorini_examples::stability::cases_sliding::{Cut, Sliding};
 use signorini_examples::stability::report::{outcome, plain};
 use signorini_examples::stability::runner::{Ended, difference, run};
 use signorini_examples::stability::{cases_restart::garble, locking};
@@ -42,6 +43,65 @@ fn short_cases_need_no_fall_back() {
 #[ignore = "a minute in release"]
 fn all_cases() {
     all_as_they_should_be(&["stability"]);
+}
+
+/// Products of a static scene that friction alone holds; none may need the fall-back.
+fn products(sliding: Sliding) -> usize {
+    let m = run(&Case::new("", "", "", move || sliding.setup()));
+    let solved = matches!(m.ended, Ended::Solved(status, _) if status.converged());
+    assert!(solved && m.fallbacks == 0, "{sliding:?}: {}", outcome(&m));
+    assert!(m.certificate.0 < 3e-6, "{sliding:?}: {:?}", m.certificate);
+    m.products
+}
+
+/// Cubes on a floor and on a cube: every cut, coefficient and side force.
+#[test]
+fn bodies_that_slide_everywhere_cost_no_more_than_others() {
+    let boxes = [[1; 3], [2; 3], [4, 4, 2], [4; 3]].map(Cut::Boxes);
+    for cut in boxes.into_iter().chain([Cut::Scattered(20)]) {
+        for coefficient in [0.01, 0.05, 0.2, 1.0] {
+            for aside in [0.0, 0.05, 0.5, 0.95, 0.999] {
+                let base = Sliding {
+                    coefficient,
+                    aside,
+                    cut,
+                    ..Sliding::default()
+                };
+                let most = if aside > 0.95 { 100 } else { 80 };
+                assert!(products(base) <= most, "{base:?}: {}", products(base));
+                // a traction on its top tips the upper cube from half the side force on where the coefficient is large
+                let on_cube = Sliding {
+                    on_cube: true,
+                    cells: 6,
+                    ..base
+                };
+                if coefficient < 1.0 && (coefficient < 0.2 || aside < 0.99) {
+                    let found = products(on_cube);
+                    assert!(found <= most, "{on_cube:?}: {found}");
+                }
+            }
+        }
+    }
+}
+
+/// With subdomains of one size, a finer mesh costs a quarter more at most.
+#[test]
+fn sliding_everywhere_does_not_grow_with_the_mesh() {
+    for (coefficient, aside) in [(0.05, 0.05), (0.05, 0.95), (0.3, 0.5)] {
+        let [coarse, fine, finest] = [2, 4, 6].map(|n| {
+            products(Sliding {
+                cells: 4 * n,
+                coefficient,
+                aside,
+                cut: Cut::Boxes([n; 3]),
+                ..Sliding::default()
+            })
+        });
+        assert!(
+            4 * fine.max(finest) <= 5 * coarse,
+            "{coarse} {fine} {finest} at {coefficient}, {aside}"
+        );
+    }
 }
 
 #[test]

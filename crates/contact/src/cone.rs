@@ -375,6 +375,22 @@ mod tests {
         assert!(!held(&mut cone, [-1.0, 0.0, 0.0]));
     }
 
+    /// Units of the motions change nothing.
+    #[test]
+    fn small_and_large_motions_are_judged_alike() {
+        for scale in [1e-9, 1e-3, 1e3, 1e9] {
+            let mut cone = two_points(0.3);
+            for g in &mut cone.generators {
+                let vectors = std::iter::once(&mut g.normal).chain(&mut g.tangents);
+                vectors.flatten().for_each(|v| *v *= scale);
+            }
+            let mut cone = Cone::new(3, cone.generators);
+            assert!(held(&mut cone, [1.0, 0.29, 0.3]), "{scale:e}");
+            assert!(!held(&mut cone, [1.0, 0.31, 0.3]), "{scale:e}");
+            assert!(!held(&mut cone, [1.0, 0.0, 1.01]), "{scale:e}");
+        }
+    }
+
     #[test]
     fn friction_holds_up_to_its_cone() {
         let mut cone = two_points(0.3);

@@ -295,6 +295,29 @@ mod tests {
         }
     }
 
+    /// A constant zero is no friction, and has no tangential rows; a field may be anything.
+    #[test]
+    fn zero_is_no_friction() {
+        let zero = |_: [f64; 3]| 0.0;
+        for (law, is_zero) in [
+            (Friction::None, true),
+            (Friction::coulomb(0.0), true),
+            (Friction::given(0.0), true),
+            (Friction::coulomb(1e-9), false),
+            (Friction::given(1e-9), false),
+            (Friction::Coulomb(Coefficient::field(zero)), false),
+            (
+                Friction::Given(SlipBound::StressField(Arc::new(zero))),
+                false,
+            ),
+        ] {
+            assert_eq!(law.is_zero(), is_zero, "{law:?}");
+            let contact = crate::Contact::rigid(signorini_fem_mesh::FacetTag(1));
+            let kept = contact.with_friction(law).friction().is_some();
+            assert_eq!(kept, !is_zero);
+        }
+    }
+
     #[test]
     fn wrong_laws_are_refused() {
         for law in [

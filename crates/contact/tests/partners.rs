@@ -138,7 +138,8 @@ fn pressure_passes_from_body_to_body() {
                 assert!(point.opponent.is_some(), "{what}");
             }
             let gluing = simulation.tfeti().gluing();
-            assert!(gluing.is_orthonormal(), "{what}");
+            // boxes that cut cells leave tips: copies differ, and count by stiffness
+            assert_eq!(gluing.is_orthonormal(), boxes == [1, 1, 2], "{what}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{block, steel};
+use common::{block, steel, tight};
 use signorini_contact::{
     Analysis, Contact, ContactError, DifferenceFormula, Load, Plan, Scene, Screening, Settings,
     Simulation, Support,
@@ -161,8 +161,8 @@ fn adjacent_supports_with_one_motion_agree() {
         (function.clone(), function.clone()),
         (History::constant(0.25), History::constant(0.25)),
     ] {
-        let mut simulation = Simulation::new(two_sides(way, &first, &second), Settings::default())
-            .expect("accepted");
+        let mut simulation =
+            Simulation::new(two_sides(way, &first, &second), tight()).expect("accepted");
         while !simulation.is_finished() {
             let frame = simulation.step().expect("level");
             let status = frame.report().status;

@@ -312,8 +312,23 @@ pub fn split_disconnected(mesh: &TetMesh, parts: &[u32]) -> Result<Vec<u32>, Dec
     Ok(split_by(mesh, parts))
 }
 
-fn split_by(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
+pub(crate) fn split_by(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
     connected_sets(mesh.neighbour_table(), |a, b| parts[a] == parts[b])
+}
+
+/// The same parts, numbered without gaps by their first tetrahedra.
+pub(crate) fn renumbered(parts: &[u32]) -> Vec<u32> {
+    let mut number = vec![NONE; parts.iter().max().map_or(0, |&p| p as usize + 1)];
+    let mut next = 0;
+    let new = |&part: &u32| {
+        let number = &mut number[part as usize];
+        if *number == NONE {
+            *number = next;
+            next += 1;
+        }
+        *number
+    };
+    parts.iter().map(new).collect()
 }
 
 /// The first number below `limit` that is not among the parts, else `limit`.

@@ -11,7 +11,7 @@
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`subdomain_stiffness`], [`element_stiffness`] |
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
-//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`] |
+//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`], [`compact_parts`] |
 //! | a contact surface | [`Surface`] with a [`Frame`] and an area at each node |
 //! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`], [`energy_of_error`] |
 //! | an estimate of the discretisation error | [`discretisation_error`], [`StrainRecovery`] |
@@ -91,6 +91,7 @@ pub mod recovery;
 
 mod assembly;
 mod buckets;
+mod compact;
 mod decomposition;
 mod disjoint;
 mod element;
@@ -109,6 +110,7 @@ mod vec3;
 pub use assembly::{AssemblyError, assemble_stiffness, subdomain_stiffness};
 pub use brick::{Brick, BrickError};
 pub use buckets::buckets;
+pub use compact::compact_parts;
 pub use decomposition::{
     Decomposition, DecompositionError, NodeCopy, Subdomain, split_disconnected,
 };

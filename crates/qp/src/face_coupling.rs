@@ -158,4 +158,52 @@ mod tests {
         assert!(!begins(true, 0.02, WAITED + 1), "four faces since it began");
         assert!(!begins(true, 1e-9, 0), "for the rest of the solve");
     }
+
+    /// Discs are found in any order; those without a slope, or with one that means nothing, stand alone.
+    #[test]
+    fn discs_follow_the_components_that_slopes_name() {
+        let segments = vec![
+            crate::Segment::upper(vec![0.0; 2]),
+            crate::Segment::discs(vec![1.0; 3]),
+        ];
+        let set = ProductSet::new(segments).expect("set");
+        let slope = |disc, component, slope| RadiusSlope {
+            disc,
+            component,
+            slope,
+        };
+        let mut coupling = Coupling::default();
+        coupling.start(&set, 8);
+        assert!(coupling.failed, "nothing follows");
+        for (slopes, expected) in [
+            (
+                vec![slope(2, 0, -0.3), slope(6, 1, -0.4)],
+                [Some((0, -0.3)), None, Some((1, -0.4))],
+            ),
+            (
+                vec![slope(4, 1, -0.4), slope(2, 0, -0.3)],
+                [Some((0, -0.3)), Some((1, -0.4)), None],
+            ),
+            (
+                vec![slope(2, 8, -0.3), slope(4, 7, -0.3), slope(6, 0, f64::NAN)],
+                [None, Some((7, -0.3)), None],
+            ),
+        ] {
+            coupling.set(&slopes);
+            coupling.start(&set, 8);
+            assert!(!coupling.failed);
+            assert_eq!(coupling.by_disc, expected);
+        }
+    }
+
+    #[test]
+    fn the_decrease_asked_for_is_what_the_move_can_keep() {
+        let mut coupling = Coupling::default();
+        assert_eq!(coupling.forcing(0.1, 1e-3, 1.0), 0.1, "not coupled");
+        coupling.on = true;
+        for (jump, expected) in [(1e-3, LEAST), (5e-3, 0.05), (0.5, 0.1)] {
+            assert_eq!(coupling.forcing(0.1, jump, 1.0), expected);
+        }
+        assert_eq!(coupling.forcing(0.1, 1e-2, 2.0), 0.05);
+    }
 }

@@ -98,6 +98,12 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
         self.work.face.classify(self.set, self.x, &map);
     }
 
+    /// Tells the next classification what the natural map makes of the blocks here.
+    pub(crate) fn foresee(&mut self, step: f64) {
+        let map = natural_map(self.problem, &self.work.residual, step);
+        self.work.face.foresee(self.set, self.x, &map);
+    }
+
     /// The residual on the face from `residual`.
     pub(crate) fn start_residual(&mut self) {
         let work = &mut *self.work;

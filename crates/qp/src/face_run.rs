@@ -7,8 +7,7 @@ use crate::face_cg::Goal;
 use crate::face_iterate::{Iterate, Lengths, constrained_length, natural_map, shape};
 use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
 use crate::face_view::{FacePreconditioner, FaceView};
-use crate::guard::{Guard, SHORT, SHORTEST};
-use crate::natural_map::settle_bounds;
+use crate::guard::Guard;
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 use crate::report::Status;
@@ -23,17 +22,13 @@ const MAGNIFIED: f64 = 10.0;
 const FINER: f64 = 0.05;
 
 /// With a guard: factor on patience and faces; share of the last move of the set to which its problem is solved before the
-/// set follows again; very short steps in a row that end it, and the length in units of the shortest up to which they count.
+/// set follows again; very short steps in a row that end it.
 const LONGER: usize = 5;
 const FOLLOW: f64 = 0.1;
 const HELD_UP: usize = 20;
-const VERY_SHORT: f64 = 16.0;
 
 /// Norm of the largest iterate over that of the present one from which on `A x` is computed afresh.
 const SHRUNK: f64 = 1e5;
-
-/// Times that a body which constraints alone hold is balanced with a set that follows.
-const ROUNDS: usize = 3;
 
 /// Part of the limits that `x` may be off the equality, after steps that round.
 const DRIFT: f64 = 0.03;
@@ -56,40 +51,40 @@ pub(crate) struct Place {
     /// Whether the constrained part is so small that directions in it mean nothing.
     vanishes: bool,
     /// Whether the problem with the present set is solved, as far as the set moves.
-    solved: bool,
+    pub(crate) solved: bool,
 }
 
 /// One solve: the iterate, and what it remembers of earlier faces.
 pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
-    at: Iterate<'s, A, C, M>,
-    settings: &'s FaceSettings,
-    hook: &'s mut FaceHook<'h>,
+    pub(crate) at: Iterate<'s, A, C, M>,
+    pub(crate) settings: &'s FaceSettings,
+    pub(crate) hook: &'s mut FaceHook<'h>,
     /// Kind and length of each segment.
-    shapes: Vec<(u8, usize)>,
+    pub(crate) shapes: Vec<(u8, usize)>,
     /// Whether unconstrained components alone stop every rigid mode.
-    apart: bool,
-    forcing: f64,
+    pub(crate) apart: bool,
+    pub(crate) forcing: f64,
     /// What the last move to a predicted face changed in the constrained components.
-    jump: f64,
+    pub(crate) jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
-    peak: f64,
+    pub(crate) peak: f64,
     /// What the last of the rounds in which balance and set follow each other changed: they may run in circles.
-    unrest: f64,
+    pub(crate) unrest: f64,
     /// Moves in a row at which a set, as it followed, held no balance.
-    unbalanced: usize,
+    pub(crate) unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
-    best: f64,
-    last: f64,
-    waited: usize,
+    pub(crate) best: f64,
+    pub(crate) last: f64,
+    pub(crate) waited: usize,
     /// Estimated errors when the last face was left, and that of the constrained part when it was entered.
-    left: Lengths,
-    begun: f64,
+    pub(crate) left: Lengths,
+    pub(crate) begun: f64,
     /// Whether the hook was called at the last move.
-    followed: bool,
+    pub(crate) followed: bool,
     /// Whether steps that round have been made since `G x = e` was restored.
-    drifted: bool,
+    pub(crate) drifted: bool,
     /// Once predictions ran in circles.
-    guard: Option<Guard>,
+    pub(crate) guard: Option<Guard>,
 }
 
 impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s, 'h, A, C, M> {
@@ -348,7 +343,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if let Some(guard) = &mut self.guard {
             guard.enter(at.x, at.ax, &at.work.residual);
         }
-        let free = self.followed && self.guard.is_none() && self.apart && !place.vanishes;
+        let free = self.followed && self.guard.is_none() && !place.vanishes;
         let error = at.report.constrained_error;
         at.work.coupling.begin(free, error, self.waited);
         let goal = Goal {
@@ -376,150 +371,8 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         Ok(length)
     }
 
-    /// Moves `x` to the next face, with the next step of conjugate gradients, of this `length`, on top. The set follows where
-    /// the face has settled. Then set, equality and product are in order again, and a guard has its say.
-    pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
-        let constrained = self.at.constrained();
-        self.at.mark();
-        let joint = self.joint_step(length);
-        let at = &mut self.at;
-        at.work.before.copy_from_slice(&at.x[..constrained]);
-        self.followed = (self.guard.is_none() || place.solved) && self.has_settled();
-        if self.apart {
-            self.settle()?;
-        } else {
-            self.settle_loose(false, self.followed)?;
-        }
-        let at = &mut self.at;
-        self.jump = vector::distance(&at.x[..constrained], &at.work.before);
-        self.balance(joint);
-        self.descend();
-        Ok(())
-    }
-
-    /// Moves `x` into the set as the natural map says, and lets the set follow.
-    fn settle(&mut self) -> Result<(), QpError> {
-        self.settle_bounds();
-        if self.followed {
-            self.follow()?;
-            // held components go with bounds that moved
-            self.settle_bounds();
-        }
-        let at = &mut self.at;
-        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
-        at.work.face.settle_discs(at.set, at.x, &map);
-        Ok(())
-    }
-
-    /// The same such that constrained components balance. At the `start` there is no natural map yet.
-    fn settle_loose(&mut self, start: bool, follow: bool) -> Result<(), QpError> {
-        let constrained = self.at.constrained();
-        let from = self.at.x[..constrained].to_vec();
-        let rounds = if follow { ROUNDS } else { 1 };
-        let mut unbalanced = false;
-        self.unrest = 0.0;
-        for round in 1..=rounds {
-            let at = &mut self.at;
-            let last = at.x[..constrained].to_vec();
-            at.x[..constrained].copy_from_slice(&from);
-            if !start {
-                let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
-                at.work.face.aim(at.set, at.x, &map);
-                let balances = at.project();
-                unbalanced |= !balances;
-            } else if !at.project_start() {
-                at.project();
-            }
-            if round > 1 {
-                self.unrest = vector::distance(&at.x[..constrained], &last);
-            }
-            if round < rounds {
-                self.follow()?;
-            }
-        }
-        self.unbalanced = if unbalanced { self.unbalanced + 1 } else { 0 };
-        Ok(())
-    }
-
-    /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no move,
-    /// and with a guard only what descends is taken. Whether there is one.
-    fn joint_step(&mut self, length: f64) -> bool {
-        let at = &mut self.at;
-        if at.constrained() == 0 || self.guard.is_some() {
-            return false;
-        }
-        let joint = self.settings.joint_step * length;
-        if joint > 0.0 {
-            vector::axpy(joint, &at.work.p, at.x);
-        }
-        joint > 0.0
-    }
-
-    fn settle_bounds(&mut self) {
-        let at = &mut self.at;
-        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
-        settle_bounds(at.set, at.x, &map);
-    }
-
-    /// Whether few bounded components changed between free and held.
-    fn has_settled(&self) -> bool {
-        let face = &self.at.work.face;
-        let few = (self.settings.settled * face.free_bounds as f64).max(2.0);
-        face.changed as f64 <= few
-    }
-
-    /// Makes `G x = e` hold again, and the product exact.
-    fn balance(&mut self, joint: bool) {
-        let at = &mut self.at;
-        if let Some(guard) = &mut self.guard {
-            guard.current = self.followed;
-        }
-        if self.jump > 0.0 || joint && self.drifted {
-            at.coarse.repair(at.x, at.problem.rhs);
-            self.drifted = false;
-        }
-        if self.jump > 0.0 || joint {
-            at.correct();
-        }
-    }
-
-    /// With a guard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.
-    fn descend(&mut self) {
-        let at = &mut self.at;
-        let Some(guard) = &mut self.guard else {
-            return;
-        };
-        if guard.current {
-            guard.drift = self.jump;
-            return;
-        }
-        let mut t = 1.0;
-        while t > SHORTEST && !guard.descends(at.x, at.ax, t) {
-            guard.shorten(t, at.x, at.ax);
-            at.mark();
-            self.jump = at.restore();
-            t *= 0.5;
-        }
-        guard.held_up = if t > VERY_SHORT * SHORTEST {
-            0
-        } else {
-            guard.held_up + 1
-        };
-        let (rises, reach) = guard.judge(at.set, at.x, at.ax, t);
-        if t >= SHORT {
-            at.work.face.blocked.clear();
-            return;
-        }
-        let (from, step) = guard.path();
-        let more = at.work.face.block(at.set, from, step, reach);
-        if rises && more {
-            guard.back(at.x, at.ax);
-            self.jump = f64::INFINITY;
-        }
-    }
-
     /// Calls the hook, which may change the data of segments but not the segments.
-    fn follow(&mut self) -> Result<(), QpError> {
+    pub(crate) fn follow(&mut self) -> Result<(), QpError> {
         let at = &mut self.at;
         (self.hook)(at.x, at.set);
         at.report.hook_calls += 1;

@@ -38,6 +38,9 @@ pub(crate) struct Face {
     pub(crate) discs: Vec<Disc>,
     /// Blocks that stopped a step at their boundary, bounds first, then discs; empty for none. They stay there.
     pub(crate) blocked: Vec<bool>,
+    /// Bounds that the next classification holds, then discs that slide, see [`foresee`](Face::foresee); empty where its own
+    /// residual tells.
+    pub(crate) foreseen: Vec<bool>,
     /// Whether they stay where they are inside of their boundary, too.
     pub(crate) near: bool,
     /// Bounded components that changed between free and held in the last [`classify`](Face::classify).
@@ -119,6 +122,7 @@ impl Face {
         self.discs.clear();
         self.discs.resize(discs, Disc::Fixed);
         self.blocked.clear();
+        self.foreseen.clear();
         self.changed = bounds;
         self.free_bounds = 0;
     }

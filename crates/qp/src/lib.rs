@@ -98,6 +98,7 @@ mod face_cg;
 mod face_coupling;
 mod face_hold;
 mod face_iterate;
+mod face_move;
 mod face_run;
 mod face_settings;
 mod face_state;

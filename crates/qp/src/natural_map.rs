@@ -33,13 +33,14 @@ impl NaturalMap<'_> {
 }
 
 impl Face {
-    /// Classifies every block at the feasible point `x`.
+    /// Classifies every block at the feasible point `x`; as [foreseen](Self::foresee), if it was.
     pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
         let Self {
             free,
             discs,
             blocked,
             near,
+            foreseen,
             ..
         } = self;
         let near = *near;
@@ -49,9 +50,10 @@ impl Face {
         for_bounds(set, |i, k, lo, hi| {
             let s = map.of(x, i);
             // a component is held only if it also is where it would be held
+            let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
             let held = lo >= hi
-                || (x[i] <= lo && (s <= lo || stays(k)))
-                || (x[i] >= hi && (s >= hi || stays(k)))
+                || (x[i] <= lo && agrees(s <= lo))
+                || (x[i] >= hi && agrees(s >= hi))
                 || (near && stays(k));
             changed += usize::from(free[k] == held);
             free[k] = !held;
@@ -60,14 +62,36 @@ impl Face {
         for_discs(set, |i, k, radius| {
             let at = [x[i], x[i + 1]];
             let state = disc_state(at, map.on_disc(i), radius, map.scale[i]);
-            discs[k] = if stays(bounds + k) && state == Disc::Free {
-                along_circle(at, if near { 0.0 } else { radius })
-            } else {
-                state
+            discs[k] = match (foreseen.get(bounds + k), state) {
+                (Some(true), Disc::Free) => along_circle(at, radius),
+                (Some(false), Disc::Sliding { .. }) => Disc::Free,
+                (None, Disc::Free) if stays(bounds + k) => {
+                    along_circle(at, if near { 0.0 } else { radius })
+                }
+                _ => state,
             };
         });
+        foreseen.clear();
         self.changed = changed;
         self.free_bounds = free_bounds;
+    }
+
+    /// Notes the bounds that the natural map holds at `x`, the solution of this face, and the discs that slide: those and no
+    /// others the next [`classify`](Self::classify) holds and lets slide.
+    pub(crate) fn foresee(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let (foreseen, discs) = (&mut self.foreseen, &self.discs);
+        foreseen.clear();
+        for_bounds(set, |i, _, lo, hi| {
+            let s = map.of(x, i);
+            foreseen.push(s <= lo || s >= hi);
+        });
+        for_discs(set, |i, k, radius| {
+            let g = map.on_disc(i);
+            foreseen.push(match discs[k] {
+                Disc::Sliding { .. } => g[0] * x[i] + g[1] * x[i + 1] < 0.0,
+                _ => map.of(x, i).hypot(map.of(x, i + 1)) > radius,
+            });
+        });
     }
 
     /// Whether the natural map would free a held bound, and move it by more than `limit`.
@@ -200,5 +224,201 @@ fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> 
         to(x, length)
     } else {
         x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::product::Segment;
+
+    const STEP: f64 = 0.5;
+
+    /// The map of a set of one segment, with scale 2 and step 0.5: `s = x - g`.
+    fn with<T>(segment: Segment, g: &[f64], f: impl Fn(&ProductSet, &NaturalMap<'_>) -> T) -> T {
+        let set = ProductSet::new(vec![segment]).expect("set");
+        let map = NaturalMap {
+            gradient: g,
+            scale: &[2.0; 2],
+            step: STEP,
+        };
+        f(&set, &map)
+    }
+
+    fn face(set: &ProductSet, blocked: &[bool], near: bool) -> Face {
+        let mut face = Face::default();
+        face.resize(set);
+        face.blocked = blocked.to_vec();
+        face.near = near;
+        face
+    }
+
+    #[test]
+    fn components_are_held_where_they_are_and_would_be_held() {
+        // x, gradient, blocked, near: free?
+        for (x, g, blocked, near, free) in [
+            (0.0, 0.5, false, false, false),
+            (0.0, -0.5, false, false, true),
+            (1.0, -0.5, false, false, false),
+            (1.0, 0.5, false, false, true),
+            // predicted to be held, but not there
+            (0.5, 2.0, false, false, true),
+            (0.5, -2.0, false, false, true),
+            // a step was stopped there
+            (0.0, -0.5, true, false, false),
+            (1.0, 0.5, true, false, false),
+            (0.5, 0.1, true, false, true),
+            (0.5, 0.1, true, true, false),
+            (0.5, 0.1, false, true, true),
+        ] {
+            let what = format!("{x} {g} {blocked} {near}");
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut own = face(set, &[blocked], near);
+                own.classify(set, &[x], map);
+                assert_eq!(own.free, [free], "{what}");
+                let counts = (usize::from(free), usize::from(free));
+                assert_eq!((own.changed, own.free_bounds), counts, "{what}");
+                // again: nothing changes
+                own.classify(set, &[x], map);
+                assert_eq!((own.changed, own.free_bounds), (0, counts.1), "{what}");
+            });
+        }
+        with(
+            Segment::bounds(vec![1.0], vec![1.0]),
+            &[-3.0],
+            |set, map| {
+                let mut own = face(set, &[], false);
+                own.classify(set, &[1.0], map);
+                assert_eq!(own.free, [false]);
+            },
+        );
+    }
+
+    #[test]
+    fn held_bounds_that_the_map_would_move_contradict() {
+        for (x, g, free, expected) in [
+            (0.0, -0.5, false, true),
+            (0.0, 0.5, false, false),
+            (0.0, -0.5, true, false),
+            (1.0, 0.5, false, true),
+            // by less than the limit
+            (0.0, -0.05, false, false),
+        ] {
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut own = face(set, &[], false);
+                own.free = vec![free];
+                assert_eq!(own.contradicted(set, &[x], map, 0.1), expected, "{x} {g}");
+            });
+        }
+        with(
+            Segment::bounds(vec![1.0], vec![1.0]),
+            &[-3.0],
+            |set, map| {
+                assert!(!face(set, &[], false).contradicted(set, &[1.0], map, 0.1));
+            },
+        );
+    }
+
+    #[test]
+    fn bounds_are_settled_where_the_map_goes() {
+        for (x, g, expected) in [
+            (0.2, 0.5, 0.0),
+            (0.8, -0.5, 1.0),
+            (0.4, 0.1, 0.4),
+            (1.5, 1.0, 1.0),
+            (-0.5, -1.0, 0.0),
+        ] {
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut v = [x];
+                settle_bounds(set, &mut v, map);
+                assert_eq!(v, [expected], "{x} {g}");
+            });
+        }
+    }
+
+    #[test]
+    fn discs_stick_inside_and_slide_on_the_circle() {
+        let (n, radius) = ([0.6, 0.8], 2.0);
+        let on = n.map(|c| radius * c);
+        let state = |radius: f64, x: [f64; 2], g: [f64; 2], blocked: bool, near: bool| {
+            with(Segment::discs(vec![radius]), &g, |set, map| {
+                let mut own = face(set, &[blocked], near);
+                own.classify(set, &x, map);
+                own.discs[0]
+            })
+        };
+        assert_eq!(state(0.0, [0.0; 2], [1.0; 2], false, false), Disc::Fixed);
+        assert_eq!(
+            state(radius, [0.6, 0.8], [-6.0, -8.0], false, false),
+            Disc::Free
+        );
+        // drawn inward
+        assert_eq!(state(radius, on, [0.6, 0.8], false, false), Disc::Free);
+        // pushed out with 3 N: curvature 3 / 2, scale 2
+        let pushed = state(radius, on, [-1.8, -2.4], false, false);
+        let Disc::Sliding {
+            tau,
+            kappa,
+            damp,
+            own,
+            slip,
+        } = pushed
+        else {
+            panic!("{pushed:?}");
+        };
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{pushed:?}");
+        near(tau[0], -0.8);
+        near(tau[1], 0.6);
+        near(slip, 3.0);
+        near(kappa, 1.5);
+        near(damp, 0.25);
+        near(own, 1.5 * (2.0 * 0.25_f64).powi(2));
+        // stopped there: along the circle without curvature; inside of it only if it is to stay where it is
+        for (x, near, slides) in [
+            (on, false, true),
+            ([0.6, 0.8], false, false),
+            ([0.6, 0.8], true, true),
+        ] {
+            let state = state(radius, x, [0.6, 0.8], true, near);
+            match state {
+                Disc::Sliding {
+                    tau,
+                    kappa,
+                    own,
+                    slip,
+                    ..
+                } if slides => {
+                    assert!((tau[0] + 0.8).abs() < 1e-14 && (tau[1] - 0.6).abs() < 1e-14);
+                    assert_eq!([kappa, own, slip], [0.0; 3]);
+                }
+                Disc::Free if !slides => {}
+                other => panic!("{x:?} {near}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn discs_are_settled_on_their_circles() {
+        let sliding = slides([1.0, 0.0], 1.0, 2.0, 1.0);
+        for (state, x, g, radius, expected) in [
+            // sliding points are drawn along the radius
+            (sliding, [3.0, 4.0], [9.0, 9.0], 2.0, [1.2, 1.6]),
+            (sliding, [0.3, 0.4], [9.0, 9.0], 2.0, [1.2, 1.6]),
+            (sliding, [0.0, 0.0], [9.0, 9.0], 2.0, [0.0, 0.0]),
+            // others where the map goes, if that is outside
+            (Disc::Free, [0.0, 0.0], [-6.0, -8.0], 2.0, [1.2, 1.6]),
+            (Disc::Free, [0.3, 0.4], [0.1, 0.1], 2.0, [0.3, 0.4]),
+            (Disc::Free, [3.0, 4.0], [2.4, 3.2], 2.0, [1.2, 1.6]),
+            (Disc::Fixed, [3.0, 4.0], [1.0, 1.0], 0.0, [0.0, 0.0]),
+        ] {
+            with(Segment::discs(vec![radius]), &g, |set, map| {
+                let mut own = face(set, &[], false);
+                own.discs = vec![state];
+                let mut v = x;
+                own.settle_discs(set, &mut v, map);
+                let off = (v[0] - expected[0]).hypot(v[1] - expected[1]);
+                assert!(off < 1e-14, "{state:?} {x:?}: {v:?}");
+            });
+        }
     }
 }

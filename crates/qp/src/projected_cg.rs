@@ -66,7 +66,7 @@ pub struct CgReport {
     pub preconditionings: usize,
     /// Norm of the projected gradient `P (A x - b)` at the end.
     pub projected_gradient: f64,
-    /// Its tolerance.
+    /// Its tolerance; 0 where the error is what ends the solve.
     pub tolerance: f64,
 }
 
@@ -119,7 +119,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> CgWorkspace<A, C, 
 /// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none).
 /// `Tolerance::Relative` refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that
 /// acts through the equality alone). If both are below 1e-12 of `|b|`, they are rounding errors, and the solution is one of them:
-/// a projected gradient of 1e-14 of `|b|` is enough then. A semidefinite `A` is allowed as long as the load does no work
+/// a projected gradient of 1e-14 of `|b|` is enough then, also with `Tolerance::Error`. A semidefinite `A` is allowed as long as the load does no work
 /// along its kernel within that of `C`.
 ///
 /// # Errors
@@ -169,6 +169,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
             projected_gradient: f64::NAN,
             tolerance: f64::NAN,
         },
+        error: None,
         slope: f64::NAN,
         start: f64::NAN,
         best: f64::NAN,
@@ -178,6 +179,9 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
     run.report.status = loop {
         if let Some(status) = run.ended(max_products)? {
             break status;
+        }
+        if run.precondition() {
+            break Status::Converged;
         }
         run.direction();
         let Some(length) = run.step_length()? else {
@@ -196,6 +200,8 @@ struct Run<'s, A: SymmetricOperator, C: Equality, M: SymmetricOperator> {
     x: &'s mut [f64],
     work: &'s mut CgWorkspace<A, C, M>,
     report: CgReport,
+    /// Factor and least norm of [`Tolerance::Error`].
+    error: Option<(f64, f64)>,
     /// `w·y` of the last direction.
     slope: f64,
     /// Projected gradient at the start, the smallest so far, and iterations since it.
@@ -227,7 +233,13 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         let size = vector::norm(b);
         let tolerance = usable(match tolerance {
             // what the projector leaves of the load is rounding, and nothing else acts
-            Tolerance::Relative(_) if reference <= VANISHED * size => ROUNDED * size,
+            Tolerance::Relative(_) | Tolerance::Error { .. } if reference <= VANISHED * size => {
+                ROUNDED * size
+            }
+            Tolerance::Error { factor, least } => {
+                self.error = Some((usable(factor)?, usable(least)?));
+                0.0
+            }
             tolerance => tolerance.resolve(reference),
         })?;
         vector::subtract(b, &mut self.work.g);
@@ -272,12 +284,21 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         })
     }
 
-    /// `y = P M w`, the direction `p`, conjugate to the last one, and `ap = A p`.
-    fn direction(&mut self) {
+    /// `y = P M w`. Whether it is as short as the tolerance asks, if that is one of the error.
+    fn precondition(&mut self) -> bool {
         let w = &mut *self.work;
         self.m.apply(&w.w, &mut w.ap, &mut w.m_scratch);
         self.report.preconditionings += 1;
         project(self.c, &w.ap, &mut w.y, &mut w.coarse, &mut w.c_scratch);
+        let small = |(factor, least): (f64, f64)| {
+            vector::norm(&self.work.y) <= factor * vector::norm(self.x).max(least)
+        };
+        self.error.is_some_and(small)
+    }
+
+    /// The direction `p`, conjugate to the last one, and `ap = A p`.
+    fn direction(&mut self) {
+        let w = &mut *self.work;
         let slope = vector::dot(&w.w, &w.y);
         if self.report.iterations == 0 {
             vector::copy(&w.y, &mut w.p);

@@ -26,7 +26,7 @@ impl Status {
     }
 }
 
-/// When a gradient norm counts as small.
+/// When a solve ends: mostly where a gradient norm counts as small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Tolerance {
@@ -43,6 +43,14 @@ pub enum Tolerance {
         /// In the units of the gradient.
         reference: f64,
     },
+    /// [`projected_cg`](crate::projected_cg()): the preconditioned gradient, which estimates the error of `x`, is at most this multiple of
+    /// `|x|`. Solvers without preconditioner take it as [`Relative`](Self::Relative).
+    Error {
+        /// Dimensionless factor.
+        factor: f64,
+        /// What `|x|` counts at least, in its units.
+        least: f64,
+    },
 }
 
 impl Tolerance {
@@ -51,7 +59,7 @@ impl Tolerance {
     pub fn resolve(self, own: f64) -> f64 {
         match self {
             Self::Absolute(t) => t,
-            Self::Relative(f) => f * own,
+            Self::Relative(f) | Self::Error { factor: f, .. } => f * own,
             Self::RelativeTo { factor, reference } => factor * reference,
         }
     }

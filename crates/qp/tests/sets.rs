@@ -211,3 +211,16 @@ fn original_multipliers_are_recovered() {
     let right: Vec<f64> = (0..3).map(|j| g[j] * nu[0] + g[3 + j] * nu[1]).collect();
     assert!(vector::distance(&left, &right) < 1e-14);
 }
+
+#[test]
+fn segments_know_how_many_components_they_have() {
+    for (segment, len) in [
+        (Segment::Free(3), 3),
+        (Segment::lower(vec![0.0; 2]), 2),
+        (Segment::discs(vec![1.0; 2]), 4),
+        (Segment::Free(0), 0),
+        (Segment::discs(vec![]), 0),
+    ] {
+        assert_eq!((segment.len(), segment.is_empty()), (len, len == 0));
+    }
+}

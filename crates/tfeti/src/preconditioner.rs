@@ -1,7 +1,7 @@
 //! The lumped and the Dirichlet preconditioner.
 //!
 //! Both are `B_D S B_D^T` with a stiffness `S` on the boundary nodes: the block `K_bb` (lumped) or the Schur complement
-//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and one material `B_D = B`; otherwise `B_D` distributes
+//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D` distributes
 //! forces by stiffness, see [`Scaling`].
 
 use crate::block_rows::BlockRows;
@@ -97,7 +97,7 @@ impl Preconditioner {
             .map(|k| BoundaryStiffness::new(&system.parts.bases[k], &map, k, kind))
             .collect::<Result<_, _>>()?;
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
-        let needs_scaling = !system.gluing().is_aligned() || system.heterogeneous;
+        let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
         Ok(Self {
             map,

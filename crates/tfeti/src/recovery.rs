@@ -216,8 +216,8 @@ impl Tfeti {
         }
     }
 
-    /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies of several materials count by
-    /// their stiffness.
+    /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
+    /// their [stiffness](Self::copy_stiffness).
     ///
     /// # Panics
     /// If `u` is shorter than a torn vector.

@@ -127,12 +127,12 @@ impl Tfeti {
         }
     }
 
-    /// Weights of the rows for projectors that suit a body of several materials: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft subdomain carries forces in proportion to the soft one. `None` where
-    /// there is one material, as all weights are alike then.
+    /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one. `None` where all copies
+    /// [count alike](Self::copy_stiffness).
     #[must_use]
     pub fn row_weights(&self) -> Option<Vec<f64>> {
-        if !self.heterogeneous {
+        if self.copy_stiffness().is_plain() {
             return None;
         }
         let parts = &self.parts;

@@ -15,14 +15,60 @@ const DEPENDENT: f64 = 0.3;
 pub(crate) struct Scaling {
     /// `1 / D` of each boundary copy, relative to the stiffest.
     weights: Vec<f64>,
-    /// Rows of each group.
-    pointers: Vec<usize>,
-    rows: Vec<u32>,
-    /// Inverse of the matrix of each group, column-major.
-    inverse_pointers: Vec<usize>,
-    inverses: Vec<f64>,
+    /// Groups with contact or support rows.
+    groups: Groups,
+    /// Groups of interface rows only: their components do not couple, and have the same matrix. First rows of the triples.
+    triples: Groups,
     /// Group of each contact row, and its place there.
     contact: Vec<(u32, u32)>,
+}
+
+/// Groups of rows, and the inverse of the matrix of each.
+#[derive(Debug)]
+struct Groups {
+    pointers: Vec<usize>,
+    rows: Vec<u32>,
+    /// Column-major.
+    inverse_pointers: Vec<usize>,
+    inverses: Vec<f64>,
+}
+
+impl Default for Groups {
+    fn default() -> Self {
+        Self {
+            pointers: vec![0],
+            rows: Vec::new(),
+            inverse_pointers: vec![0],
+            inverses: Vec::new(),
+        }
+    }
+}
+
+impl Groups {
+    fn count(&self) -> usize {
+        self.pointers.len() - 1
+    }
+
+    fn push(&mut self, rows: impl Iterator<Item = u32>, inverse: Vec<f64>) {
+        self.rows.extend(rows);
+        self.pointers.push(self.rows.len());
+        self.inverses.extend(inverse);
+        self.inverse_pointers.push(self.inverses.len());
+    }
+
+    /// Calls `f` with the rows of each group and its part of `inverses`.
+    fn for_each(&self, inverses: &[f64], mut f: impl FnMut(&[u32], &[f64])) {
+        for (rows, inverse) in self
+            .pointers
+            .windows(2)
+            .zip(self.inverse_pointers.windows(2))
+        {
+            f(
+                &self.rows[rows[0]..rows[1]],
+                &inverses[inverse[0]..inverse[1]],
+            );
+        }
+    }
 }
 
 impl Scaling {
@@ -42,13 +88,18 @@ impl Scaling {
         members.sort_unstable();
         let mut out = Self {
             weights: Vec::new(),
-            pointers: vec![0],
-            rows: Vec::with_capacity(members.len()),
-            inverse_pointers: vec![0],
-            inverses: Vec::new(),
+            groups: Groups::default(),
+            triples: Groups::default(),
             contact: vec![(0, 0); gluing.ranges().contact().end],
         };
-        for rows in members.chunk_by(|a, b| a.0 == b.0) {
+        let interface = &gluing.ranges().interface;
+        for group in members.chunk_by(|a, b| a.0 == b.0) {
+            let plain = group.iter().all(|r| interface.contains(&(r.1 as usize)));
+            let rows: Vec<(u32, u32)> = group
+                .iter()
+                .copied()
+                .step_by(if plain { 3 } else { 1 })
+                .collect();
             let count = rows.len();
             let entries: Vec<Vec<(usize, f64)>> = rows
                 .iter()
@@ -78,13 +129,15 @@ impl Scaling {
                 .map_err(|pivot| TfetiError::CoarseSingular { pivot })?;
             for (place, &(_, row)) in rows.iter().enumerate() {
                 if let Some(contact) = out.contact.get_mut(row as usize) {
-                    *contact = ((out.pointers.len() - 1) as u32, place as u32);
+                    *contact = (out.groups.count() as u32, place as u32);
                 }
             }
-            out.rows.extend(rows.iter().map(|r| r.1));
-            out.pointers.push(out.rows.len());
-            out.inverses.extend(inverse);
-            out.inverse_pointers.push(out.inverses.len());
+            let target = if plain {
+                &mut out.triples
+            } else {
+                &mut out.groups
+            };
+            target.push(rows.iter().map(|r| r.1), inverse);
         }
         out.weights = system.parts.map.copy_values(|subdomain, local| {
             compliance[system.torn_range(subdomain).start / 3 + local]
@@ -103,7 +156,7 @@ impl Scaling {
     /// weigh the copies by stiffness do not need it, chained ones do.)
     pub(crate) fn on_face(&self, face: &FaceView<'_>, groups: &mut Vec<f64>) {
         groups.clear();
-        groups.extend_from_slice(&self.inverses);
+        groups.extend_from_slice(&self.groups.inverses);
         let mut held = Vec::new();
         face.for_each(|row, count, freedom| match freedom {
             Freedom::Free => {}
@@ -122,9 +175,10 @@ impl Scaling {
             return;
         };
         let group = group as usize;
-        let range = self.inverse_pointers[group]..self.inverse_pointers[group + 1];
+        let own = &self.groups;
+        let range = own.inverse_pointers[group]..own.inverse_pointers[group + 1];
         let matrix = &mut groups[range];
-        let count = self.pointers[group + 1] - self.pointers[group];
+        let count = own.pointers[group + 1] - own.pointers[group];
         image.clear();
         image.resize(count, 0.0);
         let places = || {
@@ -155,20 +209,26 @@ impl Scaling {
     /// `y = N x` with `N = (B D^-1 B^T)^-1`, or with the matrices in `groups` unless empty.
     pub(crate) fn solve(&self, groups: &[f64], x: &[f64], y: &mut [f64]) {
         let inverses = if groups.is_empty() {
-            &self.inverses
+            &self.groups.inverses
         } else {
             groups
         };
-        for (k, pair) in self.pointers.windows(2).enumerate() {
-            let rows = &self.rows[pair[0]..pair[1]];
-            let inverse = &inverses[self.inverse_pointers[k]..self.inverse_pointers[k + 1]];
+        self.groups.for_each(inverses, |rows, inverse| {
             for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
-                y[target as usize] = column
-                    .iter()
-                    .zip(rows)
-                    .map(|(v, &row)| v * x[row as usize])
-                    .sum();
+                let products = column.iter().zip(rows);
+                y[target as usize] = products.map(|(v, &row)| v * x[row as usize]).sum();
             }
-        }
+        });
+        self.triples
+            .for_each(&self.triples.inverses, |rows, inverse| {
+                for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
+                    let mut sum = [0.0; 3];
+                    for (v, &row) in column.iter().zip(rows) {
+                        let x = &x[row as usize..][..3];
+                        (0..3).for_each(|c| sum[c] += v * x[c]);
+                    }
+                    y[target as usize..][..3].copy_from_slice(&sum);
+                }
+            });
     }
 }

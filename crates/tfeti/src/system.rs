@@ -112,12 +112,10 @@ impl<'a> TfetiBuilder<'a> {
         let classes_seconds = clock.lap();
         let bases = self.bases(&classes)?;
         let assembly_seconds = clock.lap();
-        let heterogeneous = has_several_laws(mesh, self.materials);
-        let stiffness = if heterogeneous {
-            CopyStiffness::new(&classes, &bases)
-        } else {
-            CopyStiffness::default()
-        };
+        let mut stiffness = CopyStiffness::new(&classes, &bases);
+        if !has_several_laws(mesh, self.materials) {
+            stiffness = stiffness.unless_alike(decomposition);
+        }
         let gluing = Arc::new(Gluing::new(
             decomposition,
             mesh.points().len(),
@@ -174,7 +172,6 @@ impl<'a> TfetiBuilder<'a> {
             report,
             node_of: node_of(decomposition),
             nodes: mesh.points().len(),
-            heterogeneous,
             stiffness,
         })
     }
@@ -328,8 +325,6 @@ pub struct Tfeti {
     /// Mesh node of each node copy, in torn order.
     pub(crate) node_of: Vec<u32>,
     pub(crate) nodes: usize,
-    /// Whether elements differ in their Hooke tensors.
-    pub(crate) heterogeneous: bool,
     stiffness: CopyStiffness,
 }
 
@@ -340,13 +335,14 @@ impl Tfeti {
         &self.parts.gluing
     }
 
-    /// How the copies of a node count in contact and support rows.
+    /// How the copies of a node count in contact and support rows: by their stiffness in a body of several materials, and
+    /// where that of the copies of a node differs by more than a factor of four, as in ragged cuts; alike otherwise.
     #[must_use]
     pub fn copy_stiffness(&self) -> &CopyStiffness {
         &self.stiffness
     }
 
-    /// The stiffness of the copies of each node, whether or not they differ in their materials.
+    /// The stiffness of the copies of each node, whether or not they differ.
     #[must_use]
     pub fn all_copy_stiffness(&self) -> CopyStiffness {
         CopyStiffness::new(&self.parts.classes, &self.parts.bases)
