@@ -375,6 +375,24 @@ mod tests {
     }
 
     #[test]
+    fn forces_that_run_away_balance_nothing() {
+        // it would take the difference of two loads of 1e20
+        let pulled = ProductSet::new(vec![Segment::upper(vec![0.0; 2])]).expect("a set");
+        let modes = [
+            LooseMode::new(vec![1.0, 0.0], vec![1.0, 1.0]),
+            LooseMode::new(vec![0.0, 1.0], vec![1.0, -1.0]),
+        ];
+        let far = [-1e20, -1e20];
+        let search = Search::new(&modes, &pulled, &[1.0, 0.0], (&[0.0; 2], &[1.0; 2]));
+        let runaway = Search {
+            x: far.to_vec(),
+            imbalance: 1e-20,
+            ..search
+        };
+        assert!(!runaway.balances());
+    }
+
+    #[test]
     fn held_components_stay_and_modes_that_nothing_holds_do_no_harm() {
         let set = ProductSet::new(vec![Segment::upper(vec![0.0; 2])]).expect("a set");
         let modes = [
