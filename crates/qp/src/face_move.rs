@@ -63,7 +63,6 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { ROUNDS } else { 1 };
-        let mut unbalanced = false;
         self.unrest = 0.0;
         for round in 1..=rounds {
             let at = &mut self.at;
@@ -73,7 +72,9 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
                 at.work.face.aim(at.set, at.x, &map);
                 let balances = at.project();
-                unbalanced |= !balances;
+                if round == rounds {
+                    self.unbalanced = if balances { 0 } else { self.unbalanced + 1 };
+                }
             } else if !at.project_start() {
                 at.project();
             }
@@ -84,7 +85,6 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
                 self.follow()?;
             }
         }
-        self.unbalanced = if unbalanced { self.unbalanced + 1 } else { 0 };
         Ok(())
     }
 

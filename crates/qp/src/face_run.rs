@@ -70,7 +70,7 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) peak: f64,
     /// What the last of the rounds in which balance and set follow each other changed: they may run in circles.
     pub(crate) unrest: f64,
-    /// Moves in a row at which a set, as it followed, held no balance.
+    /// Moves in a row at which the set held no balance.
     pub(crate) unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
     pub(crate) best: f64,
@@ -324,12 +324,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         }
         let held_up = self.guard.as_ref().map_or(0, |guard| guard.held_up);
         if self.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
-            let balances = self.unbalanced < settings.patience;
-            return Some(if balances {
-                Status::Stagnated
-            } else {
-                Status::Infeasible
-            });
+            return Some(Status::Stagnated);
         }
         let longer = if self.guard.is_some() { LONGER } else { 1 };
         let faces = settings.max_faces.saturating_mul(longer);
