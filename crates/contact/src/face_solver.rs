@@ -4,9 +4,10 @@
 //! reached, from the start of the level where the face method stagnated. It is proved to solve every given-friction problem.
 
 use crate::error::ContactError;
+use crate::exchange::Exchanges;
 use crate::law::Friction;
 use crate::level::Level;
-use crate::model::{DISCS, INTERVALS, Model, Tangential, TouchPoint};
+use crate::model::{DISCS, Model, Tangential};
 use crate::paper_solver::PaperSolver;
 use crate::preconditioner::DualPreconditioner;
 use crate::report::{LevelReport, LevelStatus};
@@ -16,7 +17,6 @@ use signorini_qp::{
     FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Segment, Status, face, vector,
 };
 use signorini_tfeti::{DualOperator, FaceSpace};
-use std::collections::BTreeSet;
 
 /// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
 const SAFETY: f64 = 1.0;
@@ -33,9 +33,6 @@ const SHARED: f64 = 0.5;
 /// What a release would change, over the error of a solved face, from which on it is worth it.
 const CONTRADICTION: f64 = 10.0;
 
-/// Friction over its bound below which a point does not slide.
-const INSIDE: f64 = 1.0 - 1e-12;
-
 /// Solves of a level with contradicting points released.
 const TURNS: usize = 8;
 
@@ -47,6 +44,7 @@ pub(crate) struct FaceSolver {
     set: ProductSet,
     work: FaceWorkspace<DualOperator, DualPreconditioner>,
     settings: FaceSettings,
+    exchanges: Exchanges,
     /// Made when it is first needed.
     paper: Option<Box<PaperSolver>>,
 }
@@ -82,6 +80,7 @@ impl FaceSolver {
             preconditioner,
             scale,
             set: model.set.clone(),
+            exchanges: Exchanges::new(model),
             settings: face.clone(),
             paper: None,
         })
@@ -161,12 +160,11 @@ impl FaceSolver {
                 * vector::norm(&iterate.lambda).max(face_settings.least);
             if status != Status::Converged
                 || turns == TURNS
-                || !release(
+                || !self.exchanges.settle(
                     model,
-                    &self.set,
+                    level,
                     self.work.residual(),
-                    &self.scale,
-                    limit,
+                    (&self.scale, limit),
                     &mut iterate.lambda,
                 )
             {
@@ -223,53 +221,6 @@ impl FaceSolver {
         iterate.multiplier.clear();
         Ok(report)
     }
-}
-
-/// Lets points slide that stick where other rows of their node move them: a solved face leaves their slip, since the rows
-/// contradict one another and no force can change it. They may stick at their bound on the wrong side, or next to it where
-/// their node is not where its obstacle is. Whether there are such points.
-fn release(
-    model: &Model,
-    set: &ProductSet,
-    residual: &[f64],
-    scale: &[f64],
-    limit: f64,
-    lambda: &mut [f64],
-) -> bool {
-    let gluing = model.tfeti.gluing();
-    let segments = set.segments();
-    let (Some(Segment::Discs { radii }), Some(Segment::Bounds { upper, .. })) =
-        (segments.get(DISCS), segments.get(INTERVALS))
-    else {
-        return false;
-    };
-    let ranges = gluing.ranges();
-    let mut any = false;
-    let points = || model.points.iter().filter(|p| gluing.is_dependent(p.node));
-    // pressed, but not where the obstacle is
-    let off = |p: &&TouchPoint| lambda[p.row] < 0.0 && residual[p.row].abs() * scale[p.row] > limit;
-    let torn: BTreeSet<u32> = points().filter(off).map(|p| p.node).collect();
-    for point in points() {
-        let (rows, radius) = match point.tangential {
-            Tangential::None => continue,
-            Tangential::Plane { row, .. } => (row..row + 2, radii[(row - ranges.discs.start) / 2]),
-            Tangential::Line { row, .. } => (row..row + 1, upper[row - ranges.intervals.start]),
-        };
-        let slip = vector::norm(&residual[rows.clone()]);
-        let size = vector::norm(&lambda[rows.clone()]);
-        let along = vector::dot(&residual[rows.clone()], &lambda[rows.clone()]) > 0.0;
-        let most = match torn.contains(&point.node) {
-            true => radius * INSIDE,
-            false => radius - limit,
-        };
-        if slip * scale[rows.start] > limit && (along || size < most) {
-            for k in rows {
-                lambda[k] = -radius * residual[k] / slip;
-            }
-            any = true;
-        }
-    }
-    any
 }
 
 /// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a

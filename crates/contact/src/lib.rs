@@ -86,6 +86,7 @@ mod contact_surface;
 mod driven;
 mod error;
 mod estimate;
+mod exchange;
 mod face_solver;
 mod fingerprint;
 pub mod fixed_point;

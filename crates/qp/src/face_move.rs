@@ -63,8 +63,10 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { ROUNDS } else { 1 };
+        self.unrest = 0.0;
         for round in 1..=rounds {
             let at = &mut self.at;
+            let last = at.x[..constrained].to_vec();
             at.x[..constrained].copy_from_slice(&from);
             if !start {
                 let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
@@ -75,6 +77,9 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
                 }
             } else if !at.project_start() {
                 at.project();
+            }
+            if round > 1 {
+                self.unrest = vector::distance(&at.x[..constrained], &last);
             }
             if round < rounds {
                 self.follow()?;

@@ -68,6 +68,8 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
     pub(crate) peak: f64,
+    /// What the last of the rounds in which balance and set follow each other changed: they may run in circles.
+    pub(crate) unrest: f64,
     /// Moves in a row at which the set held no balance.
     pub(crate) unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
@@ -107,6 +109,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             forcing: settings.forcing,
             jump: f64::INFINITY,
             peak: 0.0,
+            unrest: 0.0,
             unbalanced: 0,
             best: f64::INFINITY,
             last: f64::INFINITY,
@@ -244,7 +247,8 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
         let current = self.guard.as_ref().is_none_or(|guard| guard.current);
-        let settled = at.report.faces == 0 || current && self.jump <= limit.max(f64::MIN_POSITIVE);
+        let moved = self.jump.max(self.unrest);
+        let settled = at.report.faces == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
         let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
         place.errors.within(place.limits)
             && settled
@@ -288,7 +292,8 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
     /// Compares the error with the smallest so far.
     pub(crate) fn note_progress(&mut self, place: &Place) {
         let (errors, limits) = (place.errors, place.limits);
-        let constrained = errors.constrained.max(self.jump.min(f64::MAX));
+        let moved = self.jump.max(self.unrest);
+        let constrained = errors.constrained.max(moved.min(f64::MAX));
         self.last = (errors.all / limits.all).max(constrained / limits.constrained);
         if self.last < LESS * self.best {
             self.best = self.last;

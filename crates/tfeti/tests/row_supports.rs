@@ -289,3 +289,33 @@ fn the_motion_of_a_partner_counts_against_that_of_the_node() {
         }
     }
 }
+
+#[test]
+fn what_an_oblique_support_and_a_rough_obstacle_may_exchange() {
+    let b = Brick::new(2, 2);
+    let direction = [1.0, 0.3, -0.4];
+    let ends = b.mesh.nodes_on(brick::X_MIN);
+    let supports = [Support::partial(
+        ends.clone(),
+        Directions::Vectors(vec![direction]),
+    )];
+    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let dependencies = g.dependencies();
+    let both = b.bottom.iter().filter(|n| ends.contains(n)).count();
+    assert!(both > 0 && dependencies.len() == both && g.dependent_nodes().len() == both);
+    for dependency in &dependencies {
+        // normal, two tangents and the support for three displacements
+        assert_eq!((dependency.rows.len(), dependency.vectors.len()), (4, 1));
+        let mut force = std::collections::BTreeMap::new();
+        let mut largest = 0.0_f64;
+        for (row, v) in dependency.rows.iter().zip(&dependency.vectors[0]) {
+            largest = largest.max(v.abs());
+            for (subdomain, dof, coefficient) in g.row(*row) {
+                *force.entry((subdomain, dof)).or_insert(0.0) += coefficient * v;
+            }
+        }
+        assert!(largest > 0.5 && force.values().all(|f| f.abs() < 1e-14));
+    }
+    let plain = gluing(&b, &[], Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    assert!(plain.dependencies().is_empty());
+}

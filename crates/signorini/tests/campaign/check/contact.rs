@@ -44,7 +44,27 @@ impl Judge<'_> {
         points.iter().map(of).collect()
     }
 
-    /// Area that a reported point stands for: surfaces that meet a node along one direction may be one point.
+    /// Whether two spots are one point that the nearer obstacle makes: the first of those as near.
+    fn gives_way(&self, spot: &Spot) -> bool {
+        self.spots.iter().any(|s| {
+            let same = s.node == spot.node && s.partner == spot.partner;
+            let nearer = s.gap < spot.gap - self.rounding(spot);
+            let first = s.contact < spot.contact && self.as_near(s, spot);
+            same && dot(s.normal, spot.normal) > SAME && (nearer || first)
+        })
+    }
+
+    /// What of a gap may be rounding.
+    fn rounding(&self, spot: &Spot) -> f64 {
+        1e-12 * (self.extent + norm(self.mechanics.points[spot.node as usize]))
+    }
+
+    fn as_near(&self, a: &Spot, b: &Spot) -> bool {
+        (a.gap - b.gap).abs() <= self.rounding(a)
+    }
+
+    /// Area that a reported point stands for: surfaces that meet a node along one direction are one point, of the nearer
+    /// obstacle, or of both if they are as near.
     fn area(&self, points: &[PointState], spot: &Spot) -> f64 {
         let own = |node: u32, partner: Option<u32>, normal: Vec3| {
             node == spot.node && partner == spot.partner && dot(normal, spot.normal) > SAME
@@ -56,7 +76,7 @@ impl Judge<'_> {
         let all = self
             .spots
             .iter()
-            .filter(|s| own(s.node, s.partner, s.normal));
+            .filter(|s| own(s.node, s.partner, s.normal) && self.as_near(s, spot));
         let tags = |s: &Spot| &self.recipe.touches[s.contact].tags;
         let mut known: Vec<&Spot> = Vec::new();
         for s in all {
@@ -87,6 +107,8 @@ impl Judge<'_> {
                 continue;
             };
             let (spot, slip) = (&self.spots[k], &slips[k]);
+            let farther = self.gives_way(spot);
+            worst.add("surface of the point", f64::from(u8::from(farther)), 1.0);
             let size = self.size(sizes, spot.node);
             let (f, u) = (size.contact, size.displacement);
             let (force, friction) = (point.normal_force, point.friction_force);

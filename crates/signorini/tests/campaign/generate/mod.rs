@@ -14,7 +14,7 @@ use crate::dice::Dice;
 use crate::recipe::{Course, Recipe};
 
 /// Known faults and limits that the generator stays clear of. An entry goes when its fault is mended.
-pub(crate) const KNOWN: [(&str, &str); 4] = [
+pub(crate) const KNOWN: [(&str, &str); 3] = [
     (
         "acute edges",
         "sides of two contacts that meet at an edge by less than the angle of a crease are one point with the mean normal: \
@@ -27,10 +27,6 @@ pub(crate) const KNOWN: [(&str, &str); 4] = [
     (
         "moved fields",
         "an obstacle given by a gap field that is moved along the surface stays where it was: it is moved along its normal only",
-    ),
-    (
-        "oblique supports",
-        "supports neither along nor across the normal of a contact node with friction: such nodes are taken out of the support",
     ),
 ];
 

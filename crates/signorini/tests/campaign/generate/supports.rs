@@ -201,19 +201,18 @@ fn oblique(dice: &mut Dice, world: &World, recipe: &mut Recipe, body: usize) {
     }
 }
 
-/// Takes nodes out of supports: where two of them would contradict each other, "oblique supports" of `KNOWN`, and mostly
-/// where a support would push a contact node through its obstacle.
+/// Takes nodes out of supports: where two of them would contradict each other, and mostly where a support would push a
+/// contact node through its obstacle.
 fn tidy(dice: &mut Dice, recipe: &mut Recipe) {
     let bold = dice.chance(0.03);
     let mechanics = Mechanics::new(recipe);
-    // normals at which contact is met: whether with friction, and whether the obstacle comes or is inside at rest
-    let mut met: HashMap<u32, Vec<(Vec3, bool, bool)>> = HashMap::new();
+    // normals at which contact is met, and whether the obstacle comes or is inside at rest
+    let mut met: HashMap<u32, Vec<(Vec3, bool)>> = HashMap::new();
     for spot in spots(recipe, &mechanics) {
         let touch = &recipe.touches[spot.contact];
         let comes = touch.motion.is_some() || spot.gap < 0.0;
         for node in std::iter::once(spot.node).chain(spot.partner) {
-            let entry = (spot.normal, touch.law.is_some(), comes);
-            met.entry(node).or_default().push(entry);
+            met.entry(node).or_default().push((spot.normal, comes));
         }
     }
     let mut held: HashMap<u32, (Vec<Vec3>, bool)> = HashMap::new();
@@ -233,11 +232,8 @@ fn tidy(dice: &mut Dice, recipe: &mut Recipe) {
             }
             let along = |n: Vec3| basis.iter().map(|d| dot(*d, n).powi(2)).sum::<f64>().sqrt();
             let wrong = met.get(&node).is_some_and(|met| {
-                met.iter().any(|&(n, friction, comes)| {
-                    let share = along(n);
-                    let oblique = share > 1e-6 && share < 1.0 - 1e-9;
-                    oblique && friction || share > 0.5 && !bold && (moves || comes)
-                })
+                met.iter()
+                    .any(|&(n, comes)| along(n) > 0.5 && !bold && (moves || comes))
             });
             if !wrong && !contradict {
                 held.insert(node, (basis, moves || moved));
