@@ -175,8 +175,7 @@ impl FaceSolver {
         };
         report.counters.slip_bound_updates += updates;
         report.status = level_status(status);
-        // where friction does not hold a body, given friction with any of its bounds has no solution either
-        if report.status.converged() || report.status == LevelStatus::NotHeld {
+        if report.status.converged() {
             iterate.known = true;
             iterate.alpha.resize(level.rhs.len(), 0.0);
             let mut residual = iterate.f_lambda.clone();
@@ -196,7 +195,8 @@ impl FaceSolver {
         start: Vec<f64>,
         mut report: LevelReport,
     ) -> Result<LevelReport, ContactError> {
-        if !iterate.lambda.iter().all(|v| v.is_finite()) || report.status == LevelStatus::Stagnated
+        if !iterate.lambda.iter().all(|v| v.is_finite())
+            || matches!(report.status, LevelStatus::Stagnated | LevelStatus::NotHeld)
         {
             iterate.lambda = start;
         }
@@ -205,6 +205,8 @@ impl FaceSolver {
             None => Box::new(PaperSolver::new(model, settings)?),
         };
         iterate.multiplier.clear();
+        // other normal forces may hold the body yet
+        let not_held = report.status == LevelStatus::NotHeld;
         let limit = settings.max_fallback_products;
         let outcome = paper.solve_within(limit, model, level, settings, iterate);
         self.paper = Some(paper);
@@ -213,7 +215,10 @@ impl FaceSolver {
         report.fallback_products = second.counters.products;
         // SMALSE has no such estimate
         report.estimated_error = None;
-        report.status = second.status;
+        report.status = match second.status {
+            LevelStatus::IterationLimit if not_held => LevelStatus::NotHeld,
+            status => status,
+        };
         report.iterations += second.iterations;
         report.counters += second.counters;
         report.steps += second.steps;

@@ -69,7 +69,7 @@ fn random_cells_become_round_ones_of_similar_size() {
         let cut = Decomposition::from_parts(&mesh, &parts).expect("connected, without gaps");
         assert_eq!(cut.subdomains().len(), 24);
         let sizes = |p: &[u32]| {
-            let mut sizes = vec![0; 24];
+            let mut sizes = [0; 24];
             p.iter().for_each(|&part| sizes[part as usize] += 1);
             (*sizes.iter().min().unwrap(), *sizes.iter().max().unwrap())
         };

@@ -338,7 +338,8 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         if let Some(guard) = &mut self.guard {
             guard.enter(at.x, at.ax, &at.work.residual);
         }
-        let free = self.followed && self.guard.is_none() && !place.vanishes;
+        let steady = self.guard.is_none() && self.unbalanced == 0;
+        let free = self.followed && steady && !place.vanishes;
         let error = at.report.constrained_error;
         at.work.coupling.begin(free, error, self.waited);
         let goal = Goal {

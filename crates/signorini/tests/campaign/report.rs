@@ -26,7 +26,7 @@ pub(crate) struct Tally {
 /// Whether a scene is a failure of the library.
 pub(crate) fn is_wrong(outcome: &Outcome) -> bool {
     match outcome {
-        Outcome::Refused(..) | Outcome::Known(_) => false,
+        Outcome::Refused(..) => false,
         Outcome::Broken(_) => true,
         Outcome::Solved(levels) => levels.iter().any(Level::is_wrong),
     }
@@ -46,7 +46,6 @@ pub(crate) fn print(number: u64, recipe: &Recipe, outcome: &Outcome) {
     println!("scene {number}: {}", recipe.words.join(", "));
     match outcome {
         Outcome::Refused(_, text) => println!("refused: {text}"),
-        Outcome::Known(text) => println!("known fault: {text}"),
         Outcome::Broken(text) => println!("broken: {text}"),
         Outcome::Solved(levels) => {
             for (k, level) in levels.iter().enumerate() {
@@ -224,7 +223,6 @@ impl Entry {
     fn story(&self) -> String {
         match &self.outcome {
             Outcome::Refused(kind, text) => format!("refused, {kind}: {text}"),
-            Outcome::Known(text) => format!("known fault: {text}"),
             Outcome::Broken(text) => format!("broken: {text}"),
             Outcome::Solved(levels) => {
                 let lines: Vec<String> = levels.iter().map(line).collect();
@@ -236,22 +234,21 @@ impl Entry {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (mut refused, mut broken, mut known) = (BTreeMap::<&str, usize>::new(), 0, 0);
+        let (mut refused, mut broken) = (BTreeMap::<&str, usize>::new(), 0);
         for entry in &self.entries {
             match &entry.outcome {
                 Outcome::Refused(kind, _) => *refused.entry(kind).or_default() += 1,
                 Outcome::Broken(_) => broken += 1,
-                Outcome::Known(_) => known += 1,
                 Outcome::Solved(_) => {}
             }
         }
         let all = self.entries.len();
         let none: usize = refused.values().sum();
-        let ran = all - none - broken - known;
+        let ran = all - none - broken;
         let levels = self.levels().count();
         writeln!(
             f,
-            "{all} scenes: {ran} ran ({levels} levels), {none} refused, {known} with a known error, {broken} broken"
+            "{all} scenes: {ran} ran ({levels} levels), {none} refused, {broken} broken"
         )?;
         let known: Vec<&str> = KNOWN.iter().map(|k| k.0).collect();
         writeln!(f, "known faults that are not said: {}", known.join(", "))?;

@@ -47,14 +47,9 @@ pub(crate) enum Outcome {
     /// Refused before anything was solved: the kind of the error, and its words.
     Refused(String, String),
     Solved(Vec<Level>),
-    /// An error in a level that is [known](UNBOUNDED).
-    Known(&'static str),
     /// A panic, or another error in a level.
     Broken(String),
 }
-
-/// A known fault: successive approximations and the fall-back end in an error where a body just touches.
-const UNBOUNDED: &str = "unbounded below";
 
 /// Violations that a converged level may have.
 pub(crate) const LIMIT: f64 = 1e-4;
@@ -62,7 +57,6 @@ pub(crate) const LIMIT: f64 = 1e-4;
 pub(crate) fn run(recipe: &Recipe) -> Outcome {
     match catch_unwind(AssertUnwindSafe(|| levels(recipe))) {
         Ok(Ok(outcome)) => outcome,
-        Ok(Err(error)) if error.to_string().contains(UNBOUNDED) => Outcome::Known(UNBOUNDED),
         Ok(Err(error)) => Outcome::Broken(error.to_string()),
         Err(panic) => {
             let text = panic.downcast_ref::<String>().map(String::as_str);
