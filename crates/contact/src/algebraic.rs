@@ -76,9 +76,9 @@
 
 use crate::certificate::Certificate;
 use crate::contact_move::{Movable, Moved, dot};
-use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
+use crate::point_state::PointState;
 use crate::state::REST;
 use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;

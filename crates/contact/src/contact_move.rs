@@ -4,9 +4,9 @@
 //! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more freedom. Where
 //! it is not free either, both move, each where it can.
 
-use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint};
+use crate::point_state::PointState;
 use nalgebra::{DMatrix, Vector3};
 
 /// Rounding of directions.

@@ -5,9 +5,9 @@
 
 use crate::contact_move::dot;
 use crate::error::ContactError;
-use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::{Model, TouchPoint, supports};
+use crate::point_state::PointState;
 use signorini_tfeti::{HeldDirection, Support, held_directions};
 use std::collections::BTreeMap;
 

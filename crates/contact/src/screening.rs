@@ -17,10 +17,10 @@
 use crate::candidates::contact_nodes;
 use crate::contact_surface::Contact;
 use crate::error::ContactError;
-use crate::frame::{PointState, Rows, point_state};
 use crate::law::Friction;
 use crate::level::{Level, between_bodies};
 use crate::model::{Model, TouchPoint, supports, touch_points};
+use crate::point_state::{PointState, Rows, point_state};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::state::State;

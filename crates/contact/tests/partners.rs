@@ -6,10 +6,7 @@ use common::{
     assert_close, block, distance, forces, methods, norm, ramp, run, solve, steel, tight, uniform,
     up_down_up, weakening,
 };
-use signorini_contact::{
-    Analysis, Contact, ContactError, Friction, Load, Scene, Screening, Settings, Simulation,
-    Support,
-};
+use signorini_contact::*;
 use signorini_fem_mesh::{FacetTag, Hooke, Materials, TetMesh, brick};
 
 /// Tags of the second body.

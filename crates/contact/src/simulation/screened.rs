@@ -2,9 +2,9 @@
 
 use super::Simulation;
 use crate::error::ContactError;
-use crate::frame::PointState;
 use crate::level::Level;
 use crate::model::Model;
+use crate::point_state::PointState;
 use crate::scene::Scene;
 use crate::screening::Screen;
 use crate::settings::Settings;

@@ -1,0 +1,262 @@
+//! What each touch point does at the end of a level, and sums over them.
+
+use crate::certificate::slip_bound;
+use crate::error::ContactError;
+use crate::level::{Level, at};
+use crate::model::{Model, Tangential, TouchPoint};
+
+/// What a touch point does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ContactState {
+    /// No force.
+    Open,
+    /// Pressed and without tangential difference, or without friction law.
+    Stick,
+    /// Pressed and sliding.
+    Slip,
+}
+
+/// State of one touch point at the end of a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PointState {
+    /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
+    pub node: u32,
+    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
+    pub opponent: Option<u32>,
+    /// Position of the contact surface in [`Scene::contacts`].
+    pub surface: usize,
+    /// What it does.
+    pub state: ContactState,
+    /// Unit normal out of the body, into the obstacle or the partner: the direction in which gap and normal force are measured.
+    pub normal: [f64; 3],
+    /// Normal force on the body `lambda_nu`, N, not positive.
+    pub normal_force: f64,
+    /// Friction force on the body, N, in space.
+    pub friction_force: [f64; 3],
+    /// Slip bound, N; 0 without friction.
+    pub slip_bound: f64,
+    /// Distance to the obstacle or the partner, m.
+    pub gap: f64,
+    /// Tangential displacement, m, in space; relative to the partner, if there is one.
+    pub tangential_displacement: [f64; 3],
+    /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static scene.
+    pub difference: [f64; 3],
+    /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene.
+    pub slip_rate: f64,
+    /// Area, m².
+    pub area: f64,
+}
+
+impl PointState {
+    /// The whole contact force on the body, pressure and friction, N, in space. A partner has the opposite one.
+    #[must_use]
+    pub fn force(&self) -> [f64; 3] {
+        [0, 1, 2].map(|c| self.friction_force[c] + self.normal_force * self.normal[c])
+    }
+}
+
+/// Sums over the contact surface at the end of a level. Between bodies, forces are those on the body that was named first
+/// ([`Contact::between`](crate::Contact::between)).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ContactSummary {
+    /// Points with a normal force.
+    pub active: usize,
+    /// Active points that stick.
+    pub stick: usize,
+    /// Active points that slide.
+    pub slip: usize,
+    /// Sum of the normal pressing forces, N.
+    pub normal_force: f64,
+    /// Sum of all contact forces on the body as a vector, N.
+    pub resultant: [f64; 3],
+    /// Sum of the friction forces on the body, N, in space.
+    pub friction_force: [f64; 3],
+    /// Euclidean norm of the nodal normal forces, N.
+    pub normal_norm: f64,
+    /// Euclidean norm of the nodal friction forces, N.
+    pub friction_norm: f64,
+    /// Largest slip rate of active points, m/s.
+    pub max_slip_rate: f64,
+    /// Largest penetration, m.
+    pub max_penetration: f64,
+    /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the paper's formula it can be
+    /// slightly negative at points that stick after sliding, see [`DifferenceFormula`](crate::DifferenceFormula).
+    pub friction_work: f64,
+    /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
+    /// `friction_work` for backward Euler.
+    pub dissipation: f64,
+    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
+    /// the obstacle, and normal forces times the change of a [gap that moves along](crate::Contact::moved).
+    pub obstacle_work: f64,
+}
+
+/// Values by row at which points are evaluated.
+pub(crate) struct Rows<'a> {
+    /// Multipliers; `None` for open points.
+    pub(crate) lambda: Option<&'a [f64]>,
+    /// `B u`, in row units.
+    pub(crate) displacement: &'a [f64],
+    /// `c`.
+    pub(crate) offset: &'a [f64],
+    /// The part of it between bodies that comes from supports.
+    pub(crate) prescribed: &'a [f64],
+}
+
+/// Evaluates the touch points: `rows` is `B u` in row units.
+pub(crate) fn point_states(
+    model: &Model,
+    level: &Level,
+    lambda: &[f64],
+    rows: &[f64],
+) -> Vec<PointState> {
+    let values = Rows {
+        lambda: Some(lambda),
+        displacement: rows,
+        offset: &level.offset,
+        prescribed: &level.prescribed,
+    };
+    let state = |(k, point): (usize, &TouchPoint)| {
+        let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
+        point_state(model, level, point, &values, bound)
+    };
+    model.points.iter().enumerate().map(state).collect()
+}
+
+/// Evaluates one point with its slip bound.
+pub(crate) fn point_state(
+    model: &Model,
+    level: &Level,
+    point: &TouchPoint,
+    rows: &Rows<'_>,
+    bound: f64,
+) -> PointState {
+    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let lambda = |row: usize| rows.lambda.map_or(0.0, |l| l[row]);
+    let normal_force = point.scale * lambda(point.row);
+    let space = |values: [f64; 2]| match point.tangential {
+        Tangential::None => [0.0; 3],
+        Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
+        Tangential::Plane { .. } => point.frame.vector(0.0, values),
+    };
+    let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+    let mut on_bound = false;
+    if let Some((row, count, scale)) = point.tangential.rows() {
+        for j in 0..count {
+            let u = rows.displacement[row + j];
+            friction[j] = scale * lambda(row + j);
+            displacement[j] = (u - at(rows.prescribed, row + j)) / scale;
+            difference[j] = alpha * (u - rows.offset[row + j]) / scale;
+        }
+        on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
+    }
+    let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
+    let state = if normal_force >= 0.0 {
+        ContactState::Open
+    } else if on_bound && opposed {
+        ContactState::Slip
+    } else {
+        ContactState::Stick
+    };
+    let slip = difference[0].hypot(difference[1]);
+    PointState {
+        node: point.node,
+        opponent: point.opponent,
+        surface: point.surface,
+        state,
+        normal: point.frame.normal,
+        normal_force,
+        friction_force: space(friction),
+        slip_bound: bound,
+        gap: (rows.offset[point.row] - rows.displacement[point.row]) / point.scale,
+        tangential_displacement: space(displacement),
+        difference: space(difference),
+        slip_rate: level.step.map_or(0.0, |dt| slip / dt),
+        area: point.area,
+    }
+}
+
+/// Sums over the points; `before` are the tangential displacements at the level before.
+pub(crate) fn summarise(
+    model: &Model,
+    level: &Level,
+    points: &[PointState],
+    lambda: &[f64],
+    rows: &[f64],
+    before: &[f64],
+) -> Result<ContactSummary, ContactError> {
+    let mut s = ContactSummary::default();
+    let start = model.tangential_start();
+    for (point, touch) in points.iter().zip(&model.points) {
+        let active = point.state != ContactState::Open;
+        s.active += usize::from(active);
+        s.slip += usize::from(point.state == ContactState::Slip);
+        s.normal_force -= point.normal_force;
+        s.normal_norm += point.normal_force.powi(2);
+        let force = point.force();
+        for c in 0..3 {
+            s.friction_force[c] += point.friction_force[c];
+            s.resultant[c] += force[c];
+            s.friction_norm += point.friction_force[c].powi(2);
+            s.dissipation -= point.friction_force[c] * point.difference[c];
+        }
+        if active {
+            s.max_slip_rate = s.max_slip_rate.max(point.slip_rate);
+        }
+        s.max_penetration = s.max_penetration.max(-point.gap);
+        for along in touch.along() {
+            let (_, k, scale) = along;
+            let old = at(before, k - start);
+            let new = level.relative(touch.surface, along, rows[k], &level.prescribed);
+            s.friction_work -= scale * lambda[k] * (new - old);
+        }
+        if let (Some(now), Some(old)) = (
+            level.obstacles[0].get(touch.surface),
+            level.obstacles[1].get(touch.surface),
+        ) {
+            for c in 0..3 {
+                s.obstacle_work += force[c] * (now[c] - old[c]);
+            }
+            if active {
+                let [now, old] = [Level::gap, Level::gap_before];
+                let scene = &model.scene;
+                s.obstacle_work +=
+                    point.normal_force * (now(level, scene, touch)? - old(level, scene, touch)?);
+            }
+        }
+    }
+    s.stick = s.active - s.slip;
+    s.normal_norm = s.normal_norm.sqrt();
+    s.friction_norm = s.friction_norm.sqrt();
+    Ok(s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Friction;
+    use crate::model::example::{block, first_level};
+
+    /// Sliding is friction on its bound, against the slip; friction along it is a wrong one, not sliding.
+    #[test]
+    fn friction_along_the_slip_is_no_sliding() {
+        let (model, level) = first_level(block(0.0, Friction::coulomb(0.5)));
+        let point = &model.points[4];
+        let (_, row, _) = point.along().next().expect("friction");
+        for (pressed, friction, slip, expected) in [
+            (1.0, 0.5, -1e-3, ContactState::Slip),
+            (1.0, 0.5, 1e-3, ContactState::Stick),
+            (1.0, 0.4, -1e-3, ContactState::Stick),
+            (0.0, 0.0, -1e-3, ContactState::Open),
+        ] {
+            let mut lambda = vec![0.0; model.tfeti.dual_dim()];
+            let mut rows = level.offset.clone();
+            (lambda[point.row], lambda[row]) = (-pressed, friction);
+            rows[row] += slip;
+            let states = point_states(&model, &level, &lambda, &rows);
+            assert_eq!(states[4].state, expected, "{friction} N, {slip} m");
+        }
+    }
+}
