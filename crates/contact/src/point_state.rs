@@ -25,7 +25,7 @@ pub struct PointState {
     pub node: u32,
     /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
     pub opponent: Option<u32>,
-    /// Position of the contact surface in [`Scene::contacts`].
+    /// Position of the contact surface in [`Scene::contacts`](crate::Scene::contacts).
     pub surface: usize,
     /// What it does.
     pub state: ContactState,
