@@ -58,27 +58,27 @@ pub(crate) struct Place {
 pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) at: Iterate<'s, A, C, M>,
     pub(crate) settings: &'s FaceSettings,
-    pub(crate) hook: &'s mut FaceHook<'h>,
+    hook: &'s mut FaceHook<'h>,
     /// Kind and length of each segment.
-    pub(crate) shapes: Vec<(u8, usize)>,
+    shapes: Vec<(u8, usize)>,
     /// Whether unconstrained components alone stop every rigid mode.
     pub(crate) apart: bool,
-    pub(crate) forcing: f64,
+    forcing: f64,
     /// What the last move to a predicted face changed in the constrained components.
     pub(crate) jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
-    pub(crate) peak: f64,
+    peak: f64,
     /// What the last of the rounds in which balance and set follow each other changed: they may run in circles.
     pub(crate) unrest: f64,
     /// Moves in a row at which the set held no balance.
     pub(crate) unbalanced: usize,
     /// Smallest error, relative to its limit, the last one, and faces since the smallest.
-    pub(crate) best: f64,
-    pub(crate) last: f64,
+    best: f64,
+    last: f64,
     pub(crate) waited: usize,
     /// Estimated errors when the last face was left, and that of the constrained part when it was entered.
-    pub(crate) left: Lengths,
-    pub(crate) begun: f64,
+    left: Lengths,
+    begun: f64,
     /// Whether the hook was called at the last move.
     pub(crate) followed: bool,
     /// Whether steps that round have been made since `G x = e` was restored.
