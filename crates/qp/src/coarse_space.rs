@@ -39,12 +39,6 @@ pub trait CoarseSpace {
         self.set_weights(w)
     }
 
-    /// Whether the weighted components stop every rigid mode. Where they do not, projections leave the other modes alone, and
-    /// a vector with parts outside the weights stays unbalanced in them.
-    fn holds_all(&self) -> bool {
-        true
-    }
-
     /// Whether the components of weight zero, at their values in `x`, leave a balance that the others can complete: rigid
     /// modes that no component of positive weight holds must see no work of `e - G x`.
     fn balances(&mut self, _x: &[f64], _e: &[f64]) -> bool {

@@ -9,9 +9,9 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
     /// Hands the weights of the current face to the coarse space; whether it factored anew, `None` if they do not hold every
     /// rigid mode.
     ///
-    /// The directions of points that slide belong to the face too. Where predictions run in circles, and for
-    /// bodies that only contact holds, they are left out as long as the other components suffice (`sparing`): measured, not
-    /// proved, to need fewer faces there.
+    /// The directions of points that slide belong to the face too. Where predictions run in
+    /// circles, they are left out as long as the other components suffice (`sparing`): measured, not proved, to need fewer
+    /// faces there.
     pub(crate) fn set_face(&mut self, sparing: bool) -> Result<Option<bool>, QpError> {
         match self.weigh(sparing) {
             Ok(factored) => Ok(Some(factored)),
@@ -52,9 +52,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
         loop {
             if let Some(anew) = self.set_face(sparing)? {
                 factored |= anew;
-                // steps along circles would unbalance the modes that are left
-                let unbalanced = sparing && !self.coarse.holds_all();
-                if !unbalanced && self.coarse.balances(self.x, self.problem.rhs) {
+                if self.coarse.balances(self.x, self.problem.rhs) {
                     return Ok(factored);
                 }
             }

@@ -285,10 +285,6 @@ impl CoarseSpace for FaceSpace {
         Ok(true)
     }
 
-    fn holds_all(&self) -> bool {
-        self.face.free_motions().is_empty()
-    }
-
     fn balances(&mut self, x: &[f64], e: &[f64]) -> bool {
         if self.face.free_motions().is_empty() {
             return true;

@@ -165,23 +165,11 @@ impl Tally {
         let (held, loose): (Vec<_>, Vec<_>) = list.iter().partition(|e| e.held);
         let list: Vec<&&Entry> = held.into_iter().chain(loose).collect();
         for entry in list.iter().filter(|e| e.default) {
-            writeln!(
-                unsolved,
-                "{}: {}\n    {}",
-                entry.number,
-                entry.words.join(", "),
-                entry.story()
-            )?;
+            entry.write(&mut unsolved)?;
         }
         writeln!(unsolved, "\nWith others:")?;
         for entry in list.iter().filter(|e| !e.default) {
-            writeln!(
-                unsolved,
-                "{}: {}\n    {}",
-                entry.number,
-                entry.words.join(", "),
-                entry.story()
-            )?;
+            entry.write(&mut unsolved)?;
         }
         let mut text = file("summary.txt")?;
         write!(text, "{self}")
@@ -220,6 +208,12 @@ fn plain(word: &str) -> String {
 }
 
 impl Entry {
+    /// Number, words and story.
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let (number, words) = (self.number, self.words.join(", "));
+        writeln!(out, "{number}: {words}\n    {}", self.story())
+    }
+
     fn story(&self) -> String {
         match &self.outcome {
             Outcome::Refused(kind, text) => format!("refused, {kind}: {text}"),

@@ -78,13 +78,14 @@ pub(crate) fn each_level(
     let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
         Ok(simulation) => simulation,
         Err(error) => {
-            let debug = format!("{error:?}");
-            let kind = |text: &str| text.split([' ', '(', '{']).next().unwrap_or("").to_owned();
-            let mut name = kind(&debug);
-            if let Some((_, inner)) = debug.split_once('(').filter(|_| name == "Tfeti") {
-                name = format!("{name}/{}", kind(inner));
-            }
-            return Ok(Some((name, error.to_string())));
+            let name = match &error {
+                ContactError::NotHeld { .. } => "NotHeld",
+                ContactError::NotDetermined { .. } => "NotDetermined",
+                ContactError::SharedNode { .. } => "SharedNode",
+                ContactError::SupportInObstacle { .. } => "SupportInObstacle",
+                _ => "another error",
+            };
+            return Ok(Some((name.to_owned(), error.to_string())));
         }
     };
     let mut solved = 0;
