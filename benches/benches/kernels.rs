@@ -5,8 +5,8 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use signorini::fem_mesh::{Hooke, Materials, StrainRecovery, assemble_stiffness};
-use signorini::qp::{CoarseSpace, Equality, SymmetricOperator};
-use signorini::tfeti::{FaceFactor, FaceSpace, InverseKind, Sharing};
+use signorini::qp::{Equality, EqualityProjector, SymmetricOperator};
+use signorini::tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, Sharing};
 use signorini_benches::{Body, Failure, wave};
 use std::hint::black_box;
 
@@ -101,8 +101,11 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
             });
         }
         let contact = system.gluing().ranges().contact().end;
-        for (name, kind) in [("split", FaceFactor::Split), ("sparse", FaceFactor::Sparse)] {
-            let mut space = FaceSpace::with_factor(system.coarse(), contact, None, kind)?;
+        for (name, kind) in [
+            ("split", ActiveSetFactor::Split),
+            ("sparse", ActiveSetFactor::Sparse),
+        ] {
+            let mut space = ActiveSetProjector::with_factor(system.coarse(), contact, None, kind)?;
             let mut w = vec![1.0; x.len()];
             let mut k = 0;
             group.bench_function(

@@ -6,8 +6,8 @@
 //!
 //! `cargo bench -p signorini-benches --bench ratios`; with `-- --test` everything runs once and the figures mean nothing.
 
-use signorini::qp::{CoarseSpace, SymmetricOperator, vector};
-use signorini::tfeti::{FaceSpace, InverseKind, Sharing, Tfeti};
+use signorini::qp::{EqualityProjector, SymmetricOperator, vector};
+use signorini::tfeti::{ActiveSetProjector, InverseKind, Sharing, Tfeti};
 use signorini_benches::{Body, Failure, MEMORY, gemm, seconds, triad, wave};
 
 fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> {
@@ -25,7 +25,7 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
     let (mut x, mut y) = (wave(system.dual_dim()), wave(system.dual_dim()));
     let mut z = x.clone();
     let contact = system.gluing().ranges().contact().end;
-    let mut space = FaceSpace::new(system.coarse(), contact, None)?;
+    let mut space = ActiveSetProjector::new(system.coarse(), contact, None)?;
     let (lumped, mut w, mut k) = (system.lumped()?, vec![1.0; x.len()], 0);
     let mut scratch = lumped.scratch();
     let pool = rayon::ThreadPoolBuilder::new()

@@ -3,9 +3,10 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
-use signorini::fem_mesh::{Decomposition, Frame, Hooke, Materials, TetMesh, brick};
+use signorini::fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::{
-    ContactNodes, InverseKind, InverseSettings, Sharing, Support, Tfeti, TfetiBuilder, TfetiError,
+    ContactConstraints, InverseKind, InverseSettings, NodeSupport, Sharing, Tfeti, TfetiBuilder,
+    TfetiError,
 };
 use std::time::Instant;
 
@@ -21,8 +22,8 @@ pub struct Body {
     pub decomposition: Decomposition,
     /// Steel.
     pub materials: Materials,
-    supports: Vec<Support>,
-    contact: ContactNodes,
+    supports: Vec<NodeSupport>,
+    contact: ContactConstraints,
 }
 
 impl Body {
@@ -34,13 +35,13 @@ impl Body {
         let mesh = brick::Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build()?;
         let decomposition = Decomposition::boxes(&mesh, [3 * n, n, n])?;
         let bottom = mesh.nodes_on(brick::Z_MIN);
-        let frame = Frame {
+        let frame = SurfaceFrame {
             normal: [0.0, 0.0, -1.0],
             tangents: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         };
         Ok(Self {
-            supports: vec![Support::fixed(mesh.nodes_on(brick::X_MIN))],
-            contact: ContactNodes::rigid(&bottom, &vec![frame; bottom.len()], true),
+            supports: vec![NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))],
+            contact: ContactConstraints::rigid(&bottom, &vec![frame; bottom.len()], true),
             materials: Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?),
             mesh,
             decomposition,
@@ -53,10 +54,10 @@ impl Body {
     /// Those of the set-up.
     pub fn system(&self, sharing: Sharing, kind: InverseKind) -> Result<Tfeti, TfetiError> {
         TfetiBuilder::new(&self.mesh, &self.decomposition, &self.materials)
-            .supports(&self.supports)
-            .contact(&self.contact)
-            .sharing(sharing)
-            .inverse(InverseSettings::default().with_kind(kind))
+            .with_supports(&self.supports)
+            .with_contact(&self.contact)
+            .with_sharing(sharing)
+            .with_inverse(InverseSettings::default().with_kind(kind))
             .build()
     }
 }

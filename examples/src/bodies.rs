@@ -65,10 +65,10 @@ pub fn scene(cells: usize, steps: usize, softness: f64) -> Result<Scene, Error> 
     let scene = Scene::new(mesh.with_regions(regions)?, materials)
         .with_support(Support::fixed(brick::Z_MIN))
         .with_support(
-            Support::components(back, [false, true, true]).moved([0.0, 0.0, -DOWN], press),
+            Support::components(back, [false, true, true]).with_motion([0.0, 0.0, -DOWN], press),
         )
         .with_support(
-            Support::components(back, [true, false, false]).moved([ALONG, 0.0, 0.0], pull),
+            Support::components(back, [true, false, false]).with_motion([ALONG, 0.0, 0.0], pull),
         )
         .with_contact(
             Contact::between(pad(brick::Z_MIN), brick::Z_MAX)

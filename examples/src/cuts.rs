@@ -238,14 +238,14 @@ pub fn measure(
 }
 
 /// A name and the part numbers of the tetrahedra; `None` for boxes.
-pub type Cut = (String, Option<Vec<u32>>);
+pub type Partition = (String, Option<Vec<u32>>);
 
 /// The cuts of a mesh into about `3n³` parts: boxes, random Voronoi cells and those of a file, as they are and made compact, and grown parts
 /// made compact.
 ///
 /// # Errors
 /// [`ExampleError`] of the file.
-pub fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<Cut>, ExampleError> {
+pub fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<Partition>, ExampleError> {
     let count = 3 * n * n * n;
     let mut given = vec![
         ("Voronoi 1", voronoi(mesh, count, 1)),

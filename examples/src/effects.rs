@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use serde::Serialize;
-use signorini::contact::{Frame, Rate, Screening};
+use signorini::contact::{Rate, Screening, StepResult};
 use signorini::prelude::*;
 
 use crate::brick::{Benchmark, CELLS, Loading, STEPS};
@@ -257,7 +257,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             setup_seconds: simulation.setup_time().as_secs_f64(),
             solve_seconds: solve,
         },
-        state_bytes: simulation.state().bytes(),
+        state_bytes: simulation.state().memory(),
         inequality_solves: counters.inequality_solves,
         slip_bound_updates: counters.slip_bound_updates,
         rate_updates: counters.rate_updates,
@@ -271,7 +271,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
     })
 }
 
-fn compute(extra: Extra, frame: &Frame<'_>) -> Result<(), ExampleError> {
+fn compute(extra: Extra, frame: &StepResult<'_>) -> Result<(), ExampleError> {
     match extra {
         Extra::None => {}
         Extra::Stress => {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use signorini::contact::InnerAccuracy;
 use signorini::prelude::*;
-use signorini::qp::FaceSettings;
+use signorini::qp::ActiveSetSettings;
 
 use crate::app::save;
 use crate::brick::{Benchmark, Loading};
@@ -68,7 +68,7 @@ pub fn ladder(face_only: bool) -> Vec<Rung> {
         }
         other => other,
     };
-    let face = |forcing: f64| Method::Face(FaceSettings::default().with_forcing(forcing));
+    let face = |forcing: f64| Method::ActiveSet(ActiveSetSettings::default().with_forcing(forcing));
     let mut rungs = vec![
         rung(
             "paper, every given-friction problem to full accuracy, no extrapolation",

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use signorini::contact::{Certificate, Frame};
+use signorini::contact::{Certificate, StepResult};
 
 use crate::error::ExampleError;
 
@@ -124,10 +124,10 @@ pub struct StepRecord {
 impl StepRecord {
     /// Reads a frame.
     #[must_use]
-    pub fn new(frame: &Frame<'_>) -> Self {
+    pub fn new(frame: &StepResult<'_>) -> Self {
         let (sum, report) = (frame.summary(), frame.report());
         Self {
-            step: frame.level() + 1,
+            step: frame.step() + 1,
             t: frame.time(),
             it: report.iterations,
             n_m: report.counters.products,

@@ -23,7 +23,7 @@ const PULL: f64 = 2e8;
 /// # Errors
 /// [`Error`] for sizes that are 0 or too large.
 pub fn scene(cells: usize, steps: usize, bound: f64) -> Result<Scene, Error> {
-    let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::given(bound));
+    let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(bound));
     let pull = History::ramp(DURATION, 1.0)?;
     Ok(clamped(1, cells, 0.0)?
         .with_load(Load::pressure(brick::Z_MAX, PRESSURE))

@@ -6,7 +6,7 @@ use signorini::prelude::*;
 use signorini_examples::stability::app::{StabilityOptions, chosen, run_all};
 use signorini_examples::stability::block::Block;
 use signorini_examples::stability::case::Case;
-use signorini_examples::stability::cases_sliding::{Cut, Sliding};
+use signorini_examples::stability::cases_sliding::{Partition, Sliding};
 use signorini_examples::stability::report::{outcome, plain};
 use signorini_examples::stability::runner::{Ended, difference, run};
 use signorini_examples::stability::{cases_restart::garble, locking};
@@ -57,8 +57,8 @@ fn products(sliding: Sliding) -> usize {
 /// Cubes on a floor and on a cube: every cut, coefficient and side force.
 #[test]
 fn bodies_that_slide_everywhere_cost_no_more_than_others() {
-    let boxes = [[1; 3], [2; 3], [4, 4, 2], [4; 3]].map(Cut::Boxes);
-    for cut in boxes.into_iter().chain([Cut::Scattered(20)]) {
+    let boxes = [[1; 3], [2; 3], [4, 4, 2], [4; 3]].map(Partition::Boxes);
+    for cut in boxes.into_iter().chain([Partition::Scattered(20)]) {
         for coefficient in [0.01, 0.05, 0.2, 1.0] {
             for aside in [0.0, 0.05, 0.5, 0.95, 0.999] {
                 let base = Sliding {
@@ -93,7 +93,7 @@ fn sliding_everywhere_does_not_grow_with_the_mesh() {
                 cells: 4 * n,
                 coefficient,
                 aside,
-                cut: Cut::Boxes([n; 3]),
+                cut: Partition::Boxes([n; 3]),
                 ..Sliding::default()
             })
         });

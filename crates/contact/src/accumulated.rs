@@ -21,7 +21,7 @@
 //! `docs/accuracy-and-time.md` has the measurements.
 
 use crate::algebraic::{AlgebraicError, relative};
-use crate::frame::Frame;
+use crate::frame::StepResult;
 
 /// Algebraic error with what earlier levels have left in it; see the [module](self).
 ///
@@ -59,7 +59,7 @@ pub struct AccumulatedError {
 impl AccumulatedError {
     /// Takes the next level: every level must be added, in order. Where levels stand alone (no friction, or a static scene)
     /// only the last one counts.
-    pub fn add(&mut self, frame: &Frame<'_>) {
+    pub fn add(&mut self, frame: &StepResult<'_>) {
         *self = self.with(&frame.algebraic_error(), frame.model.plan.effects.history);
     }
 

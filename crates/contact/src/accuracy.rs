@@ -14,7 +14,7 @@
 //! complementarity, cone, direction) in the [`Certificate`] is at most five times the target as well, and 1e-2 in any case (not below
 //! 1e-8, [`AccuracyReport::certificate_limit`]). Equilibrium and continuity are in the estimate itself. This costs nothing where it
 //! holds; where it does not, the tolerance is tightened by what is missing, and a level that cannot reach it ends as
-//! [`NotCertified`](crate::LevelStatus::NotCertified). In 600 levels of random
+//! [`NotCertified`](crate::StepStatus::NotCertified). In 600 levels of random
 //! scenes the face method left at most twice a target of 1e-4 and a tenth of one of 1e-2; successive approximations left seven times a target of
 //! 1e-4 at points that are pressed weakly beside a strong pull.
 //!

@@ -28,7 +28,7 @@
 //!
 //! This bounds the errors of `v` and of the torn displacement at once, without any constant.
 //!
-//! **The mean that is handed out** ([`Frame::displacement`](crate::Frame::displacement)), the plain one of the copies, is neither: it is not moved, and does not
+//! **The mean that is handed out** ([`StepResult::displacement`](crate::StepResult::displacement)), the plain one of the copies, is neither: it is not moved, and does not
 //! obey the supports better than the copies do. Subdomains that are off as a whole strain nothing while they are torn, and much in the
 //! mean; its error was up to four times the bound. So the estimate is at least `1/2 |mean - v|²`. By the triangle inequality it is
 //! then no less than half the error of the mean, as a norm.
@@ -76,8 +76,8 @@
 
 use crate::certificate::Certificate;
 use crate::contact_move::{Movable, Moved, dot};
-use crate::level::Level;
-use crate::model::{Model, TouchPoint};
+use crate::level::StepProblem;
+use crate::model::{ConstrainedPoint, Model};
 use crate::point_state::PointState;
 use crate::state::REST;
 use nalgebra::{DMatrix, DVector};
@@ -176,7 +176,7 @@ impl Weights {
 /// What the estimate needs of a solved level.
 pub(crate) struct Solved<'a> {
     pub(crate) model: &'a Model,
-    pub(crate) level: &'a Level,
+    pub(crate) level: &'a StepProblem,
     pub(crate) points: &'a [PointState],
     pub(crate) certificate: &'a Certificate,
     pub(crate) torn: &'a [f64],
@@ -322,7 +322,7 @@ impl Solved<'_> {
                 planes.entry(node).or_default().push(plane);
             }
         }
-        let dependent = |t: &(&TouchPoint, &Movable)| gluing.is_dependent(t.0.node);
+        let dependent = |t: &(&ConstrainedPoint, &Movable)| gluing.is_dependent(t.0.node);
         let places = self.model.points.iter().zip(movable);
         for ((touch, movable), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
             let place = movable.place(self.level, touch, v);

@@ -6,8 +6,8 @@
 //! problem of a level is solved with forces and displacements of each body divided by it. The conditions are homogeneous,
 //! so that only data change (`d`, `e`, given slip bounds), operators do not; units are powers of two, so that no digit changes.
 
-use crate::candidates::Candidate;
-use crate::level::Level;
+use crate::candidates::ContactPoint;
+use crate::level::StepProblem;
 use crate::model::Model;
 use crate::solver::Iterate;
 use signorini_fem_mesh::{Decomposition, DisjointSets};
@@ -27,7 +27,7 @@ impl Bodies {
     pub(crate) fn new(
         tfeti: &Tfeti,
         decomposition: &Decomposition,
-        candidates: &[Candidate],
+        candidates: &[ContactPoint],
     ) -> Self {
         let (coarse, gluing) = (tfeti.coarse(), tfeti.gluing());
         let numbers = joined(tfeti, decomposition, candidates);
@@ -81,7 +81,7 @@ impl Bodies {
 
     /// The units of force of all bodies, N: the nearest powers of two to the sizes of their multipliers, or of their loads
     /// or of what moved supports would do to their nodes if these are larger; empty for one body, which needs none.
-    fn units(&self, model: &Model, level: &Level, start: &[f64]) -> Vec<f64> {
+    fn units(&self, model: &Model, level: &StepProblem, start: &[f64]) -> Vec<f64> {
         if self.count <= 1 {
             return Vec::new();
         }
@@ -105,9 +105,9 @@ impl Bodies {
     pub(crate) fn scaled(
         &self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         iterate: &mut Iterate,
-    ) -> Option<(Level, Units)> {
+    ) -> Option<(StepProblem, Units)> {
         let own = self.units(model, level, &iterate.lambda);
         if own.is_empty() {
             return None;
@@ -136,18 +136,15 @@ impl Bodies {
 
 /// A number for each body of the coarse space: the same for those that may touch each other, whether the points that may are in
 /// the dual problem or not.
-fn joined(tfeti: &Tfeti, decomposition: &Decomposition, candidates: &[Candidate]) -> Vec<u32> {
+fn joined(tfeti: &Tfeti, decomposition: &Decomposition, candidates: &[ContactPoint]) -> Vec<u32> {
     let coarse = tfeti.coarse();
     let mut sets = DisjointSets::new(coarse.bodies());
     let body = |node: u32| {
         let copy = decomposition.copies(node as usize)[0];
         coarse.body_of()[copy.subdomain as usize] as usize
     };
-    for (node, opponent) in candidates
-        .iter()
-        .filter_map(|c| Some((c.node, c.opponent?)))
-    {
-        sets.join(body(node), body(opponent));
+    for (node, partner) in candidates.iter().filter_map(|c| Some((c.node, c.partner?))) {
+        sets.join(body(node), body(partner));
     }
     sets.numbers()
 }

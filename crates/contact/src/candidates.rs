@@ -12,9 +12,9 @@ use crate::error::ContactError;
 use crate::magnitude::{largest, rounding};
 use crate::partners::{Partner, partners};
 use crate::scene::Scene;
-use signorini_fem_mesh::{Frame, Surface, TetMesh};
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
-use signorini_tfeti::{ContactNodes, ContactPoint};
+use signorini_tfeti::{ContactConstraint, ContactConstraints};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
@@ -22,27 +22,27 @@ use std::collections::HashMap;
 const ALONG: f64 = 1e-9;
 
 /// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
-/// angle (tests/edges_apart.rs). Within smaller ones a node would have twice the same row, which [`ContactNodes`] refuses, and one
+/// angle (tests/edges_apart.rs). Within smaller ones a node would have twice the same row, which [`ContactConstraints`] refuses, and one
 /// condition keeps the other to 1.4e-6 of the way along the surface, which the certificate sees.
 const SAME: f64 = 1.0 - 1e-12;
 
 /// A contact point before any row is made.
 #[derive(Debug, Clone)]
-pub(crate) struct Candidate {
+pub(crate) struct ContactPoint {
     /// Position of its contact surface in the scene.
     pub(crate) surface: usize,
     /// Mesh node.
     pub(crate) node: u32,
     /// Its partner on another body.
-    pub(crate) opponent: Option<u32>,
-    pub(crate) frame: Frame,
+    pub(crate) partner: Option<u32>,
+    pub(crate) frame: SurfaceFrame,
     /// A third of the areas of the facets of its side, m².
     pub(crate) area: f64,
     /// Initial distance to the obstacle, m.
     pub(crate) gap: f64,
 }
 
-impl Candidate {
+impl ContactPoint {
     /// The gap where the obstacle has moved by `way`, m.
     pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
@@ -59,9 +59,9 @@ pub(crate) struct Found {
     /// The surfaces of its contacts.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-    pub(crate) conditions: Vec<Candidate>,
+    pub(crate) conditions: Vec<ContactPoint>,
     /// The contact points that stand for them.
-    pub(crate) points: Vec<Candidate>,
+    pub(crate) points: Vec<ContactPoint>,
     /// What of a gap may be rounding, m.
     pub(crate) rounding: f64,
 }
@@ -84,15 +84,15 @@ impl Found {
 
     /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are judged elsewhere: of
     /// nodes that supports hold ([`driven`](crate::driven)), and of points that screening has left out.
-    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<Candidate> {
+    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
         let mut places = places.peekable();
-        let mut without: HashMap<u32, Vec<&Candidate>> = HashMap::new();
+        let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();
         for (place, point) in self.points.iter().enumerate() {
             if places.next_if_eq(&place).is_none() {
                 without.entry(point.node).or_default().push(point);
             }
         }
-        let left = |c: &&Candidate| {
+        let left = |c: &&ContactPoint| {
             let points = without.get(&c.node);
             !points.is_some_and(|p| p.iter().any(|p| is_same(p, c)))
         };
@@ -103,20 +103,20 @@ impl Found {
 /// The points as `tfeti` wants them.
 pub(crate) fn contact_nodes<'a>(
     scene: &Scene,
-    candidates: impl Iterator<Item = &'a Candidate>,
-) -> ContactNodes {
-    let point = |c: &Candidate| {
+    candidates: impl Iterator<Item = &'a ContactPoint>,
+) -> ContactConstraints {
+    let point = |c: &ContactPoint| {
         let contact = &scene.contacts[c.surface];
-        ContactPoint::new(c.node, c.frame)
-            .with_opponent(c.opponent)
+        ContactConstraint::new(c.node, c.frame)
+            .with_partner(c.partner)
             .with_friction(contact.friction().is_some())
             .with_moving_obstacle(contact.motion.is_some())
     };
     candidates.map(point).collect()
 }
 
-fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Candidate>, ContactError> {
-    let mut out: Vec<Candidate> = Vec::new();
+fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
+    let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
         let first = out.len();
         let fixed = fixed_frame(index, contact, surface)?;
@@ -132,10 +132,10 @@ fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Candidate>, Con
             let one = [(surface.frames()[local], surface.areas()[local])];
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
-                out.push(Candidate {
+                out.push(ContactPoint {
                     surface: index,
                     node,
-                    opponent: partner.map(|p| p.node),
+                    partner: partner.map(|p| p.node),
                     frame: fixed.unwrap_or(frame),
                     area,
                     gap,
@@ -150,10 +150,10 @@ fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Candidate>, Con
 /// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
 fn points(
     scene: &Scene,
-    conditions: &[Candidate],
+    conditions: &[ContactPoint],
     rounding: f64,
-) -> Result<Vec<Candidate>, ContactError> {
-    let mut out: Vec<Candidate> = Vec::with_capacity(conditions.len());
+) -> Result<Vec<ContactPoint>, ContactError> {
+    let mut out: Vec<ContactPoint> = Vec::with_capacity(conditions.len());
     // points of each node that there may be others of
     let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     let mut count = vec![0u32; scene.mesh.points().len()];
@@ -166,7 +166,7 @@ fn points(
         let others = known.entry(condition.node).or_default();
         match others
             .iter()
-            .find(|k| condition.opponent.is_none() && is_same(&out[**k], condition))
+            .find(|k| condition.partner.is_none() && is_same(&out[**k], condition))
         {
             Some(&k) => join(scene, rounding, &mut out[k], condition)?,
             None => {
@@ -183,15 +183,15 @@ fn fixed_frame(
     index: usize,
     contact: &Contact,
     surface: &Surface,
-) -> Result<Option<Frame>, ContactError> {
+) -> Result<Option<SurfaceFrame>, ContactError> {
     let ContactNormal::Fixed(normal) = contact.normal else {
         return Ok(None);
     };
-    let frame = Frame::from_normal(normal).ok_or(ContactError::ObstacleNormal {
+    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal {
         contact: index,
         normal,
     })?;
-    let outside = |own: &Frame| frame.normal_part(own.normal) > ALONG;
+    let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
     if !surface.frames().iter().any(outside) {
         return Err(ContactError::ObstacleSide {
             contact: index,
@@ -203,8 +203,8 @@ fn fixed_frame(
 }
 
 /// Whether two conditions of a node are on the same displacement: one of them then follows from the other.
-fn is_same(a: &Candidate, b: &Candidate) -> bool {
-    a.opponent == b.opponent && a.frame.normal_part(b.frame.normal) > SAME
+fn is_same(a: &ContactPoint, b: &ContactPoint) -> bool {
+    a.partner == b.partner && a.frame.normal_part(b.frame.normal) > SAME
 }
 
 /// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are its own.
@@ -212,8 +212,8 @@ fn is_same(a: &Candidate, b: &Candidate) -> bool {
 fn join(
     scene: &Scene,
     rounding: f64,
-    point: &mut Candidate,
-    other: &Candidate,
+    point: &mut ContactPoint,
+    other: &ContactPoint,
 ) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
@@ -254,15 +254,15 @@ fn order(difference: f64, rounding: f64) -> Ordering {
 fn stays(
     scene: &Scene,
     rounding: f64,
-    point: &Candidate,
-    other: &Candidate,
+    point: &ContactPoint,
+    other: &ContactPoint,
     nearer: Ordering,
 ) -> Result<bool, ContactError> {
     let [x, y] = [point, other].map(|c| &scene.contacts[c.surface]);
     if !x.carries_field() && !y.carries_field() {
         return Ok(true);
     }
-    for level in 0..scene.analysis.levels() {
+    for level in 0..scene.analysis.steps() {
         let way = x.obstacle_at(scene.analysis.time(level).unwrap_or(0.0));
         let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
         if order(difference, rounding) != nearer {
@@ -281,7 +281,7 @@ fn check_turn(
     scene: &Scene,
     index: usize,
     surface: &Surface,
-    own: &[Candidate],
+    own: &[ContactPoint],
 ) -> Result<(), ContactError> {
     let contact = &scene.contacts[index];
     let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
@@ -304,7 +304,7 @@ fn check_turn(
         let along = |node: u32| {
             let from = own.partition_point(|c| c.node < node);
             let sides = own[from..].iter().take_while(|c| c.node == node);
-            let facing = |c: &&Candidate| c.frame.normal_part(flat);
+            let facing = |c: &&ContactPoint| c.frame.normal_part(flat);
             let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
             side.map_or(0.0, |c| factor * c.frame.normal_part(way))
         };
@@ -330,7 +330,11 @@ fn check_turn(
 }
 
 /// The sides that meet at each node of a crease, as frames and areas; keys are places in the surface.
-fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<(Frame, f64)>> {
+fn creases(
+    mesh: &TetMesh,
+    surface: &Surface,
+    crease: f64,
+) -> HashMap<u32, Vec<(SurfaceFrame, f64)>> {
     let mut out = HashMap::new();
     if crease >= 180.0 {
         return out;
@@ -360,7 +364,7 @@ fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<(
                 area += length(v) / 3.0;
                 (0..3).for_each(|c| sum[c] += v[c]);
             }
-            Frame::from_normal(sum).map(|frame| (frame, area))
+            SurfaceFrame::from_normal(sum).map(|frame| (frame, area))
         };
         out.insert(node as u32, sides.iter().filter_map(side).collect());
     }

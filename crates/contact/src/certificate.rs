@@ -20,7 +20,7 @@
 //! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
 
-use crate::level::{Level, ROUNDED};
+use crate::level::{ROUNDED, StepProblem};
 use crate::model::{Model, Tangential};
 use crate::state::{Peak, REST};
 use signorini_qp::vector;
@@ -151,7 +151,12 @@ impl Sizes {
 }
 
 /// Sizes of every body.
-pub(crate) fn sizes(model: &Model, level: &Level, lambda: &[f64], m: &Measured<'_>) -> Vec<Sizes> {
+pub(crate) fn sizes(
+    model: &Model,
+    level: &StepProblem,
+    lambda: &[f64],
+    m: &Measured<'_>,
+) -> Vec<Sizes> {
     let bodies = &model.bodies;
     let mut out = vec![Sizes::default(); bodies.count().max(1)];
     // where nothing moves, what its load would do to a single node is the scale
@@ -208,7 +213,7 @@ pub(crate) fn sizes(model: &Model, level: &Level, lambda: &[f64], m: &Measured<'
 
 pub(crate) fn certify(
     model: &Model,
-    level: &Level,
+    level: &StepProblem,
     lambda: &[f64],
     m: &Measured<'_>,
     sizes: &[Sizes],
@@ -278,7 +283,7 @@ pub(crate) fn certify(
 
 /// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each contact by itself,
 /// and mean displacements of its nodes.
-fn judge(model: &Model, level: &Level, u: &[f64], sizes: &[Sizes], gap: &mut Violation) {
+fn judge(model: &Model, level: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &mut Violation) {
     let (tfeti, scene) = (&model.tfeti, &model.scene);
     let weights = tfeti.copy_stiffness();
     let along = |node: u32, normal: &[f64; 3]| {
@@ -298,7 +303,7 @@ fn judge(model: &Model, level: &Level, u: &[f64], sizes: &[Sizes], gap: &mut Vio
         let open = condition.gap_after(scene, way.unwrap_or(&[0.0; 3]));
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.found.rounding;
-        let partner = condition.opponent.map_or(0.0, |node| along(node, normal));
+        let partner = condition.partner.map_or(0.0, |node| along(node, normal));
         let depth = along(condition.node, normal) - partner - open;
         let copies = model.decomposition.copies(condition.node as usize);
         let body = copies
@@ -309,7 +314,12 @@ fn judge(model: &Model, level: &Level, u: &[f64], sizes: &[Sizes], gap: &mut Vio
 }
 
 /// Slip bound of a point in newtons, from the level's own normal forces.
-pub(crate) fn slip_bound(model: &Model, level: &Level, k: usize, lambda: &[f64]) -> Option<f64> {
+pub(crate) fn slip_bound(
+    model: &Model,
+    level: &StepProblem,
+    k: usize,
+    lambda: &[f64],
+) -> Option<f64> {
     let point = &model.points[k];
     if point.tangential == Tangential::None {
         return None;
@@ -331,7 +341,7 @@ mod tests {
     fn judged(scene: Scene, displacement: [f64; 3]) -> Violation {
         let mut model = Model::new(scene, &Settings::default()).expect("model");
         model.points.clear();
-        let mut level = Level::default();
+        let mut level = StepProblem::default();
         level.prepare(&model, &State::default(), 0).expect("level");
         let u = displacement.repeat(model.tfeti.torn_dim() / 3);
         let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
@@ -383,7 +393,7 @@ mod tests {
         let ramp = History::ramp(1.0, 1.0).expect("ramp");
         let moving = Contact::rigid(brick::Z_MIN)
             .with_gap_field(|x| 0.1 * x[0])
-            .moved([1.0, 0.0, 0.05], ramp);
+            .with_motion([1.0, 0.0, 0.05], ramp);
         let scene = cube()
             .with_contact(moving)
             .with_analysis(Analysis::quasistatic(1.0, 1));

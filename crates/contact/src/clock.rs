@@ -148,7 +148,7 @@ impl Analysis {
 
     /// Number of time levels to solve.
     #[must_use]
-    pub fn levels(&self) -> usize {
+    pub fn steps(&self) -> usize {
         match self {
             Self::Static { .. } => 1,
             Self::Quasistatic { times, .. } => times.len(),
@@ -166,7 +166,7 @@ impl Analysis {
 
     /// Length of the step that ends at a level; `None` for a static scene.
     #[must_use]
-    pub fn step(&self, level: usize) -> Option<f64> {
+    pub fn step_size(&self, level: usize) -> Option<f64> {
         match self {
             Self::Static { .. } => None,
             Self::Quasistatic { times, .. } => {

@@ -33,7 +33,7 @@ pub(crate) struct Separation {
 }
 
 #[derive(Debug)]
-pub(crate) struct Cone {
+pub(crate) struct WrenchCone {
     dim: usize,
     generators: Vec<Generators>,
     /// Norm of the largest generator.
@@ -63,7 +63,7 @@ const MUCH: f64 = 1e3;
 /// Accuracy of the factor that is named, relative.
 const FACTOR: f64 = 1e-4;
 
-impl Cone {
+impl WrenchCone {
     pub(crate) fn new(dim: usize, generators: Vec<Generators>) -> Self {
         let mut largest = 0.0_f64;
         for g in &generators {
@@ -299,14 +299,14 @@ mod tests {
     use super::*;
 
     /// Two points at x = -1 and 1 on a floor; motions: up, along the floor, rotation in the plane.
-    fn two_points(coefficient: f64) -> Cone {
+    fn two_points(coefficient: f64) -> WrenchCone {
         let point = |x: f64| Generators {
             normal: vec![1.0, 0.0, x],
             tangents: vec![vec![0.0, 1.0, 0.0]],
             coefficient: Some(coefficient),
             given: 0.0,
         };
-        Cone::new(3, vec![point(-1.0), point(1.0)])
+        WrenchCone::new(3, vec![point(-1.0), point(1.0)])
     }
 
     #[test]
@@ -358,7 +358,7 @@ mod tests {
         assert_eq!(two_points(0.0).friction_needed(&[1.0, 0.1, 0.0]), None);
     }
 
-    fn held(cone: &mut Cone, b: [f64; 3]) -> bool {
+    fn held(cone: &mut WrenchCone, b: [f64; 3]) -> bool {
         let length = norm(&b);
         cone.separates(&b.map(|v| v / length)).is_none()
     }
@@ -384,7 +384,7 @@ mod tests {
                 let vectors = std::iter::once(&mut g.normal).chain(&mut g.tangents);
                 vectors.flatten().for_each(|v| *v *= scale);
             }
-            let mut cone = Cone::new(3, cone.generators);
+            let mut cone = WrenchCone::new(3, cone.generators);
             assert!(held(&mut cone, [1.0, 0.29, 0.3]), "{scale:e}");
             assert!(!held(&mut cone, [1.0, 0.31, 0.3]), "{scale:e}");
             assert!(!held(&mut cone, [1.0, 0.0, 1.01]), "{scale:e}");
@@ -411,7 +411,7 @@ mod tests {
 
     #[test]
     fn without_contact_points_nothing_is_held() {
-        let mut cone = Cone::new(2, Vec::new());
+        let mut cone = WrenchCone::new(2, Vec::new());
         assert_eq!(cone.separates(&[0.6, -0.8]), Some(vec![0.6, -0.8]));
     }
 
@@ -432,7 +432,7 @@ mod tests {
                 }
             })
             .collect();
-        let mut cone = Cone::new(6, points);
+        let mut cone = WrenchCone::new(6, points);
         for (along, expected) in [(0.49, true), (0.499_99, true), (0.500_1, false)] {
             let b = [0.6 * along, 0.8 * along, 1.0, 0.0, 0.0, 0.0];
             let length = norm(&b);

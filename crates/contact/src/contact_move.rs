@@ -4,8 +4,8 @@
 //! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more freedom. Where
 //! it is not free either, both move, each where it can.
 
-use crate::level::Level;
-use crate::model::{Model, TouchPoint};
+use crate::level::StepProblem;
+use crate::model::{ConstrainedPoint, Model};
 use crate::point_state::PointState;
 use nalgebra::{DMatrix, Vector3};
 
@@ -60,7 +60,7 @@ pub(crate) struct Movable {
 }
 
 impl Movable {
-    pub(crate) fn new(model: &Model, touch: &TouchPoint) -> Self {
+    pub(crate) fn new(model: &Model, touch: &ConstrainedPoint) -> Self {
         let subdomains = model.decomposition.subdomains();
         let mut sides = [Side::default(); 2];
         let rows = touch.directions().zip(0..);
@@ -83,7 +83,7 @@ impl Movable {
             }
         }
         let [mut first, second] = sides;
-        match touch.opponent {
+        match touch.partner {
             None => {
                 for (along, (direction, ..)) in first.along.iter_mut().zip(touch.along()) {
                     *along = direction;
@@ -95,12 +95,12 @@ impl Movable {
                     both: None,
                 }
             }
-            Some(opponent) => {
+            Some(partner) => {
                 let swap = second.freedom() > first.freedom() + SAME;
                 let (node, own, still) = if swap {
-                    (opponent, second, (touch.node, first))
+                    (partner, second, (touch.node, first))
                 } else {
-                    (touch.node, first, (opponent, second))
+                    (touch.node, first, (partner, second))
                 };
                 let rows = touch.directions().count();
                 let held = own.freedom() < rows as f64 - HELD;
@@ -133,7 +133,7 @@ impl Movable {
     }
 
     /// Moves the node out of the obstacle, if it is inside.
-    pub(crate) fn push_out(&self, level: &Level, touch: &TouchPoint, v: &mut [f64]) {
+    pub(crate) fn push_out(&self, level: &StepProblem, touch: &ConstrainedPoint, v: &mut [f64]) {
         let place = self.place(level, touch, v);
         let depth = place.depth(self.value(v)).max(0.0);
         self.shift(v, 0, -depth);
@@ -145,7 +145,7 @@ impl Movable {
     }
 
     /// The conditions on the node that moves, with the others at their displacements `v`.
-    pub(crate) fn place(&self, level: &Level, touch: &TouchPoint, v: &[f64]) -> Place {
+    pub(crate) fn place(&self, level: &StepProblem, touch: &ConstrainedPoint, v: &[f64]) -> Place {
         // the offset of a row has the motion that supports prescribe along it already
         let offset = |row: usize, scale: f64, still: fn(&Side) -> [f64; 3]| {
             let own = level.offset[row] / scale;
@@ -209,9 +209,9 @@ pub(crate) struct Moved {
 impl Moved {
     /// Moves a node such that the gap is smallest with all other nodes held; `rows` are stiffnesses of rows in N/m.
     pub(crate) fn new(
-        touch: &TouchPoint,
+        touch: &ConstrainedPoint,
         point: &PointState,
-        (level, movable): (&Level, &Movable),
+        (level, movable): (&StepProblem, &Movable),
         rows: &[f64],
         v: &mut [f64],
     ) -> Self {

@@ -120,7 +120,7 @@ impl Contact {
 
     /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
     #[must_use]
-    pub fn and_partner(mut self, tag: FacetTag) -> Self {
+    pub fn with_partner(mut self, tag: FacetTag) -> Self {
         if self.partner.is_empty() && matches!(self.gap, Gap::None) {
             self.gap = Gap::Measured;
         }
@@ -146,7 +146,7 @@ impl Contact {
     /// More facets of the same kind. For another gap, direction or friction give a scene another contact
     /// ([`Scene::with_contact`](crate::Scene::with_contact)).
     #[must_use]
-    pub fn and_tag(mut self, tag: FacetTag) -> Self {
+    pub fn with_tag(mut self, tag: FacetTag) -> Self {
         self.tags.push(tag);
         self
     }
@@ -163,7 +163,7 @@ impl Contact {
     }
 
     /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. It is asked at the nodes of
-    /// the surface and, where the obstacle [moves](Self::moved) along the surface, at the places that pass under them, which may lie beside it.
+    /// the surface and, where the obstacle [moves](Self::with_motion) along the surface, at the places that pass under them, which may lie beside it.
     #[must_use]
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Arc::new(gap));
@@ -198,7 +198,7 @@ impl Contact {
     /// against the radius of curvature; longer ones are refused ([`MovedField`](ContactError::MovedField)). Friction laws that depend on the
     /// place stay with the nodes of the body.
     #[must_use]
-    pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
+    pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
         self
     }

@@ -3,12 +3,12 @@
 //! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
 //! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
-use crate::candidates::{Candidate, contact_nodes};
+use crate::candidates::{ContactPoint, contact_nodes};
 use crate::error::ContactError;
 use crate::magnitude::rounding;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
-use signorini_tfeti::{HeldPoint, Support, held_points};
+use signorini_tfeti::{NodeSupport, PrescribedPoint, prescribed_points};
 
 /// Depth above this share of the displacement or the gap counts.
 const RELATIVE: f64 = 1e-9;
@@ -16,24 +16,25 @@ const RELATIVE: f64 = 1e-9;
 /// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some time level.
 pub(crate) fn check(
     scene: &Scene,
-    candidates: &[Candidate],
-    supports: &[Support],
+    candidates: &[ContactPoint],
+    supports: &[NodeSupport],
     motions: &[History],
 ) -> Result<(), ContactError> {
     let points = scene.mesh.points();
     let nodes = contact_nodes(scene, candidates.iter());
-    let held: Vec<(HeldPoint, &Candidate)> = held_points(&nodes, supports, points.len())?
-        .into_iter()
-        .map(|point| {
-            let candidate = &candidates[point.point];
-            (point, candidate)
-        })
-        .collect();
+    let held: Vec<(PrescribedPoint, &ContactPoint)> =
+        prescribed_points(&nodes, supports, points.len())?
+            .into_iter()
+            .map(|point| {
+                let candidate = &candidates[point.point];
+                (point, candidate)
+            })
+            .collect();
     if held.is_empty() {
         return Ok(());
     }
     let rounding = rounding(&scene.mesh);
-    let times = (0..scene.analysis.levels()).filter_map(|level| scene.analysis.time(level));
+    let times = (0..scene.analysis.steps()).filter_map(|level| scene.analysis.time(level));
     for time in times {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
         let mut deepest: Option<(f64, u32, f64, f64)> = None;

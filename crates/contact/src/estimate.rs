@@ -116,7 +116,7 @@ impl Estimate {
         forecast: &Forecast,
         sizes: Sizes,
     ) -> Self {
-        let levels = analysis.levels();
+        let levels = analysis.steps();
         let likely = likely_products(effects, settings, levels, &sizes);
         let bends = bending(effects, &sizes);
         let fewest = if effects.contact {
@@ -253,10 +253,10 @@ fn likely_products(effects: &Effects, settings: &Settings, levels: usize, sizes:
         (true, FrictionKind::None) => (14.0, 0.6, 1.8, 1.0),
         (true, _) => (17.0, 0.9, 1.4, 1.25),
     };
-    let given = effects.friction == FrictionKind::Given;
+    let given = effects.friction == FrictionKind::Tresca;
     let method = match settings.method {
         _ if !effects.contact => 1.0,
-        Method::Face(_) => 1.0,
+        Method::ActiveSet(_) => 1.0,
         Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } if given => 10.0,
         Method::SuccessiveApproximations { .. } => 13.0,
         Method::OneLoop { .. } => 11.0,

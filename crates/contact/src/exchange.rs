@@ -12,7 +12,7 @@
 //! | `d` | direction in the null space along which `a` moves |
 //! | `held` | rows that stay: those at their bound that `d` would take across it |
 
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::model::{Model, Tangential};
 use nalgebra::{DMatrix, DVector};
 use signorini_tfeti::Dependency;
@@ -62,7 +62,7 @@ impl Exchanges {
     pub(crate) fn settle(
         &self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         residual: &[f64],
         (scale, limit): (&[f64], f64),
         lambda: &mut [f64],
@@ -79,7 +79,7 @@ impl Exchange {
     fn new(model: &Model, dependency: &Dependency) -> Self {
         let rows = dependency.rows.clone();
         let of = |row: usize| rows.binary_search(&row).ok();
-        let place = |(k, point): (usize, &crate::model::TouchPoint)| {
+        let place = |(k, point): (usize, &crate::model::ConstrainedPoint)| {
             let normal = of(point.row)?;
             let (tangential, scale) = match point.tangential {
                 Tangential::None => (Vec::new(), 1.0),
@@ -102,7 +102,7 @@ impl Exchange {
     fn settle(
         &self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         residual: &[f64],
         (scale, limit): (&[f64], f64),
         lambda: &mut [f64],
@@ -131,7 +131,13 @@ impl Exchange {
     }
 
     /// Rows that the face does not leave free: those of open and of sliding points.
-    fn held(&self, model: &Model, level: &Level, r: &DVector<f64>, lambda: &[f64]) -> Vec<bool> {
+    fn held(
+        &self,
+        model: &Model,
+        level: &StepProblem,
+        r: &DVector<f64>,
+        lambda: &[f64],
+    ) -> Vec<bool> {
         let mut held = vec![false; self.rows.len()];
         for place in &self.points {
             let normal = place.normal;
@@ -155,7 +161,7 @@ impl Exchange {
     fn way(
         &self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         r: &DVector<f64>,
         lambda: &[f64],
         follow: bool,
@@ -215,7 +221,7 @@ impl Exchange {
     fn slides(
         &self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         place: &Place,
         lambda: &[f64],
         (d, follow): (&DVector<f64>, bool),

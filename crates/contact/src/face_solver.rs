@@ -6,17 +6,18 @@
 use crate::error::ContactError;
 use crate::exchange::Exchanges;
 use crate::law::Friction;
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::model::{DISCS, Model, Tangential};
-use crate::paper_solver::PaperSolver;
-use crate::preconditioner::DualPreconditioner;
-use crate::report::{LevelReport, LevelStatus};
+use crate::paper_solver::SmalseSolver;
+use crate::preconditioner::SelectedPreconditioner;
+use crate::report::{StepReport, StepStatus};
 use crate::settings::Settings;
 use crate::solver::{Iterate, is_coulomb, level_status};
 use signorini_qp::{
-    FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Segment, Status, face, vector,
+    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, Segment, Status,
+    active_set, vector,
 };
-use signorini_tfeti::{DualOperator, FaceSpace};
+use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
 /// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
 const SAFETY: f64 = 1.0;
@@ -37,26 +38,26 @@ const CONTRADICTION: f64 = 10.0;
 const TURNS: usize = 8;
 
 #[derive(Debug)]
-pub(crate) struct FaceSolver {
-    space: FaceSpace,
-    preconditioner: DualPreconditioner,
+pub(crate) struct ActiveSetSolver {
+    space: ActiveSetProjector,
+    preconditioner: SelectedPreconditioner,
     scale: Vec<f64>,
     set: ProductSet,
-    work: FaceWorkspace<DualOperator, DualPreconditioner>,
-    settings: FaceSettings,
+    work: ActiveSetWorkspace<DualOperator, SelectedPreconditioner>,
+    settings: ActiveSetSettings,
     exchanges: Exchanges,
     /// Made when it is first needed.
-    paper: Option<Box<PaperSolver>>,
+    paper: Option<Box<SmalseSolver>>,
 }
 
-impl FaceSolver {
+impl ActiveSetSolver {
     pub(crate) fn new(
         model: &Model,
         settings: &Settings,
-        face: &FaceSettings,
+        face: &ActiveSetSettings,
     ) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
-        let preconditioner = DualPreconditioner::new(model, settings.preconditioner)?;
+        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
         let mut scale = vec![0.0; model.tfeti.dual_dim()];
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         let mut compliance = vec![0.0; contact];
@@ -75,8 +76,12 @@ impl FaceSolver {
             *scale *= SHARED;
         }
         Ok(Self {
-            space: FaceSpace::new(model.tfeti.coarse(), contact, model.tfeti.row_weights())?,
-            work: FaceWorkspace::new(model.tfeti.dual(), &preconditioner),
+            space: ActiveSetProjector::new(
+                model.tfeti.coarse(),
+                contact,
+                model.tfeti.row_weights(),
+            )?,
+            work: ActiveSetWorkspace::new(model.tfeti.dual(), &preconditioner),
             preconditioner,
             scale,
             set: model.set.clone(),
@@ -89,17 +94,17 @@ impl FaceSolver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-    ) -> Result<LevelReport, ContactError> {
-        let mut report = LevelReport::new();
+    ) -> Result<StepReport, ContactError> {
+        let mut report = StepReport::new();
         report.counters.inequality_solves = 1;
         level.slip_bounds(model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
         let start = iterate.lambda.clone();
         self.space.set_rhs(&level.rhs);
-        let problem = FaceProblem {
+        let problem = ActiveSetProblem {
             operator: model.tfeti.dual(),
             preconditioner: &self.preconditioner,
             scale: &self.scale,
@@ -111,8 +116,8 @@ impl FaceSolver {
             .settings
             .clone()
             .with_tolerance(settings.tolerance * SAFETY)
-            .with_least(least)
-            .with_least_constrained(least_contact);
+            .with_error_floor(least)
+            .with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
             let slopes = model.slip_slopes(|k| level.coefficients[k]);
@@ -127,7 +132,7 @@ impl FaceSolver {
         };
         let mut turns = 0;
         let status = loop {
-            let outcome = face(
+            let outcome = active_set(
                 &problem,
                 &mut self.space,
                 &mut self.set,
@@ -157,7 +162,7 @@ impl FaceSolver {
             };
             let limit = CONTRADICTION
                 * face_settings.tolerance
-                * vector::norm(&iterate.lambda).max(face_settings.least);
+                * vector::norm(&iterate.lambda).max(face_settings.error_floor);
             if status != Status::Converged
                 || turns == TURNS
                 || !self.exchanges.settle(
@@ -189,24 +194,24 @@ impl FaceSolver {
     fn fall_back(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
         start: Vec<f64>,
-        mut report: LevelReport,
-    ) -> Result<LevelReport, ContactError> {
+        mut report: StepReport,
+    ) -> Result<StepReport, ContactError> {
         if !iterate.lambda.iter().all(|v| v.is_finite())
-            || matches!(report.status, LevelStatus::Stagnated | LevelStatus::NotHeld)
+            || matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld)
         {
             iterate.lambda = start;
         }
         let mut paper = match self.paper.take() {
             Some(paper) => paper,
-            None => Box::new(PaperSolver::new(model, settings)?),
+            None => Box::new(SmalseSolver::new(model, settings)?),
         };
         iterate.multiplier.clear();
         // other normal forces may hold the body yet
-        let not_held = report.status == LevelStatus::NotHeld;
+        let not_held = report.status == StepStatus::NotHeld;
         let limit = settings.max_fallback_products;
         let outcome = paper.solve_within(limit, model, level, settings, iterate);
         self.paper = Some(paper);
@@ -216,7 +221,7 @@ impl FaceSolver {
         // SMALSE has no such estimate
         report.estimated_error = None;
         report.status = match second.status {
-            LevelStatus::IterationLimit if not_held => LevelStatus::NotHeld,
+            StepStatus::IterationLimit if not_held => StepStatus::NotHeld,
             status => status,
         };
         report.iterations += second.iterations;

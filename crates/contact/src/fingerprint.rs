@@ -4,7 +4,7 @@
 //! levels, and so may settings: the state is then where the changed scene goes on from.
 
 use crate::clock::{Analysis, DifferenceFormula};
-use crate::model::{Model, TouchPoint};
+use crate::model::{ConstrainedPoint, Model};
 use crate::settings::Settings;
 use signorini_fem_mesh::{Decomposition, TetMesh};
 use signorini_tfeti::Gluing;
@@ -30,7 +30,7 @@ impl Fingerprint {
         analysis: &Analysis,
         decomposition: &Decomposition,
         gluing: &Gluing,
-        points: &[TouchPoint],
+        points: &[ConstrainedPoint],
     ) -> Self {
         let coordinates = mesh.points().iter().flatten();
         let tets = mesh.tets().iter().flatten();
@@ -111,10 +111,10 @@ fn number(x: f64) -> u64 {
     (x + 0.0).to_bits()
 }
 
-fn point(point: &TouchPoint) -> impl Iterator<Item = u64> {
+fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
     let [a, b] = point.frame.tangents;
     let numbers = [point.frame.normal, a, b].into_iter().flatten();
-    let nodes = std::iter::once(point.node).chain(point.opponent);
+    let nodes = std::iter::once(point.node).chain(point.partner);
     nodes
         .map(u64::from)
         .chain(numbers.chain([point.area]).map(number))
@@ -127,7 +127,7 @@ pub(crate) fn operator(
     origin: &Fingerprint,
     model: &Model,
     settings: &Settings,
-    points: &[TouchPoint],
+    points: &[ConstrainedPoint],
 ) -> u64 {
     let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
     let body = [origin.points, origin.tets, origin.parts, origin.contact];
@@ -150,7 +150,7 @@ pub(crate) fn operator(
     });
     let how = format!(
         "{:?}",
-        (settings.row_rule, settings.sharing, settings.inverse)
+        (settings.row_scaling, settings.sharing, settings.inverse)
     );
     let words = body.into_iter().chain(laws.map(|x| number(*x)));
     let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));

@@ -3,20 +3,20 @@
 use crate::algebraic::{AlgebraicError, Solved};
 use crate::certificate::Certificate;
 use crate::error::ContactError;
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::model::Model;
 use crate::point_state::{ContactSummary, PointState};
 use crate::reactions::{self, Reactions};
-use crate::report::LevelReport;
+use crate::report::StepReport;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, DiscretisationError, StrainRecovery, Surface, fields};
 
 /// Result of one level; borrowed from the simulation.
 #[derive(Debug)]
-pub struct Frame<'a> {
+pub struct StepResult<'a> {
     pub(crate) model: &'a Model,
-    pub(crate) level: &'a Level,
-    pub(crate) report: &'a LevelReport,
+    pub(crate) level: &'a StepProblem,
+    pub(crate) report: &'a StepReport,
     pub(crate) certificate: &'a Certificate,
     pub(crate) summary: &'a ContactSummary,
     /// States of the points in the dual problem.
@@ -29,10 +29,10 @@ pub struct Frame<'a> {
     pub(crate) held: &'a [f64],
 }
 
-impl Frame<'_> {
+impl StepResult<'_> {
     /// Position of the level in the analysis, from 0.
     #[must_use]
-    pub fn level(&self) -> usize {
+    pub fn step(&self) -> usize {
         self.level.index
     }
 
@@ -68,12 +68,12 @@ impl Frame<'_> {
 
     /// How the level was solved.
     #[must_use]
-    pub fn report(&self) -> &LevelReport {
+    pub fn report(&self) -> &StepReport {
         self.report
     }
 
     /// The first earlier level that did not converge and on whose displacement this one depends
-    /// ([`LevelReport::unconverged_history`]).
+    /// ([`StepReport::unconverged_history`]).
     #[must_use]
     pub fn unconverged_history(&self) -> Option<usize> {
         self.report.unconverged_history
@@ -227,7 +227,7 @@ impl Frame<'_> {
         let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
         for point in self.solved {
             let force = point.force();
-            for (node, sign) in [(Some(point.node), 1.0), (point.opponent, -1.0)] {
+            for (node, sign) in [(Some(point.node), 1.0), (point.partner, -1.0)] {
                 let Some(node) = node else { continue };
                 (0..3).for_each(|c| field[3 * node as usize + c] += sign * force[c]);
             }

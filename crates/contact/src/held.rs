@@ -6,10 +6,10 @@
 //! is a motion on which the loads work and against which no contact force can. Where larger friction could, the error says so, and by which
 //! factor.
 
-use crate::cone::{Cone, Generators, Separation};
+use crate::cone::{Generators, Separation, WrenchCone};
 use crate::error::ContactError;
 use crate::law::Friction;
-use crate::model::{Model, TouchPoint};
+use crate::model::{ConstrainedPoint, Model};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, OrthonormalCoarse, RowWeights};
 
@@ -71,10 +71,10 @@ fn escapes(
     body: usize,
     motions: &[&FreeMotion],
 ) -> Result<Option<Escape>, ContactError> {
-    let mut cone = Cone::new(motions.len(), generators(model, body, motions)?);
+    let mut cone = WrenchCone::new(motions.len(), generators(model, body, motions)?);
     let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
     let largest = largest.fold(0.0, f64::max);
-    let given = model.any_law(|law| matches!(law, Friction::Given(_)));
+    let given = model.any_law(|law| matches!(law, Friction::Tresca(_)));
     let loads: Vec<(Vec<f64>, f64)> = model
         .loads
         .iter()
@@ -90,7 +90,7 @@ fn escapes(
         .collect();
     let analysis = &model.scene.analysis;
     let mut approved: Option<Vec<f64>> = None;
-    for level in 0..analysis.levels() {
+    for level in 0..analysis.steps() {
         let Some(time) = analysis.time(level) else {
             break;
         };
@@ -179,7 +179,7 @@ fn generators(
     let along =
         |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
     let mut out = Vec::new();
-    let own = |point: &&TouchPoint| model.bodies.of_row(point.row) == body;
+    let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
     for point in model.points.iter().filter(own) {
         let tangents = point
             .tangential
@@ -189,7 +189,7 @@ fn generators(
             });
         let (coefficient, given) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
-            Friction::Given(bound) => {
+            Friction::Tresca(bound) => {
                 let stress = bound.stress(point.node, point.position)?;
                 (Some(0.0), stress * point.area)
             }

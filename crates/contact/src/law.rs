@@ -19,7 +19,7 @@ pub enum Friction {
     #[default]
     None,
     /// Given friction (Tresca): the slip bound is known and does not depend on the pressure.
-    Given(SlipBound),
+    Tresca(SlipBound),
     /// Coulomb friction: the slip bound is the coefficient times the contact pressure.
     Coulomb(Coefficient),
 }
@@ -33,8 +33,8 @@ impl Friction {
 
     /// Given friction with one bound of the friction stress, in Pa.
     #[must_use]
-    pub fn given(stress: f64) -> Self {
-        Self::Given(SlipBound::Stress(stress))
+    pub fn tresca(stress: f64) -> Self {
+        Self::Tresca(SlipBound::Stress(stress))
     }
 
     /// Whether there are tangential forces at all.
@@ -48,9 +48,8 @@ impl Friction {
     pub fn is_zero(&self) -> bool {
         match self {
             Self::None => true,
-            Self::Given(SlipBound::Stress(value)) | Self::Coulomb(Coefficient::Constant(value)) => {
-                *value == 0.0
-            }
+            Self::Tresca(SlipBound::Stress(value))
+            | Self::Coulomb(Coefficient::Constant(value)) => *value == 0.0,
             _ => false,
         }
     }
@@ -256,7 +255,7 @@ pub(crate) fn check<'a>(
     for (friction, node, place) in points {
         match friction {
             Friction::None => continue,
-            Friction::Given(bound) => bound.stress(node, place)?,
+            Friction::Tresca(bound) => bound.stress(node, place)?,
             Friction::Coulomb(law) => law.value(node, place, 0.0)?,
         };
     }
@@ -302,12 +301,12 @@ mod tests {
         for (law, is_zero) in [
             (Friction::None, true),
             (Friction::coulomb(0.0), true),
-            (Friction::given(0.0), true),
+            (Friction::tresca(0.0), true),
             (Friction::coulomb(1e-9), false),
-            (Friction::given(1e-9), false),
+            (Friction::tresca(1e-9), false),
             (Friction::Coulomb(Coefficient::field(zero)), false),
             (
-                Friction::Given(SlipBound::StressField(Arc::new(zero))),
+                Friction::Tresca(SlipBound::StressField(Arc::new(zero))),
                 false,
             ),
         ] {

@@ -3,7 +3,7 @@
 use crate::contact_move::dot;
 use crate::error::ContactError;
 use crate::law::Friction;
-use crate::model::{Model, TouchPoint};
+use crate::model::{ConstrainedPoint, Model};
 use crate::scene::Scene;
 use crate::state::{Peak, REST, State};
 use signorini_qp::{ProductSet, vector};
@@ -14,7 +14,7 @@ pub(crate) const ROUNDED: f64 = 1e-8;
 
 /// Data of one level; vectors are allocated once and rewritten.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct Level {
+pub(crate) struct StepProblem {
     /// Position in the analysis, from 0.
     pub(crate) index: usize,
     /// Time, s.
@@ -48,7 +48,7 @@ pub(crate) struct Level {
     pub(crate) units: Vec<f64>,
 }
 
-impl Level {
+impl StepProblem {
     /// Computes the data of level `index` from the model and the state before it.
     pub(crate) fn prepare(
         &mut self,
@@ -57,13 +57,13 @@ impl Level {
         index: usize,
     ) -> Result<(), ContactError> {
         let analysis = &model.scene.analysis;
-        let levels = analysis.levels();
+        let levels = analysis.steps();
         let time = analysis
             .time(index)
             .ok_or(ContactError::Finished { levels })?;
         self.index = index;
         self.time = time;
-        self.step = analysis.step(index);
+        self.step = analysis.step_size(index);
         self.peaks.clear();
         self.peaks.extend_from_slice(state.peaks());
         self.peaks
@@ -151,7 +151,7 @@ impl Level {
     }
 
     /// The gap of a point with what an obstacle that moves along the surface has brought, without what it opens, m.
-    pub(crate) fn gap(&self, scene: &Scene, point: &TouchPoint) -> Result<f64, ContactError> {
+    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[0])
     }
 
@@ -159,7 +159,7 @@ impl Level {
     pub(crate) fn gap_before(
         &self,
         scene: &Scene,
-        point: &TouchPoint,
+        point: &ConstrainedPoint,
     ) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[1])
     }
@@ -220,9 +220,9 @@ impl Level {
         }
         // none where the law fails at a point: a later level must not take a part for all
         self.coefficients.clear();
-        let value = |(k, point): (usize, &TouchPoint)| match model.law(point) {
+        let value = |(k, point): (usize, &ConstrainedPoint)| match model.law(point) {
             Friction::None => Ok((0.0, 0.0)),
-            Friction::Given(bound) => {
+            Friction::Tresca(bound) => {
                 Ok((0.0, bound.stress(point.node, point.position)? * point.area))
             }
             Friction::Coulomb(law) => {
@@ -242,7 +242,7 @@ impl Level {
     }
 
     /// Slip bound of a point in units of force of its body (newtons), `-F_i lambda_nu,i` or the given one; 0 without friction.
-    pub(crate) fn bound(&self, k: usize, point: &TouchPoint, lambda: &[f64]) -> f64 {
+    pub(crate) fn bound(&self, k: usize, point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
         match (self.given.get(k), self.coefficients.get(k)) {
             (Some(given), Some(coefficient)) => {
                 let unit = self.units.get(k).copied().unwrap_or(1.0);
@@ -255,7 +255,7 @@ impl Level {
 
 fn gap_brought(
     scene: &Scene,
-    point: &TouchPoint,
+    point: &ConstrainedPoint,
     obstacles: &[[f64; 3]],
 ) -> Result<f64, ContactError> {
     let Some(way) = obstacles.get(point.surface) else {
@@ -273,14 +273,14 @@ fn gap_brought(
 }
 
 /// Pressing force at a point in newtons, not negative.
-pub(crate) fn normal_force(point: &TouchPoint, lambda: &[f64]) -> f64 {
+pub(crate) fn normal_force(point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
     (-point.scale * lambda[point.row]).max(0.0)
 }
 
 /// Of offsets that supports alone have made those of tangential rows between bodies; all others are zero.
-pub(crate) fn between_bodies(points: &[TouchPoint], offset: &[f64]) -> Vec<f64> {
+pub(crate) fn between_bodies(points: &[ConstrainedPoint], offset: &[f64]) -> Vec<f64> {
     let mut out = Vec::new();
-    for point in points.iter().filter(|p| p.opponent.is_some()) {
+    for point in points.iter().filter(|p| p.partner.is_some()) {
         for (_, row, _) in point.along() {
             out.resize(out.len().max(row + 1), 0.0);
             out[row] = offset[row];

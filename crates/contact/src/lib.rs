@@ -1,7 +1,7 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time levels, fixed-point loops and certificates.
 //!
 //! Elastic bodies, cut into subdomains or not, are loaded slowly and may touch a rigid foundation or each other. A [`Scene`] says what there
-//! is, a [`Simulation`] solves it time level by time level, and a [`Frame`] holds what a level ended with. Only the effects
+//! is, a [`Simulation`] solves it time level by time level, and a [`StepResult`] holds what a level ended with. Only the effects
 //! that a scene has are set up: without friction there are no tangential rows, without history no traces.
 //!
 //! | you want | you use |
@@ -11,11 +11,11 @@
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time levels | [`Analysis`] with a [`DifferenceFormula`]; one level alone: [`Analysis::Static`] |
 //! | to know the cost before any work | [`Plan`], [`Estimate`] |
-//! | the solver | [`Settings`]; [`Method::Face`] is the default, [`Method::paper`] the paper's |
-//! | forces, states, stress | [`Frame`], [`PointState`], [`ContactSummary`] |
-//! | reactions of supports | [`Frame::reactions`] |
-//! | to know whether a result is right | [`Certificate`]; [`LevelStatus`] says whether and why not |
-//! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`Frame::discretisation_error`], [`StepDoubling`] |
+//! | the solver | [`Settings`]; [`Method::ActiveSet`] is the default, [`Method::paper`] the paper's |
+//! | forces, states, stress | [`StepResult`], [`PointState`], [`ContactSummary`] |
+//! | reactions of supports | [`StepResult::reactions`] |
+//! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
+//! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`StepResult::discretisation_error`], [`StepDoubling`] |
 //! | to stop where more accuracy is useless | [`Accuracy`] |
 //! | less work where most of a surface stays open | [`Screening`] |
 //! | to follow or end a run | [`Observer`], [`Flow`] |
@@ -64,9 +64,9 @@
 //!
 //! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads that
 //! nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a level then ends
-//! with another [`LevelStatus`] than `Converged`, its frame holds the last iterate, and the certificate says how far it is.
-//! Later levels whose friction depends on its slip name it ([`Frame::unconverged_history`]). Who wants errors instead asks
-//! [`RunReport::require_converged`] or [`Frame::require_converged`].
+//! with another [`StepStatus`] than `Converged`, its frame holds the last iterate, and the certificate says how far it is.
+//! Later levels whose friction depends on its slip name it ([`StepResult::unconverged_history`]). Who wants errors instead asks
+//! [`RunReport::require_converged`] or [`StepResult::require_converged`].
 //!
 //! # Threads
 //!
@@ -124,15 +124,15 @@ pub use clock::{Analysis, DifferenceFormula};
 pub use contact_surface::{Contact, ContactNormal, Gap};
 pub use error::ContactError;
 pub use estimate::Estimate;
-pub use frame::Frame;
+pub use frame::StepResult;
 pub use law::{Coefficient, Friction, PlaceField, RateField, SlipBound};
-pub use model::TouchPoint;
+pub use model::ConstrainedPoint;
 pub use observer::{Flow, Observer, Silent};
 pub use plan::{Effects, FrictionKind, Plan};
 pub use point_state::{ContactState, ContactSummary, PointState};
 pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
-pub use report::{Counters, LevelFailure, LevelReport, LevelStatus, RunReport};
-pub use scene::{Cut, Load, Place, Scene, Support};
+pub use report::{Counters, RunReport, StepFailure, StepReport, StepStatus};
+pub use scene::{Load, Partition, Place, Scene, Support};
 pub use screening::Screening;
 pub use settings::{InnerAccuracy, Method, Preconditioner, Settings};
 pub use signorini_tfeti::{Directions, Rate};

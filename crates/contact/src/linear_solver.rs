@@ -2,10 +2,10 @@
 
 use crate::error::ContactError;
 use crate::held::orthonormal_coarse;
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::model::Model;
-use crate::preconditioner::DualPreconditioner;
-use crate::report::LevelReport;
+use crate::preconditioner::SelectedPreconditioner;
+use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::solver::{Iterate, level_status};
 use signorini_qp::{CgWorkspace, Tolerance, projected_cg};
@@ -19,9 +19,9 @@ const SLACK: f64 = 30.0;
 pub(crate) struct LinearSolver {
     coarse: OrthonormalCoarse,
     coarse_scratch: CoarseScratch,
-    preconditioner: DualPreconditioner,
+    preconditioner: SelectedPreconditioner,
     rhs: Vec<f64>,
-    work: CgWorkspace<DualOperator, OrthonormalCoarse, DualPreconditioner>,
+    work: CgWorkspace<DualOperator, OrthonormalCoarse, SelectedPreconditioner>,
 }
 
 impl std::fmt::Debug for LinearSolver {
@@ -34,7 +34,7 @@ impl LinearSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let factor = model.tfeti.coarse_factor();
         let coarse = orthonormal_coarse(model)?;
-        let preconditioner = DualPreconditioner::new(model, settings.preconditioner)?;
+        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
         Ok(Self {
             coarse_scratch: factor.scratch(),
             rhs: vec![0.0; model.tfeti.coarse().rows()],
@@ -47,10 +47,10 @@ impl LinearSolver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-    ) -> Result<LevelReport, ContactError> {
+    ) -> Result<StepReport, ContactError> {
         self.coarse
             .rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
         let outcome = projected_cg(
@@ -67,7 +67,7 @@ impl LinearSolver {
             &mut iterate.lambda,
             &mut self.work,
         )?;
-        let mut report = LevelReport::new();
+        let mut report = StepReport::new();
         report.status = level_status(outcome.status);
         report.iterations = outcome.iterations;
         report.counters.products = outcome.products;

@@ -61,7 +61,7 @@ fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<
 
 /// The largest size of a history at the levels, and its time.
 pub(crate) fn largest(analysis: &Analysis, history: &History) -> (f64, f64) {
-    let times = (0..analysis.levels()).filter_map(|level| analysis.time(level));
+    let times = (0..analysis.steps()).filter_map(|level| analysis.time(level));
     times.fold((0.0, 0.0), |worst: (f64, f64), time| {
         let value = history.value(time).abs();
         if value > worst.0 {
@@ -122,7 +122,7 @@ pub(crate) fn check_gaps(scene: &Scene, found: &Found) -> Result<(), ContactErro
         expect(c.gap.abs(), "m", place)?;
         let contact = &scene.contacts[c.surface];
         if contact.carries_field() {
-            let times = (0..scene.analysis.levels()).filter_map(|l| scene.analysis.time(l));
+            let times = (0..scene.analysis.steps()).filter_map(|l| scene.analysis.time(l));
             for time in times {
                 expect(
                     c.gap_after(scene, &contact.obstacle_at(time))?.abs(),

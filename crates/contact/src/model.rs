@@ -1,7 +1,7 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
 use crate::bodies::Bodies;
-use crate::candidates::{Candidate, Found, contact_nodes};
+use crate::candidates::{ContactPoint, Found, contact_nodes};
 use crate::driven;
 use crate::error::ContactError;
 use crate::law::Friction;
@@ -10,7 +10,7 @@ use crate::plan::Plan;
 use crate::precheck;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use signorini_fem_mesh::{Decomposition, Frame, History, StrainRecovery, assemble_load};
+use signorini_fem_mesh::{Decomposition, History, StrainRecovery, SurfaceFrame, assemble_load};
 use signorini_qp::{ProductSet, RadiusSlope, Segment};
 use signorini_tfeti as tfeti;
 use signorini_tfeti::{Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
@@ -18,17 +18,17 @@ use signorini_tfeti::{Gluing, LoadResponse, TangentialRows, Tfeti, TfetiBuilder}
 /// A node that can touch an obstacle or a node of another body. A node in an edge or a corner is several, with other normals.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct TouchPoint {
+pub struct ConstrainedPoint {
     /// Mesh node.
     pub node: u32,
     /// Its partner on another body; `None` for a rigid obstacle.
-    pub opponent: Option<u32>,
+    pub partner: Option<u32>,
     /// Position of its contact surface in [`Scene::contacts`].
     pub surface: usize,
     /// Its position, m.
     pub position: [f64; 3],
     /// Normal into the obstacle and two tangents.
-    pub frame: Frame,
+    pub frame: SurfaceFrame,
     /// A third of the areas of the adjacent facets, m².
     pub area: f64,
     /// Initial distance to the obstacle, m.
@@ -42,7 +42,7 @@ pub struct TouchPoint {
     pub(crate) tangential: Tangential,
 }
 
-impl TouchPoint {
+impl ConstrainedPoint {
     /// Directions of all rows of the point, with row and scale: the normal, then the tangential ones.
     pub(crate) fn directions(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
         std::iter::once((self.frame.normal, self.row, self.scale)).chain(self.along())
@@ -108,11 +108,11 @@ pub(crate) struct Model {
     pub(crate) loads: Vec<LoadResponse>,
     /// History of each displacement case.
     pub(crate) motions: Vec<History>,
-    pub(crate) points: Vec<TouchPoint>,
+    pub(crate) points: Vec<ConstrainedPoint>,
     /// Contact surfaces, fixed nodes included, what contacts say of their nodes, and all points, those left out included.
     pub(crate) found: Found,
     /// What of that the certificate judges.
-    pub(crate) judged: Vec<Candidate>,
+    pub(crate) judged: Vec<ContactPoint>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
     /// Weights of the estimate of the algebraic error; made when it is first asked for.
@@ -207,15 +207,15 @@ impl Model {
         let nodes = (!scene.contacts.is_empty())
             .then(|| contact_nodes(&scene, places.iter().map(|&k| &candidates[k])));
         let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
-            .supports(&supports)
-            .rule(settings.row_rule)
-            .sharing(settings.sharing)
-            .inverse(settings.inverse);
+            .with_supports(&supports)
+            .with_row_scaling(settings.row_scaling)
+            .with_sharing(settings.sharing)
+            .with_inverse(settings.inverse);
         if let Some(nodes) = &nodes {
-            builder = builder.contact(nodes);
+            builder = builder.with_contact(nodes);
         }
         if let Some(model) = earlier {
-            builder = builder.reuse(&model.tfeti);
+            builder = builder.with_reuse(&model.tfeti);
         }
         let tfeti = builder.build()?;
         let mut loads = Vec::with_capacity(scene.loads.len());
@@ -225,7 +225,7 @@ impl Model {
             magnitude::check_load(&scene, index, precheck::largest_force(&local))?;
             loads.push(tfeti.load_response(&local)?);
         }
-        let points = touch_points(&scene, candidates, &places, tfeti.gluing());
+        let points = constrained_points(&scene, candidates, &places, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let set = ProductSet::new(vec![
             Segment::upper(vec![0.0; ranges.normal.len()]),
@@ -257,7 +257,7 @@ impl Model {
     }
 
     /// Friction law of a point.
-    pub(crate) fn law(&self, point: &TouchPoint) -> &Friction {
+    pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
         self.scene.contacts[point.surface].friction()
     }
 
@@ -280,7 +280,7 @@ impl Model {
     pub(crate) fn set_slip_bounds(
         &self,
         set: &mut ProductSet,
-        bound: impl Fn(usize, &TouchPoint) -> f64,
+        bound: impl Fn(usize, &ConstrainedPoint) -> f64,
     ) {
         let ranges = self.tfeti.gluing().ranges();
         for (k, point) in self.points.iter().enumerate() {
@@ -307,7 +307,7 @@ impl Model {
     /// How the slip bounds that [`set_slip_bounds`](Self::set_slip_bounds) writes to discs follow the normal rows, for a
     /// bound of `coefficient(point)` times the normal force.
     pub(crate) fn slip_slopes(&self, coefficient: impl Fn(usize) -> f64) -> Vec<RadiusSlope> {
-        let slope = |(k, point): (usize, &TouchPoint)| match point.tangential {
+        let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
             Tangential::Plane { row, scale } => Some(RadiusSlope {
                 disc: row,
                 component: point.row,
@@ -322,12 +322,14 @@ impl Model {
 
 /// The supports, and the history of each displacement case. Equal histories are one case, so that equal displacements of
 /// a node that two supports share are recognised as equal.
-pub(crate) fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<History>), ContactError> {
+pub(crate) fn supports(
+    scene: &Scene,
+) -> Result<(Vec<tfeti::NodeSupport>, Vec<History>), ContactError> {
     let mut motions: Vec<History> = Vec::new();
     let mut out = Vec::with_capacity(scene.supports.len());
     for (index, support) in scene.supports.iter().enumerate() {
         let nodes = scene.support_nodes(index)?;
-        let mut one = tfeti::Support::partial(nodes, support.directions.clone());
+        let mut one = tfeti::NodeSupport::partial(nodes, support.directions.clone());
         if let Some((values, history)) = &support.motion {
             let case = match motions.iter().position(|known| known == history) {
                 Some(case) => case,
@@ -347,13 +349,13 @@ pub(crate) fn supports(scene: &Scene) -> Result<(Vec<tfeti::Support>, Vec<Histor
 }
 
 /// The points that have rows; `places` are those of the points that `gluing` was made from.
-pub(crate) fn touch_points(
+pub(crate) fn constrained_points(
     scene: &Scene,
-    candidates: &[Candidate],
+    candidates: &[ContactPoint],
     places: &[usize],
     gluing: &Gluing,
-) -> Vec<TouchPoint> {
-    let point = |info: &tfeti::ContactInfo| {
+) -> Vec<ConstrainedPoint> {
+    let point = |info: &tfeti::ContactRows| {
         let place = places[info.point];
         let candidate = &candidates[place];
         let tangential = match info.tangential {
@@ -369,9 +371,9 @@ pub(crate) fn touch_points(
             },
             _ => Tangential::None,
         };
-        TouchPoint {
+        ConstrainedPoint {
             node: info.node,
-            opponent: candidate.opponent,
+            partner: candidate.partner,
             surface: candidate.surface,
             position: scene.mesh.points()[info.node as usize],
             frame: info.frame,
@@ -392,7 +394,7 @@ pub(crate) mod example {
     use super::Model;
     use crate::contact_surface::Contact;
     use crate::law::Friction;
-    use crate::level::Level;
+    use crate::level::StepProblem;
     use crate::scene::{Scene, Support};
     use crate::settings::Settings;
     use crate::state::State;
@@ -410,9 +412,9 @@ pub(crate) mod example {
     }
 
     /// Its model and first level.
-    pub(crate) fn first_level(scene: Scene) -> (Model, Level) {
+    pub(crate) fn first_level(scene: Scene) -> (Model, StepProblem) {
         let model = Model::new(scene, &Settings::default()).expect("model");
-        let mut level = Level::default();
+        let mut level = StepProblem::default();
         level.prepare(&model, &State::default(), 0).expect("level");
         (model, level)
     }

@@ -1,6 +1,6 @@
 //! Observers: what a progress bar, a log or a file writer is told.
 
-use crate::frame::Frame;
+use crate::frame::StepResult;
 use crate::plan::Plan;
 use std::error::Error;
 
@@ -9,10 +9,10 @@ use std::error::Error;
 /// A `Result` converts into it, so that an observer that can fail ends with `Flow::from(...)`:
 ///
 /// ```
-/// use signorini_contact::{Flow, Frame};
+/// use signorini_contact::{Flow, StepResult};
 ///
 /// let mut log = Vec::new();
-/// let mut write = |frame: &Frame<'_>| {
+/// let mut write = |frame: &StepResult<'_>| {
 ///     use std::io::Write;
 ///     Flow::from(writeln!(log, "{} {}", frame.time(), frame.summary().active))
 /// };
@@ -43,7 +43,7 @@ impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<Self, E>> for Flow {
     }
 }
 
-/// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&Frame) -> Flow` is an observer.
+/// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an observer.
 pub trait Observer {
     /// The run begins; `levels` are left to solve.
     fn started(&mut self, plan: &Plan, levels: usize) {
@@ -51,7 +51,7 @@ pub trait Observer {
     }
 
     /// A level is solved.
-    fn level(&mut self, frame: &Frame<'_>) -> Flow {
+    fn step(&mut self, frame: &StepResult<'_>) -> Flow {
         let _ = frame;
         Flow::Continue
     }
@@ -62,8 +62,8 @@ pub trait Observer {
     }
 }
 
-impl<F: FnMut(&Frame<'_>) -> Flow> Observer for F {
-    fn level(&mut self, frame: &Frame<'_>) -> Flow {
+impl<F: FnMut(&StepResult<'_>) -> Flow> Observer for F {
+    fn step(&mut self, frame: &StepResult<'_>) -> Flow {
         self(frame)
     }
 }

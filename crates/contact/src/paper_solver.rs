@@ -5,9 +5,9 @@ use crate::error::ContactError;
 use crate::fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
 use crate::held::orthonormal_coarse;
 use crate::law::Friction;
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::model::{DISCS, INTERVALS, Model};
-use crate::report::{LevelReport, LevelStatus};
+use crate::report::{StepReport, StepStatus};
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::solver::{Iterate, is_coulomb, level_status};
 use signorini_qp::{
@@ -25,7 +25,7 @@ const STALL: f64 = 1e-4;
 /// How often a level may tighten the inner tolerance tenfold.
 const MAX_TIGHTENINGS: usize = 3;
 
-pub(crate) struct PaperSolver {
+pub(crate) struct SmalseSolver {
     coarse: OrthonormalCoarse,
     coarse_scratch: CoarseScratch,
     norm: f64,
@@ -40,21 +40,21 @@ pub(crate) struct PaperSolver {
     left: usize,
 }
 
-impl std::fmt::Debug for PaperSolver {
+impl std::fmt::Debug for SmalseSolver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("PaperSolver")
+        f.debug_struct("SmalseSolver")
             .field("norm", &self.norm)
             .field("one_loop", &self.one_loop)
             .finish_non_exhaustive()
     }
 }
 
-impl PaperSolver {
+impl SmalseSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let (smalse, accuracy, one_loop) = match &settings.method {
             Method::OneLoop { smalse } => (*smalse, InnerAccuracy::Fixed, true),
             Method::SuccessiveApproximations { smalse, accuracy } => (*smalse, *accuracy, false),
-            Method::Face(_) => match Method::paper() {
+            Method::ActiveSet(_) => match Method::paper() {
                 Method::SuccessiveApproximations { smalse, accuracy } => (smalse, accuracy, false),
                 _ => (SmalseSettings::default(), InnerAccuracy::default(), false),
             },
@@ -86,10 +86,10 @@ impl PaperSolver {
         &mut self,
         limit: usize,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-    ) -> Result<LevelReport, ContactError> {
+    ) -> Result<StepReport, ContactError> {
         self.left = limit;
         let report = self.solve(model, level, settings, iterate);
         self.left = usize::MAX;
@@ -99,14 +99,14 @@ impl PaperSolver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-    ) -> Result<LevelReport, ContactError> {
+    ) -> Result<StepReport, ContactError> {
         self.coarse
             .rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
         iterate.multiplier.resize(self.rhs.len(), 0.0);
-        let mut report = LevelReport::new();
+        let mut report = StepReport::new();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
         if !is_coulomb(model) {
@@ -136,7 +136,7 @@ impl PaperSolver {
     fn given_friction(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         tolerance: f64,
         hook: &mut impl OuterHook<ProductSet>,
         iterate: &mut Iterate,
@@ -168,10 +168,10 @@ impl PaperSolver {
     fn fixed_point(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-        report: &mut LevelReport,
+        report: &mut StepReport,
     ) -> Result<(), ContactError> {
         let normal = model.tfeti.gluing().ranges().normal.clone();
         let mut x: Vec<f64> = iterate.lambda[normal.clone()]
@@ -226,7 +226,7 @@ impl PaperSolver {
             // no products left
             Err(None) => {
                 report.iterations = report.counters.quadratic_programs;
-                report.status = LevelStatus::IterationLimit;
+                report.status = StepStatus::IterationLimit;
                 return Ok(());
             }
             Err(Some(error)) => return Err(error),
@@ -234,8 +234,8 @@ impl PaperSolver {
         report.iterations = outcome.evaluations;
         report.status = match outcome.verdict {
             Verdict::Converged => level_status(inner),
-            Verdict::NotContractive => LevelStatus::NotContractive,
-            _ => LevelStatus::IterationLimit,
+            Verdict::NotContractive => StepStatus::NotContractive,
+            _ => StepStatus::IterationLimit,
         };
         let mut outcome = outcome;
         if !inner.converged() && outcome.verdict == Verdict::Converged {
@@ -250,10 +250,10 @@ impl PaperSolver {
     fn inexact_loop(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-        report: &mut LevelReport,
+        report: &mut StepReport,
     ) -> Result<(), ContactError> {
         level.slip_bounds(model, &iterate.lambda, &mut self.set);
         let tolerance = settings.tolerance * SAFETY;
@@ -312,7 +312,7 @@ fn radii(set: &ProductSet) -> Vec<f64> {
     out
 }
 
-fn add(report: &mut LevelReport, qp: &SmalseReport) {
+fn add(report: &mut StepReport, qp: &SmalseReport) {
     report.counters.products += qp.products.total();
     report.counters.projections += qp.projections;
     report.counters.quadratic_programs += 1;

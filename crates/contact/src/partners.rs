@@ -8,7 +8,7 @@ use crate::contact_surface::{Contact, Gap};
 use crate::error::ContactError;
 use crate::magnitude::rounding;
 use rayon::prelude::*;
-use signorini_fem_mesh::{Frame, Surface, TetMesh};
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use std::collections::HashMap;
 
@@ -39,7 +39,7 @@ pub(crate) fn partners(
     index: usize,
     contact: &Contact,
     surface: &Surface,
-    fixed: Option<&Frame>,
+    fixed: Option<&SurfaceFrame>,
 ) -> Result<Vec<Partner>, ContactError> {
     if contact.partner.is_empty() {
         return Ok(Vec::new());

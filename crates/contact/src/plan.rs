@@ -1,6 +1,6 @@
 //! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
 
-use crate::candidates::{Candidate, Found};
+use crate::candidates::{ContactPoint, Found};
 use crate::clock::Analysis;
 use crate::contact_surface::Gap;
 use crate::error::ContactError;
@@ -22,7 +22,7 @@ pub enum FrictionKind {
     /// No tangential rows.
     None,
     /// One quadratic program a level.
-    Given,
+    Tresca,
     /// Slip bounds follow the contact forces.
     Coulomb,
     /// The coefficient follows the slip rate, too.
@@ -144,17 +144,17 @@ impl Plan {
         let candidates = &found.points;
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
         let held = |node: u32| fixed.get(&node).copied().unwrap_or(0).min(3);
-        let free = |p: &Candidate| 3 - held(p.node).min(p.opponent.map_or(3, held));
+        let free = |p: &ContactPoint| 3 - held(p.node).min(p.partner.map_or(3, held));
         let points = candidates.iter().filter(|point| free(point) > 0);
-        let points: Vec<&Candidate> = points.collect();
-        let both = |p: &&Candidate| std::iter::once(p.node).chain(p.opponent);
+        let points: Vec<&ContactPoint> = points.collect();
+        let both = |p: &&ContactPoint| std::iter::once(p.node).chain(p.partner);
         let touching: BTreeSet<u32> = points.iter().flat_map(both).collect();
         let normal_rows = points.len();
-        let rough = |p: &&&Candidate| scene.contacts[p.surface].friction().is_some();
+        let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
         let tangential_rows = points.iter().filter(rough).map(|p| free(p) - 1).sum();
         let kind = |friction: &Friction| match friction {
             Friction::None => FrictionKind::None,
-            Friction::Given(_) => FrictionKind::Given,
+            Friction::Tresca(_) => FrictionKind::Tresca,
             Friction::Coulomb(c) if c.depends_on_rate() => FrictionKind::RateDependent,
             Friction::Coulomb(_) => FrictionKind::Coulomb,
         };
@@ -163,7 +163,7 @@ impl Plan {
         let effects = Effects {
             contact: !scene.contacts.is_empty(),
             gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, candidates)),
-            partners: candidates.iter().any(|p| p.opponent.is_some()),
+            partners: candidates.iter().any(|p| p.partner.is_some()),
             friction: kind,
             history: kind != FrictionKind::None
                 && matches!(scene.analysis, Analysis::Quasistatic { .. }),
@@ -180,7 +180,7 @@ impl Plan {
         let primal = decomposition.torn_dofs();
         let dual = normal_rows + tangential_rows + interface_rows + dirichlet_rows;
         let vectors = match settings.method {
-            Method::Face(_) => 16,
+            Method::ActiveSet(_) => 16,
             _ => 18,
         };
         let touched = |node: u32| fixed.contains_key(&node) || touching.contains(&node);
@@ -218,7 +218,7 @@ impl Plan {
             interface_rows,
             dirichlet_rows,
             coarse: 6 * decomposition.subdomains().len(),
-            levels: scene.analysis.levels(),
+            levels: scene.analysis.steps(),
             method,
             vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
             estimate,
@@ -228,7 +228,7 @@ impl Plan {
 }
 
 /// Whether the rows of a contact surface have offsets.
-fn has_gap(scene: &Scene, surface: usize, candidates: &[Candidate]) -> bool {
+fn has_gap(scene: &Scene, surface: usize, candidates: &[ContactPoint]) -> bool {
     match scene.contacts[surface].gap {
         Gap::None => false,
         Gap::Measured => candidates
@@ -347,7 +347,7 @@ impl fmt::Display for Plan {
         )?;
         let friction = match e.friction {
             FrictionKind::None => "none (no tangential rows)".to_owned(),
-            FrictionKind::Given => format!("given, {} rows, no outer loop", self.tangential_rows),
+            FrictionKind::Tresca => format!("given, {} rows, no outer loop", self.tangential_rows),
             FrictionKind::Coulomb => {
                 format!("Coulomb, {} rows, no slip rate", self.tangential_rows)
             }

@@ -2,8 +2,8 @@
 
 use crate::certificate::slip_bound;
 use crate::error::ContactError;
-use crate::level::{Level, at};
-use crate::model::{Model, Tangential, TouchPoint};
+use crate::level::{StepProblem, at};
+use crate::model::{ConstrainedPoint, Model, Tangential};
 
 /// What a touch point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -24,7 +24,7 @@ pub struct PointState {
     /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
     pub node: u32,
     /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
-    pub opponent: Option<u32>,
+    pub partner: Option<u32>,
     /// Position of the contact surface in [`Scene::contacts`](crate::Scene::contacts).
     pub surface: usize,
     /// What it does.
@@ -89,7 +89,7 @@ pub struct ContactSummary {
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
     /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
-    /// the obstacle, and normal forces times the change of a [gap that moves along](crate::Contact::moved).
+    /// the obstacle, and normal forces times the change of a [gap that moves along](crate::Contact::with_motion).
     pub obstacle_work: f64,
 }
 
@@ -108,7 +108,7 @@ pub(crate) struct Rows<'a> {
 /// Evaluates the touch points: `rows` is `B u` in row units.
 pub(crate) fn point_states(
     model: &Model,
-    level: &Level,
+    level: &StepProblem,
     lambda: &[f64],
     rows: &[f64],
 ) -> Vec<PointState> {
@@ -118,7 +118,7 @@ pub(crate) fn point_states(
         offset: &level.offset,
         prescribed: &level.prescribed,
     };
-    let state = |(k, point): (usize, &TouchPoint)| {
+    let state = |(k, point): (usize, &ConstrainedPoint)| {
         let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
         point_state(model, level, point, &values, bound)
     };
@@ -128,8 +128,8 @@ pub(crate) fn point_states(
 /// Evaluates one point with its slip bound.
 pub(crate) fn point_state(
     model: &Model,
-    level: &Level,
-    point: &TouchPoint,
+    level: &StepProblem,
+    point: &ConstrainedPoint,
     rows: &Rows<'_>,
     bound: f64,
 ) -> PointState {
@@ -163,7 +163,7 @@ pub(crate) fn point_state(
     let slip = difference[0].hypot(difference[1]);
     PointState {
         node: point.node,
-        opponent: point.opponent,
+        partner: point.partner,
         surface: point.surface,
         state,
         normal: point.frame.normal,
@@ -181,7 +181,7 @@ pub(crate) fn point_state(
 /// Sums over the points; `before` are the tangential displacements at the level before.
 pub(crate) fn summarise(
     model: &Model,
-    level: &Level,
+    level: &StepProblem,
     points: &[PointState],
     lambda: &[f64],
     rows: &[f64],
@@ -220,7 +220,7 @@ pub(crate) fn summarise(
                 s.obstacle_work += force[c] * (now[c] - old[c]);
             }
             if active {
-                let [now, old] = [Level::gap, Level::gap_before];
+                let [now, old] = [StepProblem::gap, StepProblem::gap_before];
                 let scene = &model.scene;
                 s.obstacle_work +=
                     point.normal_force * (now(level, scene, touch)? - old(level, scene, touch)?);

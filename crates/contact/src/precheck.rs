@@ -12,7 +12,7 @@ use crate::model::supports;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_qp::vector;
-use signorini_tfeti::held_points;
+use signorini_tfeti::prescribed_points;
 
 /// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse of materials, supports, contact, loads and laws, with the same
 /// error; not subdomains that cannot be factored.
@@ -30,7 +30,7 @@ pub(crate) fn check(
     driven::check(scene, candidates, &supports, &motions)?;
     // merges the supports, whether there is contact or not
     let nodes = contact_nodes(scene, candidates.iter());
-    let held = held_points(&nodes, &supports, places.len())?;
+    let held = prescribed_points(&nodes, &supports, places.len())?;
     for (index, load) in scene.loads.iter().enumerate() {
         let local = assemble_load(&scene.mesh, decomposition, &load.density)
             .map_err(|source| ContactError::Load { index, source })?;

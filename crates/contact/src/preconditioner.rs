@@ -3,19 +3,19 @@
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::settings::Preconditioner as Choice;
-use signorini_qp::{FacePreconditioner, FaceView, SymmetricOperator, vector};
-use signorini_tfeti::{Preconditioner, PreconditionerScratch};
+use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator, vector};
+use signorini_tfeti::{DualPreconditioner, DualPreconditionerScratch};
 
 /// A preconditioner of the dual problem.
 #[derive(Debug)]
-pub(crate) enum DualPreconditioner {
+pub(crate) enum SelectedPreconditioner {
     /// A multiple of the identity, for measuring what the others are worth.
     Scalar { dim: usize, factor: f64 },
     /// Lumped or Dirichlet.
-    Stiffness(Box<Preconditioner>),
+    Stiffness(Box<DualPreconditioner>),
 }
 
-impl DualPreconditioner {
+impl SelectedPreconditioner {
     pub(crate) fn new(model: &Model, choice: Choice) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
         Ok(match choice {
@@ -37,8 +37,8 @@ impl DualPreconditioner {
 /// Rows whose stiffness scales the identity.
 const SAMPLE: usize = 300;
 
-impl SymmetricOperator for DualPreconditioner {
-    type Scratch = Option<PreconditionerScratch>;
+impl SymmetricOperator for SelectedPreconditioner {
+    type Scratch = Option<DualPreconditionerScratch>;
 
     fn dim(&self) -> usize {
         match self {
@@ -67,8 +67,8 @@ impl SymmetricOperator for DualPreconditioner {
     }
 }
 
-impl FacePreconditioner for DualPreconditioner {
-    fn enter(&self, face: &FaceView<'_>, s: &mut Self::Scratch) {
+impl ActiveSetPreconditioner for SelectedPreconditioner {
+    fn enter(&self, face: &ActiveSetView<'_>, s: &mut Self::Scratch) {
         if let (Self::Stiffness(p), Some(s)) = (self, s) {
             p.enter(face, s);
         }

@@ -5,10 +5,10 @@
 
 use crate::contact_move::dot;
 use crate::error::ContactError;
-use crate::level::Level;
-use crate::model::{Model, TouchPoint, supports};
+use crate::level::StepProblem;
+use crate::model::{ConstrainedPoint, Model, supports};
 use crate::point_state::PointState;
-use signorini_tfeti::{HeldDirection, Support, held_directions};
+use signorini_tfeti::{NodeSupport, PrescribedDirection, prescribed_directions};
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
@@ -126,7 +126,7 @@ pub(crate) fn nodal(
     for (state, touch) in points.iter().zip(&model.points) {
         let whole = state.force();
         let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
-        for (node, sign) in [(Some(state.node), 1.0), (state.opponent, -1.0)] {
+        for (node, sign) in [(Some(state.node), 1.0), (state.partner, -1.0)] {
             let Some((node, force)) = node.and_then(|n| Some((n, forces.get_mut(&n)?))) else {
                 continue;
             };
@@ -141,7 +141,13 @@ pub(crate) fn nodal(
 }
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
-fn take_rows(model: &Model, touch: &TouchPoint, whole: &[f64; 3], node: u32, rest: &mut [f64; 3]) {
+fn take_rows(
+    model: &Model,
+    touch: &ConstrainedPoint,
+    whole: &[f64; 3],
+    node: u32,
+    rest: &mut [f64; 3],
+) {
     let subdomains = model.decomposition.subdomains();
     for (direction, row, scale) in touch.directions() {
         let lambda = dot(whole, &direction) / scale;
@@ -156,7 +162,7 @@ fn take_rows(model: &Model, touch: &TouchPoint, whole: &[f64; 3], node: u32, res
 /// All resultants about a point; `points` are those of the model.
 pub(crate) fn about(
     model: &Model,
-    level: &Level,
+    level: &StepProblem,
     points: &[PointState],
     lambda: &[f64],
     point: [f64; 3],
@@ -172,8 +178,8 @@ pub(crate) fn about(
         let force = state.force();
         contact.add(arm(state.node), force);
         contacts[state.surface].add(arm(state.node), force);
-        if let Some(opponent) = state.opponent {
-            contact.add(arm(opponent), force.map(|f| -f));
+        if let Some(partner) = state.partner {
+            contact.add(arm(partner), force.map(|f| -f));
         }
     }
     let mut loads = Resultant::default();
@@ -200,11 +206,11 @@ fn by_support(
     arm: impl Fn(u32) -> [f64; 3],
 ) -> Result<Vec<SupportReaction>, ContactError> {
     let (supports, _) = supports(&model.scene)?;
-    let mut held: BTreeMap<u32, Vec<HeldDirection>> = BTreeMap::new();
-    for direction in held_directions(&supports, model.scene.mesh.points().len())? {
+    let mut held: BTreeMap<u32, Vec<PrescribedDirection>> = BTreeMap::new();
+    for direction in prescribed_directions(&supports, model.scene.mesh.points().len())? {
         held.entry(direction.node).or_default().push(direction);
     }
-    let reaction = |(index, support): (usize, &Support)| {
+    let reaction = |(index, support): (usize, &NodeSupport)| {
         let mut reaction = SupportReaction::default();
         for node in &support.nodes {
             let (Some(whole), Some(held)) = (forces.get(node), held.get(node)) else {
@@ -215,7 +221,7 @@ fn by_support(
                 continue;
             }
             let mut force = [0.0; 3];
-            for HeldDirection { direction, .. } in own {
+            for PrescribedDirection { direction, .. } in own {
                 let along = dot(whole, direction);
                 (0..3).for_each(|c| force[c] += along * direction[c]);
             }

@@ -9,7 +9,7 @@ use std::fmt;
 /// How the solve of a level ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum LevelStatus {
+pub enum StepStatus {
     /// The solver reached the tolerance, and the certificate is at most thirty times that (usually a tenth).
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
@@ -28,7 +28,7 @@ pub enum LevelStatus {
     NotCertified,
 }
 
-impl LevelStatus {
+impl StepStatus {
     /// Whether the tolerance was reached.
     #[must_use]
     pub fn converged(self) -> bool {
@@ -58,7 +58,7 @@ impl LevelStatus {
     }
 }
 
-impl fmt::Display for LevelStatus {
+impl fmt::Display for StepStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Converged => "converged",
@@ -124,9 +124,9 @@ impl std::ops::AddAssign for Counters {
 /// Report of one level's solve.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct LevelReport {
+pub struct StepReport {
     /// How it ended.
-    pub status: LevelStatus,
+    pub status: StepStatus,
     /// Outer iterations under the method's own name: auxiliary problems of the fixed-point loop, outer steps of the
     /// one inexact loop, faces of the face method.
     pub iterations: usize,
@@ -150,10 +150,10 @@ pub struct LevelReport {
     pub unconverged_history: Option<usize>,
 }
 
-impl LevelReport {
+impl StepReport {
     pub(crate) fn new() -> Self {
         Self {
-            status: LevelStatus::IterationLimit,
+            status: StepStatus::IterationLimit,
             iterations: 0,
             counters: Counters::default(),
             steps: Steps::default(),
@@ -173,7 +173,7 @@ impl LevelReport {
         time: f64,
         certificate: f64,
     ) -> Result<(), ContactError> {
-        LevelFailure::of(self, level, time, certificate).map_or(Ok(()), |f| Err(f.error()))?;
+        StepFailure::of(self, level, time, certificate).map_or(Ok(()), |f| Err(f.error()))?;
         inherited(self.unconverged_history)
     }
 
@@ -197,21 +197,21 @@ fn inherited(level: Option<usize>) -> Result<(), ContactError> {
 /// A level that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct LevelFailure {
+pub struct StepFailure {
     /// The level, from 0.
     pub level: usize,
     /// Its time, s.
     pub time: f64,
     /// How it ended.
-    pub status: LevelStatus,
+    pub status: StepStatus,
     /// The largest relative violation of its certificate.
     pub certificate: f64,
 }
 
-impl LevelFailure {
+impl StepFailure {
     /// `None` for a level that converged.
     pub(crate) fn of(
-        report: &LevelReport,
+        report: &StepReport,
         level: usize,
         time: f64,
         certificate: f64,
@@ -255,7 +255,7 @@ pub struct RunReport {
     /// Levels solved.
     pub levels: usize,
     /// Levels that did not converge, in order.
-    pub failures: Vec<LevelFailure>,
+    pub failures: Vec<StepFailure>,
     /// The first level before this run that did not converge and on whose displacement its levels depend, see
     /// [`State::unconverged_history`](crate::State::unconverged_history).
     pub unconverged_history: Option<usize>,
@@ -267,20 +267,14 @@ pub struct RunReport {
 
 impl RunReport {
     /// Takes a level into account.
-    pub(crate) fn enter(
-        &mut self,
-        report: &LevelReport,
-        level: usize,
-        time: f64,
-        certificate: f64,
-    ) {
+    pub(crate) fn enter(&mut self, report: &StepReport, level: usize, time: f64, certificate: f64) {
         self.levels += 1;
         self.counters += report.counters;
         if certificate.is_nan() || certificate > self.largest_certificate {
             self.largest_certificate = certificate;
         }
         self.failures
-            .extend(LevelFailure::of(report, level, time, certificate));
+            .extend(StepFailure::of(report, level, time, certificate));
     }
 
     /// Whether all levels converged, and those before on whose displacement they depend.
@@ -291,7 +285,7 @@ impl RunReport {
 
     /// The first level of this run that did not converge.
     #[must_use]
-    pub fn first_failure(&self) -> Option<&LevelFailure> {
+    pub fn first_failure(&self) -> Option<&StepFailure> {
         self.failures.first()
     }
 

@@ -98,14 +98,14 @@ impl Support {
     /// Supports that share nodes must move them alike: equal displacements with equal histories, which are equal tables
     /// or clones of one function.
     #[must_use]
-    pub fn moved(mut self, displacement: [f64; 3], history: History) -> Self {
+    pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((vec![displacement], history));
         self
     }
 
     /// The same with one displacement a node, in the order of the nodes (ascending for a tag).
     #[must_use]
-    pub fn moved_each(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
+    pub fn with_motions(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
         self.motion = Some((displacements, history));
         self
     }
@@ -188,7 +188,7 @@ impl Load {
 /// How the body is cut into subdomains.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Cut {
+pub enum Partition {
     /// Not at all.
     Whole,
     /// Into boxes of the bounding box, by element centroids (see [`Decomposition::boxes`]).
@@ -219,7 +219,7 @@ pub struct Scene {
     pub(crate) supports: Vec<Support>,
     pub(crate) loads: Vec<Load>,
     pub(crate) contacts: Vec<Contact>,
-    pub(crate) cut: Cut,
+    pub(crate) cut: Partition,
     pub(crate) analysis: Analysis,
 }
 
@@ -233,7 +233,7 @@ impl Scene {
             supports: Vec::new(),
             loads: Vec::new(),
             contacts: Vec::new(),
-            cut: Cut::Whole,
+            cut: Partition::Whole,
             analysis: Analysis::statics(),
         }
     }
@@ -275,14 +275,14 @@ impl Scene {
     /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
     #[must_use]
     pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {
-        self.cut = Cut::Boxes(boxes);
+        self.cut = Partition::Boxes(boxes);
         self
     }
 
     /// Cuts the body by part numbers, one an element.
     #[must_use]
     pub fn with_parts(mut self, parts: Vec<u32>) -> Self {
-        self.cut = Cut::Parts(parts);
+        self.cut = Partition::Parts(parts);
         self
     }
 
@@ -319,7 +319,7 @@ impl Scene {
 
     /// How the body is cut.
     #[must_use]
-    pub fn cut(&self) -> &Cut {
+    pub fn partition(&self) -> &Partition {
         &self.cut
     }
 
@@ -348,9 +348,9 @@ impl Scene {
     /// disconnected parts.
     pub fn decompose(&self) -> Result<Decomposition, ContactError> {
         Ok(match &self.cut {
-            Cut::Whole => Decomposition::whole(&self.mesh),
-            Cut::Boxes(boxes) => Decomposition::boxes(&self.mesh, *boxes)?,
-            Cut::Parts(parts) => Decomposition::from_parts(&self.mesh, parts)?,
+            Partition::Whole => Decomposition::whole(&self.mesh),
+            Partition::Boxes(boxes) => Decomposition::boxes(&self.mesh, *boxes)?,
+            Partition::Parts(parts) => Decomposition::from_parts(&self.mesh, parts)?,
         })
     }
 
@@ -408,7 +408,7 @@ impl Scene {
                 });
             }
         }
-        for level in 0..self.analysis.levels() {
+        for level in 0..self.analysis.steps() {
             let time = self.analysis.time(level).unwrap_or(0.0);
             let histories = (self
                 .loads

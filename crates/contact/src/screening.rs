@@ -18,8 +18,8 @@ use crate::candidates::contact_nodes;
 use crate::contact_surface::Contact;
 use crate::error::ContactError;
 use crate::law::Friction;
-use crate::level::{Level, between_bodies};
-use crate::model::{Model, TouchPoint, supports, touch_points};
+use crate::level::{StepProblem, between_bodies};
+use crate::model::{ConstrainedPoint, Model, constrained_points, supports};
 use crate::point_state::{PointState, Rows, point_state};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -75,7 +75,7 @@ pub(crate) struct Screen {
     /// `B` with the rows of all points: the numbering of states.
     gluing: Gluing,
     /// All points, with rows of `gluing`.
-    points: Vec<TouchPoint>,
+    points: Vec<ConstrainedPoint>,
     /// Entries (torn unknown, coefficient) of the contact rows of `gluing`.
     entries: Vec<Vec<(usize, f64)>>,
     /// Whether a point is in.
@@ -101,11 +101,11 @@ impl Screen {
             mesh_nodes,
             &supports,
             Some(&nodes),
-            settings.row_rule,
+            settings.row_scaling,
             model.tfeti.copy_stiffness(),
         )?;
         let places: Vec<usize> = (0..model.found.points.len()).collect();
-        let points = touch_points(&model.scene, &model.found.points, &places, &gluing);
+        let points = constrained_points(&model.scene, &model.found.points, &places, &gluing);
         let entry = |(subdomain, dof, value): (usize, usize, f64)| {
             (model.tfeti.torn_range(subdomain).start + dof, value)
         };
@@ -128,7 +128,7 @@ impl Screen {
 
     /// Whether a scene can be screened, judged without work.
     pub(crate) fn applies(scene: &Scene, settings: &Settings) -> bool {
-        let given = |c: &Contact| matches!(c.friction(), Friction::Given(_));
+        let given = |c: &Contact| matches!(c.friction(), Friction::Tresca(_));
         settings.screening != Screening::Off
             && !scene.contacts.is_empty()
             && !scene.contacts.iter().any(given)
@@ -156,7 +156,7 @@ impl Screen {
     }
 
     /// All points.
-    pub(crate) fn points(&self) -> &[TouchPoint] {
+    pub(crate) fn points(&self) -> &[ConstrainedPoint] {
         &self.points
     }
 
@@ -223,7 +223,7 @@ impl Screen {
     pub(crate) fn states(
         &self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         state: &State,
         solved: &[PointState],
         torn: &[f64],
@@ -270,7 +270,13 @@ impl Screen {
     }
 
     /// Tangential displacements of the points left out, written into a complete trace.
-    pub(crate) fn fill_trace(&self, model: &Model, level: &Level, torn: &[f64], trace: &mut [f64]) {
+    pub(crate) fn fill_trace(
+        &self,
+        model: &Model,
+        level: &StepProblem,
+        torn: &[f64],
+        trace: &mut [f64],
+    ) {
         let start = self.gluing.ranges().tangential().start;
         let prescribed = between_bodies(&self.points, &self.prescribed(model, level));
         for (point, _) in self.points.iter().zip(&self.active).filter(|(_, a)| !**a) {
@@ -283,7 +289,7 @@ impl Screen {
     }
 
     /// Offsets of all contact rows that come from supports.
-    fn prescribed(&self, model: &Model, level: &Level) -> Vec<f64> {
+    fn prescribed(&self, model: &Model, level: &StepProblem) -> Vec<f64> {
         let mut offset = vec![0.0; self.entries.len()];
         for (case, history) in model.motions.iter().enumerate() {
             let factor = history.value(level.time);

@@ -3,8 +3,8 @@
 use crate::accuracy::Accuracy;
 use crate::error::ContactError;
 use crate::screening::Screening;
-use signorini_qp::{FaceSettings, SmalseSettings};
-use signorini_tfeti::{InverseSettings, RowRule, Sharing};
+use signorini_qp::{ActiveSetSettings, SmalseSettings};
+use signorini_tfeti::{InverseSettings, RowScaling, Sharing};
 
 /// How the inequality-constrained problem of a time level is solved.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub enum Method {
     /// The default: faces predicted by the natural map, projected preconditioned conjugate gradients on
     /// each, slip bounds following as soon as the contact set has settled. Falls back to
     /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) where the prediction makes no progress.
-    Face(FaceSettings),
+    ActiveSet(ActiveSetSettings),
     /// The paper's method (3.17): given-friction problems by SMALSE and KPRGP, repeated with new slip bounds.
     SuccessiveApproximations {
         /// Settings of SMALSE.
@@ -50,7 +50,7 @@ impl Method {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Face(_) => "face",
+            Self::ActiveSet(_) => "face",
             Self::SuccessiveApproximations { .. } => "paper",
             Self::OneLoop { .. } => "one-loop",
         }
@@ -59,7 +59,7 @@ impl Method {
 
 impl Default for Method {
     fn default() -> Self {
-        Self::Face(FaceSettings::default())
+        Self::ActiveSet(ActiveSetSettings::default())
     }
 }
 
@@ -110,12 +110,12 @@ pub enum Preconditioner {
 ///
 /// | setting | meaning | range | default | the paper's letter |
 /// |---|---|---|---|---|
-/// | `method` | solver of a time level | | [`Method::Face`] | |
+/// | `method` | solver of a time level | | [`Method::ActiveSet`] | |
 /// | `tolerance` | relative accuracy of the multipliers at every level, and of the fixed point | [1e-12, 0.1] | 1e-6 | `eps` |
 /// | `accuracy` | whether a level ends at that tolerance or by an estimate of its error | [`Accuracy`] | `Tolerance` | |
 /// | `max_fixed_point` | most evaluations of the Coulomb map a level | >= 1 | 200 | |
 /// | `extrapolate` | start a level from the line through the last two | | true | |
-/// | `row_rule` | scaling of the rows of B | | orthonormal | |
+/// | `row_scaling` | scaling of the rows of B | | orthonormal | |
 /// | `sharing` | whether equal subdomains share factors | | translates | |
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
@@ -136,7 +136,7 @@ pub struct Settings {
     /// Start from the line through the last two levels.
     pub extrapolate: bool,
     /// Scaling of the rows of B.
-    pub row_rule: RowRule,
+    pub row_scaling: RowScaling,
     /// Whether equal subdomains share factors.
     pub sharing: Sharing,
     /// How the generalised inverse is held.
@@ -159,7 +159,7 @@ impl Default for Settings {
             accuracy: Accuracy::default(),
             max_fixed_point: 200,
             extrapolate: true,
-            row_rule: RowRule::default(),
+            row_scaling: RowScaling::default(),
             sharing: Sharing::default(),
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
@@ -208,8 +208,8 @@ impl Settings {
 
     /// Sets the scaling of the rows of B.
     #[must_use]
-    pub fn with_row_rule(mut self, rule: RowRule) -> Self {
-        self.row_rule = rule;
+    pub fn with_row_scaling(mut self, rule: RowScaling) -> Self {
+        self.row_scaling = rule;
         self
     }
 
@@ -281,7 +281,7 @@ impl Settings {
             }
         }
         match &self.method {
-            Method::Face(face) => face.validate()?,
+            Method::ActiveSet(face) => face.validate()?,
             Method::SuccessiveApproximations { smalse, accuracy } => {
                 smalse.validate()?;
                 if let InnerAccuracy::Adaptive { factor, loosest } = accuracy {

@@ -10,14 +10,14 @@ use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
 use crate::error::ContactError;
 use crate::face_solver::restore_sliding;
 use crate::fingerprint::{Fingerprint, operator};
-use crate::frame::Frame;
+use crate::frame::StepResult;
 use crate::law::Friction;
-use crate::level::Level;
-use crate::model::{Model, TouchPoint};
+use crate::level::StepProblem;
+use crate::model::{ConstrainedPoint, Model};
 use crate::plan::Plan;
 use crate::point_state::{ContactState, ContactSummary, PointState, point_states, summarise};
 use crate::pool::on_pool;
-use crate::report::{Counters, LevelReport};
+use crate::report::{Counters, StepReport};
 use crate::scene::Scene;
 use crate::screening::Screen;
 use crate::settings::Settings;
@@ -61,9 +61,9 @@ pub struct Simulation {
     operator: u64,
     /// Whether the fields below belong to a level that was solved.
     solved: bool,
-    level: Level,
+    level: StepProblem,
     iterate: Iterate,
-    report: LevelReport,
+    report: StepReport,
     certificate: Certificate,
     /// Sizes of the bodies at the level.
     sizes: Vec<Sizes>,
@@ -89,7 +89,7 @@ impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Simulation")
             .field("plan", &self.model.plan)
-            .field("levels_solved", &self.state.level())
+            .field("levels_solved", &self.state.step())
             .field("total", &self.total)
             .finish_non_exhaustive()
     }
@@ -128,9 +128,9 @@ impl Simulation {
             origin,
             operator,
             solved: false,
-            level: Level::default(),
+            level: StepProblem::default(),
             iterate: Iterate::default(),
-            report: LevelReport::new(),
+            report: StepReport::new(),
             certificate: Certificate::default(),
             sizes: Vec::new(),
             points: Vec::new(),
@@ -176,7 +176,7 @@ impl Simulation {
 
     /// The touch points.
     #[must_use]
-    pub fn touch_points(&self) -> &[TouchPoint] {
+    pub fn constrained_points(&self) -> &[ConstrainedPoint] {
         self.screen
             .as_ref()
             .map_or(&self.model.points, Screen::points)
@@ -209,15 +209,15 @@ impl Simulation {
     /// Whether all levels are solved.
     #[must_use]
     pub fn is_finished(&self) -> bool {
-        self.state.level() >= self.model.scene.analysis.levels()
+        self.state.step() >= self.model.scene.analysis.steps()
     }
 
     /// Solves the next level. Not converging is no error: see the frame's report.
     ///
     /// # Errors
     /// [`ContactError::Finished`] after the last level; a breakdown of a solver. The state is then unchanged.
-    pub fn step(&mut self) -> Result<Frame<'_>, ContactError> {
-        let index = self.state.level();
+    pub fn step(&mut self) -> Result<StepResult<'_>, ContactError> {
+        let index = self.state.step();
         // not taken out: laws of the user may panic
         let state = self.state.clone();
         self.solved = false;
@@ -236,13 +236,13 @@ impl Simulation {
     /// The frame of the last level solved; `None` before the first one, after [`resume`](Self::resume) and after a step that
     /// failed.
     #[must_use]
-    pub fn frame(&self) -> Option<Frame<'_>> {
+    pub fn frame(&self) -> Option<StepResult<'_>> {
         self.solved.then(|| self.present())
     }
 
     /// The frame of what was computed last.
-    pub(crate) fn present(&self) -> Frame<'_> {
-        Frame {
+    pub(crate) fn present(&self) -> StepResult<'_> {
+        StepResult {
             model: &self.model,
             level: &self.level,
             report: &self.report,
@@ -261,7 +261,7 @@ impl Simulation {
         &mut self,
         state: &State,
         index: usize,
-    ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+    ) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
         self.controller = state.controller();
         let expected = self.look_ahead(state)?;
         let mut view = self.view(state);
@@ -294,7 +294,7 @@ impl Simulation {
     fn solve_once(
         &mut self,
         tolerance: f64,
-    ) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+    ) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
         let model = &self.model;
         let other;
         let settings = if tolerance == self.settings.tolerance {
@@ -346,7 +346,7 @@ impl Simulation {
         };
         let on = self.settings.extrapolate;
         // before the first level everything is at rest: zero is known, too
-        let before_known = state.level() != 1 || self.model.plan.levels == 1;
+        let before_known = state.step() != 1 || self.model.plan.levels == 1;
         let pairs = (state.lambda(), state.f_lambda());
         let zero = vec![0.0; rows];
         if on && !before_known && pairs.0[1].is_empty() {
@@ -372,7 +372,7 @@ impl Simulation {
         Ok(())
     }
 
-    fn remember(&mut self, lambda: Vec<f64>, rows: Vec<f64>, report: &mut LevelReport) {
+    fn remember(&mut self, lambda: Vec<f64>, rows: Vec<f64>, report: &mut StepReport) {
         let effects = &self.model.plan.effects;
         let quasistatic = self.model.plan.levels > 1;
         let mut trace = Vec::new();

@@ -1,13 +1,13 @@
 //! The solver of a level: chooses by effect and method, owns all work memory.
 
 use crate::error::ContactError;
-use crate::face_solver::FaceSolver;
+use crate::face_solver::ActiveSetSolver;
 use crate::law::Friction;
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::linear_solver::LinearSolver;
 use crate::model::Model;
-use crate::paper_solver::PaperSolver;
-use crate::report::{LevelReport, LevelStatus};
+use crate::paper_solver::SmalseSolver;
+use crate::report::{StepReport, StepStatus};
 use crate::settings::{Method, Settings};
 use signorini_qp::Status;
 
@@ -32,9 +32,9 @@ pub(crate) enum Solver {
     /// No contact: projected conjugate gradients.
     Linear(Box<LinearSolver>),
     /// The default.
-    Face(Box<FaceSolver>),
+    ActiveSet(Box<ActiveSetSolver>),
     /// The paper's methods.
-    Paper(Box<PaperSolver>),
+    Paper(Box<SmalseSolver>),
 }
 
 impl Solver {
@@ -43,9 +43,11 @@ impl Solver {
             return Ok(Self::Linear(Box::new(LinearSolver::new(model, settings)?)));
         }
         Ok(match &settings.method {
-            Method::Face(face) => Self::Face(Box::new(FaceSolver::new(model, settings, face)?)),
+            Method::ActiveSet(face) => {
+                Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, face)?))
+            }
             Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } => {
-                Self::Paper(Box::new(PaperSolver::new(model, settings)?))
+                Self::Paper(Box::new(SmalseSolver::new(model, settings)?))
             }
         })
     }
@@ -54,10 +56,10 @@ impl Solver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-    ) -> Result<LevelReport, ContactError> {
+    ) -> Result<StepReport, ContactError> {
         let Some((level, units)) = model.bodies.scaled(model, level, iterate) else {
             return self.solve_plain(model, level, settings, iterate);
         };
@@ -69,25 +71,25 @@ impl Solver {
     fn solve_plain(
         &mut self,
         model: &Model,
-        level: &Level,
+        level: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
-    ) -> Result<LevelReport, ContactError> {
+    ) -> Result<StepReport, ContactError> {
         match self {
             Self::Linear(solver) => solver.solve(model, level, settings, iterate),
-            Self::Face(solver) => solver.solve(model, level, settings, iterate),
+            Self::ActiveSet(solver) => solver.solve(model, level, settings, iterate),
             Self::Paper(solver) => solver.solve(model, level, settings, iterate),
         }
     }
 }
 
 /// Status of a level from the status of a quadratic program.
-pub(crate) fn level_status(status: Status) -> LevelStatus {
+pub(crate) fn level_status(status: Status) -> StepStatus {
     match status {
-        Status::Converged => LevelStatus::Converged,
-        Status::Infeasible => LevelStatus::NotHeld,
-        Status::Stagnated | Status::Stopped => LevelStatus::Stagnated,
-        _ => LevelStatus::IterationLimit,
+        Status::Converged => StepStatus::Converged,
+        Status::Infeasible => StepStatus::NotHeld,
+        Status::Stagnated | Status::Stopped => StepStatus::Stagnated,
+        _ => StepStatus::IterationLimit,
     }
 }
 

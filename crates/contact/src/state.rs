@@ -73,13 +73,13 @@ impl Peak {
 impl State {
     /// Levels solved so far.
     #[must_use]
-    pub fn level(&self) -> usize {
+    pub fn step(&self) -> usize {
         self.level
     }
 
     /// Bytes held.
     #[must_use]
-    pub fn bytes(&self) -> usize {
+    pub fn memory(&self) -> usize {
         let pairs = [
             &self.lambda,
             &self.f_lambda,
@@ -430,7 +430,7 @@ pub(crate) mod tests {
             state.advance(true, a, b, c, d, e, vec![]);
             state.note_unconverged();
         }
-        assert_eq!((state.level(), state.unconverged_history()), (3, Some(1)));
+        assert_eq!((state.step(), state.unconverged_history()), (3, Some(1)));
         // level 1 in whole steps ends where level 3 in half steps does
         assert_eq!(state.rebased(6).unconverged_history(), Some(3));
     }

@@ -26,7 +26,7 @@ use crate::accumulated::AccumulatedError;
 use crate::algebraic::relative;
 use crate::clock::Analysis;
 use crate::error::ContactError;
-use crate::frame::Frame;
+use crate::frame::StepResult;
 use crate::point_state::ContactState;
 use crate::report::Counters;
 use crate::scene::Scene;
@@ -268,7 +268,7 @@ impl StepDoubling {
         if self.mode == Doubling::Local {
             self.work = [0.0; 2];
             self.solver = [AccumulatedError::default(); 3];
-            let level = self.whole.state().level();
+            let level = self.whole.state().step();
             self.half.resume(self.whole.state().rebased(2 * level))?;
         }
         let [of_whole, of_half, of_quarter] = &mut self.solver;
@@ -316,7 +316,7 @@ fn halves(times: &[f64]) -> Vec<f64> {
     halves
 }
 
-fn energy_of_difference(a: &Frame<'_>, b: &Frame<'_>) -> Result<f64, ContactError> {
+fn energy_of_difference(a: &StepResult<'_>, b: &StepResult<'_>) -> Result<f64, ContactError> {
     let scene = &a.model.scene;
     let mut difference = a.displacement();
     let other = b.displacement();
@@ -328,7 +328,11 @@ fn energy_of_difference(a: &Frame<'_>, b: &Frame<'_>) -> Result<f64, ContactErro
     )?)
 }
 
-fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeError, ContactError> {
+fn compare(
+    whole: &StepResult<'_>,
+    half: &StepResult<'_>,
+    work: [f64; 2],
+) -> Result<TimeError, ContactError> {
     let scene = &whole.model.scene;
     let other = half.displacement();
     let (mut force, mut size) = (0.0, 0.0);
@@ -344,7 +348,7 @@ fn compare(whole: &Frame<'_>, half: &Frame<'_>, work: [f64; 2]) -> Result<TimeEr
         }
     }
     Ok(TimeError {
-        level: whole.level(),
+        level: whole.step(),
         time: whole.time(),
         energy: energy_of_difference(whole, half)?,
         scale: 0.0,

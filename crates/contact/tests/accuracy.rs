@@ -4,8 +4,8 @@ mod common;
 
 use common::{block, distance, forces, small_benchmark, solve, steel, step, tight};
 use signorini_contact::{
-    Accuracy, Analysis, Contact, ContactError, DifferenceFormula, Doubling, Friction, LevelStatus,
-    Load, Method, Scene, Settings, Simulation, StepDoubling, Support,
+    Accuracy, Analysis, Contact, ContactError, DifferenceFormula, Doubling, Friction, Load, Method,
+    Scene, Settings, Simulation, StepDoubling, StepStatus, Support,
 };
 use signorini_fem_mesh::{brick, energy_of_difference, fields};
 
@@ -28,7 +28,11 @@ fn pressed(cells: usize, friction: Friction) -> Scene {
 
 #[test]
 fn the_gap_bounds_the_error_and_is_not_far_above_it() {
-    for friction in [Friction::None, Friction::given(3e7), Friction::coulomb(0.3)] {
+    for friction in [
+        Friction::None,
+        Friction::tresca(3e7),
+        Friction::coulomb(0.3),
+    ] {
         let scene = pressed(4, friction.clone());
         let reference = solve(scene.clone(), at(1e-11));
         for method in [Method::default(), Method::paper()] {
@@ -126,12 +130,12 @@ fn a_target_out_of_reach_is_no_success() {
     };
     // the smallest relative target is within reach
     let (status, report) = solved(Accuracy::Relative(1e-11));
-    assert!(report.reached && status == LevelStatus::Converged);
+    assert!(report.reached && status == StepStatus::Converged);
     // far below the rounding of doubles
     let (status, report) = solved(Accuracy::Balanced { fraction: 1e-20 });
     assert!(!report.reached, "{report:?}");
     assert!(report.algebraic.relative() > report.share);
-    assert_eq!(status, LevelStatus::Stagnated);
+    assert_eq!(status, StepStatus::Stagnated);
     // what was reached is given all the same
     assert!(report.algebraic.relative() < 1e-10, "{report:?}");
 }
@@ -254,7 +258,7 @@ fn local_doubling_restarts_from_the_whole_step() {
             &forces(&level.points),
         );
         assert!(off <= 2.0 * error.force() + 1e-12);
-        assert_eq!(error.level, plain.state().level() - 1);
+        assert_eq!(error.level, plain.state().step() - 1);
         sum += error.displacement();
     }
     println!("sum of local differences of u: {sum:.2e}");

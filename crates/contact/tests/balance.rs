@@ -97,7 +97,7 @@ fn forces_and_moments_are_in_balance() {
 #[test]
 fn no_step_has_negative_dissipation() {
     let laws = [
-        Friction::given(3e8),
+        Friction::tresca(3e8),
         Friction::coulomb(0.05),
         Friction::coulomb(0.6),
         weakening(),
@@ -127,7 +127,7 @@ fn no_step_has_negative_dissipation() {
                     assert!(work <= 1e-6 * total, "{law:?}, level {k}, node {}", p.node);
                     if p.state == ContactState::Open {
                         assert!(
-                            matches!(law, Friction::Given(_)) || norm(&p.friction_force) == 0.0
+                            matches!(law, Friction::Tresca(_)) || norm(&p.friction_force) == 0.0
                         );
                     }
                 }

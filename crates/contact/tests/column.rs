@@ -66,7 +66,7 @@ fn column(steps: usize, formula: DifferenceFormula, exact: &Point) -> Scene {
     Scene::new(block([1.0, 0.5, 1.0], [2, 1, 2]), uniform(YOUNG, 0.0))
         .with_support(
             Support::components(brick::Z_MAX, [true, true, false])
-                .moved([1.0, 0.0, 0.0], History::function(top)),
+                .with_motion([1.0, 0.0, 0.0], History::function(top)),
         )
         .with_load(Load::pressure(brick::Z_MAX, PRESSURE))
         .with_load(side(brick::X_MAX, 1.0))

@@ -118,7 +118,7 @@ fn with_contact_and_friction_1_3_and_24_subdomains_agree() {
     for (k, mesh) in meshes().into_iter().enumerate() {
         for friction in [
             Friction::None,
-            Friction::given(2e8),
+            Friction::tresca(2e8),
             Friction::coulomb(0.3),
             common::weakening(),
         ] {

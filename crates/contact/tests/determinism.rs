@@ -135,7 +135,7 @@ fn waiting_awake_changes_no_bit() {
 fn a_restart_equals_the_uninterrupted_run_bit_by_bit() {
     let laws = [
         Friction::None,
-        Friction::given(3e8),
+        Friction::tresca(3e8),
         Friction::coulomb(0.3),
         weakening(),
     ];

@@ -38,7 +38,8 @@ fn a_bottom_that_is_dragged_slides_with_friction() {
     for method in methods() {
         for boxes in [[1, 1, 1], [2, 1, 1], [2, 2, 2]] {
             let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 8).with_support(
-                Support::components(brick::Z_MIN, [true, true, false]).moved(way, there_and_back()),
+                Support::components(brick::Z_MIN, [true, true, false])
+                    .with_motion(way, there_and_back()),
             );
             let (mut work, mut before) = (0.0, 0.0);
             let (_, levels) = run(scene, tight().with_method(method.clone()));
@@ -71,7 +72,7 @@ fn what_is_dragged_moves_as_without_friction() {
     let scene = |friction| {
         pressed(friction, [2, 1, 1], 4).with_support(
             Support::components(brick::Z_MIN, [true, true, false])
-                .moved([1e-2, 0.0, 0.0], common::ramp()),
+                .with_motion([1e-2, 0.0, 0.0], common::ramp()),
         )
     };
     let rough = run(scene(Friction::coulomb(COEFFICIENT)), tight()).1;
@@ -94,7 +95,7 @@ fn a_block_that_is_dragged_drifts_with_a_force_across() {
                 .with_load(Load::body([0.0, across / 2.0, 0.0]))
                 .with_support(
                     Support::components(brick::Z_MIN, [true, false, false])
-                        .moved([way, 0.0, 0.0], common::ramp()),
+                        .with_motion([way, 0.0, 0.0], common::ramp()),
                 );
             let (_, levels) = run(scene, tight());
             let what = format!("{boxes:?}: {:?}", levels[0].report);
@@ -121,9 +122,9 @@ fn a_block_that_is_dragged_drifts_with_a_force_across() {
 #[test]
 fn given_friction_of_what_is_dragged() {
     let stress = 40.0;
-    let scene = pressed(Friction::given(stress), [2, 1, 1], 2).with_support(
+    let scene = pressed(Friction::tresca(stress), [2, 1, 1], 2).with_support(
         Support::components(brick::Z_MIN, [true, true, false])
-            .moved([1e-2, 0.0, 0.0], common::ramp()),
+            .with_motion([1e-2, 0.0, 0.0], common::ramp()),
     );
     for level in run(scene, tight()).1 {
         let friction = level.summary.friction_force[0];

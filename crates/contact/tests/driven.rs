@@ -10,7 +10,7 @@ use signorini_fem_mesh::{History, brick};
 fn lowered(gap: f64, depth: f64, tilt: [f64; 2]) -> Scene {
     let down = History::table(vec![(0.0, 0.0), (1.0, 1.0)]).expect("ramp");
     Scene::new(block([2.0, 1.0, 1.0], [8, 4, 4]), steel())
-        .with_support(Support::fixed(brick::Z_MAX).moved([tilt[0], tilt[1], -depth], down))
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([tilt[0], tilt[1], -depth], down))
         .with_contact(
             Contact::rigid(brick::Z_MIN)
                 .with_gap(gap)
@@ -20,7 +20,7 @@ fn lowered(gap: f64, depth: f64, tilt: [f64; 2]) -> Scene {
         .with_analysis(Analysis::quasistatic(1.0, 10))
 }
 
-fn assert_cheap(level: &common::Level, what: &str) {
+fn assert_cheap(level: &common::StepProblem, what: &str) {
     let report = &level.report;
     let parts = level.certificate.parts().map(|(n, v)| (n, v.relative()));
     assert!(report.status.converged(), "{what}: {report:?} {parts:?}");
@@ -54,8 +54,8 @@ fn a_rigid_motion_costs_little() {
     let motion = [1e-3, -2e-3, 5e-4];
     for contact in [false, true] {
         let mut scene = Scene::new(block([2.0, 1.0, 1.0], [8, 4, 4]), steel())
-            .with_support(Support::fixed(brick::X_MIN).moved(motion, ramp()))
-            .with_support(Support::fixed(brick::X_MAX).moved(motion, ramp()))
+            .with_support(Support::fixed(brick::X_MIN).with_motion(motion, ramp()))
+            .with_support(Support::fixed(brick::X_MAX).with_motion(motion, ramp()))
             .with_boxes([3, 1, 1])
             .with_analysis(Analysis::quasistatic(1.0, 5));
         if contact {

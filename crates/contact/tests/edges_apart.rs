@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::{Level, block, methods, run, solve, uniform};
+use common::{StepProblem, block, methods, run, solve, uniform};
 use signorini_contact::{Contact, Friction, Load, Scene, Screening, Settings, Simulation, Support};
 use signorini_fem_mesh::{Facet, FacetTag, History, TetMesh, brick};
 
 /// How deep nodes are inside an obstacle with one normal, over the largest displacement.
-fn depth(scene: &Scene, level: &Level, tag: FacetTag, normal: [f64; 3], gap: f64) -> f64 {
+fn depth(scene: &Scene, level: &StepProblem, tag: FacetTag, normal: [f64; 3], gap: f64) -> f64 {
     let u = level.displacement.as_chunks::<3>().0;
     let size = level
         .displacement
@@ -86,7 +86,7 @@ fn kinked(angle: f64) -> TetMesh {
 fn pressed(mesh: TetMesh, left: Contact, right: Contact) -> Scene {
     Scene::new(mesh, uniform(1e9, 0.3))
         .with_support(
-            Support::fixed(brick::Z_MAX).moved([2e-3, 0.0, -1e-3], History::constant(1.0)),
+            Support::fixed(brick::Z_MAX).with_motion([2e-3, 0.0, -1e-3], History::constant(1.0)),
         )
         .with_contact(left)
         .with_contact(right)
@@ -200,7 +200,7 @@ fn a_partner_and_an_obstacle_are_two() {
             .with_boxes(boxes);
         let simulation = Simulation::new(scene.clone(), Settings::default()).expect("set-up");
         // 5 x 3 pairs and as many on the floor, 3 nodes in both
-        assert_eq!(simulation.touch_points().len(), 30);
+        assert_eq!(simulation.constrained_points().len(), 30);
         let level = solve(scene.clone(), Settings::default());
         let floor = depth(&scene, &level, RIGHT, [0.0, 0.0, -1.0], 0.0);
         assert!(floor < 1e-6, "{floor:e}");

@@ -54,7 +54,7 @@ fn an_open_edge_has_an_estimate() {
 #[test]
 fn obstacles_that_move_apart_do_not_share_nodes() {
     let floor = || Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]);
-    let plate = floor().moved([0.0, 0.0, -0.1], ramp());
+    let plate = floor().with_motion([0.0, 0.0, -0.1], ramp());
     match refused(&clamped().with_contact(floor()).with_contact(plate.clone())) {
         ContactError::SharedNode { first, second, .. } => assert_eq!((first, second), (0, 1)),
         error => panic!("{error}"),
@@ -66,7 +66,7 @@ fn obstacles_that_move_apart_do_not_share_nodes() {
 #[test]
 fn an_obstacle_that_moves_too_far_is_named() {
     for history in [History::constant(1e200), History::constant(1e300)] {
-        let floor = Contact::rigid(brick::Z_MIN).moved([0.0, 0.0, 1e200], history);
+        let floor = Contact::rigid(brick::Z_MIN).with_motion([0.0, 0.0, 1e200], history);
         let error = refused(&clamped().with_contact(floor)).to_string();
         assert!(
             error.contains("obstacle 0") && error.contains("displacement"),

@@ -48,7 +48,7 @@ fn without_friction_there_are_no_tangential_rows() {
 #[test]
 fn given_friction_is_one_quadratic_program_a_step() {
     let steps = 5;
-    let scene = || small_benchmark(Friction::given(3e8), steps);
+    let scene = || small_benchmark(Friction::tresca(3e8), steps);
     for method in [Method::paper(), Method::one_loop()] {
         let (_, levels) = run(scene(), Settings::default().with_method(method));
         for level in &levels {
@@ -72,7 +72,7 @@ fn given_friction_is_one_quadratic_program_a_step() {
 }
 
 /// The face method writes given bounds once a level.
-fn set_by_hook(level: &common::Level) -> usize {
+fn set_by_hook(level: &common::StepProblem) -> usize {
     assert!(!level.report.fallback);
     1
 }
@@ -81,7 +81,7 @@ fn set_by_hook(level: &common::Level) -> usize {
 fn static_scenes_hold_no_history() {
     for friction in [
         Friction::None,
-        Friction::given(3e8),
+        Friction::tresca(3e8),
         Friction::coulomb(0.3),
         weakening(),
     ] {
@@ -148,7 +148,7 @@ fn a_constant_coefficient_computes_no_rate() {
             simulation.counters().rate_updates
         };
         assert_eq!(count(Friction::coulomb(0.3)), 0);
-        assert_eq!(count(Friction::given(1e8)), 0);
+        assert_eq!(count(Friction::tresca(1e8)), 0);
         assert_eq!(count(Friction::None), 0);
         assert_eq!(count(weakening()), steps);
     }
@@ -194,7 +194,7 @@ fn supports_that_rest_have_no_motion() {
     assert!(!set_up(scene.clone()).plan().effects.motion);
     let moved = scene.with_support(
         Support::components(brick::X_MAX, [false, true, false])
-            .moved([0.0, 1e-3, 0.0], History::constant(1.0)),
+            .with_motion([0.0, 1e-3, 0.0], History::constant(1.0)),
     );
     assert!(set_up(moved).plan().effects.motion);
 }

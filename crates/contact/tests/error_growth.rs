@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Level, benchmark, block, foundation, loaded_brick, rest, up_down_up};
+use common::{StepProblem, benchmark, block, foundation, loaded_brick, rest, up_down_up};
 use signorini_contact::{
     AccumulatedError, Accuracy, Analysis, DifferenceFormula, Doubling, Friction, Scene, Settings,
     Simulation, StepDoubling,
@@ -13,7 +13,7 @@ fn at(tolerance: f64) -> Settings {
     Settings::default().with_tolerance(tolerance)
 }
 
-fn levels(scene: &Scene, settings: Settings) -> Vec<Level> {
+fn levels(scene: &Scene, settings: Settings) -> Vec<StepProblem> {
     rest(&mut Simulation::new(scene.clone(), settings).expect("set-up"))
 }
 
@@ -127,7 +127,7 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
                 truth += distance(&scene, &u, &level.displacement).powi(2);
                 plain += error.displacement().powi(2);
                 better += error.whole_error().powi(2);
-                assert!(error.changed_points <= doubling.whole().touch_points().len());
+                assert!(error.changed_points <= doubling.whole().constrained_points().len());
                 last = Some(error);
             }
             let last = last.expect("a step");

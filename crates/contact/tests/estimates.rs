@@ -3,11 +3,11 @@
 
 mod common;
 
-use common::{Level, block, small_benchmark, uniform};
+use common::{StepProblem, block, small_benchmark, uniform};
 use signorini_contact::{
     AccumulatedError, Accuracy, AlgebraicError, Analysis, Contact, ContactError, DifferenceFormula,
-    Directions, Doubling, Friction, LevelStatus, Load, Method, Plan, Scene, Settings, Simulation,
-    StepDoubling, Support,
+    Directions, Doubling, Friction, Load, Method, Plan, Scene, Settings, Simulation, StepDoubling,
+    StepStatus, Support,
 };
 use signorini_fem_mesh::{Brick, History, brick, fields};
 
@@ -24,7 +24,10 @@ fn steps(count: usize) -> Analysis {
 }
 
 /// Levels with their estimates.
-fn estimated(scene: &Scene, settings: Settings) -> Vec<(Level, AlgebraicError, AccumulatedError)> {
+fn estimated(
+    scene: &Scene,
+    settings: Settings,
+) -> Vec<(StepProblem, AlgebraicError, AccumulatedError)> {
     let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
     let mut sum = AccumulatedError::default();
     let mut out = Vec::new();
@@ -50,7 +53,7 @@ fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, levels: usiz
     let end = Support::partial(brick::X_MAX, Directions::Vectors(directions.to_vec()));
     Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), uniform(1e9, 0.3))
         .with_support(Support::fixed(brick::X_MIN))
-        .with_support(end.moved(moved, ramp()))
+        .with_support(end.with_motion(moved, ramp()))
         .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp()))
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(friction)))
         .with_boxes([2, 1, 2])
@@ -78,7 +81,7 @@ fn motions_oblique_to_the_normal_count_once() {
         let settings = Settings::default().with_accuracy(Accuracy::Relative(1e-5));
         for (k, own) in estimated(&scene, settings).iter().enumerate() {
             let truth = distance(&scene, &own.0.displacement, &exact[k].0.displacement);
-            assert_eq!(own.0.report.status, LevelStatus::Converged);
+            assert_eq!(own.0.report.status, StepStatus::Converged);
             assert!(truth <= 1e-5 * exact[k].1.elastic.sqrt(), "{truth:e}");
         }
     }
@@ -131,11 +134,11 @@ fn random(seed: u64) -> Scene {
         .with_load(Load::pressure(brick::Z_MAX, dice.between(0.0, 3e6)).with_history(ramp()));
     if dice.next() < 0.6 {
         let end = Support::partial(brick::X_MAX, Directions::Vectors(vec![direction]));
-        scene = scene.with_support(end.moved(moved, ramp()));
+        scene = scene.with_support(end.with_motion(moved, ramp()));
     }
     let friction = match dice.below(4) {
         0 => Friction::None,
-        1 => Friction::given(dice.between(0.0, 2e6)),
+        1 => Friction::tresca(dice.between(0.0, 2e6)),
         _ => Friction::coulomb(dice.next()),
     };
     let mut contact = Contact::rigid(brick::Z_MIN).with_friction(friction);
@@ -179,7 +182,7 @@ fn random_scenes_keep_what_they_promise() {
                 let report = level.report.accuracy.expect("a report");
                 let truth = truth(k, &level.displacement) / error.scale.sqrt();
                 let name = format!("seed {seed}, {accuracy:?}, level {k}");
-                assert_eq!(level.report.status, LevelStatus::Converged, "{name}");
+                assert_eq!(level.report.status, StepStatus::Converged, "{name}");
                 assert!(report.reached && report.certified, "{name}");
                 assert!(level.certificate.largest() <= report.certificate_limit);
                 assert!(truth <= 1.3 * report.target, "{name}: {truth:e}");
@@ -252,8 +255,8 @@ fn bodies_at_rest_have_a_scale() {
                 // friction forces that vanish keep the rounding errors of what they were: that is above 1e-8
                 let rounding = name == "unloaded, friction" && accuracy == Accuracy::Relative(1e-8);
                 match level.report.status {
-                    LevelStatus::Stagnated if rounding => assert!(found < 1e-5, "{what}"),
-                    status => assert_eq!(status, LevelStatus::Converged, "{what}"),
+                    StepStatus::Stagnated if rounding => assert!(found < 1e-5, "{what}"),
+                    status => assert_eq!(status, StepStatus::Converged, "{what}"),
                 }
                 assert!(
                     found < 1e-2 && likely.is_finite() && most >= likely * (1.0 - 1e-12),
@@ -302,7 +305,7 @@ fn what_weighs_little_in_the_energy_is_certified_too() {
                     .iter()
                     .map(|v| v.relative())
                     .fold(0.0, f64::max);
-                if level.report.status == LevelStatus::Converged {
+                if level.report.status == StepStatus::Converged {
                     worst = worst.max(largest / report.target);
                     assert!(report.reached && report.certified);
                 }
@@ -331,7 +334,7 @@ fn sizes_whose_squares_overflow_are_named() {
     let clamped = || brick().with_support(Support::fixed(brick::X_MIN));
     let press = |p: f64| clamped().with_load(Load::pressure(brick::Z_MAX, p));
     let moved = |size: f64| {
-        let support = Support::fixed(brick::X_MIN).moved([0.0, size, 0.0], ramp());
+        let support = Support::fixed(brick::X_MIN).with_motion([0.0, size, 0.0], ramp());
         brick().with_support(support)
     };
     let pressed = press(1.0).with_load(Load::body([0.0, 0.0, -1.0]).with_history(large(1e200)));
@@ -363,7 +366,8 @@ fn sizes_whose_squares_overflow_are_named() {
     let solid = |young: f64| Scene::new(block([2.0, 1.0, 1.0], [2, 1, 1]), uniform(young, 0.3));
     for (scene, place) in [
         (
-            solid(1e60).with_support(Support::fixed(brick::X_MIN).moved([0.0, 1e40, 0.0], ramp())),
+            solid(1e60)
+                .with_support(Support::fixed(brick::X_MIN).with_motion([0.0, 1e40, 0.0], ramp())),
             "support 0 at time 1 s: its displacement times",
         ),
         (

@@ -25,7 +25,7 @@ fn refused(scene: Scene) -> ContactError {
     refused_by(scene, Settings::default())
 }
 
-/// Level, body, motion, force.
+/// StepProblem, body, motion, force.
 fn not_held(scene: Scene) -> (usize, usize, String, f64) {
     let error = refused(scene);
     let text = error.to_string();
@@ -193,7 +193,7 @@ fn loads_beyond_given_slip_bounds_are_refused() {
             common::block([2.0, 1.0, 1.0], [4, 2, 2]),
             common::uniform(1e6, 0.3),
         )
-        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::given(30.0)))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(30.0)))
         .with_load(Load::pressure(brick::Z_MAX, 100.0))
         .with_load(Load::body([0.6 * along / 2.0, 0.8 * along / 2.0, 0.0]))
     };
@@ -234,7 +234,7 @@ fn a_pull_beyond_friction_is_named() {
     use signorini_contact::Friction;
     for (friction, weight) in [
         (Friction::coulomb(0.19), 1e4),
-        (Friction::given(1.9e3), 1e5),
+        (Friction::tresca(1.9e3), 1e5),
     ] {
         let (text, factor) = refused(friction.clone(), [2.46e3, 3.28e3, 0.0], weight);
         let factor = factor.expect("friction could");

@@ -70,7 +70,7 @@ fn scene(case: &Case) -> Scene {
         .with_contact(
             Contact::rigid(brick::Z_MIN)
                 .with_gap(GAP)
-                .with_friction(Friction::Given(SlipBound::StressField(Arc::new(field)))),
+                .with_friction(Friction::Tresca(SlipBound::StressField(Arc::new(field)))),
         )
         .with_boxes([3, 1, 1]);
     for load in &case.loads {
@@ -143,7 +143,7 @@ fn reference(case: &Case, simulation: &Simulation) -> Vec<f64> {
         .gluing()
         .contact()
         .iter()
-        .zip(simulation.touch_points())
+        .zip(simulation.constrained_points())
     {
         d[info.row] += info.scale * GAP;
         cones.add(

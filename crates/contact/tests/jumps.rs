@@ -5,10 +5,10 @@ mod common;
 
 use common::block;
 use signorini_contact::{
-    Contact, Friction, LevelStatus, Load, Method, Scene, Settings, Simulation, Support,
+    Contact, Friction, Load, Method, Scene, Settings, Simulation, StepStatus, Support,
 };
 use signorini_fem_mesh::{Hooke, Materials, brick};
-use signorini_qp::FaceSettings;
+use signorini_qp::ActiveSetSettings;
 
 fn scene(ratio: f64, friction: Friction) -> Scene {
     let mesh = block([3.0, 1.0, 1.0], [9, 3, 3]);
@@ -31,7 +31,7 @@ fn scene(ratio: f64, friction: Friction) -> Scene {
 }
 
 /// One level: status, certificate, products, whether SMALSE had to help.
-fn level(ratio: f64, friction: Friction) -> (LevelStatus, f64, usize, bool) {
+fn level(ratio: f64, friction: Friction) -> (StepStatus, f64, usize, bool) {
     let scene = scene(ratio, friction);
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
     let frame = simulation.step().expect("step");
@@ -75,7 +75,7 @@ const JUMPS: [(f64, f64, usize); 6] = [
 #[test]
 fn the_fall_back_is_bounded() {
     let limit = 50;
-    let few = Method::Face(FaceSettings::default().with_max_faces(1));
+    let few = Method::ActiveSet(ActiveSetSettings::default().with_max_faces(1));
     let settings = Settings::default()
         .with_method(few)
         .with_max_fallback_products(limit);
@@ -84,7 +84,7 @@ fn the_fall_back_is_bounded() {
     let frame = simulation.step().expect("step");
     let report = frame.report();
     assert!(report.fallback);
-    assert_eq!(report.status, LevelStatus::IterationLimit);
+    assert_eq!(report.status, StepStatus::IterationLimit);
     // the last step of KPRGP is finished
     assert!(
         (1..=limit + 10).contains(&report.fallback_products),

@@ -115,7 +115,7 @@ fn orders_of_convergence() {
         let (nodes, values) = boundary(&mesh);
         let scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
             .with_support(
-                Support::fixed(Place::Nodes(nodes)).moved_each(values, History::constant(1.0)),
+                Support::fixed(Place::Nodes(nodes)).with_motions(values, History::constant(1.0)),
             )
             .with_load(Load::new(LoadDensity::body_field(force)))
             .with_boxes([2, 2, 2]);

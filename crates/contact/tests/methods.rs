@@ -118,11 +118,11 @@ fn the_state_at_the_end_depends_on_the_loading_history() {
     };
     let (b, c) = (last(ramp()), last(up_down_up()));
     assert_eq!(b.load, c.load);
-    let friction = |l: &common::Level| -> Vec<f64> {
+    let friction = |l: &common::StepProblem| -> Vec<f64> {
         l.points.iter().flat_map(|p| p.friction_force).collect()
     };
     let normal =
-        |l: &common::Level| -> Vec<f64> { l.points.iter().map(|p| p.normal_force).collect() };
+        |l: &common::StepProblem| -> Vec<f64> { l.points.iter().map(|p| p.normal_force).collect() };
     let (t, n, u) = (
         distance(&friction(&b), &friction(&c)),
         distance(&normal(&b), &normal(&c)),
@@ -144,7 +144,9 @@ fn a_body_that_just_touches_is_solved_by_every_method() {
             for steps in [5, 10, 15, 20, 40] {
                 let down = down.clone();
                 let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e9, 0.3))
-                    .with_support(Support::fixed(brick::Z_MAX).moved([2e-4, 1e-4, -1e-3], down))
+                    .with_support(
+                        Support::fixed(brick::Z_MAX).with_motion([2e-4, 1e-4, -1e-3], down),
+                    )
                     .with_contact(
                         Contact::rigid(brick::Z_MIN)
                             .with_gap(4e-4)

@@ -50,7 +50,7 @@ fn three_parts(mesh: &TetMesh) -> Vec<u32> {
 }
 
 /// Everything of all levels that has a direction, turned back by the inverse of `r`, by mesh node.
-fn turned_back(levels: &[common::Level], r: &Rotation, nodes: usize) -> Vec<f64> {
+fn turned_back(levels: &[common::StepProblem], r: &Rotation, nodes: usize) -> Vec<f64> {
     let mut inverse = IDENTITY;
     for (i, row) in inverse.iter_mut().enumerate() {
         *row = [r[0][i], r[1][i], r[2][i]];
@@ -83,7 +83,7 @@ fn results(mesh: &TetMesh, r: &Rotation, shift: [f64; 3], law: &Friction) -> Vec
 #[test]
 fn quarter_turns_and_general_rotations() {
     let mesh = brick_mesh();
-    for law in [Friction::given(3e8), Friction::coulomb(0.4), weakening()] {
+    for law in [Friction::tresca(3e8), Friction::coulomb(0.4), weakening()] {
         let reference = results(&mesh, &IDENTITY, [0.0; 3], &law);
         let quarter = std::f64::consts::FRAC_PI_2;
         for (axis, angle) in [

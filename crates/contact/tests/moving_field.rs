@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Level, assert_close, block, ramp, run, uniform};
+use common::{StepProblem, assert_close, block, ramp, run, uniform};
 use signorini_contact::{
     Analysis, Contact, ContactError, DifferenceFormula, Friction, Load, Plan, Scene, Screening,
     Settings, Simulation, Support,
@@ -32,7 +32,7 @@ fn scene(contact: Contact, steps: usize) -> Scene {
 }
 
 /// The x coordinate of the centre of pressure.
-fn centre(mesh: &TetMesh, level: &Level) -> f64 {
+fn centre(mesh: &TetMesh, level: &StepProblem) -> f64 {
     let moment =
         |p: &signorini_contact::PointState| -p.normal_force * mesh.points()[p.node as usize][0];
     level.points.iter().map(moment).sum::<f64>() / level.summary.normal_force
@@ -46,7 +46,7 @@ fn the_pressure_goes_with_a_ball_that_is_dragged() {
             let contact = Contact::rigid(brick::Z_MIN)
                 .with_gap_field(ball(2.0))
                 .with_friction(Friction::coulomb(friction))
-                .moved([2.0, 0.0, 0.0], ramp());
+                .with_motion([2.0, 0.0, 0.0], ramp());
             let scene = scene(contact, 4);
             let mesh = scene.mesh().clone();
             let (_, levels) = run(scene, settings().with_screening(screening));
@@ -71,7 +71,10 @@ fn the_pressure_goes_with_a_ball_that_is_dragged() {
 fn a_level_is_that_of_an_obstacle_that_stands_there() {
     let way = [1.3, 0.2, -0.01];
     let contact = Contact::rigid(brick::Z_MIN);
-    let moving = contact.clone().with_gap_field(ball(2.0)).moved(way, ramp());
+    let moving = contact
+        .clone()
+        .with_gap_field(ball(2.0))
+        .with_motion(way, ramp());
     for screening in [Screening::Off, Screening::on()] {
         let (_, levels) = run(
             scene(moving.clone(), 3),
@@ -110,7 +113,7 @@ fn a_plane_is_where_its_point_has_moved() {
     let solved = |point: [f64; 3], motion: Option<[f64; 3]>| {
         let mut contact = Contact::half_space(brick::Z_MIN, point, outward);
         if let Some(way) = motion {
-            contact = contact.moved(way, ramp());
+            contact = contact.with_motion(way, ramp());
         }
         let scene = Scene::new(arch(block([6.0, 2.0, 1.0], [12, 4, 2])), uniform(1e6, 0.3))
             .with_contact(contact)
@@ -135,7 +138,7 @@ fn the_work_of_a_wedge_is_stored() {
     let miss = |steps: usize| {
         let contact = Contact::rigid(brick::Z_MIN)
             .with_gap_field(|p| 0.02 * p[0])
-            .moved([2.0, 0.0, 0.0], ramp());
+            .with_motion([2.0, 0.0, 0.0], ramp());
         let scene = scene(contact, steps);
         let (mesh, materials) = (scene.mesh().clone(), scene.materials().clone());
         let (_, levels) = run(scene, settings());
@@ -157,7 +160,7 @@ fn a_run_over_a_moving_ball_continues() {
         let contact = Contact::rigid(brick::Z_MIN)
             .with_gap_field(ball(2.0))
             .with_friction(Friction::coulomb(0.3))
-            .moved([1.0, 0.5, 0.0], ramp());
+            .with_motion([1.0, 0.5, 0.0], ramp());
         Simulation::new(scene(contact, 4), Settings::default()).expect("set-up")
     };
     let (mut whole, mut first, mut second) = (make(), make(), make());
@@ -184,19 +187,19 @@ fn fields_are_asked_at_all_places_that_pass() {
     let known = |p: [f64; 3]| if p[0] < -1e-9 { f64::NAN } else { 0.1 };
     let contact = Contact::rigid(brick::Z_MIN)
         .with_gap_field(known)
-        .moved([0.5, 0.0, 0.0], ramp());
+        .with_motion([0.5, 0.0, 0.0], ramp());
     match refused(&scene(contact.clone(), 4)) {
         ContactError::Gap {
             contact, position, ..
         } => assert_eq!((contact, position[0]), (0, -0.125)),
         error => panic!("{error}"),
     }
-    let away = contact.moved([0.0, 0.0, -0.5], ramp());
+    let away = contact.with_motion([0.0, 0.0, -0.5], ramp());
     Plan::new(&scene(away, 4), &Settings::default()).expect("the way is normal");
     let step = |p: [f64; 3]| if p[0] < -0.3 { -1e-3 } else { 1e-3 };
     let contact = Contact::rigid(brick::Z_MIN)
         .with_gap_field(step)
-        .moved([0.5, 0.0, 0.0], ramp());
+        .with_motion([0.5, 0.0, 0.0], ramp());
     let scene = scene(contact, 5).with_support(Support::fixed(brick::X_MIN));
     match refused(&scene) {
         ContactError::SupportInObstacle { time, gap, .. } => {
@@ -212,14 +215,14 @@ fn which_field_is_nearer_must_not_change() {
     let field = |slope: f64| {
         Contact::rigid(brick::Z_MIN)
             .with_gap_field(move |p| 0.1 + slope * (p[0] - 7.0))
-            .moved([2.0, 0.0, 0.0], ramp())
+            .with_motion([2.0, 0.0, 0.0], ramp())
     };
     let both = |a: f64, b: f64| scene(field(a), 4).with_contact(field(b));
     Plan::new(&both(0.0, 0.01), &Settings::default()).expect("one stays nearer");
     // they cross at x = 7, and pass the end of the block on their way back
     let back = |slope: f64| {
         let other = field(slope);
-        other.moved([-2.0, 0.0, 0.0], ramp())
+        other.with_motion([-2.0, 0.0, 0.0], ramp())
     };
     let crossing = scene(back(0.0), 4).with_contact(back(0.01));
     match refused(&crossing) {
@@ -245,7 +248,7 @@ fn curved_sides_take_fields_along_short_ways() {
     };
     let field = Contact::rigid(brick::Z_MIN).with_gap_field(|p| 0.01 + 0.01 * p[1].powi(2));
     let plan = |way: [f64; 3], contact: &Contact| {
-        let moving = contact.clone().moved(way, ramp());
+        let moving = contact.clone().with_motion(way, ramp());
         Plan::new(&scene(moving), &Settings::default())
     };
     plan([0.0, 5.0, 0.0], &field).expect("along the axis");
@@ -255,7 +258,7 @@ fn curved_sides_take_fields_along_short_ways() {
     plan([0.5, 0.0, 0.0], &down).expect("one direction");
     let constant = Contact::rigid(brick::Z_MIN).with_gap(0.01);
     plan([0.5, 0.0, 0.0], &constant).expect("the same gap everywhere");
-    let across = field.moved([0.5, 0.5, 0.0], History::constant(-1.0));
+    let across = field.with_motion([0.5, 0.5, 0.0], History::constant(-1.0));
     match refused(&scene(across)) {
         ContactError::MovedField { contact, turn, .. } => {
             // 0.5 m on a circle of 2 m
@@ -275,7 +278,7 @@ fn a_constant_gap_has_nothing_to_bring() {
     let contact = |way: [f64; 3]| {
         Contact::rigid(brick::Z_MIN)
             .with_gap(0.01)
-            .moved(way, ramp())
+            .with_motion(way, ramp())
     };
     let loaded = |c| {
         let load = Load::traction(brick::X_MAX, [0.0, 0.0, -1e4]);

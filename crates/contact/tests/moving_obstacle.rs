@@ -42,7 +42,7 @@ fn top() -> Support {
 fn a_plate_under_a_block_is_a_block_over_a_plate() {
     let laws = [
         Friction::coulomb(0.3),
-        Friction::given(200.0),
+        Friction::tresca(200.0),
         common::weakening(),
     ];
     let way = [WAY, 0.5 * WAY, 0.0];
@@ -53,9 +53,9 @@ fn a_plate_under_a_block_is_a_block_over_a_plate() {
         ] {
             for method in methods() {
                 let boxes = [2, 1, 1];
-                let plate = floor(law.clone()).moved(way.map(|c| -c), there_and_back());
+                let plate = floor(law.clone()).with_motion(way.map(|c| -c), there_and_back());
                 let moving = scene(plate, top(), formula, boxes);
-                let drawn = top().moved(way, there_and_back());
+                let drawn = top().with_motion(way, there_and_back());
                 let drawn = scene(floor(law.clone()), drawn, formula, boxes);
                 let settings = settings().with_method(method.clone());
                 let (_, a) = run(moving, settings.clone());
@@ -89,10 +89,10 @@ fn a_plate_under_a_block_is_a_block_over_a_plate() {
 #[test]
 fn the_work_of_the_obstacle_is_stored_or_lost() {
     let miss = |steps: usize| {
-        let plate = floor(Friction::coulomb(0.3)).moved([WAY, 0.0, 0.0], there_and_back());
+        let plate = floor(Friction::coulomb(0.3)).with_motion([WAY, 0.0, 0.0], there_and_back());
         let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e6, 0.3))
             .with_contact(plate)
-            .with_support(Support::fixed(brick::Z_MAX).moved([0.0, 0.0, -WAY], ramp()))
+            .with_support(Support::fixed(brick::Z_MAX).with_motion([0.0, 0.0, -WAY], ramp()))
             .with_analysis(
                 Analysis::quasistatic(1.0, steps).with_formula(DifferenceFormula::BACKWARD_EULER),
             );
@@ -130,7 +130,7 @@ fn an_obstacle_that_rises_closes_the_gap() {
             .with_contact(
                 floor(Friction::None)
                     .with_gap(gap)
-                    .moved([0.0, 0.0, rise], ramp()),
+                    .with_motion([0.0, 0.0, rise], ramp()),
             )
             .with_support(Support::fixed(brick::Z_MAX))
             .with_boxes([1, 1, 2])
@@ -156,7 +156,7 @@ fn an_obstacle_that_rises_closes_the_gap() {
 /// Nodes that supports hold still while the plate goes away under them slide.
 #[test]
 fn nodes_that_are_held_slide_on_a_plate_that_moves() {
-    let plate = floor(Friction::coulomb(0.2)).moved([0.0, WAY, 0.0], ramp());
+    let plate = floor(Friction::coulomb(0.2)).with_motion([0.0, WAY, 0.0], ramp());
     let still = Support::components(brick::Z_MIN, [true, true, false]);
     let scene = scene(plate, still, DifferenceFormula::BACKWARD_EULER, [1, 1, 1]);
     for level in run(scene, settings()).1 {
@@ -177,15 +177,15 @@ fn obstacles_that_move_are_checked() {
     };
     let up = floor(Friction::None).with_gap(0.1);
     let x = || Place::Tag(brick::X_MIN);
-    let inside = refused(up.clone().moved([0.0, 0.0, 0.2], ramp()), x());
+    let inside = refused(up.clone().with_motion([0.0, 0.0, 0.2], ramp()), x());
     assert!(matches!(
         inside,
         Some(ContactError::SupportInObstacle { time, .. }) if (time - 0.75).abs() < 1e-12
     ));
-    let bad = refused(up.clone().moved([f64::NAN, 0.0, 0.0], ramp()), x());
+    let bad = refused(up.clone().with_motion([f64::NAN, 0.0, 0.0], ramp()), x());
     assert!(matches!(bad, Some(ContactError::Setting { .. })));
     let wild = History::function(|t| 1.0 / (t - 0.5));
-    let bad = refused(up.moved([0.0, 0.0, -0.1], wild), x());
+    let bad = refused(up.with_motion([0.0, 0.0, -0.1], wild), x());
     assert!(matches!(
         bad,
         Some(ContactError::HistoryValue {
@@ -199,7 +199,7 @@ fn obstacles_that_move_are_checked() {
 #[test]
 fn a_run_over_a_moving_plate_continues() {
     let make = || {
-        let plate = floor(Friction::coulomb(0.3)).moved([WAY, 0.0, 0.0], there_and_back());
+        let plate = floor(Friction::coulomb(0.3)).with_motion([WAY, 0.0, 0.0], there_and_back());
         let scene = scene(plate, top(), DifferenceFormula::THREE_STEP, [2, 1, 1]);
         Simulation::new(scene, Settings::default()).expect("set-up")
     };

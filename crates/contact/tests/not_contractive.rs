@@ -6,7 +6,7 @@ mod common;
 
 use common::{block, methods, uniform};
 use signorini_contact::{
-    Contact, Friction, LevelStatus, Load, Method, Scene, Settings, Simulation, Support,
+    Contact, Friction, Load, Method, Scene, Settings, Simulation, StepStatus, Support,
     fixed_point::Verdict,
 };
 use signorini_fem_mesh::brick;
@@ -25,7 +25,7 @@ fn cantilever(coefficient: f64, tilt: f64, axial: f64) -> Scene {
         .with_boxes([5, 1, 1])
 }
 
-fn first_level(scene: Scene, method: Method) -> (LevelStatus, Option<Verdict>, Option<f64>, f64) {
+fn first_level(scene: Scene, method: Method) -> (StepStatus, Option<Verdict>, Option<f64>, f64) {
     let settings = Settings::default().with_method(method);
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let frame = simulation.step().expect("step");
@@ -71,7 +71,7 @@ fn successive_approximations_say_that_the_map_is_not_contractive() {
     for coefficient in [0.6, 0.8, 1.0] {
         let scene = cantilever(coefficient, 0.02, 0.0);
         let (status, verdict, rate, _) = first_level(scene, Method::paper());
-        assert_eq!(status, LevelStatus::NotContractive, "F {coefficient}");
+        assert_eq!(status, StepStatus::NotContractive, "F {coefficient}");
         assert_eq!(verdict, Some(Verdict::NotContractive), "F {coefficient}");
         assert!(rate.is_some_and(|r| r > 0.5), "F {coefficient}: {rate:?}");
     }
@@ -85,7 +85,7 @@ fn outside_of_that_range_the_map_converges() {
         let (status, verdict, _, certificate) = first_level(scene, Method::paper());
         assert_eq!(
             (status, verdict),
-            (LevelStatus::Converged, Some(Verdict::Converged)),
+            (StepStatus::Converged, Some(Verdict::Converged)),
             "F {coefficient}"
         );
         assert!(certificate <= 1e-6, "F {coefficient}: {certificate:e}");

@@ -64,7 +64,7 @@ fn a_direction_out_of_the_body_somewhere_is_accepted() {
         Contact::rigid(brick::Z_MIN).with_normal([0.99, 0.0, -0.01]),
         Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]),
         Contact::rigid(brick::Z_MIN)
-            .and_tag(brick::X_MAX)
+            .with_tag(brick::X_MAX)
             .with_normal([1.0, 0.0, 0.2]),
     ] {
         result(contact, Settings::default()).expect("accepted");

@@ -44,7 +44,7 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
     let one = bulging();
     let pressed = |scene: Scene, tag: FacetTag, sign: f64| {
         scene
-            .with_support(Support::fixed(tag).moved([0.0, 0.0, -0.02 * sign], ramp()))
+            .with_support(Support::fixed(tag).with_motion([0.0, 0.0, -0.02 * sign], ramp()))
             .with_analysis(Analysis::quasistatic(1.0, 3))
     };
     let plane = Contact::rigid(brick::Z_MIN)
@@ -104,7 +104,7 @@ fn pressure_passes_from_body_to_body() {
         ([1, 1, 2], Friction::None),
         ([2, 2, 4], Friction::None),
         ([2, 1, 2], Friction::coulomb(0.3)),
-        ([2, 1, 2], Friction::given(1e3)),
+        ([2, 1, 2], Friction::tresca(1e3)),
     ] {
         for method in methods() {
             let what = format!("{boxes:?} {} {friction:?}", method.name());
@@ -132,7 +132,7 @@ fn pressure_passes_from_body_to_body() {
             for point in &levels[0].points {
                 let found = -point.normal_force / point.area;
                 assert!((found / pressure - 1.0).abs() < 1e-6, "{what}: {found:e}");
-                assert!(point.opponent.is_some(), "{what}");
+                assert!(point.partner.is_some(), "{what}");
             }
             let gluing = simulation.tfeti().gluing();
             // boxes that cut cells leave tips: copies differ, and count by stiffness
@@ -182,7 +182,7 @@ fn a_stiff_plate_is_a_rigid_floor() {
     for stiffness in [1e3, 1e6] {
         let settings = Settings::default().with_tolerance(1e-8);
         let (_, levels) = run(beam(Some(211.9e9 * stiffness)), settings);
-        let off = |a: &common::Level, b: &common::Level| {
+        let off = |a: &common::StepProblem, b: &common::StepProblem| {
             let beam = b.displacement.len();
             distance(&a.displacement[..beam], &b.displacement)
         };
@@ -255,8 +255,8 @@ fn friction_between_bodies_holds_up_to_its_coefficient() {
 #[test]
 fn a_body_drags_the_other_one() {
     let scene = Scene::new(column([2, 2, 2]), uniform(1e9, 0.3))
-        .with_support(Support::fixed(brick::Z_MIN).moved([0.02, 0.0, 0.0], ramp()))
-        .with_support(Support::fixed(second(brick::Z_MAX)).moved([0.0, 0.0, -1e-3], ramp()))
+        .with_support(Support::fixed(brick::Z_MIN).with_motion([0.02, 0.0, 0.0], ramp()))
+        .with_support(Support::fixed(second(brick::Z_MAX)).with_motion([0.0, 0.0, -1e-3], ramp()))
         .with_contact(joint().with_friction(Friction::coulomb(0.25)))
         .with_analysis(Analysis::quasistatic(1.0, 4))
         .with_boxes([1, 1, 2]);
@@ -290,7 +290,7 @@ fn a_body_drags_the_other_one() {
 fn bodies_come_apart() {
     let scene = Scene::new(column([2, 2, 2]), uniform(1e9, 0.3))
         .with_support(Support::fixed(brick::Z_MIN))
-        .with_support(Support::fixed(second(brick::Z_MAX)).moved([0.0, 0.0, 0.01], ramp()))
+        .with_support(Support::fixed(second(brick::Z_MAX)).with_motion([0.0, 0.0, 0.01], ramp()))
         .with_contact(joint())
         .with_boxes([1, 1, 2]);
     let level = solve(scene, Settings::default());
@@ -368,7 +368,7 @@ fn what_cannot_be_paired_is_refused() {
     let error = fails(
         column([2; 3]),
         joint()
-            .and_tag(second(brick::X_MIN))
+            .with_tag(second(brick::X_MIN))
             .with_normal([0.0, 0.0, -1.0]),
     );
     assert!(
@@ -382,7 +382,7 @@ fn what_cannot_be_paired_is_refused() {
         matches!(error, ContactError::Overlap { contact: 0, depth, .. } if (depth - 2.0).abs() < 1e-9),
         "{error}"
     );
-    let error = fails(column([2; 3]), joint().moved([1.0, 0.0, 0.0], ramp()));
+    let error = fails(column([2; 3]), joint().with_motion([1.0, 0.0, 0.0], ramp()));
     assert!(
         matches!(error, ContactError::MovedPartner { contact: 0 }),
         "{error}"
@@ -396,7 +396,7 @@ fn what_cannot_be_paired_is_refused() {
     );
     let scene = Scene::new(column([2; 3]), uniform(1e9, 0.3)).with_contact(behind.with_gap(-1e-3));
     assert!(Simulation::new(scene, Settings::default()).is_ok());
-    let error = fails(column([2; 3]), joint().and_partner(FacetTag(999)));
+    let error = fails(column([2; 3]), joint().with_partner(FacetTag(999)));
     assert!(error.to_string().contains("999"), "{error}");
 }
 
@@ -407,17 +407,17 @@ fn partners_are_the_nearest_nodes() {
     let upper = lower
         .map_points(|[x, y, z]| [x, y, z + 1.5])
         .expect("moved");
-    let rigid = Contact::rigid(second(brick::Z_MIN)).and_partner(brick::Z_MAX);
+    let rigid = Contact::rigid(second(brick::Z_MIN)).with_partner(brick::Z_MAX);
     for contact in [joint(), rigid] {
         let scene = Scene::new(with(&lower, &upper), uniform(1e9, 0.3))
             .with_support(Support::fixed(brick::Z_MIN))
             .with_support(Support::fixed(second(brick::Z_MAX)))
             .with_contact(contact);
         let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
-        for point in simulation.touch_points() {
+        for point in simulation.constrained_points() {
             let places = simulation.scene().mesh().points();
-            let opponent = point.opponent.expect("a partner");
-            let [a, b] = [point.node, opponent].map(|node| places[node as usize]);
+            let partner = point.partner.expect("a partner");
+            let [a, b] = [point.node, partner].map(|node| places[node as usize]);
             assert_eq!([a[0], a[1]], [b[0], b[1]]);
             assert!((point.gap - 0.5).abs() < 1e-12, "{}", point.gap);
         }
@@ -439,14 +439,14 @@ fn wall(friction: &Friction) -> Scene {
     let rough = |contact: Contact| contact.with_friction(friction.clone());
     Scene::new(mesh, uniform(1e9, 0.3))
         .with_contact(rough(
-            Contact::rigid(brick::Z_MIN).and_tag(second(brick::Z_MIN)),
+            Contact::rigid(brick::Z_MIN).with_tag(second(brick::Z_MIN)),
         ))
         .with_contact(rough(
-            Contact::rigid(brick::X_MIN).and_tag(third(brick::X_MIN)),
+            Contact::rigid(brick::X_MIN).with_tag(third(brick::X_MIN)),
         ))
         .with_contact(rough(Contact::between(brick::X_MAX, second(brick::X_MIN))))
         .with_contact(rough(
-            Contact::between(brick::Z_MAX, third(brick::Z_MIN)).and_tag(second(brick::Z_MAX)),
+            Contact::between(brick::Z_MAX, third(brick::Z_MIN)).with_tag(second(brick::Z_MAX)),
         ))
         .with_support(Support::components(brick::Y_MIN, [false, true, false]))
         .with_support(Support::components(
@@ -486,7 +486,7 @@ fn nodes_may_meet_several_bodies_and_walls() {
 
 #[test]
 fn rough_bodies_and_walls_do_not_depend_on_the_cut() {
-    let friction = Friction::given(2e4);
+    let friction = Friction::tresca(2e4);
     let reference = solve(wall(&friction), tight());
     for boxes in [[2, 1, 2], [4, 2, 4]] {
         let level = solve(wall(&friction).with_boxes(boxes), tight());

@@ -37,7 +37,7 @@ fn pushed(mesh: TetMesh, contact: Contact) -> Scene {
 #[test]
 fn a_surface_that_supports_move_is_an_obstacle_that_moves() {
     let motion = [2e-3, -5e-4, 1e-3];
-    let floor = Contact::rigid(second(brick::Z_MIN)).moved(motion, up_down_up());
+    let floor = Contact::rigid(second(brick::Z_MIN)).with_motion(motion, up_down_up());
     let upper = block([1.0; 3], [2; 3]).map_tags(second);
     let (_, reference) = run(pushed(upper, floor), tight());
     let slides = reference.iter().any(|l| l.summary.slip > 0);
@@ -47,7 +47,7 @@ fn a_surface_that_supports_move_is_an_obstacle_that_moves() {
     let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX);
     let scene = || {
         pushed(both.clone(), contact.clone())
-            .with_support(Support::fixed(brick::Z_MAX).moved(motion, up_down_up()))
+            .with_support(Support::fixed(brick::Z_MAX).with_motion(motion, up_down_up()))
             .with_boxes([2, 1, 2])
     };
     let screened = tight().with_screening(Screening::on());
@@ -137,7 +137,7 @@ fn reactions_have_the_contact_force_on_supported_nodes() {
 /// The estimate of the algebraic error is no guess where supports hold both nodes of a pair in part.
 #[test]
 fn the_algebraic_error_is_estimated_where_both_sides_are_held() {
-    for friction in [Friction::None, Friction::given(2e5)] {
+    for friction in [Friction::None, Friction::tresca(2e5)] {
         for (k, scene) in supported(&friction).into_iter().enumerate() {
             let scene = held(scene, second(brick::Y_MAX), &[[0.0, 1.0, 0.0]]);
             let scene = held(scene, second(brick::X_MAX), &[[1.0, 0.0, 0.0]]);

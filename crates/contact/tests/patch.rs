@@ -161,7 +161,9 @@ fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
                 let top = [t / shear * c, t / shear * s, -PRESSURE / YOUNG];
                 // the sides carry the stress that friction can hold
                 let scene = sheared(mesh.clone(), t.min(limit), angle, coefficient)
-                    .with_support(Support::fixed(brick::Z_MAX).moved(top, History::constant(1.0)))
+                    .with_support(
+                        Support::fixed(brick::Z_MAX).with_motion(top, History::constant(1.0)),
+                    )
                     .with_boxes([2, 1, 1]);
                 solve(
                     scene,

@@ -10,7 +10,7 @@ use signorini_contact::{
     Contact, Directions, Friction, Load, Reactions, Scene, Screening, Settings, Simulation, Support,
 };
 use signorini_fem_mesh::{FacetTag, Hooke, Materials, Surface, brick};
-use signorini_tfeti::RowRule;
+use signorini_tfeti::RowScaling;
 
 fn reactions(simulation: &Simulation, point: [f64; 3]) -> Reactions {
     let frame = simulation.frame().expect("frame");
@@ -107,7 +107,7 @@ fn a_moved_support_pulls_with_the_force_of_the_strain() {
     let scene = column()
         .with_support(
             Support::components(brick::Z_MAX, [false, false, true])
-                .moved([0.0, 0.0, stretch], ramp()),
+                .with_motion([0.0, 0.0, stretch], ramp()),
         )
         .with_boxes([2, 1, 2])
         .with_analysis(signorini_contact::Analysis::quasistatic(1.0, 2));
@@ -173,7 +173,7 @@ fn cuts_rows_screening_and_materials_change_no_reaction() {
                 assert_close(&field(cut(), settings), &whole, 1e-6, what);
             };
             same(tight(), "cut");
-            same(tight().with_row_rule(RowRule::Chained), "chained");
+            same(tight().with_row_scaling(RowScaling::Chained), "chained");
             same(tight().with_screening(Screening::on()), "screened");
         }
     }
@@ -304,7 +304,7 @@ fn reactions_at_contact_nodes_have_no_contact_forces() {
         let push = Support::components(second(brick::X_MIN), [true, false, false]);
         let scene = Scene::new(mesh.clone(), uniform(1e4, 0.3))
             .with_support(Support::fixed(brick::Z_MIN))
-            .with_support(push.moved([0.1, 0.0, 0.0], ramp()))
+            .with_support(push.with_motion([0.1, 0.0, 0.0], ramp()))
             .with_load(Load::pressure(second(brick::Z_MAX), 10.0))
             .with_contact(joint)
             .with_boxes([1, 1, 2]);

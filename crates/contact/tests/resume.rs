@@ -7,8 +7,8 @@ use signorini_contact::{
     Accuracy, Analysis, Contact, ContactError, DifferenceFormula, Directions, Friction, Load,
     Method, Scene, Screening, Settings, Simulation, State, Support,
 };
-use signorini_fem_mesh::{Facet, Frame, History, Hooke, Materials, TetMesh, brick};
-use signorini_tfeti::RowRule;
+use signorini_fem_mesh::{Facet, History, Hooke, Materials, SurfaceFrame, TetMesh, brick};
+use signorini_tfeti::RowScaling;
 
 /// What the variants of the scene change.
 #[derive(Clone)]
@@ -90,7 +90,7 @@ fn another_scene_is_refused_with_the_part_that_differs() {
         .with_friction(weakening());
     let oblique = [1.0, 1e-3, 0.0];
     let planes = |normal: [f64; 3]| {
-        let frame = Frame::from_normal(normal).expect("frame");
+        let frame = SurfaceFrame::from_normal(normal).expect("frame");
         let [a, b] = frame.tangents;
         vec![
             Support::partial(brick::X_MIN, Directions::Vectors(vec![frame.normal])),
@@ -193,7 +193,9 @@ fn what_may_change_between_levels_is_accepted() {
             ..base.clone()
         },
         Parts {
-            supports: vec![Support::fixed(brick::X_MIN).moved([1e-3, 0.0, 0.0], up_down_up())],
+            supports: vec![
+                Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], up_down_up()),
+            ],
             ..base.clone()
         },
         Parts {
@@ -221,7 +223,7 @@ fn what_may_change_between_levels_is_accepted() {
     for settings in [
         Settings::default().with_tolerance(1e-8),
         Settings::default().with_method(Method::paper()),
-        Settings::default().with_row_rule(RowRule::Chained),
+        Settings::default().with_row_scaling(RowScaling::Chained),
     ] {
         let mut simulation = base.clone().simulation_with(settings);
         simulation.resume(state.clone()).expect("resume");
@@ -270,7 +272,7 @@ fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
         mesh: block([2.0, 1.0, 1.0], [4, 2, 2]),
         materials: common::uniform(1e9, 0.3),
         boxes: [2, 1, 1],
-        supports: vec![Support::fixed(brick::Z_MAX).moved([2e-4, 1e-4, -1e-3], down.clone())],
+        supports: vec![Support::fixed(brick::Z_MAX).with_motion([2e-4, 1e-4, -1e-3], down.clone())],
         contact: Contact::rigid(brick::Z_MIN)
             .with_gap(4e-4)
             .with_friction(Friction::coulomb(0.3)),

@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    Level, assert_certified, assert_close, bits, block, forces, loaded_brick, ramp, rest, run,
-    small_benchmark, steel, step, tight, up_down_up, weakening,
+    StepProblem, assert_certified, assert_close, bits, block, forces, loaded_brick, ramp, rest,
+    run, small_benchmark, steel, step, tight, up_down_up, weakening,
 };
 use signorini_contact::{
     Analysis, Contact, ContactError, DifferenceFormula, Doubling, Friction, Load, Method, Scene,
@@ -22,7 +22,12 @@ fn narrow() -> Screening {
 }
 
 /// Runs with and without screening; the results must be the same at all points.
-fn compare(scene: &Scene, off: Settings, on: Settings, what: &str) -> (Simulation, Vec<Level>) {
+fn compare(
+    scene: &Scene,
+    off: Settings,
+    on: Settings,
+    what: &str,
+) -> (Simulation, Vec<StepProblem>) {
     let (_, complete) = run(scene.clone(), off);
     let (simulation, levels) = run(scene.clone(), on);
     assert_eq!(levels.len(), complete.len());
@@ -85,7 +90,10 @@ fn results_are_those_of_the_complete_problem() {
                 .map(|l| l.report.counters.inequality_solves)
                 .sum();
             assert_eq!(before, 0);
-            assert_eq!(simulation.touch_points().len(), levels[0].points.len());
+            assert_eq!(
+                simulation.constrained_points().len(),
+                levels[0].points.len()
+            );
         }
     }
 }
@@ -209,7 +217,7 @@ fn where_nothing_touches_only_the_linear_solver_runs() {
 #[test]
 fn screening_stays_away_where_open_points_matter() {
     // given friction acts at open points, too
-    let given = small_benchmark(Friction::given(3e8), 3);
+    let given = small_benchmark(Friction::tresca(3e8), 3);
     // contact alone holds this block
     let free = Scene::new(block([1.0, 1.0, 1.0], [2, 2, 2]), steel())
         .with_load(Load::pressure(brick::Z_MAX, 1e8))
@@ -230,7 +238,7 @@ fn supports_that_move_and_step_doubling() {
     let scene = symmetric(Friction::coulomb(0.2), 4)
         .with_support(
             Support::components(brick::X_MAX, [true, false, false])
-                .moved([0.05, 0.0, 0.0], History::ramp(1.0, 1.0).expect("ramp")),
+                .with_motion([0.05, 0.0, 0.0], History::ramp(1.0, 1.0).expect("ramp")),
         )
         .with_analysis(Analysis::quasistatic(1.0, 4).with_formula(formula));
     compare(&scene, tight(), screened(), "moved");

@@ -72,7 +72,7 @@ fn last(
 ) -> Vec<PointState> {
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let positions: Vec<f64> = simulation
-        .touch_points()
+        .constrained_points()
         .iter()
         .map(|p| p.position[1])
         .collect();
@@ -140,7 +140,7 @@ fn a_light_body_is_solved_beside_a_heavy_one() {
 
 #[test]
 fn given_slip_bounds_keep_their_newtons() {
-    let friction = || Friction::given(1.5e-3);
+    let friction = || Friction::tresca(1.5e-3);
     let cube_alone = cube_loads(Scene::new(cube(), uniform(2e11, 0.3)), 1e-9);
     let held = |scene: Scene| scene.with_support(Support::fixed(other(brick::X_MIN)));
     let alone = last(
@@ -165,7 +165,7 @@ fn given_slip_bounds_keep_their_newtons() {
 fn a_body_that_only_moves_is_solved_beside_a_loaded_one() {
     let moved = |scene: Scene| {
         let top = Support::fixed(other(brick::Z_MAX));
-        scene.with_support(top.moved([2e-13, 0.0, -1e-12], ramp()))
+        scene.with_support(top.with_motion([2e-13, 0.0, -1e-12], ramp()))
     };
     let friction = || Friction::coulomb(0.3);
     let alone = on_the_floor(moved(Scene::new(cube(), uniform(2e11, 0.3))), friction());
@@ -190,7 +190,8 @@ fn a_body_that_moves_without_forces_does_not_disturb_another() {
     );
     for (young, motion) in [(0.2, 1e-5), (2.0, 1e-5), (0.2, 1e-3), (2e11, 1e-5)] {
         let top = Support::fixed(other(brick::Z_MAX));
-        let scene = bar_loads(both(young)).with_support(top.moved([motion, 0.0, motion], ramp()));
+        let scene =
+            bar_loads(both(young)).with_support(top.with_motion([motion, 0.0, motion], ramp()));
         let scene = on_the_floor(scene, Friction::None);
         let points = last(scene, Settings::default(), of_the_bar, "both");
         let off = distance(&forces(&points), &forces(&bar));

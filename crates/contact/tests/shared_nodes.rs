@@ -44,7 +44,7 @@ fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
     for contacts in [[first.clone(), second.clone()], [second, first]] {
         let nearer = contacts.iter().position(|c| c.tags() == [brick::Z_MIN]);
         let scene = Scene::new(mesh.clone(), uniform(1e6, 0.3)).with_support(
-            Support::fixed(brick::Z_MAX).moved([1e-2, 0.0, -press], History::constant(1.0)),
+            Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -press], History::constant(1.0)),
         );
         let scene = contacts.into_iter().fold(scene, Scene::with_contact);
         let level = solve(scene, tight());

@@ -43,7 +43,7 @@ fn refused(scene: &Scene, settings: &Settings) -> ContactError {
 /// A clamp that goes down 0.2 m above a floor 0.1 m below: at the third of four levels it is 0.05 m inside.
 #[test]
 fn a_support_that_pushes_a_contact_edge_through_the_floor_is_refused() {
-    let support = Support::fixed(brick::X_MIN).moved([0.0, 0.0, -0.2], ramp());
+    let support = Support::fixed(brick::X_MIN).with_motion([0.0, 0.0, -0.2], ramp());
     let scene = beam(support, floor(0.1));
     for settings in [
         Settings::default(),
@@ -99,7 +99,7 @@ fn a_clamp_that_starts_inside_the_obstacle_is_refused() {
 /// A support along the plane or away from it, and one that ends exactly on it, leave nothing to refuse.
 #[test]
 fn supports_that_touch_or_stay_outside_are_accepted() {
-    let down = |d: f64| Support::fixed(brick::X_MIN).moved([0.0, 0.0, -d], ramp());
+    let down = |d: f64| Support::fixed(brick::X_MIN).with_motion([0.0, 0.0, -d], ramp());
     let tilt = 0.37_f64;
     // a plane through the lower edge of the clamp, far from the origin of its coordinates
     let (up, along) = (
@@ -113,7 +113,7 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
         beam(down(-0.1), floor(0.0)),
         beam(Support::fixed(brick::X_MIN), floor(0.0)),
         beam(
-            Support::fixed(brick::X_MIN).moved([1e-3, 0.0, 0.0], ramp()),
+            Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], ramp()),
             floor(0.0),
         ),
         beam(Support::fixed(brick::X_MIN), slope),
@@ -143,8 +143,10 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
 /// A block that is moved on two adjacent sides, the second with history `h`.
 fn two_sides(second: [f64; 3], first_history: &History, second_history: &History) -> Scene {
     Scene::new(block([1.0; 3], [2, 2, 2]), steel())
-        .with_support(Support::fixed(brick::Z_MAX).moved([1e-3, 0.0, -1e-3], first_history.clone()))
-        .with_support(Support::fixed(brick::X_MAX).moved(second, second_history.clone()))
+        .with_support(
+            Support::fixed(brick::Z_MAX).with_motion([1e-3, 0.0, -1e-3], first_history.clone()),
+        )
+        .with_support(Support::fixed(brick::X_MAX).with_motion(second, second_history.clone()))
         .with_load(Load::pressure(brick::X_MIN, 1e7))
         .with_analysis(
             Analysis::quasistatic(1.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER),
@@ -212,7 +214,7 @@ fn a_body_stretched_by_its_supports_is_certified() {
     let ramp = History::ramp(1.0, 1.0).expect("ramp");
     let scene = Scene::new(block([3.0, 1.0, 1.0], [6, 2, 2]), steel())
         .with_support(Support::fixed(brick::X_MIN))
-        .with_support(Support::fixed(brick::X_MAX).moved([1e-3, 0.0, 0.0], ramp))
+        .with_support(Support::fixed(brick::X_MAX).with_motion([1e-3, 0.0, 0.0], ramp))
         .with_boxes([3, 1, 1])
         .with_analysis(Analysis::quasistatic(1.0, 2));
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");

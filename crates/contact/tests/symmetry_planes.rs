@@ -12,7 +12,7 @@ use signorini_fem_mesh::brick;
 fn half(friction: Friction) -> Scene {
     Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e9, 0.3))
         .with_support(Support::components(brick::Y_MIN, [false, true, false]))
-        .with_support(Support::fixed(brick::Z_MAX).moved([8e-3, 0.0, -2e-3], ramp()))
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([8e-3, 0.0, -2e-3], ramp()))
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
         .with_boxes([2, 1, 1])
         .with_analysis(
@@ -26,7 +26,7 @@ fn sliding_nodes_in_a_plane_of_symmetry_have_the_friction_of_the_law() {
     let (mu, stress) = (0.3, 2e5);
     for (friction, given) in [
         (Friction::coulomb(mu), 0.0),
-        (Friction::given(stress), stress),
+        (Friction::tresca(stress), stress),
     ] {
         for method in methods() {
             let name = method.name();

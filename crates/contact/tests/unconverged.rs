@@ -4,11 +4,11 @@ mod common;
 
 use common::{block, methods, uniform};
 use signorini_contact::{
-    Analysis, Contact, ContactError, DifferenceFormula, Flow, Frame, Friction, LevelStatus, Load,
-    Method, Scene, Screening, Settings, Silent, Simulation, Support,
+    Analysis, Contact, ContactError, DifferenceFormula, Flow, Friction, Load, Method, Scene,
+    Screening, Settings, Silent, Simulation, StepResult, StepStatus, Support,
 };
 use signorini_fem_mesh::{History, brick};
-use signorini_qp::FaceSettings;
+use signorini_qp::ActiveSetSettings;
 
 /// A cantilever pressed on an oblique obstacle, where with this coefficient successive approximations have no limit, then lifted.
 fn cantilever(friction: Friction) -> Scene {
@@ -41,12 +41,12 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
         let frame = simulation.step().expect("step");
         seen.push((frame.report().status, frame.unconverged_history()));
         let strict = frame.require_converged();
-        match frame.level() {
+        match frame.step() {
             0 => assert!(matches!(
                 strict,
                 Err(ContactError::NotConverged {
                     level: 0,
-                    status: LevelStatus::NotContractive,
+                    status: StepStatus::NotContractive,
                     ..
                 })
             )),
@@ -60,9 +60,9 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
     assert_eq!(
         seen,
         [
-            (LevelStatus::NotContractive, None),
-            (LevelStatus::Converged, Some(0)),
-            (LevelStatus::Converged, Some(0)),
+            (StepStatus::NotContractive, None),
+            (StepStatus::Converged, Some(0)),
+            (StepStatus::Converged, Some(0)),
         ]
     );
     assert_eq!(simulation.state().unconverged_history(), Some(0));
@@ -77,7 +77,7 @@ fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
     let first = *report.first_failure().expect("a failure");
     assert_eq!(
         (first.level, first.time, first.status),
-        (0, 1.0, LevelStatus::NotContractive)
+        (0, 1.0, StepStatus::NotContractive)
     );
     assert!(first.certificate <= report.largest_certificate);
     let error = report.require_converged().expect_err("not converged");
@@ -95,11 +95,12 @@ fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
 #[test]
 fn an_observer_can_end_a_run_at_the_first_such_level() {
     let mut simulation = rough();
-    let outcome = simulation.run(&mut |frame: &Frame<'_>| Flow::from(frame.require_converged()));
+    let outcome =
+        simulation.run(&mut |frame: &StepResult<'_>| Flow::from(frame.require_converged()));
     let error = outcome.expect_err("not converged");
     assert!(matches!(error, ContactError::Observer { level: 0, .. }));
     assert!(error.to_string().contains("not contractive"), "{error}");
-    assert_eq!(simulation.state().level(), 1);
+    assert_eq!(simulation.state().step(), 1);
 }
 
 #[test]
@@ -138,7 +139,9 @@ fn stored_states_keep_it() {
 #[test]
 fn scenes_without_memory_never_set_it() {
     let short = Settings::default()
-        .with_method(Method::Face(FaceSettings::default().with_max_products(1)))
+        .with_method(Method::ActiveSet(
+            ActiveSetSettings::default().with_max_products(1),
+        ))
         .with_max_fallback_products(1);
     let mut simulation = Simulation::new(cantilever(Friction::None), short).expect("set-up");
     let report = simulation.run(&mut Silent).expect("run");

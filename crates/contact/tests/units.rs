@@ -15,7 +15,7 @@ fn scene(law: usize, length: f64, force: f64, time: f64) -> Scene {
     let stress = force / (length * length);
     let friction = match law {
         0 => Friction::None,
-        1 => Friction::given(3e8 * stress),
+        1 => Friction::tresca(3e8 * stress),
         2 => Friction::coulomb(0.3),
         _ => Friction::Coulomb(Coefficient::Exponential {
             fixed: 0.3,

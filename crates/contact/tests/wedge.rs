@@ -62,7 +62,7 @@ fn the_force_that_moves_the_block() {
                     .with_boxes(boxes)
                     .with_support(
                         Support::components(back, [true, false, false])
-                            .moved([0.1, 0.0, 0.0], History::constant(1.0)),
+                            .with_motion([0.1, 0.0, 0.0], History::constant(1.0)),
                     )
                     .with_support(Support::components(side, [false, true, false]));
                 let settings = Settings::default()

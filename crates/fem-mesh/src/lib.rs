@@ -12,7 +12,7 @@
 //! | a stiffness | [`assemble_stiffness`], [`subdomain_stiffness`], [`element_stiffness`] |
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
 //! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`], [`compact_parts`] |
-//! | a contact surface | [`Surface`] with a [`Frame`] and an area at each node |
+//! | a contact surface | [`Surface`] with a [`SurfaceFrame`] and an area at each node |
 //! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`], [`energy_of_error`] |
 //! | an estimate of the discretisation error | [`discretisation_error`], [`StrainRecovery`] |
 //! | two meshes compared | [`Locator`], [`energy_of_difference`] |
@@ -74,7 +74,7 @@
 //! # Features
 //!
 //! None is on by default. `vtu` adds [`output`] (crate vtkio), `gmsh` adds [`gmsh`] (crate mshio), `serde` lets
-//! [`FacetTag`], [`Facet`], [`Frame`] and [`Brick`] be serialised (crate serde).
+//! [`FacetTag`], [`Facet`], [`SurfaceFrame`] and [`Brick`] be serialised (crate serde).
 
 #![cfg_attr(
     not(all(feature = "vtu", feature = "gmsh")),
@@ -128,7 +128,7 @@ pub use mesh::{
 };
 pub use norms::{h1_seminorm_error, l2_error};
 pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error, energy_of_error};
-pub use surface::{Frame, Surface, SurfaceError};
+pub use surface::{Surface, SurfaceError, SurfaceFrame};
 
 /// Errors print their sentence with `{:?}`, too: that is what a user sees of a `main` that returns one.
 macro_rules! debug_is_display {

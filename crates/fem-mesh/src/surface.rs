@@ -19,14 +19,14 @@ const NO_NORMAL: f64 = 1e-6;
 /// (0, 0, -1) has T1 = (1, 0, 0), T2 = (0, 1, 0), as the paper uses it on the brick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Frame {
+pub struct SurfaceFrame {
     /// Outward unit normal.
     pub normal: [f64; 3],
     /// Unit tangents T1, T2.
     pub tangents: [[f64; 3]; 2],
 }
 
-impl Frame {
+impl SurfaceFrame {
     /// The frame of a normal of any length; `None` if it is zero or not finite.
     #[must_use]
     pub fn from_normal(normal: [f64; 3]) -> Option<Self> {
@@ -119,7 +119,7 @@ pub struct Surface {
     triangles: Vec<[u32; 3]>,
     nodes: Vec<u32>,
     areas: Vec<f64>,
-    frames: Vec<Frame>,
+    frames: Vec<SurfaceFrame>,
 }
 
 impl Surface {
@@ -152,7 +152,7 @@ impl Surface {
         let frame = |n: usize| {
             let clear = norm(normals[n]) > NO_NORMAL * 3.0 * areas[n];
             let frame = if clear {
-                Frame::from_normal(normals[n])
+                SurfaceFrame::from_normal(normals[n])
             } else {
                 None
             };
@@ -186,9 +186,9 @@ impl Surface {
         &self.areas
     }
 
-    /// Frame of each node.
+    /// SurfaceFrame of each node.
     #[must_use]
-    pub fn frames(&self) -> &[Frame] {
+    pub fn frames(&self) -> &[SurfaceFrame] {
         &self.frames
     }
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::brick::{Brick, X_MIN, Z_MAX, Z_MIN};
-use signorini_fem_mesh::{Frame, Surface, TetMesh};
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -89,11 +89,11 @@ fn top_frame_points_up() {
     let frame = Surface::new(&mesh, &[Z_MAX]).unwrap().frames()[0];
     assert_eq!(frame.normal, [0.0, 0.0, 1.0]);
     assert_eq!(frame.tangents[0], [1.0, 0.0, 0.0]);
-    let side = Frame::from_normal([2.0, 0.0, 0.0]).unwrap();
+    let side = SurfaceFrame::from_normal([2.0, 0.0, 0.0]).unwrap();
     assert_eq!(side.tangents[0], [0.0, 1.0, 0.0]);
-    assert!(Frame::from_normal([0.0; 3]).is_none());
-    assert!(Frame::from_normal([f64::NAN, 0.0, 1.0]).is_none());
-    assert!(Frame::from_normal([1e-200, 0.0, 1e-200]).is_some());
+    assert!(SurfaceFrame::from_normal([0.0; 3]).is_none());
+    assert!(SurfaceFrame::from_normal([f64::NAN, 0.0, 1.0]).is_none());
+    assert!(SurfaceFrame::from_normal([1e-200, 0.0, 1e-200]).is_some());
 }
 
 proptest! {
@@ -110,7 +110,7 @@ proptest! {
         v in prop::array::uniform3(-10.0f64..10.0),
     ) {
         prop_assume!(dot(normal, normal) > 1e-6);
-        let frame = Frame::from_normal(normal).unwrap();
+        let frame = SurfaceFrame::from_normal(normal).unwrap();
         let [t1, t2] = frame.tangents;
         for (a, b, expected) in [
             (frame.normal, frame.normal, 1.0), (t1, t1, 1.0), (t2, t2, 1.0),
@@ -131,7 +131,7 @@ proptest! {
     ) {
         prop_assume!(normal[1].hypot(normal[2]) > 0.1);
         let near = [0, 1, 2].map(|i| normal[i] + step[i]);
-        let (a, b) = (Frame::from_normal(normal).unwrap(), Frame::from_normal(near).unwrap());
+        let (a, b) = (SurfaceFrame::from_normal(normal).unwrap(), SurfaceFrame::from_normal(near).unwrap());
         for i in 0..3 {
             prop_assert!((a.tangents[0][i] - b.tangents[0][i]).abs() < 1e-3);
         }

@@ -15,7 +15,7 @@ use crate::error::QpError;
 /// changes weighted components only. With 0/1 weights that mark the free components of a face it is the
 /// projector of projected conjugate gradients on that face. The space keeps its factorisation of
 /// `G W Gᵀ` between calls and is therefore used through `&mut`.
-pub trait CoarseSpace {
+pub trait EqualityProjector {
     /// Length of `x`.
     fn dim(&self) -> usize;
 
@@ -110,11 +110,11 @@ pub struct Line {
 
 /// No equality constraint at all: every projector is the identity.
 #[derive(Debug, Clone, Copy)]
-pub struct NoCoarseSpace {
+pub struct NoEquality {
     dim: usize,
 }
 
-impl NoCoarseSpace {
+impl NoEquality {
     /// For vectors of length `dim`.
     #[must_use]
     pub fn new(dim: usize) -> Self {
@@ -122,7 +122,7 @@ impl NoCoarseSpace {
     }
 }
 
-impl CoarseSpace for NoCoarseSpace {
+impl EqualityProjector for NoEquality {
     fn dim(&self) -> usize {
         self.dim
     }

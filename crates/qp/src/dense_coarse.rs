@@ -1,17 +1,17 @@
 //! A small dense equality `G x = e` for the face method.
 
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::error::{QpError, expect_length};
 
 /// A pivot of `G W Gᵀ` below this fraction of its largest diagonal entry counts as zero.
 const SINGULAR: f64 = 1e-12;
 
-/// [`CoarseSpace`] of a dense matrix with few rows: `G W Gᵀ` is factored by Cholesky at every change of weights.
+/// [`EqualityProjector`] of a dense matrix with few rows: `G W Gᵀ` is factored by Cholesky at every change of weights.
 ///
 /// ```
-/// use signorini_qp::{CoarseSpace, DenseCoarseSpace};
+/// use signorini_qp::{EqualityProjector, DenseProjector};
 ///
-/// let mut space = DenseCoarseSpace::new(1, 3, vec![1.0, 1.0, 1.0])?;
+/// let mut space = DenseProjector::new(1, 3, vec![1.0, 1.0, 1.0])?;
 /// let mut x = vec![1.0, 2.0, 6.0];
 /// space.set_weights(&[1.0, 1.0, 0.0])?; // the last component is held
 /// space.project(&mut x);
@@ -19,7 +19,7 @@ const SINGULAR: f64 = 1e-12;
 /// # Ok::<(), signorini_qp::QpError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct DenseCoarseSpace {
+pub struct DenseProjector {
     rows: usize,
     dim: usize,
     /// By rows.
@@ -30,7 +30,7 @@ pub struct DenseCoarseSpace {
     small: Vec<f64>,
 }
 
-impl DenseCoarseSpace {
+impl DenseProjector {
     /// From the rows of `G`, one after another; all weights are one.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ impl DenseCoarseSpace {
     }
 }
 
-impl CoarseSpace for DenseCoarseSpace {
+impl EqualityProjector for DenseProjector {
     fn dim(&self) -> usize {
         self.dim
     }

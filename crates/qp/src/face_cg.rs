@@ -13,7 +13,7 @@
 //! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`face_coupling`](crate::face_coupling)) |
 //! | `rho` | residual on the face times `z` |
 
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::error::QpError;
 use crate::face_iterate::{Iterate, Lengths};
 use crate::operator::SymmetricOperator;
@@ -42,7 +42,7 @@ pub(crate) struct Goal {
     pub(crate) max_products: usize,
 }
 
-impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
     /// Runs until the goal is reached; `z` is ready, with `rho`. Returns the length of the last step if another one is worth
     /// while; its direction is then `p`.
     pub(crate) fn conjugate_gradients(&mut self, rho: f64, goal: &Goal) -> Result<f64, QpError> {

@@ -7,7 +7,7 @@
 //! are those that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière).
 //! What is left for the move to the next face is of second order, so that nearly nothing is lost by it.
 
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::face_state::{Disc, Face, for_discs};
 use crate::product::ProductSet;
 
@@ -90,7 +90,7 @@ impl Coupling {
     }
 
     /// `step = E p`.
-    pub(crate) fn extend<C: CoarseSpace>(
+    pub(crate) fn extend<C: EqualityProjector>(
         &mut self,
         coarse: &mut C,
         set: &ProductSet,

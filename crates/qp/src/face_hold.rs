@@ -1,11 +1,11 @@
 //! Weights of a face for the coarse space, and what happens where they do not hold every rigid mode.
 
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::error::QpError;
 use crate::face_iterate::Iterate;
 use crate::operator::SymmetricOperator;
 
-impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
     /// Hands the weights of the current face to the coarse space; whether it factored anew, `None` if they do not hold every
     /// rigid mode.
     ///

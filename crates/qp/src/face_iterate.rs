@@ -1,10 +1,10 @@
 //! The iterate on its present face: what conjugate gradients, and the moves between faces, work on.
 
+use crate::active_set::ActiveSetProblem;
 use crate::balanced::Search;
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::error::QpError;
-use crate::face::FaceProblem;
-use crate::face_settings::{FaceReport, FaceWorkspace};
+use crate::face_settings::{ActiveSetReport, ActiveSetWorkspace};
 use crate::face_state::{Constrained, ON_CIRCLE, for_constrained};
 use crate::natural_map::NaturalMap;
 use crate::operator::SymmetricOperator;
@@ -42,16 +42,16 @@ impl Lengths {
 /// A problem, its iterate and the face it is on. Between two methods `ax` is `A x` but for changes of `x` since
 /// [`mark`](Iterate::mark).
 pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
-    pub(crate) problem: &'s FaceProblem<'s, A, M>,
+    pub(crate) problem: &'s ActiveSetProblem<'s, A, M>,
     pub(crate) coarse: &'s mut C,
     pub(crate) set: &'s mut ProductSet,
     pub(crate) x: &'s mut [f64],
     pub(crate) ax: &'s mut [f64],
-    pub(crate) work: &'s mut FaceWorkspace<A, M>,
-    pub(crate) report: FaceReport,
+    pub(crate) work: &'s mut ActiveSetWorkspace<A, M>,
+    pub(crate) report: ActiveSetReport,
 }
 
-impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
     /// Components up to the last constrained one.
     pub(crate) fn constrained(&self) -> usize {
         self.work.face_residual.len()
@@ -115,7 +115,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
 
     /// `z` from the residual on the face, with its norm. Returns `rho`.
     pub(crate) fn precondition(&mut self) -> f64 {
-        let FaceWorkspace {
+        let ActiveSetWorkspace {
             residual,
             face_residual,
             saved,
@@ -229,7 +229,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: SymmetricOperator> Iterate<'_, A, 
 
 /// The natural map with this gradient.
 pub(crate) fn natural_map<'a, A, M>(
-    problem: &FaceProblem<'a, A, M>,
+    problem: &ActiveSetProblem<'a, A, M>,
     gradient: &'a [f64],
     step: f64,
 ) -> NaturalMap<'a> {

@@ -1,10 +1,10 @@
-//! The moves of the [face method](crate::face) from a solved face to the next one.
+//! The moves of the [face method](crate::active_set) from a solved face to the next one.
 
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::error::QpError;
 use crate::face_iterate::natural_map;
 use crate::face_run::{Place, Run};
-use crate::face_view::FacePreconditioner;
+use crate::face_view::ActiveSetPreconditioner;
 use crate::guard::{SHORT, SHORTEST};
 use crate::natural_map::settle_bounds;
 use crate::operator::SymmetricOperator;
@@ -19,7 +19,7 @@ const UNSURE: usize = 4;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 const ROUNDS: usize = 3;
 
-impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
     /// Moves `x` to the next face, with the next step of conjugate gradients, of this `length`, on top. The set follows where
     /// the face has settled. Then set, equality and product are in order again, and a guard has its say.
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
@@ -95,7 +95,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
         if at.constrained() == 0 || self.guard.is_some() {
             return false;
         }
-        let joint = self.settings.joint_step * length;
+        let joint = self.settings.joint_step_fraction * length;
         if joint > 0.0 {
             vector::axpy(joint, &at.work.p, at.x);
         }
@@ -111,7 +111,7 @@ impl<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'_, '_, A,
     /// Whether few bounded components changed between free and held.
     fn has_settled(&self) -> bool {
         let face = &self.at.work.face;
-        let few = (self.settings.settled * face.free_bounds as f64).max(2.0);
+        let few = (self.settings.settled_fraction * face.free_bounds as f64).max(2.0);
         face.changed as f64 <= few
     }
 

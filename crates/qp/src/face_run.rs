@@ -1,13 +1,13 @@
-//! The steps of the [face method](crate::face): what happens between one face and the next.
+//! The steps of the [face method](crate::active_set): what happens between one face and the next.
 
-use crate::coarse_space::CoarseSpace;
+use crate::active_set::{ActiveSetHook, ActiveSetProblem};
+use crate::coarse_space::EqualityProjector;
 use crate::error::{QpError, SetError};
-use crate::face::{FaceHook, FaceProblem};
 use crate::face_cg::Goal;
 use crate::face_iterate::{Iterate, Lengths, constrained_length, natural_map, shape};
-use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
-use crate::face_view::{FacePreconditioner, FaceView};
-use crate::guard::Guard;
+use crate::face_settings::{ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace};
+use crate::face_view::{ActiveSetPreconditioner, ActiveSetView};
+use crate::guard::DescentSafeguard;
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 use crate::report::Status;
@@ -57,8 +57,8 @@ pub(crate) struct Place {
 /// One solve: the iterate, and what it remembers of earlier faces.
 pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) at: Iterate<'s, A, C, M>,
-    pub(crate) settings: &'s FaceSettings,
-    hook: &'s mut FaceHook<'h>,
+    pub(crate) settings: &'s ActiveSetSettings,
+    hook: &'s mut ActiveSetHook<'h>,
     /// Kind and length of each segment.
     shapes: Vec<(u8, usize)>,
     /// Whether unconstrained components alone stop every rigid mode.
@@ -84,18 +84,20 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     /// Whether steps that round have been made since `G x = e` was restored.
     pub(crate) drifted: bool,
     /// Once predictions ran in circles.
-    pub(crate) guard: Option<Guard>,
+    pub(crate) guard: Option<DescentSafeguard>,
 }
 
-impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s, 'h, A, C, M> {
+impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
+    Run<'s, 'h, A, C, M>
+{
     pub(crate) fn new(
-        problem: &'s FaceProblem<'s, A, M>,
+        problem: &'s ActiveSetProblem<'s, A, M>,
         coarse: &'s mut C,
         set: &'s mut ProductSet,
         (x, ax): (&'s mut [f64], &'s mut [f64]),
-        settings: &'s FaceSettings,
-        work: &'s mut FaceWorkspace<A, M>,
-        hook: &'s mut FaceHook<'h>,
+        settings: &'s ActiveSetSettings,
+        work: &'s mut ActiveSetWorkspace<A, M>,
+        hook: &'s mut ActiveSetHook<'h>,
     ) -> Self {
         let constrained = constrained_length(set);
         work.resize(constrained);
@@ -126,7 +128,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
                 x,
                 ax,
                 work,
-                report: FaceReport::new(),
+                report: ActiveSetReport::new(),
             },
         }
     }
@@ -184,18 +186,18 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
             Err(QpError::CoarseDeficient { .. }) => return Ok(None),
             Err(error) => return Err(error),
         }
-        let view = FaceView::new(at.set, &at.work.face);
+        let view = ActiveSetView::new(at.set, &at.work.face);
         let preconditioner = at.problem.preconditioner;
         preconditioner.enter(&view, &mut at.work.preconditioner);
         at.start_residual();
         let rho = at.precondition();
         let errors = at.errors();
-        // what vanishes is measured against `least`, and its constrained part against a small part of that at least
+        // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at least
         let x_norm = vector::norm(at.x);
-        let all = x_norm.max(settings.least);
+        let all = x_norm.max(settings.error_floor);
         let part = vector::norm(&at.x[..at.constrained()]);
-        let vanishes = part < settings.least_constrained;
-        let part = part.max(SMALL_PART * all).max(settings.least_constrained);
+        let vanishes = part < settings.contact_error_floor;
+        let part = part.max(SMALL_PART * all).max(settings.contact_error_floor);
         let limits = Lengths {
             all: settings.tolerance * all,
             constrained: settings.tolerance * part,
@@ -310,7 +312,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
 
     /// From now on faces are solved better, and moves have to descend.
     pub(crate) fn start_guard(&mut self) {
-        self.guard = Some(Guard::new(self.at.x.len()));
+        self.guard = Some(DescentSafeguard::new(self.at.x.len()));
         self.forcing *= FINER;
         self.best = self.last;
         self.waited = 0;
@@ -382,7 +384,7 @@ impl<'s, 'h, A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner> Run<'s
         }
     }
 
-    pub(crate) fn finish(mut self, status: Status) -> FaceReport {
+    pub(crate) fn finish(mut self, status: Status) -> ActiveSetReport {
         self.at.report.status = status;
         self.at.report
     }

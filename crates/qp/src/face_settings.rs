@@ -6,37 +6,37 @@ use crate::face_coupling::{Coupling, RadiusSlope};
 use crate::operator::SymmetricOperator;
 use crate::report::Status;
 
-/// Settings of [`face`](crate::face::face). All are dimensionless.
+/// Settings of [`active_set`](crate::active_set()). All are dimensionless.
 ///
 /// | setting | meaning | range | default |
 /// |---|---|---|---|
 /// | `tolerance` | estimated error of `x` relative to its norm, and of its constrained part relative to its own | (0, 1) | 1e-7 |
-/// | `least` | norm of `x` below which errors count relative to it: what a vanishing solution is measured against | >= 0 | 0 |
-/// | `least_constrained` | the same for the constrained part, which is measured against 1e-4 of the norm of `x` in any case | >= 0 | 0 |
+/// | `error_floor` | norm of `x` below which errors count relative to it: what a vanishing solution is measured against | >= 0 | 0 |
+/// | `contact_error_floor` | the same for the constrained part, which is measured against 1e-4 of the norm of `x` in any case | >= 0 | 0 |
 /// | `forcing` | decrease of the error estimate on one face before the face is looked at again | (0, 1) | 0.4 |
 /// | `natural_step` | step of the natural map that predicts the next face, in units of the preconditioner's diagonal | (0, 1] | 0.4 |
-/// | `joint_step` | part of the next step that is taken together with the move to the next face | [0, 1] | 1 |
-/// | `settled` | share of the free bounded components that may change on a face for the hook to be called | [0, 1] | 0.3 |
+/// | `joint_step_fraction` | part of the next step that is taken together with the move to the next face | [0, 1] | 1 |
+/// | `settled_fraction` | share of the free bounded components that may change on a face for the hook to be called | [0, 1] | 0.3 |
 /// | `max_faces` | faces; five times as many once descent is enforced | >= 1 | 100 |
 /// | `max_products` | operator products | >= 1 | 10 000 |
 /// | `patience` | faces without a better error estimate before every move has to descend; five times as many before giving up | >= 1 | 12 |
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct FaceSettings {
+pub struct ActiveSetSettings {
     /// Relative error asked for.
     pub tolerance: f64,
     /// Norm of `x` that errors are at least relative to.
-    pub least: f64,
+    pub error_floor: f64,
     /// Norm of the constrained part of `x` that its errors are at least relative to.
-    pub least_constrained: f64,
+    pub contact_error_floor: f64,
     /// Decrease of the error estimate on one face.
     pub forcing: f64,
     /// Step of the natural map, times the preconditioner's diagonal.
     pub natural_step: f64,
     /// Part of the next conjugate gradient step that shares the product of the move to the next face.
-    pub joint_step: f64,
+    pub joint_step_fraction: f64,
     /// Share of changing bounds below which the hook is called.
-    pub settled: f64,
+    pub settled_fraction: f64,
     /// Most faces before descent is enforced; five times as many with it.
     pub max_faces: usize,
     /// Most products.
@@ -45,16 +45,16 @@ pub struct FaceSettings {
     pub patience: usize,
 }
 
-impl Default for FaceSettings {
+impl Default for ActiveSetSettings {
     fn default() -> Self {
         Self {
             tolerance: 1e-7,
-            least: 0.0,
-            least_constrained: 0.0,
+            error_floor: 0.0,
+            contact_error_floor: 0.0,
             forcing: 0.4,
             natural_step: 0.4,
-            joint_step: 1.0,
-            settled: 0.3,
+            joint_step_fraction: 1.0,
+            settled_fraction: 0.3,
             max_faces: 100,
             max_products: 10_000,
             patience: 12,
@@ -62,7 +62,7 @@ impl Default for FaceSettings {
     }
 }
 
-impl FaceSettings {
+impl ActiveSetSettings {
     /// Sets the relative error asked for.
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
@@ -72,15 +72,15 @@ impl FaceSettings {
 
     /// Sets the norm of `x` that errors are at least relative to.
     #[must_use]
-    pub fn with_least(mut self, norm: f64) -> Self {
-        self.least = norm;
+    pub fn with_error_floor(mut self, norm: f64) -> Self {
+        self.error_floor = norm;
         self
     }
 
     /// Sets the norm of the constrained part of `x` that its errors are at least relative to.
     #[must_use]
-    pub fn with_least_constrained(mut self, norm: f64) -> Self {
-        self.least_constrained = norm;
+    pub fn with_contact_error_floor(mut self, norm: f64) -> Self {
+        self.contact_error_floor = norm;
         self
     }
 
@@ -100,15 +100,15 @@ impl FaceSettings {
 
     /// Sets the part of the next step taken together with the move to the next face.
     #[must_use]
-    pub fn with_joint_step(mut self, part: f64) -> Self {
-        self.joint_step = part;
+    pub fn with_joint_step_fraction(mut self, part: f64) -> Self {
+        self.joint_step_fraction = part;
         self
     }
 
     /// Sets the share of changing bounds below which the hook is called.
     #[must_use]
-    pub fn with_settled(mut self, share: f64) -> Self {
-        self.settled = share;
+    pub fn with_settled_fraction(mut self, share: f64) -> Self {
+        self.settled_fraction = share;
         self
     }
 
@@ -152,8 +152,8 @@ impl FaceSettings {
         open("tolerance", self.tolerance)?;
         open("forcing", self.forcing)?;
         for (name, value) in [
-            ("least", self.least),
-            ("least_constrained", self.least_constrained),
+            ("error_floor", self.error_floor),
+            ("contact_error_floor", self.contact_error_floor),
         ] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(QpError::Setting {
@@ -170,7 +170,10 @@ impl FaceSettings {
                 range: "(0, 1]",
             });
         }
-        for (name, value) in [("joint_step", self.joint_step), ("settled", self.settled)] {
+        for (name, value) in [
+            ("joint_step_fraction", self.joint_step_fraction),
+            ("settled_fraction", self.settled_fraction),
+        ] {
             if !(0.0..=1.0).contains(&value) {
                 return Err(QpError::Setting {
                     name,
@@ -196,10 +199,10 @@ impl FaceSettings {
     }
 }
 
-/// What [`face`](crate::face::face) did.
+/// What [`active_set`](crate::active_set()) did.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct FaceReport {
+pub struct ActiveSetReport {
     /// How it ended.
     pub status: Status,
     /// Faces on which conjugate gradients ran.
@@ -220,7 +223,7 @@ pub struct FaceReport {
     pub constrained_error: f64,
 }
 
-impl FaceReport {
+impl ActiveSetReport {
     pub(crate) fn new() -> Self {
         Self {
             status: Status::IterationLimit,
@@ -245,7 +248,7 @@ impl FaceReport {
 /// Vectors of the face method: six of the length of `x`, a seventh where radii follow other components, three of its
 /// constrained part and the classification of the blocks.
 #[derive(Debug)]
-pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
+pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) operator: A::Scratch,
     pub(crate) preconditioner: M::Scratch,
     /// `A x - b` without its part in the image of `Gᵀ`.
@@ -267,7 +270,7 @@ pub struct FaceWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) coupling: Coupling,
 }
 
-impl<A: SymmetricOperator, M: SymmetricOperator> FaceWorkspace<A, M> {
+impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
     /// Allocates everything the method needs.
     pub fn new(operator: &A, preconditioner: &M) -> Self {
         let n = operator.dim();

@@ -19,12 +19,12 @@ pub enum Freedom {
 
 /// The constrained blocks of a face.
 #[derive(Debug, Clone, Copy)]
-pub struct FaceView<'a> {
+pub struct ActiveSetView<'a> {
     set: &'a ProductSet,
     face: &'a Face,
 }
 
-impl<'a> FaceView<'a> {
+impl<'a> ActiveSetView<'a> {
     pub(crate) fn new(set: &'a ProductSet, face: &'a Face) -> Self {
         Self { set, face }
     }
@@ -53,17 +53,17 @@ impl<'a> FaceView<'a> {
 ///
 /// What approximates the inverse of `A` on one face need not do so on another: held components drop out of the matrix
 /// that is inverted. A preconditioner that can follow is told every face before it is used there.
-pub trait FacePreconditioner: SymmetricOperator {
+pub trait ActiveSetPreconditioner: SymmetricOperator {
     /// The next products are on this face: they start from vectors that vanish where it is held, and only the free part
     /// of their result counts. Stays symmetric on such vectors.
-    fn enter(&self, _face: &FaceView<'_>, _s: &mut Self::Scratch) {}
+    fn enter(&self, _face: &ActiveSetView<'_>, _s: &mut Self::Scratch) {}
 }
 
-impl FacePreconditioner for Identity {}
-impl FacePreconditioner for DenseOperator {}
+impl ActiveSetPreconditioner for Identity {}
+impl ActiveSetPreconditioner for DenseOperator {}
 
-impl<T: FacePreconditioner + ?Sized> FacePreconditioner for &T {
-    fn enter(&self, face: &FaceView<'_>, s: &mut Self::Scratch) {
+impl<T: ActiveSetPreconditioner + ?Sized> ActiveSetPreconditioner for &T {
+    fn enter(&self, face: &ActiveSetView<'_>, s: &mut Self::Scratch) {
         (**self).enter(face, s);
     }
 }

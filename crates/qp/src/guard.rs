@@ -16,7 +16,7 @@ use crate::vector;
 
 /// The last feasible point and the step from it to the minimum on its face.
 #[derive(Debug)]
-pub(crate) struct Guard {
+pub(crate) struct DescentSafeguard {
     x: Vec<f64>,
     ax: Vec<f64>,
     residual: Vec<f64>,
@@ -56,7 +56,7 @@ const RELEASE: f64 = 0.01;
 /// Decrease by a whole step, over the smallest so far, that counts as progress.
 const LESS: f64 = 0.9;
 
-impl Guard {
+impl DescentSafeguard {
     pub(crate) fn new(n: usize) -> Self {
         let v = || vec![0.0; n];
         Self {
@@ -166,8 +166,8 @@ mod tests {
     use crate::product::Segment;
 
     /// At zero with the cost `1/2 |x|² - sum x` on the way to its minimum, all ones.
-    fn guard() -> Guard {
-        let mut guard = Guard::new(2);
+    fn guard() -> DescentSafeguard {
+        let mut guard = DescentSafeguard::new(2);
         guard.enter(&[0.0; 2], &[0.0; 2], &[-1.0; 2]);
         assert!(
             !guard.leave(&[1.0; 2], &[1.0; 2]),
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn less_to_gain_than_ever_is_progress() {
         let (mut guard, set) = (guard(), half_space());
-        let step = |guard: &mut Guard, gain: f64| {
+        let step = |guard: &mut DescentSafeguard, gain: f64| {
             guard.judge(&set, &[0.0; 2], &[0.0; 2], 1.0);
             guard.enter(&[0.0; 2], &[0.0; 2], &[0.0, -gain]);
             guard.leave(&[0.0, 1.0], &[0.0; 2])

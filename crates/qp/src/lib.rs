@@ -13,7 +13,7 @@
 //! |---|---|---|---|
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
-//! | [`face()`] | set and equality | projected, preconditioned CG on predicted faces; no penalty | see [`FaceWorkspace`] |
+//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted faces; no penalty | see [`ActiveSetWorkspace`] |
 //! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
@@ -78,7 +78,7 @@
 //!
 //! # Settings
 //!
-//! The tables are with [`FaceSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
+//! The tables are with [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
 //! default and the letter in the paper. All are dimensionless: a problem in other units needs the same
 //! settings and takes the same steps.
 //!
@@ -87,13 +87,13 @@
 //! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads
 //! changes no bit of a result. Loops over the set are serial.
 
+pub mod active_set;
 mod balanced;
 mod block;
 mod coarse_space;
 pub mod dense;
 mod dense_coarse;
 mod error;
-pub mod face;
 mod face_cg;
 mod face_coupling;
 mod face_hold;
@@ -122,15 +122,15 @@ mod smalse_settings;
 pub mod spectrum;
 pub mod vector;
 
+pub use active_set::{ActiveSetHook, ActiveSetProblem, active_set};
 pub use balanced::LooseMode;
-pub use coarse_space::{CoarseSpace, Line, NoCoarseSpace};
+pub use coarse_space::{EqualityProjector, Line, NoEquality};
 pub use dense::{DenseEquality, DenseOperator};
-pub use dense_coarse::DenseCoarseSpace;
+pub use dense_coarse::DenseProjector;
 pub use error::{QpError, SetError};
-pub use face::{FaceHook, FaceProblem, face};
 pub use face_coupling::RadiusSlope;
-pub use face_settings::{FaceReport, FaceSettings, FaceWorkspace};
-pub use face_view::{FacePreconditioner, FaceView, Freedom};
+pub use face_settings::{ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace};
+pub use face_view::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 pub use kkt::Kkt;
 pub use kprgp::kprgp;
 pub use kprgp_settings::{

@@ -5,9 +5,9 @@ mod common;
 use common::{Random, spd};
 use proptest::prelude::*;
 use signorini_qp::{
-    ConvexSet, DenseCoarseSpace, DenseOperator, FaceProblem, FaceReport, FaceSettings,
-    FaceWorkspace, Identity, NoCoarseSpace, ProductSet, QpError, Segment, Status,
-    SymmetricOperator, face, vector,
+    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, ConvexSet,
+    DenseOperator, DenseProjector, Identity, NoEquality, ProductSet, QpError, Segment, Status,
+    SymmetricOperator, active_set, vector,
 };
 
 /// Natural residual `x - P(x - (A x - b + Gᵀ mu))`, in its own loop.
@@ -86,23 +86,23 @@ fn problem(seed: u64) -> Problem {
 
 fn solve(
     p: &Problem,
-    settings: &FaceSettings,
-) -> Result<(Vec<f64>, Vec<f64>, FaceReport), QpError> {
+    settings: &ActiveSetSettings,
+) -> Result<(Vec<f64>, Vec<f64>, ActiveSetReport), QpError> {
     let n = p.b.len();
     let identity = Identity(n);
-    let mut coarse = DenseCoarseSpace::new(p.rows, n, p.g.clone())?;
+    let mut coarse = DenseProjector::new(p.rows, n, p.g.clone())?;
     let mut set = p.set.clone();
-    let mut work = FaceWorkspace::new(&p.a, &identity);
+    let mut work = ActiveSetWorkspace::new(&p.a, &identity);
     let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
     let scale = vec![1.0; n];
-    let problem = FaceProblem {
+    let problem = ActiveSetProblem {
         operator: &p.a,
         preconditioner: &identity,
         scale: &scale,
         linear: &p.b,
         rhs: &p.e,
     };
-    let report = face(
+    let report = active_set(
         &problem,
         &mut coarse,
         &mut set,
@@ -127,7 +127,7 @@ proptest! {
     #[test]
     fn a_converged_face_is_the_minimiser(seed in 0u64..100_000) {
         let p = problem(seed);
-        let (x, force, report) = solve(&p, &FaceSettings::default().with_tolerance(1e-9)).expect("no breakdown");
+        let (x, force, report) = solve(&p, &ActiveSetSettings::default().with_tolerance(1e-9)).expect("no breakdown");
         prop_assert_eq!(report.status, Status::Converged);
         prop_assert!(p.set.violation(&x) <= 1e-12);
         for i in 0..p.rows {
@@ -152,7 +152,7 @@ fn a_problem_without_constraints_is_one_face_and_no_correction() {
         e: vec![],
         rows: 0,
     };
-    let settings = FaceSettings::default()
+    let settings = ActiveSetSettings::default()
         .with_forcing(1e-9)
         .with_tolerance(1e-9);
     let (_, _, report) = solve(&p, &settings).expect("no breakdown");
@@ -173,9 +173,9 @@ fn the_hook_follows_a_coupled_radius() {
         ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
     let identity = Identity(3);
     let (mut x, mut ax) = (vec![0.0; 3], vec![0.0; 3]);
-    let mut work = FaceWorkspace::new(&a, &identity);
+    let mut work = ActiveSetWorkspace::new(&a, &identity);
     let linear = [-2.0, 3.0, 0.0];
-    let problem = FaceProblem {
+    let problem = ActiveSetProblem {
         operator: &a,
         preconditioner: &identity,
         scale: &[1.0; 3],
@@ -187,14 +187,14 @@ fn the_hook_follows_a_coupled_radius() {
             radii[0] = -0.5 * x[0];
         }
     };
-    let report = face(
+    let report = active_set(
         &problem,
-        &mut NoCoarseSpace::new(3),
+        &mut NoEquality::new(3),
         &mut set.clone(),
         &mut x,
         &mut ax,
         true,
-        &FaceSettings::default().with_tolerance(1e-10),
+        &ActiveSetSettings::default().with_tolerance(1e-10),
         &mut work,
         &mut hook,
     )
@@ -212,11 +212,11 @@ fn the_hook_follows_a_coupled_radius() {
 fn wrong_input_is_refused() {
     let p = problem(1);
     for settings in [
-        FaceSettings::default().with_tolerance(0.0),
-        FaceSettings::default().with_forcing(1.0),
-        FaceSettings::default().with_natural_step(0.0),
-        FaceSettings::default().with_max_faces(0),
-        FaceSettings::default().with_max_products(0),
+        ActiveSetSettings::default().with_tolerance(0.0),
+        ActiveSetSettings::default().with_forcing(1.0),
+        ActiveSetSettings::default().with_natural_step(0.0),
+        ActiveSetSettings::default().with_max_faces(0),
+        ActiveSetSettings::default().with_max_products(0),
     ] {
         assert!(
             matches!(solve(&p, &settings), Err(QpError::Setting { .. })),
@@ -226,7 +226,7 @@ fn wrong_input_is_refused() {
     let mut nan = problem(1);
     nan.b[0] = f64::NAN;
     assert!(matches!(
-        solve(&nan, &FaceSettings::default()),
+        solve(&nan, &ActiveSetSettings::default()),
         Err(QpError::Input { .. })
     ));
     let mut negative = problem(2);
@@ -236,7 +236,7 @@ fn wrong_input_is_refused() {
         .collect();
     negative.a = DenseOperator::new(n, entries).expect("symmetric");
     assert!(matches!(
-        solve(&negative, &FaceSettings::default()),
+        solve(&negative, &ActiveSetSettings::default()),
         Err(QpError::Indefinite { .. })
     ));
 }
@@ -245,7 +245,7 @@ fn wrong_input_is_refused() {
 fn a_limit_of_products_is_a_status() {
     let p = problem(5);
     let (_, _, report) =
-        solve(&p, &FaceSettings::default().with_max_products(2)).expect("no breakdown");
+        solve(&p, &ActiveSetSettings::default().with_max_products(2)).expect("no breakdown");
     assert_eq!(report.status, Status::IterationLimit);
 }
 
@@ -316,28 +316,28 @@ fn sizes_that_cannot_be_counted_are_refused() {
 /// `x0 + x1 = 3` in the unit square: no point, and no convergence.
 #[test]
 fn a_point_outside_the_set_is_no_solution() {
-    use signorini_qp::DenseCoarseSpace;
+    use signorini_qp::DenseProjector;
     let a = DenseOperator::new(2, vec![1.0, 0.0, 0.0, 1.0]).expect("operator");
-    let mut coarse = DenseCoarseSpace::new(1, 2, vec![1.0, 1.0]).expect("G");
+    let mut coarse = DenseProjector::new(1, 2, vec![1.0, 1.0]).expect("G");
     let mut set = ProductSet::new(vec![Segment::bounds(vec![0.0; 2], vec![1.0; 2])]).expect("set");
     let preconditioner = Identity(2);
-    let problem = FaceProblem {
+    let problem = ActiveSetProblem {
         operator: &a,
         preconditioner: &preconditioner,
         scale: &[1.0; 2],
         linear: &[0.0; 2],
         rhs: &[3.0],
     };
-    let mut work = FaceWorkspace::new(&a, &preconditioner);
+    let mut work = ActiveSetWorkspace::new(&a, &preconditioner);
     let (mut x, mut ax) = ([0.0; 2], [0.0; 2]);
-    let report = face(
+    let report = active_set(
         &problem,
         &mut coarse,
         &mut set,
         &mut x,
         &mut ax,
         false,
-        &FaceSettings::default(),
+        &ActiveSetSettings::default(),
         &mut work,
         &mut |_, _| {},
     );
@@ -356,23 +356,23 @@ fn the_set_has_followed_before_convergence() {
     let mut set = ProductSet::new(vec![bounds, Segment::discs(vec![0.0; 3])]).expect("set");
     let preconditioner = Identity(9);
     let linear = [-1.0, -2.0, -3.0, 1.0, 0.0, 2.0, 0.0, 3.0, 0.0];
-    let problem = FaceProblem {
+    let problem = ActiveSetProblem {
         operator: &a,
         preconditioner: &preconditioner,
         scale: &[1.0; 9],
         linear: &linear,
         rhs: &[],
     };
-    let mut work = FaceWorkspace::new(&a, &preconditioner);
+    let mut work = ActiveSetWorkspace::new(&a, &preconditioner);
     let (mut x, mut ax) = ([0.0; 9], [0.0; 9]);
-    let report = face(
+    let report = active_set(
         &problem,
-        &mut NoCoarseSpace::new(9),
+        &mut NoEquality::new(9),
         &mut set,
         &mut x,
         &mut ax,
         false,
-        &FaceSettings::default(),
+        &ActiveSetSettings::default(),
         &mut work,
         &mut |x, set| {
             let radii = [0, 1, 2].map(|k: usize| 0.3 * x[k].abs());

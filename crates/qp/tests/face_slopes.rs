@@ -4,13 +4,13 @@ mod common;
 
 use common::Random;
 use signorini_qp::{
-    DenseCoarseSpace, DenseOperator, FaceProblem, FaceReport, FaceSettings, FaceWorkspace,
-    Identity, ProductSet, RadiusSlope, Segment, Status, face, vector,
+    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseOperator,
+    DenseProjector, Identity, ProductSet, RadiusSlope, Segment, Status, active_set, vector,
 };
 
 /// Normals that press, a disc each whose radius is a coefficient times its normal, and free components; `G` acts on the
 /// latter only. All discs slide.
-fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>, FaceReport) {
+fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>, ActiveSetReport) {
     let mut r = Random::new(seed);
     let (points, free) = (12, 10);
     let n = 3 * points + free;
@@ -35,7 +35,7 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
         g[i] = if i % 2 == 0 { 1.0 } else { 0.3 };
         g[n + i] = if i % 3 == 0 { 1.0 } else { -0.4 };
     }
-    let mut coarse = DenseCoarseSpace::new(2, n, g).expect("rows");
+    let mut coarse = DenseProjector::new(2, n, g).expect("rows");
     let mut set = ProductSet::new(vec![
         Segment::upper(vec![0.0; points]),
         Segment::discs(vec![0.0; points]),
@@ -43,7 +43,7 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
     ])
     .expect("a set");
     let identity = Identity(n);
-    let mut work = FaceWorkspace::new(&a, &identity);
+    let mut work = ActiveSetWorkspace::new(&a, &identity);
     if slopes {
         let slope = |k| RadiusSlope {
             disc: points + 2 * k,
@@ -52,7 +52,7 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
         };
         work.set_slopes(&(0..points).map(slope).collect::<Vec<_>>());
     }
-    let problem = FaceProblem {
+    let problem = ActiveSetProblem {
         operator: &a,
         preconditioner: &identity,
         scale: &vec![1.0; n],
@@ -67,14 +67,14 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
         }
     };
     let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
-    let report = face(
+    let report = active_set(
         &problem,
         &mut coarse,
         &mut set,
         &mut x,
         &mut ax,
         true,
-        &FaceSettings::default()
+        &ActiveSetSettings::default()
             .with_tolerance(1e-11)
             .with_forcing(forcing),
         &mut work,

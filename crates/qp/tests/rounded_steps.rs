@@ -4,13 +4,13 @@ mod common;
 
 use common::Random;
 use signorini_qp::{
-    CoarseSpace, DenseCoarseSpace, DenseOperator, FaceProblem, FaceReport, FaceSettings,
-    FaceWorkspace, Identity, ProductSet, QpError, Segment, face, vector,
+    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseOperator,
+    DenseProjector, EqualityProjector, Identity, ProductSet, QpError, Segment, active_set, vector,
 };
 
 /// Projections of steps are off by a share of their lengths.
 struct Rounding {
-    inner: DenseCoarseSpace,
+    inner: DenseProjector,
     off: f64,
     random: Random,
 }
@@ -22,7 +22,7 @@ impl Rounding {
     }
 }
 
-impl CoarseSpace for Rounding {
+impl EqualityProjector for Rounding {
     fn dim(&self) -> usize {
         self.inner.dim()
     }
@@ -59,7 +59,7 @@ impl CoarseSpace for Rounding {
 }
 
 /// Few bounds or none: where no face changes, nothing else restores the equality.
-fn solve(seed: u64, bounds: usize, off: f64) -> (FaceReport, f64, f64) {
+fn solve(seed: u64, bounds: usize, off: f64) -> (ActiveSetReport, f64, f64) {
     let mut random = Random::new(seed);
     let (free, rows) = (30, 3);
     let n = bounds + free;
@@ -71,22 +71,22 @@ fn solve(seed: u64, bounds: usize, off: f64) -> (FaceReport, f64, f64) {
     let mut set =
         ProductSet::new(vec![Segment::upper(vec![0.0; bounds]), Segment::Free(free)]).expect("set");
     let mut coarse = Rounding {
-        inner: DenseCoarseSpace::new(rows, n, g.clone()).expect("coarse"),
+        inner: DenseProjector::new(rows, n, g.clone()).expect("coarse"),
         off,
         random: Random::new(seed + 1),
     };
     let identity = Identity(n);
-    let mut work = FaceWorkspace::new(&a, &identity);
+    let mut work = ActiveSetWorkspace::new(&a, &identity);
     let (mut x, mut ax, scale) = (vec![0.0; n], vec![0.0; n], vec![1.0; n]);
-    let problem: FaceProblem<'_, DenseOperator, Identity> = FaceProblem {
+    let problem: ActiveSetProblem<'_, DenseOperator, Identity> = ActiveSetProblem {
         operator: &a,
         preconditioner: &identity,
         scale: &scale,
         linear: &b,
         rhs: &e,
     };
-    let settings = FaceSettings::default().with_tolerance(1e-10);
-    let report = face(
+    let settings = ActiveSetSettings::default().with_tolerance(1e-10);
+    let report = active_set(
         &problem,
         &mut coarse,
         &mut set,

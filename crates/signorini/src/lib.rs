@@ -51,9 +51,9 @@ pub mod prelude {
     pub use crate::Error;
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactState,
-        DifferenceFormula, Directions, Flow, Frame, Friction, Gap, LevelStatus, Load, Method,
-        Observer, Place, Plan, PointState, Preconditioner, RunReport, Scene, Screening, Settings,
-        Silent, Simulation, SlipBound, State, Support,
+        DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Place, Plan,
+        PointState, Preconditioner, RunReport, Scene, Screening, Settings, Silent, Simulation,
+        SlipBound, State, StepResult, StepStatus, Support,
     };
     pub use signorini_fem_mesh::{
         Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,

@@ -6,7 +6,7 @@ use signorini::fem_mesh::{
     MeshError, SurfaceError,
 };
 use signorini::prelude::*;
-use signorini::qp::{FaceSettings, QpError, SmalseSettings};
+use signorini::qp::{ActiveSetSettings, QpError, SmalseSettings};
 use signorini::tfeti::{InverseSettings, TfetiError};
 
 type Checked = Result<(), Error>;
@@ -68,7 +68,7 @@ fn quasistatic(times: &[f64], formula: DifferenceFormula) -> Scene {
 
 fn given(bound: SlipBound) -> Scene {
     good().replace_contact(Some(
-        Contact::rigid(brick::Z_MIN).with_friction(Friction::Given(bound)),
+        Contact::rigid(brick::Z_MIN).with_friction(Friction::Tresca(bound)),
     ))
 }
 
@@ -193,16 +193,16 @@ fn decompositions_supports_and_loads() {
         "a support without directions": attempt(good().with_support(Support::components(brick::X_MAX, [false; 3]))) => Error::Contact(ContactError::Tfeti(TfetiError::EmptySupport { .. })), "directions";
         "a direction of length zero": attempt(good().with_support(Support::partial(brick::X_MAX, Directions::Vectors(vec![[0.0; 3]])))) => Error::Contact(ContactError::Tfeti(TfetiError::BadDirection { support: 1, .. })), "support 1";
         "contradictory supports": attempt(
-            good().with_support(Support::fixed(brick::X_MIN).moved([1e-3, 0.0, 0.0], History::constant(1.0)))
+            good().with_support(Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], History::constant(1.0)))
         ) => Error::Contact(ContactError::Tfeti(TfetiError::ContradictorySupports { first: 0, second: 1, .. })), "supports 0 and 1", "node";
         "displacements for other nodes": attempt(
-            good().with_support(Support::fixed(brick::X_MAX).moved_each(vec![[0.0; 3]; 3], History::constant(1.0)))
+            good().with_support(Support::fixed(brick::X_MAX).with_motions(vec![[0.0; 3]; 3], History::constant(1.0)))
         ) => Error::Contact(ContactError::ValueCount { values: 3, .. }), "support 1", "3 displacements";
         "a displacement that is NaN": attempt(
-            good().with_support(Support::fixed(brick::X_MAX).moved([nan, 0.0, 0.0], History::constant(1.0)))
+            good().with_support(Support::fixed(brick::X_MAX).with_motion([nan, 0.0, 0.0], History::constant(1.0)))
         ) => Error::Contact(ContactError::Tfeti(TfetiError::BadMotion { support: 1, .. })), "support 1";
         "a support history that is infinite": attempt(
-            good().with_support(Support::fixed(brick::X_MAX).moved([1.0; 3], History::function(|_| f64::INFINITY)))
+            good().with_support(Support::fixed(brick::X_MAX).with_motion([1.0; 3], History::function(|_| f64::INFINITY)))
         ) => Error::Contact(ContactError::HistoryValue { what: "support", index: 1, .. }), "support 1";
         "a load on an unknown tag": attempt(good().with_load(Load::pressure(FacetTag(42), 1.0))) => Error::Contact(ContactError::Load { index: 1, source: LoadError::UnknownTag { .. } }), "load 1", "42", "the tags 1, 2, 3";
         "a load that is NaN": attempt(good().with_load(Load::body([0.0, nan, 0.0]))) => Error::Contact(ContactError::Load { index: 1, source: LoadError::NotFinite { .. } }), "load 1", "finite";
@@ -228,7 +228,7 @@ fn contact_and_friction() {
     let count = check(cases! {
         "contact on an unknown tag": attempt(good().replace_contact(Some(Contact::rigid(FacetTag(9))))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact 0", "tag 9";
         "a crease of no angle": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_crease(0.0)))) => Error::Contact(ContactError::Setting { name: "crease", .. }), "crease", "(0, 180]";
-        "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).and_tag(brick::Z_MIN)))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
+        "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_tag(brick::Z_MIN)))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
         "a normal of length zero": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
         "a half-space without a direction": attempt(good().replace_contact(Some(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "0.0";
         "a gap that is NaN": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(nan)))) => Error::Contact(ContactError::Gap { .. }), "node", "gap";
@@ -294,10 +294,10 @@ fn times_and_settings() {
         "an accuracy factor above one": with(Settings::default().with_method(Method::SuccessiveApproximations {
             smalse: SmalseSettings::default(), accuracy
         })) => Error::Contact(ContactError::Setting { .. }), "accuracy.factor";
-        "a forcing term of one": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_forcing(1.0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "forcing";
-        "no faces": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_max_faces(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_faces";
-        "no patience": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_patience(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "patience";
-        "a settled share above one": with(Settings::default().with_method(Method::Face(FaceSettings::default().with_settled(1.5)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "settled";
+        "a forcing term of one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(1.0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "forcing";
+        "no faces": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_faces(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_faces";
+        "no patience": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_patience(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "patience";
+        "a settled share above one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_settled(1.5)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "settled";
         "no products expected, before any work": made(Plan::new(&good(), &no_products)) => Error::Contact(ContactError::Tfeti(TfetiError::Setting { .. })), "expected_products";
         "a negative penalty": smalse(|s| s.with_penalty(-1.0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "penalty";
         "no outer steps": smalse(|s| s.with_max_outer(0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_outer";
@@ -394,7 +394,7 @@ fn a_contact_surface_that_is_fixed_is_left_out() {
         Contact::rigid(brick::X_MIN).with_friction(Friction::coulomb(0.3)),
     ));
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
-    assert!(simulation.touch_points().is_empty());
+    assert!(simulation.constrained_points().is_empty());
     let removed = simulation.tfeti().gluing().removed();
     assert_eq!(removed.len(), 3 * 4, "{removed:?}");
     let frame = simulation.step().expect("step");

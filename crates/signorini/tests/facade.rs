@@ -1,6 +1,6 @@
 //! A program that knows the facade only.
 
-use signorini::contact::{ContactNormal, Cut};
+use signorini::contact::{ContactNormal, Partition};
 use signorini::prelude::*;
 
 fn scene(levels: usize) -> Result<Scene, Error> {
@@ -33,7 +33,7 @@ impl Observer for Diary {
         self.started = Some(levels);
     }
 
-    fn level(&mut self, frame: &Frame<'_>) -> Flow {
+    fn step(&mut self, frame: &StepResult<'_>) -> Flow {
         assert!(frame.certificate().largest() <= 1e-6);
         self.times.push(frame.time());
         if self.stop_after == Some(self.times.len()) {
@@ -71,7 +71,7 @@ fn an_observer_sees_every_level_and_may_stop_the_run() -> Result<(), Error> {
 fn a_closure_is_an_observer() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
     let mut touching = Vec::new();
-    let report = simulation.run(&mut |frame: &Frame<'_>| {
+    let report = simulation.run(&mut |frame: &StepResult<'_>| {
         touching.push(frame.summary().active);
         Flow::Continue
     })?;
@@ -85,7 +85,7 @@ fn a_closure_is_an_observer() -> Result<(), Error> {
 fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
     let mut room = 1;
-    let outcome = simulation.run(&mut |_: &Frame<'_>| {
+    let outcome = simulation.run(&mut |_: &StepResult<'_>| {
         room -= 1;
         Flow::from(if room < 0 {
             Err(std::io::Error::other("the disk is full"))
@@ -100,7 +100,7 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
         error.to_string(),
         "observer, after level 1: the disk is full"
     );
-    assert_eq!(simulation.state().level(), 2);
+    assert_eq!(simulation.state().step(), 2);
     simulation.run(&mut Silent)?.require_converged()?;
     assert!(simulation.is_finished());
     Ok(())
@@ -123,7 +123,7 @@ fn errors_print_their_sentences() -> Result<(), Error> {
     }
     let mut simulation = Simulation::new(scene(1)?, Settings::default())?;
     let full = || Outer(std::io::Error::other("the disk is full"));
-    let outcome = simulation.run(&mut |_: &Frame<'_>| Flow::from(Err::<(), _>(full())));
+    let outcome = simulation.run(&mut |_: &StepResult<'_>| Flow::from(Err::<(), _>(full())));
     let error = Error::from(outcome.expect_err("an observer that fails"));
     assert_eq!(
         format!("{error:?}"),
@@ -170,7 +170,7 @@ fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
     let scene = scene(2)?
         .with_support(
             Support::components(vec![3, 5], [true, false, false])
-                .moved([1e-3, 0.0, 0.0], pull.clone()),
+                .with_motion([1e-3, 0.0, 0.0], pull.clone()),
         )
         .with_load(Load::body([0.0, 0.0, -1.0]).with_history(pull.clone()));
     let [clamp, moved] = scene.supports() else {
@@ -187,7 +187,7 @@ fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
     };
     assert!(matches!(weight.density(), LoadDensity::Body([_, _, z]) if *z == -1.0));
     assert_eq!(weight.history(), &pull);
-    assert_eq!(scene.cut(), &Cut::Boxes([3, 1, 1]));
+    assert_eq!(scene.partition(), &Partition::Boxes([3, 1, 1]));
     let contact = scene.contact().expect("contact");
     assert_eq!(contact.tags(), [brick::Z_MIN]);
     assert!(matches!(contact.gap(), Gap::Constant(gap) if *gap == 0.1));

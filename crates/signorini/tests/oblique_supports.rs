@@ -1,6 +1,6 @@
 //! Supports oblique to a contact surface with friction: their rows and those of the contact depend on one another.
 
-use signorini::contact::LevelStatus;
+use signorini::contact::StepStatus;
 use signorini::prelude::*;
 
 /// A brick pressed on a floor, its foot guided along a random oblique direction, in coordinates turned about (1, 1, 1).
@@ -26,9 +26,9 @@ fn scene(k: u64, angle: f64) -> Result<Scene, Error> {
         [0, 1, 2].map(|c| cos * v[c] + mean + sin * (v[(c + 2) % 3] - v[(c + 1) % 3]))
     };
     let friction = if k % 5 == 1 {
-        Friction::given(1e6)
+        Friction::tresca(1e6)
     } else if k.is_multiple_of(3) {
-        Friction::given(2e4 * (1.0 + next()))
+        Friction::tresca(2e4 * (1.0 + next()))
     } else {
         Friction::coulomb(0.35 + 0.2 * next())
     };
@@ -38,7 +38,7 @@ fn scene(k: u64, angle: f64) -> Result<Scene, Error> {
         .with_friction(friction);
     if k.is_multiple_of(2) {
         let way = [0.3 * d * next(), 0.3 * d * next(), 0.3 * d * next()];
-        contact = contact.moved(turn(way), History::constant(1.0));
+        contact = contact.with_motion(turn(way), History::constant(1.0));
     }
     let hold: Vec<u32> = below(brick::X_MAX).take(2).collect();
     let along = |v: &[[f64; 3]]| Directions::Vectors(v.iter().map(|v| turn(*v)).collect());
@@ -47,7 +47,7 @@ fn scene(k: u64, angle: f64) -> Result<Scene, Error> {
     let steel = Materials::uniform(Hooke::isotropic(1e9, 0.3)?);
     Ok(Scene::new(mesh.map_points(turn)?, steel)
         .with_support(Support::partial(foot, along(&[oblique])))
-        .with_support(Support::partial(top, press).moved(turn(down), swing))
+        .with_support(Support::partial(top, press).with_motion(turn(down), swing))
         .with_support(Support::partial(hold, along(&[[1.0, 0.0, 0.0]])))
         .with_contact(contact)
         .with_analysis(Analysis::quasistatic(1.0, 5)))
@@ -64,8 +64,8 @@ fn points_that_a_support_moves_along_the_obstacle_slide() -> Result<(), Error> {
                 let frame = simulation.step()?;
                 let status = frame.report().status;
                 let certificate = frame.certificate().largest();
-                let place = format!("scene {k}, turned by {angle}, level {}", frame.level());
-                assert_eq!(status, LevelStatus::Converged, "{place}: {certificate:.1e}");
+                let place = format!("scene {k}, turned by {angle}, level {}", frame.step());
+                assert_eq!(status, StepStatus::Converged, "{place}: {certificate:.1e}");
             }
         }
     }

@@ -3,11 +3,11 @@
 //! `cargo run --release -p signorini-tfeti --example product -- [n ...]`
 
 use faer::{Accum, Mat, Par};
-use signorini_fem_mesh::{Decomposition, Frame, Hooke, Materials, brick};
-use signorini_qp::{CoarseSpace, Equality, SymmetricOperator};
+use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
+use signorini_qp::{Equality, EqualityProjector, SymmetricOperator};
 use signorini_tfeti::{
-    ContactNodes, FaceFactor, FaceSpace, InverseKind, InverseSettings, Sharing, Support, Tfeti,
-    TfetiBuilder,
+    ActiveSetFactor, ActiveSetProjector, ContactConstraints, InverseKind, InverseSettings,
+    NodeSupport, Sharing, Tfeti, TfetiBuilder,
 };
 use std::time::Instant;
 
@@ -35,9 +35,12 @@ fn parts(system: &Tfeti) -> Result<(), Box<dyn std::error::Error>> {
     let mut s = lumped.scratch();
     let time = pool.install(|| median(|| lumped.apply(&x, &mut y, &mut s)));
     print!("lumped {:.3} ms", 1e3 * time);
-    for (name, kind) in [("split", FaceFactor::Split), ("sparse", FaceFactor::Sparse)] {
+    for (name, kind) in [
+        ("split", ActiveSetFactor::Split),
+        ("sparse", ActiveSetFactor::Sparse),
+    ] {
         let started = Instant::now();
-        let mut space = FaceSpace::with_factor(system.coarse(), contact, None, kind)?;
+        let mut space = ActiveSetProjector::with_factor(system.coarse(), contact, None, kind)?;
         let setup = started.elapsed().as_secs_f64();
         let mut w = vec![1.0; n];
         let mut k = 0;
@@ -86,13 +89,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let materials = Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?);
         let mesh = brick::Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build()?;
         let decomposition = Decomposition::boxes(&mesh, [3 * n, n, n])?;
-        let supports = [Support::fixed(mesh.nodes_on(brick::X_MIN))];
+        let supports = [NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))];
         let bottom = mesh.nodes_on(brick::Z_MIN);
-        let frame = Frame {
+        let frame = SurfaceFrame {
             normal: [0.0, 0.0, -1.0],
             tangents: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         };
-        let contact = ContactNodes::rigid(&bottom, &vec![frame; bottom.len()], true);
+        let contact = ContactConstraints::rigid(&bottom, &vec![frame; bottom.len()], true);
         let kind = if sparse {
             InverseKind::Sparse
         } else if dense {
@@ -101,10 +104,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             InverseKind::Auto
         };
         let builder = TfetiBuilder::new(&mesh, &decomposition, &materials)
-            .supports(&supports)
-            .contact(&contact)
-            .inverse(InverseSettings::default().with_kind(kind))
-            .sharing(if single {
+            .with_supports(&supports)
+            .with_contact(&contact)
+            .with_inverse(InverseSettings::default().with_kind(kind))
+            .with_sharing(if single {
                 Sharing::Never
             } else {
                 Sharing::Translates

@@ -1,34 +1,34 @@
 //! Contact points and the directions in which they can still move once supports are taken into account.
 
 use crate::error::TfetiError;
-use crate::rows::{RemovalReason, RemovedRow, RowKind, RowRule};
-use crate::supports::{FixedNode, MergedSupports, Support, dot};
+use crate::rows::{RemovalReason, RemovedRow, RowKind, RowScaling};
+use crate::supports::{FixedNode, MergedSupports, NodeSupport, dot};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
-use signorini_fem_mesh::Frame;
+use signorini_fem_mesh::SurfaceFrame;
 
 /// A node that may touch a rigid obstacle, or a node of another body.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct ContactPoint {
+pub struct ContactConstraint {
     /// Mesh node on the body whose outward normal is given.
     pub node: u32,
     /// Node of the other body; `None` for a rigid obstacle. Rows act on `u_node - u_opponent`.
-    pub opponent: Option<u32>,
+    pub partner: Option<u32>,
     /// Outward normal and two tangents, orthonormal.
-    pub frame: Frame,
+    pub frame: SurfaceFrame,
     /// Whether there is friction. Without it there are no tangential rows.
     pub friction: bool,
     /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
     pub moving: bool,
 }
 
-impl ContactPoint {
+impl ContactConstraint {
     /// A node that may touch a rigid obstacle that does not move, without friction.
     #[must_use]
-    pub fn new(node: u32, frame: Frame) -> Self {
+    pub fn new(node: u32, frame: SurfaceFrame) -> Self {
         Self {
             node,
-            opponent: None,
+            partner: None,
             frame,
             friction: false,
             moving: false,
@@ -37,8 +37,8 @@ impl ContactPoint {
 
     /// Against a node of another body; `None` for a rigid obstacle.
     #[must_use]
-    pub fn with_opponent(mut self, opponent: Option<u32>) -> Self {
-        self.opponent = opponent;
+    pub fn with_partner(mut self, partner: Option<u32>) -> Self {
+        self.partner = partner;
         self
     }
 
@@ -60,25 +60,25 @@ impl ContactPoint {
 /// The contact points of a system.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
-pub struct ContactNodes {
-    /// The points. A node in an edge or a corner appears several times, with other normals or opponents; rows of such a node
+pub struct ContactConstraints {
+    /// The points. A node in an edge or a corner appears several times, with other normals or partners; rows of such a node
     /// may depend on one another.
-    pub points: Vec<ContactPoint>,
+    pub points: Vec<ContactConstraint>,
 }
 
-impl ContactNodes {
+impl ContactConstraints {
     /// Points against a rigid obstacle, one frame per node.
     #[must_use]
-    pub fn rigid(nodes: &[u32], frames: &[Frame], friction: bool) -> Self {
-        let point = |(&node, frame): (&u32, &Frame)| {
-            ContactPoint::new(node, *frame).with_friction(friction)
+    pub fn rigid(nodes: &[u32], frames: &[SurfaceFrame], friction: bool) -> Self {
+        let point = |(&node, frame): (&u32, &SurfaceFrame)| {
+            ContactConstraint::new(node, *frame).with_friction(friction)
         };
         nodes.iter().zip(frames).map(point).collect()
     }
 }
 
-impl FromIterator<ContactPoint> for ContactNodes {
-    fn from_iter<I: IntoIterator<Item = ContactPoint>>(points: I) -> Self {
+impl FromIterator<ContactConstraint> for ContactConstraints {
+    fn from_iter<I: IntoIterator<Item = ContactConstraint>>(points: I) -> Self {
         Self {
             points: points.into_iter().collect(),
         }
@@ -88,7 +88,7 @@ impl FromIterator<ContactPoint> for ContactNodes {
 /// A contact point whose normal displacement is fixed by supports, so that it has no normal row.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct HeldPoint {
+pub struct PrescribedPoint {
     /// Position in the list of contact points.
     pub point: usize,
     /// Mesh node.
@@ -104,23 +104,23 @@ pub struct HeldPoint {
 ///
 /// # Errors
 /// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong supports, unknown nodes, wrong frames.
-pub fn held_points(
-    contact: &ContactNodes,
-    supports: &[Support],
+pub fn prescribed_points(
+    contact: &ContactConstraints,
+    supports: &[NodeSupport],
     nodes: usize,
-) -> Result<Vec<HeldPoint>, TfetiError> {
+) -> Result<Vec<PrescribedPoint>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
-    let all = contact_rows(contact, &merged, RowRule::Chained, nodes, |_| 1.0)?;
+    let all = contact_rows(contact, &merged, RowScaling::Chained, nodes, |_| 1.0)?;
     Ok(all.held)
 }
 
-/// One contact row: what it does to the mean displacements of the node and its opponent.
+/// One contact row: what it does to the mean displacements of the node and its partner.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactRow {
     /// Coefficients on the displacement of the node (to be spread over its copies).
     pub(crate) node: [f64; 3],
-    /// Coefficients on the displacement of the opponent, sign included.
-    pub(crate) opponent: [f64; 3],
+    /// Coefficients on the displacement of the partner, sign included.
+    pub(crate) partner: [f64; 3],
     /// The physical direction: the row stands for `scale * direction . (u_node - u_opponent)`.
     pub(crate) direction: [f64; 3],
     pub(crate) scale: f64,
@@ -144,7 +144,7 @@ pub(crate) struct PointRows {
 pub(crate) struct ContactRows {
     pub(crate) rows: Vec<PointRows>,
     pub(crate) removed: Vec<RemovedRow>,
-    pub(crate) held: Vec<HeldPoint>,
+    pub(crate) held: Vec<PrescribedPoint>,
 }
 
 /// Cosine of the angle between two normals of a node from which on they count as one.
@@ -159,9 +159,9 @@ const FIXED: f64 = 1e-8;
 /// Rows of all points. `squares(node)` is the sum of the squared
 /// shares of the copies of a node in their mean: one over their number where all count alike.
 pub(crate) fn contact_rows(
-    contact: &ContactNodes,
+    contact: &ContactConstraints,
     supports: &MergedSupports,
-    rule: RowRule,
+    rule: RowScaling,
     nodes: usize,
     squares: impl Fn(u32) -> f64,
 ) -> Result<ContactRows, TfetiError> {
@@ -174,18 +174,18 @@ pub(crate) fn contact_rows(
         uses.add(index, contact)?;
         check_frame(index, point)?;
         let (alpha, beta, scale) = match rule {
-            RowRule::Chained => (1.0, f64::from(u8::from(point.opponent.is_some())), 1.0),
-            RowRule::Orthonormal => {
+            RowScaling::Chained => (1.0, f64::from(u8::from(point.partner.is_some())), 1.0),
+            RowScaling::Orthonormal => {
                 // Unit row on the means of k copies: weights c/sqrt(k) with c = (1/k_a + 1/k_b)^(-1/2).
                 let a = squares(point.node);
-                let b = point.opponent.map_or(0.0, &squares);
+                let b = point.partner.map_or(0.0, &squares);
                 let c = (a + b).sqrt().recip();
                 (c * a.sqrt(), c * b.sqrt(), c)
             }
         };
         let space = Space::new(
             supports.at(point.node),
-            point.opponent.and_then(|n| supports.at(n)),
+            point.partner.and_then(|n| supports.at(n)),
             alpha,
             beta,
         );
@@ -210,12 +210,12 @@ impl Uses {
         }
     }
 
-    /// Takes a point in: its node may have others, but none with the same opponent (or a rigid obstacle) along the same
+    /// Takes a point in: its node may have others, but none with the same partner (or a rigid obstacle) along the same
     /// normal.
-    fn add(&mut self, index: usize, contact: &ContactNodes) -> Result<(), TfetiError> {
+    fn add(&mut self, index: usize, contact: &ContactConstraints) -> Result<(), TfetiError> {
         let point = &contact.points[index];
         let nodes = self.last.len();
-        for node in std::iter::once(point.node).chain(point.opponent) {
+        for node in std::iter::once(point.node).chain(point.partner) {
             if node as usize >= nodes {
                 return Err(TfetiError::UnknownNode {
                     place: format!("contact point {index}"),
@@ -225,7 +225,7 @@ impl Uses {
             }
         }
         let twice = TfetiError::ContactNodeTwice { node: point.node };
-        if point.opponent == Some(point.node) {
+        if point.partner == Some(point.node) {
             return Err(twice);
         }
         let last = &mut self.last[first(point) as usize];
@@ -233,13 +233,13 @@ impl Uses {
         while earlier > 0 {
             let other = &contact.points[earlier - 1];
             let cosine = dot(&other.frame.normal, &point.frame.normal);
-            let same = match point.opponent {
-                None => other.opponent.is_none() && cosine > SAME_NORMAL,
-                Some(opponent) if other.node == point.node => {
-                    other.opponent == Some(opponent) && cosine > SAME_NORMAL
+            let same = match point.partner {
+                None => other.partner.is_none() && cosine > SAME_NORMAL,
+                Some(partner) if other.node == point.node => {
+                    other.partner == Some(partner) && cosine > SAME_NORMAL
                 }
-                Some(opponent) => {
-                    (other.node, other.opponent) == (opponent, Some(point.node))
+                Some(partner) => {
+                    (other.node, other.partner) == (partner, Some(point.node))
                         && -cosine > SAME_NORMAL
                 }
             };
@@ -255,11 +255,11 @@ impl Uses {
 }
 
 /// The node under which a point is listed.
-fn first(point: &ContactPoint) -> u32 {
-    point.opponent.map_or(point.node, |o| o.min(point.node))
+fn first(point: &ContactConstraint) -> u32 {
+    point.partner.map_or(point.node, |o| o.min(point.node))
 }
 
-fn check_frame(index: usize, point: &ContactPoint) -> Result<(), TfetiError> {
+fn check_frame(index: usize, point: &ContactConstraint) -> Result<(), TfetiError> {
     let [t1, t2] = &point.frame.tangents;
     let axes = [&point.frame.normal, t1, t2];
     for i in 0..3 {
@@ -289,7 +289,7 @@ struct Space {
 }
 
 impl Space {
-    fn new(node: Option<&FixedNode>, opponent: Option<&FixedNode>, alpha: f64, beta: f64) -> Self {
+    fn new(node: Option<&FixedNode>, partner: Option<&FixedNode>, alpha: f64, beta: f64) -> Self {
         let free = |fixed: Option<&FixedNode>| {
             let mut matrix = Matrix3::identity();
             for direction in fixed.iter().flat_map(|f| &f.directions) {
@@ -298,9 +298,9 @@ impl Space {
             }
             matrix
         };
-        let (free_node, free_opponent) = (free(node), free(opponent));
+        let (free_node, free_opponent) = (free(node), free(partner));
         let mut prescribed = node.map(FixedNode::prescribed).unwrap_or_default();
-        for (case, value) in opponent.map(FixedNode::prescribed).unwrap_or_default() {
+        for (case, value) in partner.map(FixedNode::prescribed).unwrap_or_default() {
             match prescribed.iter_mut().find(|v| v.0 == case) {
                 Some(v) => (0..3).for_each(|c| v.1[c] -= value[c]),
                 None => prescribed.push((case, value.map(|v| -v))),
@@ -320,10 +320,10 @@ impl Space {
 
     fn row(&self, direction: Vector3<f64>, scale: f64, factor: f64) -> ContactRow {
         let node = self.free_node * direction * (self.alpha * factor);
-        let opponent = self.free_opponent * direction * (-self.beta * factor);
+        let partner = self.free_opponent * direction * (-self.beta * factor);
         ContactRow {
             node: node.into(),
-            opponent: opponent.into(),
+            partner: partner.into(),
             direction: direction.into(),
             scale: scale * factor,
         }
@@ -333,7 +333,7 @@ impl Space {
     fn full_row(&self, direction: Vector3<f64>, scale: f64) -> ContactRow {
         ContactRow {
             node: (direction * self.alpha).into(),
-            opponent: (direction * -self.beta).into(),
+            partner: (direction * -self.beta).into(),
             direction: direction.into(),
             scale,
         }
@@ -360,7 +360,7 @@ impl Space {
 
 fn reduce(
     index: usize,
-    point: &ContactPoint,
+    point: &ContactConstraint,
     friction: bool,
     space: &Space,
     scale: f64,
@@ -401,7 +401,7 @@ fn reduce(
             drop(RowKind::Tangential, reason);
         }
         let value = |(case, v): &(u32, [f64; 3])| (*case, dot(v, &point.frame.normal));
-        out.held.push(HeldPoint {
+        out.held.push(PrescribedPoint {
             point: index,
             node: point.node,
             normal: space.prescribed.iter().map(value).collect(),

@@ -108,7 +108,7 @@ pub enum TfetiError {
     },
     /// A node that takes part in two contact points of one normal, or of a pair.
     #[error(
-        "node {node} has two contact points with the same opponent along the same normal, or is its own opponent; give each pair of nodes, and each obstacle of a node, once"
+        "node {node} has two contact points with the same partner along the same normal, or is its own partner; give each pair of nodes, and each obstacle of a node, once"
     )]
     ContactNodeTwice {
         /// Mesh node.

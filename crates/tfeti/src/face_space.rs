@@ -7,13 +7,13 @@ use crate::error::TfetiError;
 use crate::row_weights::{LineWeight, RowWeights};
 use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use crate::split_solve::Digits;
-use signorini_qp::{CoarseSpace, Line, LooseMode, QpError};
+use signorini_qp::{EqualityProjector, Line, LooseMode, QpError};
 use std::sync::Arc;
 
 /// How `G W G^T` is factored when the face changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
-pub enum FaceFactor {
+pub enum ActiveSetFactor {
     /// The cheaper of the others by size.
     #[default]
     Auto,
@@ -23,12 +23,12 @@ pub enum FaceFactor {
     Split,
 }
 
-/// `G x = e` with projectors weighted by the free rows of the current face, see [`CoarseSpace`].
+/// `G x = e` with projectors weighted by the free rows of the current face, see [`EqualityProjector`].
 ///
 /// Repairs use the interface and support rows only, so they never touch a contact row. Motions of bodies that these rows do
-/// not stop are [loose](CoarseSpace::loose).
+/// not stop are [loose](EqualityProjector::loose).
 #[derive(Debug)]
-pub struct FaceSpace {
+pub struct ActiveSetProjector {
     coarse: Coarse,
     /// Factor with the weights of always free rows.
     always: CoarseFactor,
@@ -59,7 +59,7 @@ const ROUNDED: f64 = 1e-4;
 /// Work on a free motion above this fraction of the norm of `e` makes a face deficient.
 const WORK: f64 = 1e-9;
 
-impl FaceSpace {
+impl ActiveSetProjector {
     /// For the coarse space of a system; `contact_rows` is the number of leading rows with constraints.
     ///
     /// `metric` gives free rows another weight than 1, see [`Tfeti::row_weights`](crate::Tfeti::row_weights).
@@ -72,7 +72,7 @@ impl FaceSpace {
         contact_rows: usize,
         metric: Option<Vec<f64>>,
     ) -> Result<Self, TfetiError> {
-        Self::with_factor(coarse, contact_rows, metric, FaceFactor::Auto)
+        Self::with_factor(coarse, contact_rows, metric, ActiveSetFactor::Auto)
     }
 
     /// The same with a given kind of factor.
@@ -84,7 +84,7 @@ impl FaceSpace {
         coarse: &Coarse,
         contact_rows: usize,
         metric: Option<Vec<f64>>,
-        kind: FaceFactor,
+        kind: ActiveSetFactor,
     ) -> Result<Self, TfetiError> {
         let most = coarse.0.gluing.ranges().contact().end;
         if contact_rows > most {
@@ -100,9 +100,9 @@ impl FaceSpace {
         let mut weights = vec![1.0; coarse.dim()];
         weights[..contact_rows].fill(0.0);
         let split = match kind {
-            FaceFactor::Sparse => None,
-            FaceFactor::Split => coarse.split(contact_rows, metric.as_deref()),
-            FaceFactor::Auto => coarse
+            ActiveSetFactor::Sparse => None,
+            ActiveSetFactor::Split => coarse.split(contact_rows, metric.as_deref()),
+            ActiveSetFactor::Auto => coarse
                 .split(contact_rows, metric.as_deref())
                 .filter(|split| split.pays(coarse.rows(), coarse.factor_size())),
         };
@@ -230,7 +230,7 @@ fn deficient(error: TfetiError) -> QpError {
     }
 }
 
-impl CoarseSpace for FaceSpace {
+impl EqualityProjector for ActiveSetProjector {
     fn dim(&self) -> usize {
         self.coarse.dim()
     }

@@ -223,7 +223,7 @@ impl Rate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Support, TfetiBuilder};
+    use crate::{NodeSupport, TfetiBuilder};
     use signorini_fem_mesh::{Hooke, brick};
 
     #[test]
@@ -233,7 +233,7 @@ mod tests {
             let decomposition = Decomposition::boxes(&mesh, boxes).unwrap();
             let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).unwrap());
             let held = mesh.nodes_on(brick::X_MIN);
-            let supports = [Support::fixed(held.clone())];
+            let supports = [NodeSupport::fixed(held.clone())];
             let forecast = Forecast::new(
                 &mesh,
                 &decomposition,
@@ -244,7 +244,7 @@ mod tests {
             )
             .unwrap();
             let system = TfetiBuilder::new(&mesh, &decomposition, &materials)
-                .supports(&supports)
+                .with_supports(&supports)
                 .build()
                 .unwrap();
             let truth = system.report();

@@ -9,12 +9,12 @@
 mod build;
 
 use self::build::Builder;
-use crate::contact::{ContactNodes, contact_rows};
+use crate::contact::{ContactConstraints, contact_rows};
 use crate::copy_stiffness::CopyStiffness;
 use crate::error::TfetiError;
-use crate::rows::{RemovedRow, RowRanges, RowRule};
-use crate::supports::{MergedSupports, Support};
-use signorini_fem_mesh::{Decomposition, DisjointSets, Frame};
+use crate::rows::{RemovedRow, RowRanges, RowScaling};
+use crate::supports::{MergedSupports, NodeSupport};
+use signorini_fem_mesh::{Decomposition, DisjointSets, SurfaceFrame};
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,15 +42,15 @@ pub enum TangentialRows {
 
 /// A contact point that has a normal row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ContactInfo {
+pub struct ContactRows {
     /// Position in the list of contact points given.
     pub point: usize,
     /// Mesh node.
     pub node: u32,
     /// Node of the other body, if any.
-    pub opponent: Option<u32>,
+    pub partner: Option<u32>,
     /// Outward normal and tangents.
-    pub frame: Frame,
+    pub frame: SurfaceFrame,
     /// The normal row.
     pub row: usize,
     /// The normal row is `scale` times the normal displacement; the nodal force is `scale * lambda`, the offset of
@@ -96,7 +96,7 @@ impl Glob {
 /// The rows of `B`, their names and their counts.
 #[derive(Debug, Clone)]
 pub struct Gluing {
-    rule: RowRule,
+    rule: RowScaling,
     ranges: RowRanges,
     block_pointers: Vec<u32>,
     block_entries: Vec<BlockEntry>,
@@ -105,7 +105,7 @@ pub struct Gluing {
     row_pointers: Vec<u32>,
     row_entries: Vec<CopyEntry>,
     row_nodes: Vec<u32>,
-    contact: Vec<ContactInfo>,
+    contact: Vec<ContactRows>,
     removed: Vec<RemovedRow>,
     prescribed: Vec<Vec<(u32, f64)>>,
     paper_rows: usize,
@@ -125,9 +125,9 @@ impl Gluing {
     pub fn new(
         decomposition: &Decomposition,
         nodes: usize,
-        supports: &[Support],
-        contact: Option<&ContactNodes>,
-        rule: RowRule,
+        supports: &[NodeSupport],
+        contact: Option<&ContactConstraints>,
+        rule: RowScaling,
         stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
         if decomposition.nodes() != nodes {
@@ -139,7 +139,7 @@ impl Gluing {
         }
         stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
-        let none = ContactNodes::default();
+        let none = ContactConstraints::default();
         let contact_nodes = contact.unwrap_or(&none);
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact_nodes, &merged, rule, nodes, squares)?;
@@ -192,7 +192,7 @@ impl Gluing {
         Ok(gluing)
     }
 
-    fn empty(rule: RowRule, cases: usize, plain: bool) -> Self {
+    fn empty(rule: RowScaling, cases: usize, plain: bool) -> Self {
         Self {
             rule,
             ranges: RowRanges {
@@ -213,15 +213,15 @@ impl Gluing {
             removed: Vec::new(),
             prescribed: vec![Vec::new(); cases],
             paper_rows: 0,
-            orthonormal: rule == RowRule::Orthonormal && plain,
-            aligned: rule == RowRule::Orthonormal && plain,
+            orthonormal: rule == RowScaling::Orthonormal && plain,
+            aligned: rule == RowScaling::Orthonormal && plain,
             dependent: Vec::new(),
         }
     }
 
     /// How the rows were built.
     #[must_use]
-    pub fn rule(&self) -> RowRule {
+    pub fn rule(&self) -> RowScaling {
         self.rule
     }
 
@@ -269,7 +269,7 @@ impl Gluing {
         let pairs = || {
             self.contact
                 .iter()
-                .filter_map(|c| Some((c.node, c.opponent?)))
+                .filter_map(|c| Some((c.node, c.partner?)))
         };
         let most = pairs().map(|(a, b)| a.max(b)).max();
         let mut sets = DisjointSets::new(most.map_or(0, |most| most as usize + 1));
@@ -288,7 +288,7 @@ impl Gluing {
 
     /// The contact points that have a normal row, in the order of the normal rows.
     #[must_use]
-    pub fn contact(&self) -> &[ContactInfo] {
+    pub fn contact(&self) -> &[ContactRows] {
         &self.contact
     }
 

@@ -27,13 +27,13 @@
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};
 //! use signorini_qp::SymmetricOperator;
-//! use signorini_tfeti::{Support, TfetiBuilder};
+//! use signorini_tfeti::{NodeSupport, TfetiBuilder};
 //!
 //! let mesh = brick::Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
 //! let decomposition = Decomposition::boxes(&mesh, [3, 1, 1])?;
 //! let materials = Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?);
-//! let supports = [Support::fixed(mesh.nodes_on(brick::X_MIN))];
-//! let system = TfetiBuilder::new(&mesh, &decomposition, &materials).supports(&supports).build()?;
+//! let supports = [NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))];
+//! let system = TfetiBuilder::new(&mesh, &decomposition, &materials).with_supports(&supports).build()?;
 //!
 //! let load = LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -1.0e6]);
 //! let response = system.load_response(&assemble_load(&mesh, &decomposition, &load)?)?;
@@ -92,21 +92,21 @@ mod torn;
 pub use class::{Class, Classes, Sharing};
 pub use coarse::{Coarse, CoarseScratch};
 pub use coarse_factor::{CoarseFactor, OrthonormalCoarse};
-pub use contact::{ContactNodes, ContactPoint, HeldPoint, held_points};
+pub use contact::{ContactConstraint, ContactConstraints, PrescribedPoint, prescribed_points};
 pub use copy_stiffness::CopyStiffness;
 pub use cost::{InverseKind, InverseSettings};
 pub use dependencies::Dependency;
 pub use dual::{DualOperator, DualScratch};
 pub use error::TfetiError;
-pub use face_space::{FaceFactor, FaceSpace};
+pub use face_space::{ActiveSetFactor, ActiveSetProjector};
 pub use forecast::{ClassForecast, Forecast, Rate};
-pub use gluing::{ContactInfo, Gluing, TangentialRows};
+pub use gluing::{ContactRows, Gluing, TangentialRows};
 pub use kernel::Kernel;
 pub use mobility::{BodyMotion, FreeMotion};
-pub use preconditioner::{Preconditioner, PreconditionerScratch};
+pub use preconditioner::{DualPreconditioner, DualPreconditionerScratch};
 pub use recovery::{Jump, LoadResponse};
 pub use report::{ClassReport, SetupReport};
 pub use row_weights::{LineWeight, RowWeights};
-pub use rows::{RemovalReason, RemovedRow, RowKind, RowRanges, RowRule, count_removed};
-pub use supports::{Directions, HeldDirection, Motion, Support, held_directions};
+pub use rows::{RemovalReason, RemovedRow, RowKind, RowRanges, RowScaling, count_removed};
+pub use supports::{Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions};
 pub use system::{Tfeti, TfetiBuilder};

@@ -16,7 +16,7 @@ use crate::scaling::Scaling;
 use crate::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::system::Tfeti;
 use rayon::prelude::*;
-use signorini_qp::{FacePreconditioner, FaceView, SymmetricOperator};
+use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator};
 use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +27,7 @@ enum Kind {
 
 /// A preconditioner for `F`: symmetric, positive semidefinite, close to the inverse of `F` on the kernel of `G`.
 #[derive(Debug)]
-pub struct Preconditioner {
+pub struct DualPreconditioner {
     map: Arc<BoundaryMap>,
     classes: Vec<BoundaryStiffness>,
     scaling: Option<Scaling>,
@@ -54,7 +54,7 @@ struct Coupling {
 
 /// Work memory of a preconditioner.
 #[derive(Debug)]
-pub struct PreconditionerScratch {
+pub struct DualPreconditionerScratch {
     boundary: Vec<f64>,
     lanes: Vec<LaneScratch>,
     dual: Vec<f64>,
@@ -75,8 +75,8 @@ impl Tfeti {
     ///
     /// # Errors
     /// [`TfetiError::Memory`] never, [`TfetiError::Singular`] never; the signature leaves room for other choices.
-    pub fn lumped(&self) -> Result<Preconditioner, TfetiError> {
-        Preconditioner::new(self, Kind::Lumped)
+    pub fn lumped(&self) -> Result<DualPreconditioner, TfetiError> {
+        DualPreconditioner::new(self, Kind::Lumped)
     }
 
     /// The Dirichlet preconditioner `B_D S B_D^T` with the Schur complement on the boundary nodes: fewer iterations, as
@@ -84,12 +84,12 @@ impl Tfeti {
     ///
     /// # Errors
     /// [`TfetiError::FactorPattern`] if a factor is too large.
-    pub fn dirichlet(&self) -> Result<Preconditioner, TfetiError> {
-        Preconditioner::new(self, Kind::Dirichlet)
+    pub fn dirichlet(&self) -> Result<DualPreconditioner, TfetiError> {
+        DualPreconditioner::new(self, Kind::Dirichlet)
     }
 }
 
-impl Preconditioner {
+impl DualPreconditioner {
     fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
         let map = system.parts.map.clone();
         let classes = (0..map.classes.len())
@@ -115,7 +115,7 @@ impl Preconditioner {
         x: &[f64],
         free: &[bool],
         y: &mut [f64],
-        s: &mut PreconditionerScratch,
+        s: &mut DualPreconditionerScratch,
     ) {
         let mut masked = std::mem::take(&mut s.masked);
         for ((m, x), free) in masked.iter_mut().zip(x).zip(free) {
@@ -130,7 +130,7 @@ impl Preconditioner {
         }
     }
 
-    fn stiffness_product(&self, x: &[f64], s: &mut PreconditionerScratch) {
+    fn stiffness_product(&self, x: &[f64], s: &mut DualPreconditionerScratch) {
         let parallel = self.map.is_large();
         let divide = self.scaling.as_ref().map(Scaling::weights);
         self.map.for_lanes(
@@ -171,14 +171,14 @@ fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64], width: usize) {
     }
 }
 
-impl SymmetricOperator for Preconditioner {
-    type Scratch = PreconditionerScratch;
+impl SymmetricOperator for DualPreconditioner {
+    type Scratch = DualPreconditionerScratch;
 
     fn dim(&self) -> usize {
         self.map.rows()
     }
 
-    fn scratch(&self) -> PreconditionerScratch {
+    fn scratch(&self) -> DualPreconditionerScratch {
         let lane = |k: usize| {
             let (mut gathered, mut interior, mut need) = (0, 0, None);
             for panel in &self.map.panels[self.map.lanes[k].panels.clone()] {
@@ -201,7 +201,7 @@ impl SymmetricOperator for Preconditioner {
             }
         };
         let rows = self.map.rows();
-        PreconditionerScratch {
+        DualPreconditionerScratch {
             boundary: vec![0.0; self.map.len()],
             lanes: (0..self.map.lanes.len()).map(lane).collect(),
             dual: vec![0.0; if self.scaling.is_some() { rows } else { 0 }],
@@ -210,7 +210,7 @@ impl SymmetricOperator for Preconditioner {
         }
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut PreconditionerScratch) {
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
         let Some(scaling) = &self.scaling else {
             self.stiffness_product(x, s);
             self.map.collect(&s.boundary, y);
@@ -225,8 +225,8 @@ impl SymmetricOperator for Preconditioner {
     }
 }
 
-impl FacePreconditioner for Preconditioner {
-    fn enter(&self, face: &FaceView<'_>, s: &mut PreconditionerScratch) {
+impl ActiveSetPreconditioner for DualPreconditioner {
+    fn enter(&self, face: &ActiveSetView<'_>, s: &mut DualPreconditionerScratch) {
         if let Some(scaling) = &self.scaling {
             scaling.on_face(face, &mut s.groups);
         }

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// How the rows of `B` are built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
-pub enum RowRule {
+pub enum RowScaling {
     /// Orthonormal rows: Helmert rows over the copies of a node for the interface, the mean of the copies times the
     /// square root of their number for contact and supports.
     #[default]
@@ -67,7 +67,7 @@ pub struct RowRanges {
     pub intervals: Range<usize>,
     /// Interface rows: triples (x, y, z) of one node.
     pub interface: Range<usize>,
-    /// Support rows.
+    /// NodeSupport rows.
     pub dirichlet: Range<usize>,
 }
 

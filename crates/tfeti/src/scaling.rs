@@ -3,7 +3,7 @@
 use crate::dense;
 use crate::error::TfetiError;
 use crate::system::Tfeti;
-use signorini_qp::{FaceView, Freedom};
+use signorini_qp::{ActiveSetView, Freedom};
 
 /// What is added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come
 /// out large, but `B^T` takes them to zero.
@@ -154,7 +154,7 @@ impl Scaling {
     /// `N - N H (H^T N H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and
     /// a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the copies. (Rows that
     /// weigh the copies by stiffness do not need it, chained ones do.)
-    pub(crate) fn on_face(&self, face: &FaceView<'_>, groups: &mut Vec<f64>) {
+    pub(crate) fn on_face(&self, face: &ActiveSetView<'_>, groups: &mut Vec<f64>) {
         groups.clear();
         groups.extend_from_slice(&self.groups.inverses);
         let mut held = Vec::new();

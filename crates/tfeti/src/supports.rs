@@ -43,7 +43,7 @@ pub struct Motion {
 
 /// Nodes with fixed directions.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Support {
+pub struct NodeSupport {
     /// Mesh nodes.
     pub nodes: Vec<u32>,
     /// The directions in which they are fixed.
@@ -52,7 +52,7 @@ pub struct Support {
     pub motion: Option<Motion>,
 }
 
-impl Support {
+impl NodeSupport {
     /// Fixes all components of the nodes at zero.
     #[must_use]
     pub fn fixed(nodes: Vec<u32>) -> Self {
@@ -133,7 +133,7 @@ pub(crate) struct MergedSupports {
 /// A direction that supports fix at a node, and the first of them that does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct HeldDirection {
+pub struct PrescribedDirection {
     /// Mesh node.
     pub node: u32,
     /// Unit direction, at right angles to the other ones of the node.
@@ -146,13 +146,13 @@ pub struct HeldDirection {
 ///
 /// # Errors
 /// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
-pub fn held_directions(
-    supports: &[Support],
+pub fn prescribed_directions(
+    supports: &[NodeSupport],
     nodes: usize,
-) -> Result<Vec<HeldDirection>, TfetiError> {
+) -> Result<Vec<PrescribedDirection>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
-    let of_node = |fixed: &FixedNode| -> Vec<HeldDirection> {
-        let held = |d: &FixedDirection| HeldDirection {
+    let of_node = |fixed: &FixedNode| -> Vec<PrescribedDirection> {
+        let held = |d: &FixedDirection| PrescribedDirection {
             node: fixed.node,
             direction: d.direction,
             support: d.support,
@@ -177,7 +177,7 @@ impl MergedSupports {
         }
     }
 
-    pub(crate) fn new(supports: &[Support], nodes: usize) -> Result<Self, TfetiError> {
+    pub(crate) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
         let mut fixed: Vec<Option<FixedNode>> = vec![None; nodes];
         let mut merged = Self::default();
         for (s, support) in supports.iter().enumerate() {
@@ -242,7 +242,7 @@ impl MergedSupports {
     }
 }
 
-fn unit_directions(s: usize, support: &Support) -> Result<Vec<[f64; 3]>, TfetiError> {
+fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, TfetiError> {
     let mut directions = support.directions.vectors();
     if support.nodes.is_empty() {
         return Err(TfetiError::EmptySupport {

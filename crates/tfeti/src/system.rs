@@ -4,7 +4,7 @@ use crate::boundary::BoundaryMap;
 use crate::class::{Classes, Sharing};
 use crate::coarse::Coarse;
 use crate::coarse_factor::CoarseFactor;
-use crate::contact::ContactNodes;
+use crate::contact::ContactConstraints;
 use crate::copy_stiffness::CopyStiffness;
 use crate::cost::InverseSettings;
 use crate::dual::DualOperator;
@@ -13,8 +13,8 @@ use crate::gluing::Gluing;
 use crate::kernel::{Kernel, mean};
 use crate::matrices::{ClassBase, ClassInverse, assemble, invert};
 use crate::report::{SetupReport, class_reports};
-use crate::rows::{RowRule, count_removed};
-use crate::supports::Support;
+use crate::rows::{RowScaling, count_removed};
+use crate::supports::NodeSupport;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::sync::Arc;
 use std::time::Instant;
@@ -25,9 +25,9 @@ pub struct TfetiBuilder<'a> {
     mesh: &'a TetMesh,
     decomposition: &'a Decomposition,
     materials: &'a Materials,
-    supports: &'a [Support],
-    contact: Option<&'a ContactNodes>,
-    rule: RowRule,
+    supports: &'a [NodeSupport],
+    contact: Option<&'a ContactConstraints>,
+    rule: RowScaling,
     sharing: Sharing,
     inverse: InverseSettings,
     earlier: Option<&'a Tfeti>,
@@ -47,7 +47,7 @@ impl<'a> TfetiBuilder<'a> {
             materials,
             supports: &[],
             contact: None,
-            rule: RowRule::default(),
+            rule: RowScaling::default(),
             sharing: Sharing::default(),
             inverse: InverseSettings::default(),
             earlier: None,
@@ -58,42 +58,42 @@ impl<'a> TfetiBuilder<'a> {
     /// sharing: only the rows differ, and what depends on them is made anew. The result is that of a build from nothing, bit
     /// for bit. The sizes of the subdomains are checked, values are not.
     #[must_use]
-    pub fn reuse(mut self, earlier: &'a Tfeti) -> Self {
+    pub fn with_reuse(mut self, earlier: &'a Tfeti) -> Self {
         self.earlier = Some(earlier);
         self
     }
 
     /// Sets the supports.
     #[must_use]
-    pub fn supports(mut self, supports: &'a [Support]) -> Self {
+    pub fn with_supports(mut self, supports: &'a [NodeSupport]) -> Self {
         self.supports = supports;
         self
     }
 
     /// Sets the contact points.
     #[must_use]
-    pub fn contact(mut self, contact: &'a ContactNodes) -> Self {
+    pub fn with_contact(mut self, contact: &'a ContactConstraints) -> Self {
         self.contact = Some(contact);
         self
     }
 
     /// Sets how the rows of `B` are built. Default: orthonormal.
     #[must_use]
-    pub fn rule(mut self, rule: RowRule) -> Self {
+    pub fn with_row_scaling(mut self, rule: RowScaling) -> Self {
         self.rule = rule;
         self
     }
 
     /// Sets whether translates share their matrices. Default: they do.
     #[must_use]
-    pub fn sharing(mut self, sharing: Sharing) -> Self {
+    pub fn with_sharing(mut self, sharing: Sharing) -> Self {
         self.sharing = sharing;
         self
     }
 
     /// Sets how the generalised inverses are chosen.
     #[must_use]
-    pub fn inverse(mut self, settings: InverseSettings) -> Self {
+    pub fn with_inverse(mut self, settings: InverseSettings) -> Self {
         self.inverse = settings;
         self
     }

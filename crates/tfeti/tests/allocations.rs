@@ -8,10 +8,10 @@ mod common;
 use allocation_counter::measure;
 use common::{Brick, build, noise};
 use signorini_qp::{
-    CoarseSpace, Equality, FaceProblem, FaceSettings, FaceWorkspace, ProductSet, Segment,
-    SymmetricOperator, face,
+    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
+    ProductSet, Segment, SymmetricOperator, face,
 };
-use signorini_tfeti::{FaceFactor, FaceSpace, InverseKind, RowRule, Sharing};
+use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, RowScaling, Sharing};
 
 #[test]
 fn products_and_projectors_allocate_nothing() {
@@ -20,7 +20,7 @@ fn products_and_projectors_allocate_nothing() {
         (InverseKind::Dense, Sharing::Translates),
         (InverseKind::Sparse, Sharing::Never),
     ] {
-        let system = build(&b, kind, sharing, RowRule::Orthonormal);
+        let system = build(&b, kind, sharing, RowScaling::Orthonormal);
         let (f, x) = (system.dual(), noise(system.dual_dim(), 1));
         let (mut y, mut s) = (x.clone(), f.scratch());
         assert_eq!(measure(|| f.apply(&x, &mut y, &mut s)).count_total, 0);
@@ -36,8 +36,9 @@ fn products_and_projectors_allocate_nothing() {
         });
         assert_eq!(count.count_total, 0);
         let contact = system.gluing().ranges().contact().end;
-        for kind in [FaceFactor::Split, FaceFactor::Sparse] {
-            let mut space = FaceSpace::with_factor(system.coarse(), contact, None, kind).unwrap();
+        for kind in [ActiveSetFactor::Split, ActiveSetFactor::Sparse] {
+            let mut space =
+                ActiveSetProjector::with_factor(system.coarse(), contact, None, kind).unwrap();
             let count = measure(|| {
                 space.project(&mut y);
                 space.project_transpose(&mut y);
@@ -58,13 +59,13 @@ fn iterations_of_the_face_method_allocate_nothing() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     let (n, contact) = (system.dual_dim(), system.gluing().ranges().contact().end);
     let response = system.load_response(&b.loads()).unwrap();
     let lumped = system.lumped().unwrap();
     let (linear, scale) = (noise(n, 3), vec![1.0; n]);
-    let problem = FaceProblem {
+    let problem = ActiveSetProblem {
         operator: system.dual(),
         preconditioner: &lumped,
         scale: &scale,
@@ -72,11 +73,11 @@ fn iterations_of_the_face_method_allocate_nothing() {
         rhs: &response.coarse,
     };
     let run = |products: usize| {
-        let mut space = FaceSpace::new(system.coarse(), contact, None).unwrap();
-        let mut work = FaceWorkspace::new(system.dual(), &lumped);
+        let mut space = ActiveSetProjector::new(system.coarse(), contact, None).unwrap();
+        let mut work = ActiveSetWorkspace::new(system.dual(), &lumped);
         let mut set = ProductSet::new(vec![Segment::Free(n)]).unwrap();
         let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
-        let settings = FaceSettings::default()
+        let settings = ActiveSetSettings::default()
             .with_tolerance(1e-12)
             .with_forcing(1e-10)
             .with_max_products(products);

@@ -5,7 +5,8 @@ mod common;
 use common::{Brick, build, noise, product};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials};
 use signorini_tfeti::{
-    Classes, InverseKind, InverseSettings, RowRule, Sharing, Support, TfetiBuilder, TfetiError,
+    Classes, InverseKind, InverseSettings, NodeSupport, RowScaling, Sharing, TfetiBuilder,
+    TfetiError,
 };
 
 fn classes(b: &Brick, sharing: Sharing) -> Classes {
@@ -91,7 +92,7 @@ fn report_tells_what_was_built() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     let report = system.report();
     assert_eq!(
@@ -132,9 +133,9 @@ fn bodies_without_rows_and_single_supported_bodies_build() {
         (free.dual_dim(), free.coarse_factor().free_motions().len()),
         (0, 6)
     );
-    let supports = [Support::fixed(b.fixed.clone())];
+    let supports = [NodeSupport::fixed(b.fixed.clone())];
     let held = TfetiBuilder::new(&b.mesh, &whole, &b.materials)
-        .supports(&supports)
+        .with_supports(&supports)
         .build()
         .unwrap();
     assert!(held.coarse_factor().free_motions().is_empty());
@@ -144,17 +145,21 @@ fn bodies_without_rows_and_single_supported_bodies_build() {
 #[test]
 fn a_system_with_other_rows_reuses_the_factors() {
     let b = Brick::new(2, 5);
-    let supports = [Support::fixed(b.fixed.clone())];
+    let supports = [NodeSupport::fixed(b.fixed.clone())];
     let contact = b.contact(true);
-    let bare = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).supports(&supports);
+    let bare = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).with_supports(&supports);
     for kind in [InverseKind::Auto, InverseKind::Sparse, InverseKind::Dense] {
         let settings = InverseSettings::default()
             .with_kind(kind)
             .with_moore_penrose(false);
-        let bare = bare.inverse(settings);
+        let bare = bare.with_inverse(settings);
         let first = bare.build().unwrap();
-        let fresh = bare.contact(&contact).build().unwrap();
-        let again = bare.contact(&contact).reuse(&first).build().unwrap();
+        let fresh = bare.with_contact(&contact).build().unwrap();
+        let again = bare
+            .with_contact(&contact)
+            .with_reuse(&first)
+            .build()
+            .unwrap();
         assert_eq!(fresh.report().factorisations, 3);
         assert_eq!(again.report().factorisations, 1);
         assert_eq!(again.report().rows, fresh.report().rows);
@@ -164,7 +169,7 @@ fn a_system_with_other_rows_reuses_the_factors() {
     let first = bare.build().unwrap();
     let whole = Decomposition::whole(&b.mesh);
     let error = TfetiBuilder::new(&b.mesh, &whole, &b.materials)
-        .reuse(&first)
+        .with_reuse(&first)
         .build()
         .unwrap_err();
     assert!(matches!(error, TfetiError::DecompositionMismatch { .. }));

@@ -6,13 +6,14 @@ use common::{Brick, build, distance, dot, noise, norm};
 use signorini_fem_mesh::{Decomposition, brick};
 use signorini_qp::{Equality, SymmetricOperator};
 use signorini_tfeti::{
-    CoarseFactor, Directions, InverseKind, RowRule, RowWeights, Sharing, Support, TfetiBuilder,
+    CoarseFactor, Directions, InverseKind, NodeSupport, RowScaling, RowWeights, Sharing,
+    TfetiBuilder,
 };
 
 #[test]
 fn coarse_projectors_and_particular_solutions() {
     let b = Brick::new(2, 3);
-    for rule in [RowRule::Orthonormal, RowRule::Chained] {
+    for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
         let system = build(&b, InverseKind::Auto, Sharing::Translates, rule);
         let coarse = system.coarse();
         let (dim, rows) = (coarse.dim(), coarse.rows());
@@ -102,7 +103,7 @@ fn spectrum_on_the_kernel_of_g() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     let (f, factor) = (system.dual(), system.coarse_factor());
     let (dim, mut fs, mut cs) = (f.dim(), f.scratch(), factor.scratch());
@@ -138,12 +139,12 @@ fn spectrum_on_the_kernel_of_g() {
 #[test]
 fn free_motions_are_found_and_long_bodies_raise_no_alarm() {
     let b = Brick::new(1, 3);
-    let free = |supports: &[Support], friction: Option<bool>, only_interface: bool| {
+    let free = |supports: &[NodeSupport], friction: Option<bool>, only_interface: bool| {
         let contact = b.contact(friction.unwrap_or(false));
         let mut builder =
-            TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).supports(supports);
+            TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).with_supports(supports);
         if friction.is_some() {
-            builder = builder.contact(&contact);
+            builder = builder.with_contact(&contact);
         }
         let system = builder.build().unwrap();
         if !only_interface {
@@ -178,16 +179,16 @@ fn free_motions_are_found_and_long_bodies_raise_no_alarm() {
     assert_eq!(free(&[], Some(false), false), 3);
     assert_eq!(free(&[], Some(true), false), 0);
     assert_eq!(free(&[], Some(true), true), 6);
-    let line = Support::partial(vec![b.fixed[0]], Directions::All);
+    let line = NodeSupport::partial(vec![b.fixed[0]], Directions::All);
     assert_eq!(free(&[line], Some(true), true), 3);
     // A beam 200 times as long as thick in 200 subdomains.
     let mesh = brick::Brick::new([200.0, 1.0, 1.0], [400, 2, 2])
         .build()
         .unwrap();
     let decomposition = Decomposition::boxes(&mesh, [200, 1, 1]).unwrap();
-    let supports = [Support::fixed(mesh.nodes_on(brick::X_MIN))];
+    let supports = [NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))];
     let system = TfetiBuilder::new(&mesh, &decomposition, &b.materials)
-        .supports(&supports)
+        .with_supports(&supports)
         .build()
         .unwrap();
     assert!(system.coarse_factor().free_motions().is_empty());
@@ -205,7 +206,7 @@ fn products_go_through_globs_as_through_rows() {
         .max();
     assert!(most > Some(8), "{most:?} subdomains share a node");
     for b in [Brick::new(2, 3), Brick::of(2, 2, 0.1), single] {
-        for rule in [RowRule::Orthonormal, RowRule::Chained] {
+        for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
             let system = build(&b, InverseKind::Auto, Sharing::Translates, rule);
             let coarse = system.coarse();
             let mut s = coarse.scratch();

@@ -5,7 +5,7 @@ mod common;
 use common::{Brick, distance, dot, norm};
 use signorini_fem_mesh::{Decomposition, LoadDensity, assemble_load, brick};
 use signorini_qp::SymmetricOperator;
-use signorini_tfeti::{Motion, RowRule, Support, Tfeti, TfetiBuilder};
+use signorini_tfeti::{Motion, NodeSupport, RowScaling, Tfeti, TfetiBuilder};
 
 /// Solves the linear problem (no contact) by projected conjugate gradients and returns the nodal displacement.
 fn solve(system: &Tfeti, loads: &[Vec<f64>], offsets: &[f64]) -> (Vec<f64>, usize) {
@@ -163,11 +163,11 @@ fn tfeti_equals_a_direct_solve() {
             &|node| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]),
             &load,
         );
-        for rule in [RowRule::Orthonormal, RowRule::Chained] {
+        for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
             let supports = b.supports();
             let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-                .supports(&supports)
-                .rule(rule)
+                .with_supports(&supports)
+                .with_row_scaling(rule)
                 .build()
                 .unwrap();
             let (u, iterations) = solve(&system, &loads, &vec![0.0; system.dual_dim()]);
@@ -186,14 +186,14 @@ fn prescribed_displacement_is_reached() {
     let pull = [1e-3, -5e-4, 2e-4];
     let right = b.mesh.nodes_on(brick::X_MAX);
     let supports = [
-        Support::fixed(b.fixed.clone()),
-        Support::fixed(right.clone()).with_motion(Motion {
+        NodeSupport::fixed(b.fixed.clone()),
+        NodeSupport::fixed(right.clone()).with_motion(Motion {
             case: 0,
             values: vec![pull],
         }),
     ];
     let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-        .supports(&supports)
+        .with_supports(&supports)
         .build()
         .unwrap();
     let zero: Vec<Vec<f64>> = (0..system.subdomains())

@@ -5,7 +5,7 @@ mod common;
 use common::{Brick, build, distance, dot, noise, norm, product};
 use signorini_qp::{Equality, SymmetricOperator};
 use signorini_tfeti::{
-    InverseKind, InverseSettings, RowRule, RowWeights, Sharing, TfetiBuilder, TfetiError,
+    InverseKind, InverseSettings, RowScaling, RowWeights, Sharing, TfetiBuilder, TfetiError,
 };
 
 #[test]
@@ -13,7 +13,7 @@ fn generalised_inverse_laws() {
     let b = Brick::of(1, 3, 0.1);
     for kind in [InverseKind::Dense, InverseKind::Sparse] {
         for shared in [Sharing::Translates, Sharing::Never] {
-            let system = build(&b, kind, shared, RowRule::Orthonormal);
+            let system = build(&b, kind, shared, RowScaling::Orthonormal);
             // K K+ K = K on a random vector, K+ R = 0, K R = 0.
             let x = noise(system.torn_dim(), 3);
             let mut k = vec![0.0; x.len()];
@@ -53,7 +53,7 @@ fn generalised_inverse_laws() {
 fn members_of_a_class_are_multiplied_together_with_the_same_result() {
     let b = Brick::of(2, 2, 0.0);
     let [alone, together] = [Sharing::Never, Sharing::Translates].map(|shared| {
-        let system = build(&b, InverseKind::Auto, shared, RowRule::Orthonormal);
+        let system = build(&b, InverseKind::Auto, shared, RowScaling::Orthonormal);
         let x = noise(system.torn_dim(), 3);
         let mut y = vec![f64::NAN; x.len()];
         system.stiffness_times(&x, &mut y);
@@ -72,7 +72,7 @@ fn dual_operator_is_symmetric_and_the_same_for_all_inverses() {
         &b,
         InverseKind::Dense,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     assert_eq!(reference.classes().classes().len(), 2);
     let (x, y) = (
@@ -83,7 +83,7 @@ fn dual_operator_is_symmetric_and_the_same_for_all_inverses() {
     assert!(dot(&x, &fx) > 0.0);
     for kind in [InverseKind::Dense, InverseKind::Sparse, InverseKind::Auto] {
         for sharing in [Sharing::Translates, Sharing::Never] {
-            let system = build(&b, kind, sharing, RowRule::Orthonormal);
+            let system = build(&b, kind, sharing, RowScaling::Orthonormal);
             let expected = if sharing == Sharing::Never { 24 } else { 2 };
             assert_eq!(system.classes().classes().len(), expected);
             let other = product(&system, &x);
@@ -107,7 +107,7 @@ fn product_agrees_with_torn_vectors_and_rows() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     let x = noise(system.dual_dim(), 5);
     let mut f = vec![0.0; system.torn_dim()];
@@ -154,7 +154,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                 .build()
                 .unwrap();
             pool.install(|| {
-                let system = build(&b, kind, sharing, RowRule::Orthonormal);
+                let system = build(&b, kind, sharing, RowScaling::Orthonormal);
                 // enough node copies on boundaries for two threads, in every loop over them
                 let classes = system.report().classes.iter();
                 let boundary: usize = classes.map(|c| c.members * c.boundary).sum();
@@ -200,12 +200,12 @@ fn bad_systems_are_refused() {
     let settings = InverseSettings::default().with_memory_limit(10);
     let builder = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials);
     assert!(matches!(
-        builder.inverse(settings).build(),
+        builder.with_inverse(settings).build(),
         Err(TfetiError::Memory { limit: 10, .. })
     ));
     let settings = InverseSettings::default().with_expected_products(0);
     assert!(matches!(
-        builder.inverse(settings).build(),
+        builder.with_inverse(settings).build(),
         Err(TfetiError::Setting {
             name: "expected_products",
             ..
@@ -242,7 +242,7 @@ fn bad_systems_are_refused() {
 fn row_compliance_is_the_diagonal_of_f() {
     let b = Brick::new(1, 3);
     for kind in [InverseKind::Dense, InverseKind::Sparse] {
-        let system = build(&b, kind, Sharing::Translates, RowRule::Orthonormal);
+        let system = build(&b, kind, Sharing::Translates, RowScaling::Orthonormal);
         let rows = system.gluing().ranges().contact();
         let (mut found, mut stiffness) = (vec![0.0; rows.len()], vec![0.0; rows.len()]);
         system.row_compliance(rows.clone(), &mut found);

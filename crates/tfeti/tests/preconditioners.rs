@@ -5,10 +5,10 @@ mod common;
 use common::{Brick, build, dot, noise, norm};
 use signorini_fem_mesh::{Hooke, Materials};
 use signorini_qp::SymmetricOperator;
-use signorini_tfeti::{InverseKind, Preconditioner, RowRule, Sharing, Tfeti};
+use signorini_tfeti::{DualPreconditioner, InverseKind, RowScaling, Sharing, Tfeti};
 
 /// Iterations of preconditioned projected conjugate gradients to a relative residual of 1e-8.
-fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&Preconditioner>) -> usize {
+fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&DualPreconditioner>) -> usize {
     let (f, factor) = (system.dual(), system.coarse_factor());
     let (mut fs, mut cs) = (f.scratch(), factor.scratch());
     let dim = f.dim();
@@ -76,8 +76,12 @@ fn preconditioners_are_symmetric_and_help() {
         [None, Some(&lumped), Some(&dirichlet)].map(|m| preconditioned_iterations(system, m))
     };
     for sharing in [Sharing::Translates, Sharing::Never] {
-        let [none, lumped, dirichlet] =
-            counts(&build(&b, InverseKind::Auto, sharing, RowRule::Orthonormal));
+        let [none, lumped, dirichlet] = counts(&build(
+            &b,
+            InverseKind::Auto,
+            sharing,
+            RowScaling::Orthonormal,
+        ));
         assert!(
             dirichlet < lumped && lumped < none,
             "{none} {lumped} {dirichlet}"
@@ -88,7 +92,7 @@ fn preconditioners_are_symmetric_and_help() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Chained,
+        RowScaling::Chained,
     ));
     assert!(chained[2] < 25, "{chained:?}");
 }
@@ -104,7 +108,7 @@ fn stiffness_scaling_copes_with_several_materials() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     assert_eq!(system.classes().classes().len(), 2);
     let dirichlet = system.dirichlet().unwrap();

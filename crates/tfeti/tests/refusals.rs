@@ -4,14 +4,14 @@ mod common;
 
 use common::{Brick, build};
 use signorini_fem_mesh::Decomposition;
-use signorini_qp::{CoarseSpace, Line, QpError};
+use signorini_qp::{EqualityProjector, Line, QpError};
 use signorini_tfeti::{
-    CopyStiffness, FaceFactor, FaceSpace, Gluing, InverseKind, LineWeight, Motion, RowRule,
-    RowWeights, Sharing, Support, Tfeti, TfetiBuilder, TfetiError,
+    ActiveSetFactor, ActiveSetProjector, CopyStiffness, Gluing, InverseKind, LineWeight, Motion,
+    NodeSupport, RowScaling, RowWeights, Sharing, Tfeti, TfetiBuilder, TfetiError,
 };
 
 fn system(b: &Brick) -> Tfeti {
-    let (rule, sharing) = (RowRule::Orthonormal, Sharing::Translates);
+    let (rule, sharing) = (RowScaling::Orthonormal, Sharing::Translates);
     build(b, InverseKind::Auto, sharing, rule)
 }
 
@@ -20,8 +20,12 @@ fn face_spaces_check_their_arguments() {
     let system = system(&Brick::new(1, 2));
     let (coarse, dim) = (system.coarse(), system.dual_dim());
     let contact = system.gluing().ranges().contact().end;
-    for kind in [FaceFactor::Auto, FaceFactor::Sparse, FaceFactor::Split] {
-        let new = |rows, metric| FaceSpace::with_factor(coarse, rows, metric, kind);
+    for kind in [
+        ActiveSetFactor::Auto,
+        ActiveSetFactor::Sparse,
+        ActiveSetFactor::Split,
+    ] {
+        let new = |rows, metric| ActiveSetProjector::with_factor(coarse, rows, metric, kind);
         for rows in [contact + 1, dim + 1, usize::MAX] {
             let error = new(rows, None).unwrap_err();
             assert!(matches!(error, TfetiError::Setting { .. }), "{error}");
@@ -92,7 +96,7 @@ fn a_system_of_other_subdomains_is_not_reused() {
     b.decomposition = Decomposition::from_parts(&b.mesh, &parts).unwrap();
     assert_eq!(b.decomposition.torn_dofs(), first.torn_dim());
     let error = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-        .reuse(&first)
+        .with_reuse(&first)
         .build()
         .unwrap_err();
     assert!(
@@ -113,8 +117,8 @@ fn cases_beyond_the_supports_are_refused() {
     let b = Brick::new(1, 2);
     let gluing = |case| {
         let values = vec![[0.0; 3]];
-        let support = Support::fixed(b.fixed.clone()).with_motion(Motion { case, values });
-        let (nodes, rule) = (b.mesh.points().len(), RowRule::Orthonormal);
+        let support = NodeSupport::fixed(b.fixed.clone()).with_motion(Motion { case, values });
+        let (nodes, rule) = (b.mesh.points().len(), RowScaling::Orthonormal);
         let stiffness = CopyStiffness::default();
         Gluing::new(&b.decomposition, nodes, &[support], None, rule, &stiffness)
     };
@@ -141,7 +145,7 @@ fn gluing_checks_what_belongs_to_the_decomposition() {
     let stiffness = system(&b).all_copy_stiffness();
     let gluing = |decomposition: &Decomposition, nodes, stiffness: &CopyStiffness| {
         let (supports, contact) = (b.supports(), b.contact(true));
-        let rule = RowRule::Orthonormal;
+        let rule = RowScaling::Orthonormal;
         Gluing::new(
             decomposition,
             nodes,

@@ -3,10 +3,10 @@
 mod common;
 
 use common::{Brick, dot, gluing, gram, smallest_eigenvalue};
-use signorini_fem_mesh::{Frame, brick};
+use signorini_fem_mesh::{SurfaceFrame, brick};
 use signorini_tfeti::{
-    ContactNodes, ContactPoint, Directions, Gluing, Motion, RemovalReason, RowKind, RowRule,
-    Support, TangentialRows, TfetiError, held_points,
+    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, RemovalReason,
+    RowKind, RowScaling, TangentialRows, TfetiError, prescribed_points,
 };
 
 #[test]
@@ -14,11 +14,17 @@ fn partial_supports_reduce_the_tangential_space() {
     let b = Brick::new(1, 2);
     // y = 0 is a symmetry plane: its contact nodes keep the normal and one tangential direction.
     let side = b.mesh.nodes_on(brick::Y_MIN);
-    let supports = [Support::partial(
+    let supports = [NodeSupport::partial(
         side.clone(),
         Directions::Components([false, true, false]),
     )];
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let g = gluing(
+        &b,
+        &supports,
+        Some(&b.contact(true)),
+        RowScaling::Orthonormal,
+    )
+    .unwrap();
     let edge: Vec<u32> = b
         .bottom
         .iter()
@@ -43,11 +49,17 @@ fn partial_supports_reduce_the_tangential_space() {
         }
     }
     // A support in the normal direction takes the whole contact point away.
-    let supports = [Support::partial(
+    let supports = [NodeSupport::partial(
         b.bottom.clone(),
         Directions::Components([false, false, true]),
     )];
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let g = gluing(
+        &b,
+        &supports,
+        Some(&b.contact(true)),
+        RowScaling::Orthonormal,
+    )
+    .unwrap();
     assert!(g.contact().is_empty() && g.ranges().contact().is_empty());
     let normal = g.removed().iter().filter(|r| r.kind == RowKind::Normal);
     assert!(
@@ -59,11 +71,17 @@ fn partial_supports_reduce_the_tangential_space() {
     // An inclined support leaves an inclined row of larger scale.
     let s = 0.5_f64.sqrt();
     let node = b.bottom[b.bottom.len() - 1];
-    let supports = [Support::partial(
+    let supports = [NodeSupport::partial(
         vec![node],
         Directions::Vectors(vec![[s, 0.0, s]]),
     )];
-    let g = gluing(&b, &supports, Some(&b.contact(false)), RowRule::Orthonormal).unwrap();
+    let g = gluing(
+        &b,
+        &supports,
+        Some(&b.contact(false)),
+        RowScaling::Orthonormal,
+    )
+    .unwrap();
     let info = g.contact().iter().find(|c| c.node == node).unwrap();
     assert!((info.scale - 2.0_f64.sqrt()).abs() < 1e-12);
     let unit = |g: &Gluing| {
@@ -72,7 +90,13 @@ fn partial_supports_reduce_the_tangential_space() {
     };
     assert!(unit(&g) && g.is_orthonormal() && g.dependent_nodes().is_empty());
     // With friction all rows of the node are wanted, though one of them depends on those of the support.
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let g = gluing(
+        &b,
+        &supports,
+        Some(&b.contact(true)),
+        RowScaling::Orthonormal,
+    )
+    .unwrap();
     let info = g.contact().iter().find(|c| c.node == node).unwrap();
     assert!((info.scale - 1.0).abs() < 1e-12);
     assert!(matches!(info.tangential, TangentialRows::Disc { .. }));
@@ -92,14 +116,14 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
         })
     };
     let supports = [
-        Support::fixed(b.fixed.clone()),
-        Support {
+        NodeSupport::fixed(b.fixed.clone()),
+        NodeSupport {
             nodes: vec![node],
             directions: Directions::Vectors(vec![[0.3, 0.4, 0.0]]),
             motion: None,
         },
     ];
-    let g = gluing(&b, &supports, None, RowRule::Orthonormal).unwrap();
+    let g = gluing(&b, &supports, None, RowScaling::Orthonormal).unwrap();
     assert_eq!(g.removed().len(), 1);
     assert_eq!(
         g.removed()[0].reason,
@@ -109,7 +133,7 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
 
     let mut contradicting = supports.clone();
     contradicting[1].motion = moved(0, [1e-3, 0.0, 0.0]);
-    let error = gluing(&b, &contradicting, None, RowRule::Orthonormal).unwrap_err();
+    let error = gluing(&b, &contradicting, None, RowScaling::Orthonormal).unwrap_err();
     assert!(
         matches!(
             error,
@@ -125,18 +149,18 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
     // Equal motions of skew directions agree.
     let w = [1e-3, -2e-3, 5e-4];
     let agreeing = [
-        Support {
+        NodeSupport {
             nodes: vec![node],
             directions: Directions::Vectors(vec![[1.0, 1.0, 0.0], [0.0, 1.0, 1.0]]),
             motion: moved(1, w),
         },
-        Support {
+        NodeSupport {
             nodes: vec![node],
             directions: Directions::Vectors(vec![[1.0, 2.0, 1.0]]),
             motion: moved(1, w),
         },
     ];
-    let g = gluing(&b, &agreeing, None, RowRule::Orthonormal).unwrap();
+    let g = gluing(&b, &agreeing, None, RowScaling::Orthonormal).unwrap();
     assert_eq!(
         (
             g.prescribed_cases(),
@@ -162,7 +186,7 @@ fn prescribed_motion_of_a_support_appears_in_the_contact_offset() {
     let node = b.bottom[b.bottom.len() - 1];
     let w = [2e-3, 1e-3, -3e-3];
     let directions = Directions::Vectors(vec![[1.0, 0.0, 1.0]]);
-    let supports = [Support {
+    let supports = [NodeSupport {
         nodes: vec![node],
         directions,
         motion: Some(Motion {
@@ -170,7 +194,7 @@ fn prescribed_motion_of_a_support_appears_in_the_contact_offset() {
             values: vec![w],
         }),
     }];
-    for rule in [RowRule::Orthonormal, RowRule::Chained] {
+    for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
         let g = gluing(&b, &supports, Some(&b.contact(true)), rule).unwrap();
         let info = g.contact().iter().find(|c| c.node == node).unwrap();
         // For a displacement that obeys the support, (B u - offset) / scale is the physical normal displacement.
@@ -203,11 +227,11 @@ fn dragged_nodes_keep_their_tangential_rows() {
     let support = |along: [f64; 3]| {
         let directions = Directions::Components([true, false, false]);
         let values = vec![along];
-        [Support::partial(vec![node], directions).with_motion(Motion { case: 0, values })]
+        [NodeSupport::partial(vec![node], directions).with_motion(Motion { case: 0, values })]
     };
     let rows = |along: [f64; 3], friction: bool| {
         let contact = b.contact(friction);
-        gluing(&b, &support(along), Some(&contact), RowRule::Orthonormal).unwrap()
+        gluing(&b, &support(along), Some(&contact), RowScaling::Orthonormal).unwrap()
     };
     let discs = |g: &Gluing| g.ranges().discs.len() / 2;
     let all = b.bottom.len();
@@ -227,12 +251,12 @@ fn dragged_nodes_keep_their_tangential_rows() {
 fn a_node_may_have_several_normals() {
     let b = Brick::new(1, 2);
     let node = b.bottom[0];
-    let points = |normals: &[[f64; 3]], friction| -> ContactNodes {
+    let points = |normals: &[[f64; 3]], friction| -> ContactConstraints {
         normals
             .iter()
             .map(|&normal| {
-                let frame = Frame::from_normal(normal).unwrap();
-                ContactPoint::new(node, frame).with_friction(friction)
+                let frame = SurfaceFrame::from_normal(normal).unwrap();
+                ContactConstraint::new(node, frame).with_friction(friction)
             })
             .collect()
     };
@@ -242,7 +266,7 @@ fn a_node_may_have_several_normals() {
             &b,
             &[],
             Some(&points(normals, friction)),
-            RowRule::Orthonormal,
+            RowScaling::Orthonormal,
         )
     };
     let smooth = make(&corner, false).unwrap();
@@ -265,20 +289,20 @@ fn a_node_may_have_several_normals() {
 /// or with two.
 #[test]
 fn the_motion_of_a_partner_counts_against_that_of_the_node() {
-    let frame = Frame::from_normal([0.0, 0.0, -1.0]).unwrap();
-    let contact: ContactNodes =
-        std::iter::once(ContactPoint::new(0, frame).with_opponent(Some(5))).collect();
+    let frame = SurfaceFrame::from_normal([0.0, 0.0, -1.0]).unwrap();
+    let contact: ContactConstraints =
+        std::iter::once(ContactConstraint::new(0, frame).with_partner(Some(5))).collect();
     let (own, other) = (2e-3, 5e-4);
     let moved = |node: u32, case: u32, by: f64| {
         let values = vec![[0.0, 0.0, -by]];
-        Support::fixed(vec![node]).with_motion(Motion { case, values })
+        NodeSupport::fixed(vec![node]).with_motion(Motion { case, values })
     };
     for (second, expected) in [
         (0, vec![(0, own - other)]),
         (1, vec![(0, own), (1, -other)]),
     ] {
         let supports = [moved(0, 0, own), moved(5, second, other)];
-        let held = held_points(&contact, &supports, 8).unwrap();
+        let held = prescribed_points(&contact, &supports, 8).unwrap();
         let [point] = &held[..] else {
             panic!("one point, not {held:?}");
         };
@@ -295,11 +319,17 @@ fn what_an_oblique_support_and_a_rough_obstacle_may_exchange() {
     let b = Brick::new(2, 2);
     let direction = [1.0, 0.3, -0.4];
     let ends = b.mesh.nodes_on(brick::X_MIN);
-    let supports = [Support::partial(
+    let supports = [NodeSupport::partial(
         ends.clone(),
         Directions::Vectors(vec![direction]),
     )];
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let g = gluing(
+        &b,
+        &supports,
+        Some(&b.contact(true)),
+        RowScaling::Orthonormal,
+    )
+    .unwrap();
     let dependencies = g.dependencies();
     let both = b.bottom.iter().filter(|n| ends.contains(n)).count();
     assert!(both > 0 && dependencies.len() == both && g.dependent_nodes().len() == both);
@@ -316,6 +346,6 @@ fn what_an_oblique_support_and_a_rough_obstacle_may_exchange() {
         }
         assert!(largest > 0.5 && force.values().all(|f| f.abs() < 1e-14));
     }
-    let plain = gluing(&b, &[], Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let plain = gluing(&b, &[], Some(&b.contact(true)), RowScaling::Orthonormal).unwrap();
     assert!(plain.dependencies().is_empty());
 }

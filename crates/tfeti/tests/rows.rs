@@ -3,10 +3,10 @@
 mod common;
 
 use common::{Brick, gluing, gram, smallest_eigenvalue};
-use signorini_fem_mesh::{Decomposition, Frame, Hooke, Materials, brick};
+use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
 use signorini_tfeti::{
-    ContactNodes, ContactPoint, CopyStiffness, Directions, Gluing, Motion, RowRule, Support,
-    TangentialRows, TfetiBuilder, TfetiError,
+    ContactConstraint, ContactConstraints, CopyStiffness, Directions, Gluing, Motion, NodeSupport,
+    RowScaling, TangentialRows, TfetiBuilder, TfetiError,
 };
 
 #[test]
@@ -17,7 +17,7 @@ fn counts_of_the_papers_table() {
             b.decomposition.torn_dofs(),
             [1944, 15552, 52488, 124416, 243000][n - 1]
         );
-        for rule in [RowRule::Orthonormal, RowRule::Chained] {
+        for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
             let g = gluing(&b, &b.supports(), Some(&b.contact(true)), rule).unwrap();
             assert_eq!(g.rows_as_paper(), rows);
             assert_eq!(g.rows_full_rank(), rows - 3 * (5 * n + 1));
@@ -35,17 +35,23 @@ fn counts_of_the_papers_table() {
 fn orthonormal_rows_are_orthonormal_and_chained_ones_independent() {
     let b = Brick::new(1, 2);
     let supports = [
-        Support::fixed(b.fixed.clone()),
-        Support::partial(
+        NodeSupport::fixed(b.fixed.clone()),
+        NodeSupport::partial(
             b.mesh.nodes_on(brick::Y_MIN),
             Directions::Components([false, true, false]),
         ),
-        Support::partial(
+        NodeSupport::partial(
             vec![b.mesh.nodes_on(brick::X_MAX)[0]],
             Directions::Vectors(vec![[1.0, 2.0, 0.0]]),
         ),
     ];
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Orthonormal).unwrap();
+    let g = gluing(
+        &b,
+        &supports,
+        Some(&b.contact(true)),
+        RowScaling::Orthonormal,
+    )
+    .unwrap();
     assert!(g.is_orthonormal());
     for (i, row) in gram(&g).iter().enumerate() {
         for (j, v) in row.iter().enumerate() {
@@ -55,7 +61,7 @@ fn orthonormal_rows_are_orthonormal_and_chained_ones_independent() {
             );
         }
     }
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowRule::Chained).unwrap();
+    let g = gluing(&b, &supports, Some(&b.contact(true)), RowScaling::Chained).unwrap();
     assert!(!g.is_orthonormal());
     assert!(smallest_eigenvalue(&gram(&g)) > 1e-3);
 }
@@ -67,7 +73,7 @@ fn without_friction_there_are_no_tangential_rows() {
         &b,
         &b.supports(),
         Some(&b.contact(false)),
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     )
     .unwrap();
     assert!(g.ranges().tangential().is_empty());
@@ -87,11 +93,11 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         b.bottom[b.bottom.len() - 1],
         b.mesh.nodes_on(brick::Z_MAX)[4],
     );
-    let point = ContactPoint::new(a, b.frames[0])
-        .with_opponent(Some(o))
+    let point = ContactConstraint::new(a, b.frames[0])
+        .with_partner(Some(o))
         .with_friction(true);
-    let contact: ContactNodes = std::iter::once(point).collect();
-    let g = gluing(&b, &[], Some(&contact), RowRule::Orthonormal).unwrap();
+    let contact: ContactConstraints = std::iter::once(point).collect();
+    let g = gluing(&b, &[], Some(&contact), RowScaling::Orthonormal).unwrap();
     assert!(g.is_orthonormal());
     let (ka, ko) = (
         b.decomposition.copies(a as usize).len() as f64,
@@ -113,9 +119,9 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         .map(|&(s, dof, v)| v * displacement(s, dof))
         .sum();
     assert!((action / info.scale - -(3.0 - 1.0)).abs() < 1e-13);
-    // With the opponent fixed the pair is a point against an obstacle.
-    let supports = [Support::fixed(vec![o])];
-    let g = gluing(&b, &supports, Some(&contact), RowRule::Orthonormal).unwrap();
+    // With the partner fixed the pair is a point against an obstacle.
+    let supports = [NodeSupport::fixed(vec![o])];
+    let g = gluing(&b, &supports, Some(&contact), RowScaling::Orthonormal).unwrap();
     assert!(smallest_eigenvalue(&gram(&g)) > 1e-3);
     let info = &g.contact()[0];
     assert!(matches!(info.tangential, TangentialRows::Disc { .. }));
@@ -127,19 +133,19 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
     assert!((action / info.scale + 3.0).abs() < 1e-13);
 }
 
-/// A node may have several opponents, and meet obstacles besides; the same pair along the same normal is one too many, from
+/// A node may have several partners, and meet obstacles besides; the same pair along the same normal is one too many, from
 /// whichever side it is seen.
 #[test]
 fn nodes_of_pairs_may_have_other_points() {
     let b = Brick::new(1, 2);
     let (a, frame) = (b.bottom[1], b.frames[0]);
     let [o, q] = [1, 4].map(|k| b.mesh.nodes_on(brick::Z_MAX)[k]);
-    let reversed = Frame::from_normal(frame.normal.map(|c| -c)).unwrap();
-    let sideways = Frame::from_normal([1.0, 0.0, 0.0]).unwrap();
-    let pair = |node, frame, opponent| ContactPoint::new(node, frame).with_opponent(opponent);
-    let make = |points: Vec<ContactPoint>| {
-        let contact: ContactNodes = points.into_iter().collect();
-        gluing(&b, &[], Some(&contact), RowRule::Orthonormal)
+    let reversed = SurfaceFrame::from_normal(frame.normal.map(|c| -c)).unwrap();
+    let sideways = SurfaceFrame::from_normal([1.0, 0.0, 0.0]).unwrap();
+    let pair = |node, frame, partner| ContactConstraint::new(node, frame).with_partner(partner);
+    let make = |points: Vec<ContactConstraint>| {
+        let contact: ContactConstraints = points.into_iter().collect();
+        gluing(&b, &[], Some(&contact), RowScaling::Orthonormal)
     };
     let first = || pair(a, frame, Some(o));
     for second in [
@@ -152,7 +158,7 @@ fn nodes_of_pairs_may_have_other_points() {
         let g = make(vec![first(), second.clone()]).unwrap();
         assert_eq!(g.ranges().normal.len(), 2, "{second:?}");
         assert!(!g.is_orthonormal() && smallest_eigenvalue(&gram(&g)) > 1e-6 || second.node == o);
-        let nodes = std::iter::once(second.node).chain(second.opponent);
+        let nodes = std::iter::once(second.node).chain(second.partner);
         for node in nodes.chain([a, o]) {
             assert!(g.is_dependent(node), "{second:?}: {node}");
         }
@@ -172,17 +178,17 @@ fn nodes_of_pairs_may_have_other_points() {
 fn bad_input_is_named() {
     let b = Brick::new(1, 2);
     let many = b.mesh.points().len() as u32;
-    let err = |supports: &[Support], contact: Option<&ContactNodes>| {
-        gluing(&b, supports, contact, RowRule::Orthonormal).unwrap_err()
+    let err = |supports: &[NodeSupport], contact: Option<&ContactConstraints>| {
+        gluing(&b, supports, contact, RowScaling::Orthonormal).unwrap_err()
     };
     assert!(
-        matches!(err(&[Support::fixed(vec![many])], None), TfetiError::UnknownNode { node, .. } if node == many)
+        matches!(err(&[NodeSupport::fixed(vec![many])], None), TfetiError::UnknownNode { node, .. } if node == many)
     );
     assert!(matches!(
-        err(&[Support::fixed(vec![])], None),
+        err(&[NodeSupport::fixed(vec![])], None),
         TfetiError::EmptySupport { what: "nodes", .. }
     ));
-    let none = Support::partial(vec![0], Directions::Components([false; 3]));
+    let none = NodeSupport::partial(vec![0], Directions::Components([false; 3]));
     assert!(matches!(
         err(&[none], None),
         TfetiError::EmptySupport {
@@ -191,7 +197,7 @@ fn bad_input_is_named() {
         }
     ));
     for direction in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
-        let support = Support::partial(vec![0], Directions::Vectors(vec![direction]));
+        let support = NodeSupport::partial(vec![0], Directions::Vectors(vec![direction]));
         assert!(matches!(
             err(&[support], None),
             TfetiError::BadDirection {
@@ -201,7 +207,7 @@ fn bad_input_is_named() {
         ));
     }
     let motion = |values| Motion { case: 0, values };
-    let support = Support::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3]; 3]));
+    let support = NodeSupport::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3]; 3]));
     assert!(matches!(
         err(&[support], None),
         TfetiError::MotionLength {
@@ -210,7 +216,7 @@ fn bad_input_is_named() {
             ..
         }
     ));
-    let support = Support::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3], [f64::NAN; 3]]));
+    let support = NodeSupport::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3], [f64::NAN; 3]]));
     assert!(matches!(
         err(&[support], None),
         TfetiError::BadMotion { node: 1, .. }
@@ -222,7 +228,7 @@ fn bad_input_is_named() {
         TfetiError::ContactNodeTwice { .. }
     ));
     let mut contact = b.contact(true);
-    contact.points[1].opponent = Some(many + 5);
+    contact.points[1].partner = Some(many + 5);
     assert!(matches!(
         err(&[], Some(&contact)),
         TfetiError::UnknownNode { .. }
@@ -239,14 +245,14 @@ fn bad_input_is_named() {
 fn a_whole_body_has_no_interface_rows() {
     let b = Brick::new(1, 2);
     let whole = Decomposition::whole(&b.mesh);
-    let frame: Frame = b.frames[0];
-    let contact = ContactNodes::rigid(&b.bottom, &vec![frame; b.bottom.len()], true);
+    let frame: SurfaceFrame = b.frames[0];
+    let contact = ContactConstraints::rigid(&b.bottom, &vec![frame; b.bottom.len()], true);
     let g = Gluing::new(
         &whole,
         b.mesh.points().len(),
         &b.supports(),
         Some(&contact),
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
         &CopyStiffness::default(),
     )
     .unwrap();
@@ -278,8 +284,8 @@ fn contact_rows_follow_the_stiff_copy() {
     let materials = Materials::new(vec![(0, hooke(1.0)), (1, hooke(1.0 / ratio))]).unwrap();
     let (supports, contact) = (b.supports(), b.contact(true));
     let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &materials)
-        .supports(&supports)
-        .contact(&contact)
+        .with_supports(&supports)
+        .with_contact(&contact)
         .build()
         .unwrap();
     let g = system.gluing();

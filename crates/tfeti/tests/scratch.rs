@@ -4,13 +4,13 @@ mod common;
 
 use common::{Brick, build, noise};
 use signorini_qp::{Equality, SymmetricOperator};
-use signorini_tfeti::{InverseKind, LineWeight, RowRule, RowWeights, Sharing};
+use signorini_tfeti::{InverseKind, LineWeight, RowScaling, RowWeights, Sharing};
 
 #[test]
 fn scratch_is_reused() {
     let b = Brick::new(1, 3);
     for kind in [InverseKind::Dense, InverseKind::Sparse] {
-        let system = build(&b, kind, Sharing::Translates, RowRule::Orthonormal);
+        let system = build(&b, kind, Sharing::Translates, RowScaling::Orthonormal);
         let f = system.dual();
         let (x, mut s) = (noise(f.dim(), 1), f.scratch());
         let (mut y, mut z) = (vec![0.0; f.dim()], vec![0.0; f.dim()]);
@@ -34,7 +34,7 @@ fn line_weights_act_like_a_rotated_diagonal() {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     );
     let (coarse, ranges) = (system.coarse(), system.gluing().ranges().clone());
     let diagonal: Vec<f64> = (0..coarse.dim())

@@ -3,21 +3,23 @@
 mod common;
 
 use common::{Brick, build, distance, noise, norm};
-use signorini_qp::CoarseSpace;
-use signorini_tfeti::{FaceFactor, FaceSpace, InverseKind, RowRule, Sharing, Tfeti};
+use signorini_qp::EqualityProjector;
+use signorini_tfeti::{
+    ActiveSetFactor, ActiveSetProjector, InverseKind, RowScaling, Sharing, Tfeti,
+};
 
 fn system(brick: &Brick) -> Tfeti {
     build(
         brick,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     )
 }
 
-fn space(system: &Tfeti, kind: FaceFactor) -> FaceSpace {
+fn space(system: &Tfeti, kind: ActiveSetFactor) -> ActiveSetProjector {
     let contact = system.gluing().ranges().contact().end;
-    FaceSpace::with_factor(system.coarse(), contact, None, kind).unwrap()
+    ActiveSetProjector::with_factor(system.coarse(), contact, None, kind).unwrap()
 }
 
 /// Every third contact row is held.
@@ -36,7 +38,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn steps_are_rounded_symmetric_and_close_to_the_projector() {
     let system = system(&Brick::new(3, 3));
-    let mut space = space(&system, FaceFactor::Split);
+    let mut space = space(&system, ActiveSetFactor::Split);
     assert!(space.rounds_steps());
     space.set_weights(&face(&system)).unwrap();
     let (x, y) = (noise(system.dual_dim(), 1), noise(system.dual_dim(), 2));
@@ -66,8 +68,8 @@ fn a_sparse_factor_and_exact_steps_round_nothing() {
     let contact = system.gluing().ranges().contact().end;
     let x = noise(system.dual_dim(), 1);
     for mut space in [
-        space(&system, FaceFactor::Sparse),
-        space(&system, FaceFactor::Split).exact_steps(),
+        space(&system, ActiveSetFactor::Sparse),
+        space(&system, ActiveSetFactor::Split).exact_steps(),
     ] {
         assert!(!space.rounds_steps());
         let (mut exact, mut step) = (x.clone(), x.clone());
@@ -93,17 +95,23 @@ fn a_badly_conditioned_factor_is_not_rounded() {
     let space = |least: f64| {
         let weight = |row: usize| if row.is_multiple_of(7) { 1.0 } else { least };
         let metric: Vec<f64> = (0..system.dual_dim()).map(weight).collect();
-        FaceSpace::with_factor(system.coarse(), contact, Some(metric), FaceFactor::Split).unwrap()
+        ActiveSetProjector::with_factor(
+            system.coarse(),
+            contact,
+            Some(metric),
+            ActiveSetFactor::Split,
+        )
+        .unwrap()
     };
     assert!(space(0.5).rounds_steps());
     // supports next to nothing: the body all but floats
     let supports = system.gluing().ranges().dirichlet.clone();
     let metric = (0..system.dual_dim()).map(|row| if supports.contains(&row) { 1e-9 } else { 1.0 });
-    let loose = FaceSpace::with_factor(
+    let loose = ActiveSetProjector::with_factor(
         system.coarse(),
         contact,
         Some(metric.collect()),
-        FaceFactor::Split,
+        ActiveSetFactor::Split,
     );
     assert!(!loose.unwrap().rounds_steps());
 }

@@ -4,9 +4,10 @@ mod common;
 
 use common::{Brick, build, distance, noise, norm};
 use signorini_fem_mesh::Decomposition;
-use signorini_qp::{CoarseSpace, QpError};
+use signorini_qp::{EqualityProjector, QpError};
 use signorini_tfeti::{
-    FaceFactor, FaceSpace, InverseKind, RowRule, Sharing, Support, Tfeti, TfetiBuilder,
+    ActiveSetFactor, ActiveSetProjector, InverseKind, NodeSupport, RowScaling, Sharing, Tfeti,
+    TfetiBuilder,
 };
 
 fn system(n: usize, cells: usize) -> Tfeti {
@@ -15,13 +16,13 @@ fn system(n: usize, cells: usize) -> Tfeti {
         &b,
         InverseKind::Auto,
         Sharing::Translates,
-        RowRule::Orthonormal,
+        RowScaling::Orthonormal,
     )
 }
 
-fn space(system: &Tfeti, kind: FaceFactor, metric: Option<Vec<f64>>) -> FaceSpace {
+fn space(system: &Tfeti, kind: ActiveSetFactor, metric: Option<Vec<f64>>) -> ActiveSetProjector {
     let contact = system.gluing().ranges().contact().end;
-    let space = FaceSpace::with_factor(system.coarse(), contact, metric, kind);
+    let space = ActiveSetProjector::with_factor(system.coarse(), contact, metric, kind);
     space.unwrap().exact_steps()
 }
 
@@ -36,7 +37,7 @@ fn face(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
 }
 
 /// All that a face space does, as one list of vectors.
-fn results(system: &Tfeti, space: &mut FaceSpace) -> Vec<Vec<f64>> {
+fn results(system: &Tfeti, space: &mut ActiveSetProjector) -> Vec<Vec<f64>> {
     let (x, e) = (
         noise(system.dual_dim(), 5),
         noise(system.coarse().rows(), 6),
@@ -68,7 +69,7 @@ fn results(system: &Tfeti, space: &mut FaceSpace) -> Vec<Vec<f64>> {
     vec![p, t, alpha, r, a, b]
 }
 
-fn compare(system: &Tfeti, a: &mut FaceSpace, b: &mut FaceSpace) {
+fn compare(system: &Tfeti, a: &mut ActiveSetProjector, b: &mut ActiveSetProjector) {
     for (x, y) in results(system, a).iter().zip(&results(system, b)) {
         assert!(
             distance(x, y) < 1e-12 * norm(y),
@@ -83,8 +84,8 @@ fn projectors_agree_with_the_full_factor() {
     // All subdomains carry contact rows (n = 1), some do, and enough do not that these are cut in two halves.
     for (n, cells) in [(1, 3), (2, 3), (4, 1)] {
         let system = system(n, cells);
-        let mut split = space(&system, FaceFactor::Split, None);
-        let mut sparse = space(&system, FaceFactor::Sparse, None);
+        let mut split = space(&system, ActiveSetFactor::Split, None);
+        let mut sparse = space(&system, ActiveSetFactor::Sparse, None);
         compare(&system, &mut split, &mut sparse);
         for (share, seed) in [(0.5, 1), (0.5, 2), (0.02, 3), (1.0, 4), (0.0, 5)] {
             let w = face(&system, share, seed);
@@ -108,16 +109,16 @@ fn repairs_do_all_but_loose_modes() {
     let b = Brick::new(2, 3);
     for (supports, count) in [
         (vec![], 6),
-        (vec![Support::fixed(vec![b.fixed[0]])], 3),
-        (vec![Support::fixed(b.fixed.clone())], 0),
+        (vec![NodeSupport::fixed(vec![b.fixed[0]])], 3),
+        (vec![NodeSupport::fixed(b.fixed.clone())], 0),
     ] {
         let contact = b.contact(true);
         let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-            .supports(&supports)
-            .contact(&contact)
+            .with_supports(&supports)
+            .with_contact(&contact)
             .build()
             .unwrap();
-        let mut space = space(&system, FaceFactor::Auto, None);
+        let mut space = space(&system, ActiveSetFactor::Auto, None);
         assert_eq!(space.loose().len(), count);
         let (x, e) = (
             noise(system.dual_dim(), 5),
@@ -149,8 +150,8 @@ fn a_metric_of_the_rows_is_kept() {
         .iter()
         .map(|v| 0.6 + 0.4 * v)
         .collect();
-    let mut split = space(&system, FaceFactor::Split, Some(metric.clone()));
-    let mut sparse = space(&system, FaceFactor::Sparse, Some(metric));
+    let mut split = space(&system, ActiveSetFactor::Split, Some(metric.clone()));
+    let mut sparse = space(&system, ActiveSetFactor::Sparse, Some(metric));
     for (share, seed) in [(0.5, 1), (0.1, 2)] {
         let w = face(&system, share, seed);
         assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
@@ -165,18 +166,19 @@ fn one_subdomain_and_no_or_only_contact() {
     let b = Brick::new(1, 3);
     let (supports, contact) = (b.supports(), b.contact(true));
     let one = TfetiBuilder::new(&b.mesh, &Decomposition::whole(&b.mesh), &b.materials)
-        .supports(&supports)
-        .contact(&contact)
+        .with_supports(&supports)
+        .with_contact(&contact)
         .build()
         .unwrap();
     for system in [&few, &many, &one] {
         let all = system.gluing().ranges().contact().end;
         for rows in [0, all] {
             let new = |kind| {
-                let space = FaceSpace::with_factor(system.coarse(), rows, None, kind);
+                let space = ActiveSetProjector::with_factor(system.coarse(), rows, None, kind);
                 space.unwrap().exact_steps()
             };
-            let (mut split, mut sparse) = (new(FaceFactor::Split), new(FaceFactor::Sparse));
+            let (mut split, mut sparse) =
+                (new(ActiveSetFactor::Split), new(ActiveSetFactor::Sparse));
             compare(system, &mut split, &mut sparse);
             let w = match rows {
                 0 => vec![1.0; system.dual_dim()],
@@ -192,9 +194,9 @@ fn one_subdomain_and_no_or_only_contact() {
 fn the_last_face_leaves_no_trace() {
     let system = system(2, 3);
     let w = face(&system, 0.4, 7);
-    let mut fresh = space(&system, FaceFactor::Split, None);
+    let mut fresh = space(&system, ActiveSetFactor::Split, None);
     fresh.set_weights(&w).unwrap();
-    let mut used = space(&system, FaceFactor::Split, None);
+    let mut used = space(&system, ActiveSetFactor::Split, None);
     for seed in 10..14 {
         used.set_weights(&face(&system, 0.7, seed)).unwrap();
     }
@@ -212,7 +214,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
             .build()
             .unwrap();
         pool.install(|| {
-            let mut space = space(&system, FaceFactor::Split, None);
+            let mut space = space(&system, ActiveSetFactor::Split, None);
             space.set_weights(&face(&system, 0.5, 3)).unwrap();
             // both sides of the first cut read enough for a thread each
             assert!(space.factor().stored() >= 8 * 25_000);
@@ -227,15 +229,15 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn a_body_held_by_contact_only_is_deficient_on_open_faces() {
     let b = Brick::new(2, 3);
-    for supports in [vec![], vec![Support::fixed(vec![b.fixed[0]])]] {
+    for supports in [vec![], vec![NodeSupport::fixed(vec![b.fixed[0]])]] {
         let contact = b.contact(true);
         let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-            .supports(&supports)
-            .contact(&contact)
+            .with_supports(&supports)
+            .with_contact(&contact)
             .build()
             .unwrap();
-        let mut split = space(&system, FaceFactor::Split, None);
-        let mut sparse = space(&system, FaceFactor::Sparse, None);
+        let mut split = space(&system, ActiveSetFactor::Split, None);
+        let mut sparse = space(&system, ActiveSetFactor::Sparse, None);
         let e = noise(system.coarse().rows(), 3);
         let closed = face(&system, 0.6, 1);
         let open = face(&system, 0.0, 1);

@@ -36,7 +36,7 @@ impl Floor {
         Some(match self {
             Self::None => return None,
             Self::Smooth => Friction::None,
-            Self::Given => Friction::given(GIVEN),
+            Self::Given => Friction::tresca(GIVEN),
             Self::Coulomb => Friction::coulomb(fixed),
             Self::Weakening => Friction::Coulomb(Coefficient::Exponential {
                 fixed,

@@ -2,7 +2,7 @@
 
 use signorini::contact::Accuracy;
 use signorini::prelude::*;
-use signorini::qp::FaceSettings;
+use signorini::qp::ActiveSetSettings;
 
 use super::measure::{Solution, orders, solve};
 use super::scenes::{Floor, Variant};
@@ -142,7 +142,9 @@ fn method(short: bool) -> Result<Vec<Curve>, ExampleError> {
         ),
         (
             "face, forcing 0.02",
-            default().with_method(Method::Face(FaceSettings::default().with_forcing(0.02))),
+            default().with_method(Method::ActiveSet(
+                ActiveSetSettings::default().with_forcing(0.02),
+            )),
         ),
         ("one-loop", default().with_method(Method::one_loop())),
     ];

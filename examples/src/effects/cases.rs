@@ -39,7 +39,7 @@ pub(super) fn four_sides(scene: Scene) -> Scene {
     let friction = scene.contact().map(|c| c.friction().clone());
     let contact = [brick::Z_MAX, brick::Y_MIN, brick::Y_MAX]
         .into_iter()
-        .fold(Contact::rigid(brick::Z_MIN), Contact::and_tag);
+        .fold(Contact::rigid(brick::Z_MIN), Contact::with_tag);
     // measured with one normal a node
     let contact = contact.with_gap(GAP).with_crease(180.0);
     scene.replace_contact(Some(contact.with_friction(friction.unwrap_or_default())))
@@ -86,7 +86,7 @@ pub fn cases(cells: usize, steps: usize) -> Result<Vec<Case>, ExampleError> {
         case("elastic only", elastic.clone()),
         case("+ contact", elastic.clone().with_contact(floor())),
         case("+ gap", rough(Friction::None)),
-        case("+ given friction", rough(Friction::given(BOUND))),
+        case("+ given friction", rough(Friction::tresca(BOUND))),
         case("Coulomb instead", rough(Friction::coulomb(fixed))),
         case("+ history", history(rough(Friction::coulomb(fixed)))),
         case("+ rate dependence", history(rough(weakening.clone()))),

@@ -39,7 +39,7 @@ fn long(cells: usize, steps: usize) -> Result<Scene, Error> {
     let ramp = History::ramp(1.0, 1.0)?;
     let contact = [brick::Z_MAX, brick::Y_MIN, brick::Y_MAX, brick::X_MAX]
         .into_iter()
-        .fold(Contact::rigid(brick::Z_MIN), Contact::and_tag)
+        .fold(Contact::rigid(brick::Z_MIN), Contact::with_tag)
         .with_gap(0.2)
         // measured with one normal a node
         .with_crease(180.0)

@@ -109,7 +109,7 @@ fn floor(gap: f64, coefficient: f64) -> Contact {
 fn cube() -> Result<Scene, Error> {
     let mesh = Brick::new([1.0; 3], [8; 3]).build()?;
     Ok(Scene::new(mesh, steel()?)
-        .with_support(Support::fixed(brick::Z_MAX).moved([0.002, 0.0, -0.004], ramp()?))
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([0.002, 0.0, -0.004], ramp()?))
         .with_contact(floor(0.0001, 0.3))
         .with_boxes([2; 3])
         .with_analysis(steps(10)))
@@ -154,9 +154,9 @@ fn rubber() -> Result<Scene, Error> {
     let mesh = Brick::new([2.0, 1.0, 1.0], [10, 5, 5]).build()?;
     let soft = Materials::uniform(Hooke::isotropic(1e7, 0.49)?);
     Ok(Scene::new(mesh, soft)
-        .with_support(Support::fixed(brick::Z_MAX).moved([0.0, 0.0, -0.05], ramp()?))
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([0.0, 0.0, -0.05], ramp()?))
         .with_load(Load::traction(brick::X_MAX, [2e5, 0.0, 0.0]).with_history(ramp()?))
-        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::given(2e5)))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(2e5)))
         .with_boxes([2, 1, 1])
         .with_analysis(steps(6)))
 }
@@ -219,7 +219,7 @@ fn pulled() -> Result<Scene, Error> {
     Ok(clamped(1, 4, 0.0)?
         .with_load(Load::pressure(brick::Z_MAX, 1e8))
         .with_load(Load::traction(brick::X_MAX, [2e8, 0.0, 0.0]).with_history(ramp()?))
-        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::given(3e7)))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(3e7)))
         .with_analysis(steps(10)))
 }
 

@@ -147,7 +147,7 @@ impl Ledger {
     }
 
     /// Enters a level.
-    pub fn enter(&mut self, frame: &Frame<'_>) {
+    pub fn enter(&mut self, frame: &StepResult<'_>) {
         let u = frame.displacement();
         let internal: Vec<f64> = self
             .rows
@@ -157,8 +157,8 @@ impl Ledger {
         let mut applied = self.load(frame.time());
         for state in frame.points() {
             let force = state.force();
-            let opponent = state.opponent.map(|node| (node, -1.0));
-            for (node, sign) in std::iter::once((state.node, 1.0)).chain(opponent) {
+            let partner = state.partner.map(|node| (node, -1.0));
+            for (node, sign) in std::iter::once((state.node, 1.0)).chain(partner) {
                 for c in 0..3 {
                     applied[3 * node as usize + c] += sign * force[c];
                 }

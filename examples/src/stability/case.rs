@@ -1,6 +1,6 @@
 //! A case: what is hard, how it is built, and what outcome is acceptable.
 
-use signorini::prelude::{History, LevelStatus, LoadDensity, Scene, Settings, State};
+use signorini::prelude::{History, LoadDensity, Scene, Settings, State, StepStatus};
 
 /// Any failure while a case is built.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -24,7 +24,7 @@ pub enum Expect {
     /// Every level converges, with the largest relative violation below this.
     Certified(f64),
     /// Every level converges and is certified, or ends with one of these statuses; what converged is certified.
-    CertifiedOr(f64, &'static [LevelStatus]),
+    CertifiedOr(f64, &'static [StepStatus]),
     /// An error whose text contains this.
     Refused(&'static str),
 }

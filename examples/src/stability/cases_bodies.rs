@@ -218,7 +218,7 @@ pub fn free() -> Vec<Case> {
                     ..Block::default()
                 };
                 let down = History::ramp(1.0, 1.0)?;
-                let support = Support::fixed(brick::Z_MAX).moved([2e-4, 0.0, -2e-3], down);
+                let support = Support::fixed(brick::Z_MAX).with_motion([2e-4, 0.0, -2e-3], down);
                 Ok(block.setup()?.map(|s| s.with_support(support.clone())))
             },
         ),
@@ -269,8 +269,8 @@ pub fn supports() -> Vec<Case> {
             move || {
                 let block = base();
                 let contact = Contact::rigid(brick::Z_MIN)
-                    .and_tag(brick::X_MAX)
-                    .and_tag(brick::Y_MIN)
+                    .with_tag(brick::X_MAX)
+                    .with_tag(brick::Y_MIN)
                     .with_friction(block.friction.clone());
                 let block = Block {
                     end: [0.0; 3],
@@ -322,7 +322,7 @@ pub fn supports() -> Vec<Case> {
                 Ok(Block::default().setup()?.map(|s| {
                     s.with_support(
                         Support::fixed(brick::X_MIN)
-                            .moved([1e-3, 0.0, 0.0], History::constant(1.0)),
+                            .with_motion([1e-3, 0.0, 0.0], History::constant(1.0)),
                     )
                 }))
             },

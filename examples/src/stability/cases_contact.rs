@@ -5,10 +5,10 @@ use super::case::{Case, Expect, Failure, Setup};
 use signorini::prelude::*;
 
 /// What a problem without a certified solution may end with.
-const UNSOLVED: &[LevelStatus] = &[
-    LevelStatus::NotContractive,
-    LevelStatus::IterationLimit,
-    LevelStatus::Stagnated,
+const UNSOLVED: &[StepStatus] = &[
+    StepStatus::NotContractive,
+    StepStatus::IterationLimit,
+    StepStatus::Stagnated,
 ];
 
 /// Coefficients from 0 to beyond the range in which the Coulomb map contracts.
@@ -161,7 +161,7 @@ pub fn sets() -> Vec<Case> {
                 let down = [2e-3, 0.0, -2e-3];
                 Ok(face.setup()?.map(|scene| {
                     scene.with_support(
-                        Support::fixed(brick::Z_MAX).moved(down, History::constant(1.0)),
+                        Support::fixed(brick::Z_MAX).with_motion(down, History::constant(1.0)),
                     )
                 }))
             },
@@ -204,11 +204,11 @@ fn driven(
         scene
             .with_support(
                 Support::components(brick::Z_MAX, [false, true, true])
-                    .moved([0.0, 0.0, -down], History::constant(1.0)),
+                    .with_motion([0.0, 0.0, -down], History::constant(1.0)),
             )
             .with_support(
                 Support::components(brick::Z_MAX, [true, false, false])
-                    .moved([1.0, 0.0, 0.0], along),
+                    .with_motion([1.0, 0.0, 0.0], along),
             )
     }))
 }
@@ -297,7 +297,14 @@ pub fn sliding() -> Vec<Case> {
             GROUP,
             "slip bounds exactly 0, given",
             "given friction with bound 0 is no friction",
-            || driven(1e-3, vec![(0.0, 0.0), (1.0, 1e-2)], 3, Friction::given(0.0)),
+            || {
+                driven(
+                    1e-3,
+                    vec![(0.0, 0.0), (1.0, 1e-2)],
+                    3,
+                    Friction::tresca(0.0),
+                )
+            },
         ),
         Case::new(
             GROUP,
@@ -322,7 +329,7 @@ pub fn sliding() -> Vec<Case> {
                     1e-4,
                     vec![(0.0, 0.0), (0.5, 1e-2), (1.0, 0.0)],
                     4,
-                    Friction::given(1e7),
+                    Friction::tresca(1e7),
                 )
             },
         ),

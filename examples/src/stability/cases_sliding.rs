@@ -14,7 +14,7 @@ const ASIDE: [f64; 2] = [0.957_826_285_221_151_4, 0.287_347_885_566_345_4];
 
 /// How the body is cut.
 #[derive(Debug, Clone, Copy)]
-pub enum Cut {
+pub enum Partition {
     /// Into boxes.
     Boxes([usize; 3]),
     /// By the nearest of so many scattered points.
@@ -31,7 +31,7 @@ pub struct Sliding {
     /// Side force over what friction holds.
     pub aside: f64,
     /// The subdomains.
-    pub cut: Cut,
+    pub cut: Partition,
     /// Whether it lies on another cube.
     pub on_cube: bool,
     /// Pushed to and fro in so many steps; 0 for a static scene.
@@ -44,7 +44,7 @@ impl Default for Sliding {
             cells: 8,
             coefficient: 0.05,
             aside: 0.05,
-            cut: Cut::Boxes([1; 3]),
+            cut: Partition::Boxes([1; 3]),
             on_cube: false,
             steps: 0,
         }
@@ -99,8 +99,8 @@ impl Sliding {
             (aside, wave),
         ];
         let parts = match self.cut {
-            Cut::Boxes(_) => None,
-            Cut::Scattered(count) => Some(scattered(&mesh, count)?),
+            Partition::Boxes(_) => None,
+            Partition::Scattered(count) => Some(scattered(&mesh, count)?),
         };
         let mut scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(YOUNG, 0.3)?))
             .with_contact(contact.with_friction(Friction::coulomb(self.coefficient)));
@@ -111,7 +111,7 @@ impl Sliding {
             scene = scene.with_load(Load::new(density.clone()).with_history(history.clone()));
         }
         scene = match (self.cut, parts) {
-            (Cut::Boxes(boxes), _) => scene.with_boxes(boxes),
+            (Partition::Boxes(boxes), _) => scene.with_boxes(boxes),
             (_, Some(parts)) => scene.with_parts(parts),
             (_, None) => scene,
         };
@@ -174,11 +174,11 @@ pub fn cases() -> Vec<Case> {
     let base = Sliding::default();
     let mut cases = Vec::new();
     for (name, cut) in [
-        ("whole", Cut::Boxes([1; 3])),
-        ("2 x 2 x 2", Cut::Boxes([2; 3])),
-        ("4 x 4 x 4", Cut::Boxes([4; 3])),
-        ("8 x 8 x 8", Cut::Boxes([8; 3])),
-        ("20 scattered parts", Cut::Scattered(20)),
+        ("whole", Partition::Boxes([1; 3])),
+        ("2 x 2 x 2", Partition::Boxes([2; 3])),
+        ("4 x 4 x 4", Partition::Boxes([4; 3])),
+        ("8 x 8 x 8", Partition::Boxes([8; 3])),
+        ("20 scattered parts", Partition::Scattered(20)),
     ] {
         cases.push(case(
             &format!("slides everywhere, {name}"),
@@ -223,7 +223,7 @@ pub fn cases() -> Vec<Case> {
             50,
             Sliding {
                 cells: 16,
-                cut: Cut::Boxes([4; 3]),
+                cut: Partition::Boxes([4; 3]),
                 ..base
             },
         )
@@ -235,7 +235,7 @@ pub fn cases() -> Vec<Case> {
             Sliding {
                 aside: 0.95,
                 on_cube: true,
-                cut: Cut::Boxes([2, 2, 4]),
+                cut: Partition::Boxes([2, 2, 4]),
                 ..base
             },
         ),
@@ -246,7 +246,7 @@ pub fn cases() -> Vec<Case> {
             Sliding {
                 aside: 0.999,
                 on_cube: true,
-                cut: Cut::Boxes([2, 2, 4]),
+                cut: Partition::Boxes([2, 2, 4]),
                 ..base
             },
         ),
@@ -258,7 +258,7 @@ pub fn cases() -> Vec<Case> {
                 aside: 0.9,
                 coefficient: 0.3,
                 steps: 50,
-                cut: Cut::Boxes([4; 3]),
+                cut: Partition::Boxes([4; 3]),
                 ..base
             },
         ),

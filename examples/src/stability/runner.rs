@@ -10,7 +10,7 @@ use std::time::Instant;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ended {
     /// All levels were solved; the worst status of a level, and that level.
-    Solved(LevelStatus, usize),
+    Solved(StepStatus, usize),
     /// The library refused the scene or broke down, with this text.
     Refused(String),
     /// It panicked: a defect.
@@ -171,7 +171,7 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
     if resumed {
         ledger.skip_first_step();
     }
-    let mut worst = (LevelStatus::Converged, 0);
+    let mut worst = (StepStatus::Converged, 0);
     let mut largest_load = 0.0_f64;
     while !simulation.is_finished() {
         let frame = simulation.step()?;
@@ -188,7 +188,7 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
                 }
             }
         } else if worst.0.converged() {
-            worst = (report.status, frame.level());
+            worst = (report.status, frame.step());
         }
         // a level that did not converge balances nothing, and neither does the step after it
         if worst.0.converged() {
@@ -203,7 +203,7 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
     Ok(Ended::Solved(worst.0, worst.1))
 }
 
-fn figures(frame: &Frame<'_>, scene: &Scene, load: f64) -> Vec<f64> {
+fn figures(frame: &StepResult<'_>, scene: &Scene, load: f64) -> Vec<f64> {
     let s = frame.summary();
     let unit = if load > 0.0 { load } else { 1.0 };
     let (low, high) = scene.mesh().extent();

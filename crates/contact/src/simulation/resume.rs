@@ -23,11 +23,11 @@ impl Simulation {
     pub fn resume(&mut self, mut state: State) -> Result<(), ContactError> {
         let refuse = |reason| Err(ContactError::Checkpoint { reason });
         let analysis = &self.model.scene.analysis;
-        if state.level() > analysis.levels() {
+        if state.step() > analysis.steps() {
             return refuse("it has more levels than this scene".to_owned());
         }
-        let origin = self.origin.after(analysis, state.level());
-        let known = state.origin().filter(|_| state.level() > 0);
+        let origin = self.origin.after(analysis, state.step());
+        let known = state.origin().filter(|_| state.step() > 0);
         if let Some(part) = known.and_then(|known| known.difference(&origin)) {
             return refuse(format!(
                 "it belongs to another scene, with other {part}; continue with the scene that it was stored with, or, if \
@@ -37,11 +37,11 @@ impl Simulation {
         let tfeti = &self.model.tfeti;
         let own = (tfeti.dual_dim(), self.model.tangential_rows());
         let (rows, tangential) = self.screen.as_ref().map_or(own, Screen::sizes);
-        let (coarse, points) = (tfeti.coarse().rows(), self.touch_points().len());
+        let (coarse, points) = (tfeti.coarse().rows(), self.constrained_points().len());
         state.fits(rows, coarse, tangential, points)?;
         state.set_origin(origin);
         if self.screen.is_some() {
-            let active = match (state.level(), state.active()) {
+            let active = match (state.step(), state.active()) {
                 (0, _) => vec![false; points],
                 (_, []) => vec![true; points],
                 (_, active) => active.to_vec(),

@@ -6,7 +6,7 @@ use crate::accuracy::{
 };
 use crate::algebraic::{AlgebraicError, relative};
 use crate::error::ContactError;
-use crate::report::{LevelReport, LevelStatus};
+use crate::report::{StepReport, StepStatus};
 
 /// Largest certificate of a converged level over the tolerance.
 const CERTIFIED: f64 = 30.0;
@@ -19,12 +19,12 @@ const LEAST: f64 = 1e-10;
 
 impl Simulation {
     /// Solves the level to the accuracy of the settings: once, or until the estimated error is small enough.
-    pub(super) fn solve(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+    pub(super) fn solve(&mut self) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
         let accuracy = self.settings.accuracy;
         if accuracy == Accuracy::Tolerance {
             return self.solve_certified();
         }
-        let mut total: Option<LevelReport> = None;
+        let mut total: Option<StepReport> = None;
         let mut rounds = 0;
         loop {
             let tolerance = self.controller.tolerance();
@@ -79,8 +79,8 @@ impl Simulation {
             let again = !good && converged && rounds < ROUNDS;
             if !again || !self.controller.tighten(targets) {
                 report.status = match report.status {
-                    LevelStatus::Converged if !reached => LevelStatus::Stagnated,
-                    LevelStatus::Converged if !certified => LevelStatus::NotCertified,
+                    StepStatus::Converged if !reached => StepStatus::Stagnated,
+                    StepStatus::Converged if !certified => StepStatus::NotCertified,
                     status => status,
                 };
                 return Ok((report, lambda, rows));
@@ -112,11 +112,11 @@ impl Simulation {
     /// Solves with the tolerance of the settings. The certificate has the last word: where it is above the tolerance, the
     /// solver continues once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies
     /// errors of the forces), with ever smaller ones.
-    fn solve_certified(&mut self) -> Result<(LevelReport, Vec<f64>, Vec<f64>), ContactError> {
+    fn solve_certified(&mut self) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
         let aim = self.settings.tolerance.max(LEAST);
         let limit = (CERTIFIED * self.settings.tolerance).max(LEAST);
         let mut tolerance = self.settings.tolerance;
-        let mut total: Option<LevelReport> = None;
+        let mut total: Option<StepReport> = None;
         loop {
             let (report, lambda, rows) = self.solve_once(tolerance)?;
             let largest = self.certificate.largest();
@@ -129,13 +129,13 @@ impl Simulation {
             };
             if !first && !converged && certified {
                 // an earlier round converged, and what this one could not improve is certified
-                report.status = LevelStatus::Converged;
+                report.status = StepStatus::Converged;
                 converged = true;
             }
             let enough = largest <= aim || certified && !first;
             if enough || !converged || tolerance <= LEAST {
                 if converged && !certified {
-                    report.status = LevelStatus::NotCertified;
+                    report.status = StepStatus::NotCertified;
                 }
                 return Ok((report, lambda, rows));
             }

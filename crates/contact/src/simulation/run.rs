@@ -15,7 +15,7 @@ impl Simulation {
         &mut self,
         observer: &mut (impl Observer + ?Sized),
     ) -> Result<RunReport, ContactError> {
-        let levels = self.model.scene.analysis.levels() - self.state.level();
+        let levels = self.model.scene.analysis.steps() - self.state.step();
         observer.started(&self.model.plan, levels);
         let mut report = RunReport {
             unconverged_history: self.state.unconverged_history(),
@@ -24,9 +24,9 @@ impl Simulation {
         let mut failed = None;
         while !self.is_finished() {
             let frame = self.step()?;
-            let (level, certificate) = (frame.level(), frame.certificate().largest());
+            let (level, certificate) = (frame.step(), frame.certificate().largest());
             report.enter(frame.report(), level, frame.time(), certificate);
-            match observer.level(&frame) {
+            match observer.step(&frame) {
                 Flow::Continue => {}
                 Flow::Stop => break,
                 Flow::Fail(source) => {

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::error::ContactError;
-use crate::level::Level;
+use crate::level::StepProblem;
 use crate::model::Model;
 use crate::point_state::PointState;
 use crate::scene::Scene;
@@ -95,7 +95,7 @@ impl Simulation {
         self.rebuilt += model.tfeti.report().factorisations;
         self.model = model;
         self.solver = solver;
-        self.level = Level::default();
+        self.level = StepProblem::default();
         Ok(())
     }
 }

@@ -44,7 +44,7 @@ impl fmt::Debug for State {
         }
         f.debug_struct("State")
             .field("level", &self.level)
-            .field("bytes", &self.bytes())
+            .field("bytes", &self.memory())
             .field("unconverged_history", &self.unconverged)
             .finish_non_exhaustive()
     }

@@ -4,16 +4,16 @@
 #![allow(dead_code)]
 
 use signorini_contact::{
-    Analysis, Certificate, Coefficient, Contact, ContactState, ContactSummary, Friction,
-    LevelReport, Load, Method, PointState, Scene, Settings, Simulation, State, Support,
+    Analysis, Certificate, Coefficient, Contact, ContactState, ContactSummary, Friction, Load,
+    Method, PointState, Scene, Settings, Simulation, State, StepReport, Support,
 };
 use signorini_fem_mesh::{Brick, History, Hooke, Materials, TetMesh, brick};
 
 /// What a test keeps of a level.
 #[derive(Debug, Clone)]
-pub(crate) struct Level {
+pub(crate) struct StepProblem {
     pub(crate) time: f64,
-    pub(crate) report: LevelReport,
+    pub(crate) report: StepReport,
     pub(crate) certificate: Certificate,
     pub(crate) summary: ContactSummary,
     pub(crate) points: Vec<PointState>,
@@ -23,9 +23,9 @@ pub(crate) struct Level {
 }
 
 /// Solves the next level and keeps it.
-pub(crate) fn step(simulation: &mut Simulation) -> Level {
+pub(crate) fn step(simulation: &mut Simulation) -> StepProblem {
     let frame = simulation.step().expect("step");
-    Level {
+    StepProblem {
         time: frame.time(),
         report: frame.report().clone(),
         certificate: *frame.certificate(),
@@ -38,7 +38,7 @@ pub(crate) fn step(simulation: &mut Simulation) -> Level {
 }
 
 /// Solves all levels that are left.
-pub(crate) fn rest(simulation: &mut Simulation) -> Vec<Level> {
+pub(crate) fn rest(simulation: &mut Simulation) -> Vec<StepProblem> {
     let mut levels = Vec::new();
     while !simulation.is_finished() {
         levels.push(step(simulation));
@@ -47,7 +47,7 @@ pub(crate) fn rest(simulation: &mut Simulation) -> Vec<Level> {
 }
 
 /// Solves all levels, each of which must converge with a certificate of at most 1e-6.
-pub(crate) fn run(scene: Scene, settings: Settings) -> (Simulation, Vec<Level>) {
+pub(crate) fn run(scene: Scene, settings: Settings) -> (Simulation, Vec<StepProblem>) {
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let levels = rest(&mut simulation);
     for (k, level) in levels.iter().enumerate() {
@@ -57,13 +57,13 @@ pub(crate) fn run(scene: Scene, settings: Settings) -> (Simulation, Vec<Level>) 
 }
 
 /// Solves a scene of one level.
-pub(crate) fn solve(scene: Scene, settings: Settings) -> Level {
+pub(crate) fn solve(scene: Scene, settings: Settings) -> StepProblem {
     let (_, mut levels) = run(scene, settings);
     assert_eq!(levels.len(), 1);
     levels.remove(0)
 }
 
-pub(crate) fn assert_certified(level: &Level, what: &str) {
+pub(crate) fn assert_certified(level: &StepProblem, what: &str) {
     assert!(
         level.report.status.converged() && level.certificate.largest() <= 1e-6,
         "{what}: {:?}, {:?}",
@@ -173,7 +173,7 @@ pub(crate) fn assert_close(a: &[f64], b: &[f64], tolerance: f64, what: &str) {
 }
 
 /// All bits of a level's numbers.
-pub(crate) fn bits(level: &Level) -> Vec<u64> {
+pub(crate) fn bits(level: &StepProblem) -> Vec<u64> {
     level
         .torn
         .iter()

@@ -106,7 +106,7 @@ fn other_recipes_do_not_fit() {
         let mut worst = [0.0_f64; CHANGES.len()];
         let outcome = each_level(&recipe, |frame| {
             for (judge, worst) in judges.iter_mut().zip(&mut worst) {
-                let violations = judge.level(frame)?;
+                let violations = judge.step(frame)?;
                 *worst = violations.iter().map(|v| v.1).fold(*worst, f64::max);
             }
             Ok(())

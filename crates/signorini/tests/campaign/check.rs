@@ -111,7 +111,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Judges a level and takes it into the history.
-    pub(crate) fn level(&mut self, frame: &Frame<'_>) -> Result<Vec<Violation>, Error> {
+    pub(crate) fn step(&mut self, frame: &StepResult<'_>) -> Result<Vec<Violation>, Error> {
         let report = Report {
             points: frame.points(),
             u: frame.displacement(),
@@ -166,7 +166,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Nodal forces of the strained tetrahedra: at the nodes, and their squares summed over the copies of each node.
-    fn torn(&self, frame: &Frame<'_>) -> (Vec<f64>, Vec<f64>) {
+    fn torn(&self, frame: &StepResult<'_>) -> (Vec<f64>, Vec<f64>) {
         let nodes = self.mechanics.points.len();
         let (mut whole, mut squares) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
         let mut start = 0;
@@ -223,7 +223,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Copies of a node are where their mean is.
-    fn copies(&self, frame: &Frame<'_>, u: &[f64], sizes: &[Size], worst: &mut Worst) {
+    fn copies(&self, frame: &StepResult<'_>, u: &[f64], sizes: &[Size], worst: &mut Worst) {
         let mut start = 0;
         for subdomain in frame.decomposition().subdomains() {
             for (local, &node) in (0..).zip(&subdomain.nodes) {
@@ -250,7 +250,7 @@ impl<'a> Judge<'a> {
             let force = point.force();
             let own = &mut rest[point.node as usize];
             *own = sub(*own, force);
-            if let Some(partner) = point.opponent {
+            if let Some(partner) = point.partner {
                 let other = &mut rest[partner as usize];
                 *other = add(*other, force);
             }
@@ -282,7 +282,7 @@ impl<'a> Judge<'a> {
         (0..places.len() as u32).for_each(|n| put(0, n, at(load, n)));
         for point in report.points {
             put(1, point.node, point.force());
-            if let Some(partner) = point.opponent {
+            if let Some(partner) = point.partner {
                 put(1, partner, scale(-1.0, point.force()));
             }
         }

@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// A level that the library solved.
 #[derive(Debug, Clone)]
 pub(crate) struct Level {
-    pub(crate) status: LevelStatus,
+    pub(crate) status: StepStatus,
     pub(crate) products: usize,
     pub(crate) faces: usize,
     pub(crate) fallback: bool,
@@ -72,7 +72,7 @@ type Refusal = (String, String);
 /// Shows all levels of a scene as they are solved; says what refuses it.
 pub(crate) fn each_level(
     recipe: &Recipe,
-    mut see: impl FnMut(&Frame<'_>) -> Result<(), Error>,
+    mut see: impl FnMut(&StepResult<'_>) -> Result<(), Error>,
 ) -> Result<Option<Refusal>, Error> {
     let scene = say::scene(recipe)?;
     let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
@@ -105,7 +105,7 @@ fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
     let mut judge = Judge::new(recipe);
     let mut out = Vec::new();
     let refused = each_level(recipe, |frame| {
-        let violations = judge.level(frame)?;
+        let violations = judge.step(frame)?;
         let report = frame.report();
         let certified = report.accuracy.map_or(0.0, |a| a.certificate_limit);
         out.push(Level {

@@ -6,7 +6,7 @@ use crate::recipe::{
 };
 use crate::vec3::{Vec3, add, scale};
 use signorini::prelude::*;
-use signorini::tfeti::{RowRule, Sharing};
+use signorini::tfeti::{RowScaling, Sharing};
 
 fn history(course: &Course) -> Result<History, Error> {
     Ok(match course {
@@ -37,9 +37,9 @@ fn density(density: &Density) -> LoadDensity {
 fn friction(law: &Law) -> Friction {
     match law.clone() {
         Law::None => Friction::None,
-        Law::Given(stress) => Friction::given(stress),
+        Law::Given(stress) => Friction::tresca(stress),
         Law::GivenField(field) => {
-            Friction::Given(SlipBound::StressField(std::sync::Arc::new(move |x| {
+            Friction::Tresca(SlipBound::StressField(std::sync::Arc::new(move |x| {
                 field.value(x)
             })))
         }
@@ -71,7 +71,7 @@ fn contact(touch: &Touch) -> Result<Contact, Error> {
         (None, _) => Contact::rigid(tag),
     };
     for tag in &touch.tags[1..] {
-        contact = contact.and_tag(*tag);
+        contact = contact.with_tag(*tag);
     }
     contact = match &touch.distance {
         Distance::Touching if touch.partner.is_some() => contact.with_gap(0.0),
@@ -86,7 +86,7 @@ fn contact(touch: &Touch) -> Result<Contact, Error> {
         contact = contact.with_normal(direction);
     }
     if let Some((way, course)) = &touch.motion {
-        contact = contact.moved(*way, history(course)?);
+        contact = contact.with_motion(*way, history(course)?);
     }
     Ok(contact.with_friction(friction(&touch.law)))
 }
@@ -130,8 +130,8 @@ pub(crate) fn scene(recipe: &Recipe) -> Result<Scene, Error> {
         if let Some((values, course)) = &hold.motion {
             let history = history(course)?;
             support = match &values[..] {
-                [one] => support.moved(*one, history),
-                each => support.moved_each(each.to_vec(), history),
+                [one] => support.with_motion(*one, history),
+                each => support.with_motions(each.to_vec(), history),
             };
         }
         scene = scene.with_support(support);
@@ -174,7 +174,7 @@ pub(crate) fn settings(recipe: &Recipe) -> Settings {
         settings = settings.with_screening(Screening::On { margin });
     }
     if how.chained {
-        settings = settings.with_row_rule(RowRule::Chained);
+        settings = settings.with_row_scaling(RowScaling::Chained);
     }
     if !how.share {
         settings = settings.with_sharing(Sharing::Never);

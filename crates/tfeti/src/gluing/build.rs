@@ -1,15 +1,15 @@
 //! Building the rows: contact rows, interface blocks glob by glob, support rows.
 
-use super::{BlockEntry, ContactInfo, CopyEntry, Glob, Gluing, TangentialRows};
-use crate::contact::{ContactNodes, ContactRow, PointRows};
+use super::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, TangentialRows};
+use crate::contact::{ContactConstraints, ContactRow, PointRows};
 use crate::copy_stiffness::CopyStiffness;
-use crate::rows::RowRule;
+use crate::rows::RowScaling;
 use crate::supports::{MergedSupports, dot};
 use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 pub(super) struct Builder<'a> {
     pub(super) decomposition: &'a Decomposition,
-    pub(super) rule: RowRule,
+    pub(super) rule: RowScaling,
     pub(super) stiffness: &'a CopyStiffness,
     /// Shares of the copies of a node.
     pub(super) shares: Vec<f64>,
@@ -24,8 +24,8 @@ impl Builder<'_> {
         }
         let copies = self.decomposition.copies(node as usize);
         match self.rule {
-            RowRule::Orthonormal => self.stiffness.unit_shares(copies, &mut self.shares),
-            RowRule::Chained => self.shares.splice(.., [1.0]).for_each(drop),
+            RowScaling::Orthonormal => self.stiffness.unit_shares(copies, &mut self.shares),
+            RowScaling::Chained => self.shares.splice(.., [1.0]).for_each(drop),
         }
         let entries = copies.iter().zip(&self.shares).map(|(c, share)| CopyEntry {
             subdomain: c.subdomain,
@@ -46,13 +46,13 @@ impl Builder<'_> {
     fn contact_row(
         &mut self,
         node: u32,
-        opponent: Option<u32>,
+        partner: Option<u32>,
         row: &ContactRow,
         prescribed: &[(u32, [f64; 3])],
     ) -> usize {
         self.spread(node, row.node);
-        if let Some(opponent) = opponent {
-            self.spread(opponent, row.opponent);
+        if let Some(partner) = partner {
+            self.spread(partner, row.partner);
         }
         let number = self.close(node);
         for (case, moved) in prescribed {
@@ -64,20 +64,20 @@ impl Builder<'_> {
         number
     }
 
-    pub(super) fn contact(&mut self, contact: &ContactNodes, points: &[PointRows]) {
+    pub(super) fn contact(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
         let place = |p: &PointRows| {
             (
                 contact.points[p.point].node,
-                contact.points[p.point].opponent,
+                contact.points[p.point].partner,
             )
         };
         for p in points {
-            let (node, opponent) = place(p);
-            let row = self.contact_row(node, opponent, &p.normal, &p.prescribed);
-            self.gluing.contact.push(ContactInfo {
+            let (node, partner) = place(p);
+            let row = self.contact_row(node, partner, &p.normal, &p.prescribed);
+            self.gluing.contact.push(ContactRows {
                 point: p.point,
                 node,
-                opponent,
+                partner,
                 frame: contact.points[p.point].frame,
                 row,
                 scale: p.normal.scale,
@@ -85,7 +85,7 @@ impl Builder<'_> {
             });
             let skew = |r: &ContactRow| {
                 let length: f64 = (0..3)
-                    .map(|c| r.node[c] * r.node[c] + r.opponent[c] * r.opponent[c])
+                    .map(|c| r.node[c] * r.node[c] + r.partner[c] * r.partner[c])
                     .sum();
                 (length - 1.0).abs() > 1e-12
             };
@@ -100,9 +100,9 @@ impl Builder<'_> {
             .enumerate()
             .filter(|(_, p)| p.tangential.len() == 2)
         {
-            let (node, opponent) = place(p);
-            let row = self.contact_row(node, opponent, &p.tangential[0], &p.prescribed);
-            self.contact_row(node, opponent, &p.tangential[1], &p.prescribed);
+            let (node, partner) = place(p);
+            let row = self.contact_row(node, partner, &p.tangential[0], &p.prescribed);
+            self.contact_row(node, partner, &p.tangential[1], &p.prescribed);
             self.gluing.contact[k].tangential = TangentialRows::Disc {
                 row,
                 scale: p.tangential[0].scale,
@@ -114,9 +114,9 @@ impl Builder<'_> {
             .enumerate()
             .filter(|(_, p)| p.tangential.len() == 1)
         {
-            let (node, opponent) = place(p);
+            let (node, partner) = place(p);
             let tangent = &p.tangential[0];
-            let row = self.contact_row(node, opponent, tangent, &p.prescribed);
+            let row = self.contact_row(node, partner, tangent, &p.prescribed);
             let (direction, scale) = (tangent.direction, tangent.scale);
             self.gluing.contact[k].tangential = TangentialRows::Interval {
                 row,
@@ -131,7 +131,7 @@ impl Builder<'_> {
     }
 
     /// Notes the nodes whose rows may depend on one another.
-    fn dependent(&mut self, contact: &ContactNodes, points: &[PointRows]) {
+    fn dependent(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
         let of = |k: &usize| &contact.points[points[*k].point];
         let groups = self.gluing.node_groups();
         let mut order: Vec<usize> = (0..points.len()).collect();
@@ -141,9 +141,9 @@ impl Builder<'_> {
             let dragged = same.iter().any(|&k| points[k].dragged);
             if same.len() > 1 || dragged {
                 let nodes = same.iter().map(of);
-                let nodes = nodes.flat_map(|p| std::iter::once(p.node).chain(p.opponent));
+                let nodes = nodes.flat_map(|p| std::iter::once(p.node).chain(p.partner));
                 self.gluing.dependent.extend(nodes);
-                let pairs = same.iter().any(|k| of(k).opponent.is_some());
+                let pairs = same.iter().any(|k| of(k).partner.is_some());
                 self.gluing.orthonormal &= !dragged && !pairs && separate(points, same);
             }
         }
@@ -191,12 +191,12 @@ impl Builder<'_> {
         };
         let entries = &mut self.gluing.block_entries;
         match self.rule {
-            RowRule::Orthonormal => {
+            RowScaling::Orthonormal => {
                 let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
                 entries.extend((0..j).map(|k| entry(k, scale)));
                 entries.push(entry(j, -(j as f64) * scale));
             }
-            RowRule::Chained => entries.extend([entry(j - 1, 1.0), entry(j, -1.0)]),
+            RowScaling::Chained => entries.extend([entry(j - 1, 1.0), entry(j, -1.0)]),
         }
         self.gluing.block_pointers.push(entries.len() as u32);
         self.gluing.block_nodes.push(node);
@@ -205,11 +205,11 @@ impl Builder<'_> {
     pub(super) fn dirichlet(&mut self, merged: &MergedSupports) {
         for fixed in &merged.nodes {
             let scale = match self.rule {
-                RowRule::Orthonormal => {
+                RowScaling::Orthonormal => {
                     let copies = self.decomposition.copies(fixed.node as usize);
                     self.stiffness.squares(copies).sqrt().recip()
                 }
-                RowRule::Chained => 1.0,
+                RowScaling::Chained => 1.0,
             };
             for direction in &fixed.directions {
                 self.spread(fixed.node, direction.direction);

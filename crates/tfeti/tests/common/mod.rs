@@ -2,12 +2,12 @@
 #![allow(dead_code)]
 
 use signorini_fem_mesh::{
-    Decomposition, Frame, Hooke, LoadDensity, Materials, TetMesh, assemble_load, brick,
+    Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick,
 };
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::{
-    ContactNodes, CopyStiffness, Gluing, InverseKind, InverseSettings, RowRule, Sharing, Support,
-    Tfeti, TfetiBuilder, TfetiError,
+    ContactConstraints, CopyStiffness, Gluing, InverseKind, InverseSettings, NodeSupport,
+    RowScaling, Sharing, Tfeti, TfetiBuilder, TfetiError,
 };
 
 pub(crate) struct Brick {
@@ -16,7 +16,7 @@ pub(crate) struct Brick {
     pub(crate) materials: Materials,
     pub(crate) fixed: Vec<u32>,
     pub(crate) bottom: Vec<u32>,
-    pub(crate) frames: Vec<Frame>,
+    pub(crate) frames: Vec<SurfaceFrame>,
 }
 
 pub(crate) fn steel() -> Materials {
@@ -38,7 +38,7 @@ impl Brick {
         let decomposition = Decomposition::boxes(&mesh, [3 * n, n, n]).unwrap();
         let fixed = mesh.nodes_on(brick::X_MIN);
         let bottom = mesh.nodes_on(brick::Z_MIN);
-        let frame = Frame {
+        let frame = SurfaceFrame {
             normal: [0.0, 0.0, -1.0],
             tangents: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         };
@@ -53,12 +53,12 @@ impl Brick {
         }
     }
 
-    pub(crate) fn supports(&self) -> Vec<Support> {
-        vec![Support::fixed(self.fixed.clone())]
+    pub(crate) fn supports(&self) -> Vec<NodeSupport> {
+        vec![NodeSupport::fixed(self.fixed.clone())]
     }
 
-    pub(crate) fn contact(&self, friction: bool) -> ContactNodes {
-        ContactNodes::rigid(&self.bottom, &self.frames, friction)
+    pub(crate) fn contact(&self, friction: bool) -> ContactConstraints {
+        ContactConstraints::rigid(&self.bottom, &self.frames, friction)
     }
 
     pub(crate) fn loads(&self) -> Vec<Vec<f64>> {
@@ -103,14 +103,14 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The brick with its supports and frictional contact.
-pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowRule) -> Tfeti {
+pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowScaling) -> Tfeti {
     let (supports, contact) = (b.supports(), b.contact(true));
     TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-        .supports(&supports)
-        .contact(&contact)
-        .rule(rule)
-        .sharing(sharing)
-        .inverse(InverseSettings::default().with_kind(kind))
+        .with_supports(&supports)
+        .with_contact(&contact)
+        .with_row_scaling(rule)
+        .with_sharing(sharing)
+        .with_inverse(InverseSettings::default().with_kind(kind))
         .build()
         .unwrap()
 }
@@ -118,9 +118,9 @@ pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowRul
 /// `B` alone.
 pub(crate) fn gluing(
     b: &Brick,
-    supports: &[Support],
-    contact: Option<&ContactNodes>,
-    rule: RowRule,
+    supports: &[NodeSupport],
+    contact: Option<&ContactConstraints>,
+    rule: RowScaling,
 ) -> Result<Gluing, TfetiError> {
     Gluing::new(
         &b.decomposition,

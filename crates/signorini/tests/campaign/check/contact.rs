@@ -37,7 +37,7 @@ impl Judge<'_> {
         let same = |p: &PointState, s: &Spot| {
             s.contact == p.surface
                 && s.node == p.node
-                && s.partner == p.opponent
+                && s.partner == p.partner
                 && dot(s.normal, p.normal) > SAME
         };
         let of = |p: &PointState| self.spots.iter().position(|s| same(p, s));
@@ -69,7 +69,7 @@ impl Judge<'_> {
         let own = |node: u32, partner: Option<u32>, normal: Vec3| {
             node == spot.node && partner == spot.partner && dot(normal, spot.normal) > SAME
         };
-        let reported = points.iter().filter(|p| own(p.node, p.opponent, p.normal));
+        let reported = points.iter().filter(|p| own(p.node, p.partner, p.normal));
         if reported.count() > 1 {
             return spot.area;
         }
@@ -165,7 +165,7 @@ impl Judge<'_> {
     /// The sums of the frame.
     pub(super) fn sums(
         &self,
-        frame: &Frame<'_>,
+        frame: &StepResult<'_>,
         of: &[Option<usize>],
         sizes: &[Size],
         worst: &mut Worst,

@@ -22,7 +22,7 @@
 //! The move to the next face and the next conjugate gradient step share one product: the step is taken with the length of
 //! the last one, and conjugate gradients start anew from the exact residual.
 //!
-//! Where the caller tells how the set follows the solution ([`FaceWorkspace::set_slopes`]), conjugate gradients take it
+//! Where the caller tells how the set follows the solution ([`ActiveSetWorkspace::set_slopes`]), conjugate gradients take it
 //! along once the hook has been called.
 //!
 //! | local | meaning |
@@ -32,11 +32,11 @@
 //! | `z` | preconditioned residual on the face |
 //! | `constrained` | components up to the last constrained one; only these differ between a vector and its part on the face |
 
-use crate::coarse_space::CoarseSpace;
+use crate::coarse_space::EqualityProjector;
 use crate::error::{QpError, expect_finite, expect_length};
 use crate::face_run::Run;
-use crate::face_settings::{FaceReport, FaceSettings, FaceWorkspace};
-use crate::face_view::FacePreconditioner;
+use crate::face_settings::{ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace};
+use crate::face_view::ActiveSetPreconditioner;
 use crate::operator::SymmetricOperator;
 use crate::product::ProductSet;
 use crate::report::Status;
@@ -44,7 +44,7 @@ use crate::set::ConvexSet;
 
 /// The data of one problem; see the [module](self).
 #[derive(Debug)]
-pub struct FaceProblem<'a, A, M> {
+pub struct ActiveSetProblem<'a, A, M> {
     /// `A`.
     pub operator: &'a A,
     /// Approximates the inverse of `A` on the image of the projector.
@@ -58,28 +58,28 @@ pub struct FaceProblem<'a, A, M> {
 }
 
 /// Is told the iterate after each settled face and may change bounds and radii of the set.
-pub type FaceHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
+pub type ActiveSetHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
 
 /// Solves the problem from the start `x`.
 ///
 /// `ax` holds `A x` if `ax_known`, else it is computed. On return both belong to the last iterate, and
-/// [`FaceWorkspace::residual`] holds `P_Wᵀ (A x - b)`. `hook` couples the set to the solution (Coulomb
+/// [`ActiveSetWorkspace::residual`] holds `P_Wᵀ (A x - b)`. `hook` couples the set to the solution (Coulomb
 /// friction); pass `&mut |_, _| {}` for a fixed set.
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
 /// [`QpError::CoarseDeficient`] if not even all components together hold the rigid modes.
-pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
-    problem: &FaceProblem<'_, A, M>,
+pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    problem: &ActiveSetProblem<'_, A, M>,
     coarse: &mut C,
     set: &mut ProductSet,
     x: &mut [f64],
     ax: &mut [f64],
     ax_known: bool,
-    settings: &FaceSettings,
-    work: &mut FaceWorkspace<A, M>,
-    hook: &mut FaceHook<'_>,
-) -> Result<FaceReport, QpError> {
+    settings: &ActiveSetSettings,
+    work: &mut ActiveSetWorkspace<A, M>,
+    hook: &mut ActiveSetHook<'_>,
+) -> Result<ActiveSetReport, QpError> {
     settings.validate()?;
     check(problem, coarse, set, (x, ax), work)?;
     let mut run = Run::new(problem, coarse, set, (x, ax), settings, work, hook);
@@ -113,12 +113,12 @@ pub fn face<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
     Ok(run.finish(status))
 }
 
-fn check<A: SymmetricOperator, C: CoarseSpace, M: FacePreconditioner>(
-    problem: &FaceProblem<'_, A, M>,
+fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    problem: &ActiveSetProblem<'_, A, M>,
     coarse: &C,
     set: &ProductSet,
     (x, ax): (&[f64], &[f64]),
-    work: &FaceWorkspace<A, M>,
+    work: &ActiveSetWorkspace<A, M>,
 ) -> Result<(), QpError> {
     let n = problem.operator.dim();
     for (what, found) in [
