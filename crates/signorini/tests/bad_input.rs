@@ -265,7 +265,7 @@ fn contact_and_friction() {
 #[test]
 fn times_and_settings() {
     let euler = DifferenceFormula::BACKWARD_EULER;
-    let three = DifferenceFormula::THREE_STEP;
+    let three = DifferenceFormula::PAPER;
     let with = |settings| attempt_with(good(), settings);
     let smalse = |f: fn(SmalseSettings) -> SmalseSettings| {
         let smalse = f(SmalseSettings::default());

@@ -1,0 +1,43 @@
+//! One module a promise.
+
+mod common;
+
+mod accuracy;
+mod balance;
+mod bar;
+mod column;
+mod decompositions;
+mod determinism;
+mod dragged;
+mod driven;
+mod edges;
+mod edges_apart;
+mod edges_refused;
+mod effects;
+mod error_growth;
+mod estimates;
+mod free_bodies;
+mod given_friction;
+mod hinges;
+mod jumps;
+mod manufactured;
+mod methods;
+mod motion;
+mod moving_field;
+mod moving_obstacle;
+mod not_contractive;
+mod obstacle_side;
+mod partners;
+mod partners_held;
+mod patch;
+mod reactions;
+mod resume;
+mod resume_products;
+mod several_bodies;
+mod shared_nodes;
+mod supports;
+mod symmetry_planes;
+mod unconverged;
+mod units;
+mod unloaded;
+mod wedge;
