@@ -49,7 +49,7 @@ fn long(cells: usize, steps: usize) -> Result<Scene, Error> {
         .with_load(Load::traction(brick::X_MAX, [1e8, 0.0, -3e8]).with_history(ramp))
         .with_contact(contact)
         .with_boxes([10, 1, 1])
-        .with_analysis(Analysis::quasistatic(1.0, steps)))
+        .with_analysis(Analysis::quasistatic(1.0, steps).with_formula(DifferenceFormula::PAPER)))
 }
 
 /// A block pressed on a floor that falls away from its middle, and pushed along it.
@@ -65,7 +65,7 @@ fn curved(cells: usize, steps: usize) -> Result<Scene, Error> {
         .with_load(Load::traction(brick::X_MAX, [0.0, 2e8, 0.0]).with_history(ramp))
         .with_contact(contact)
         .with_boxes([4, 4, 1])
-        .with_analysis(Analysis::quasistatic(1.0, steps)))
+        .with_analysis(Analysis::quasistatic(1.0, steps).with_formula(DifferenceFormula::PAPER)))
 }
 
 /// A long slab, held at one side, on a floor 20 mm below; a pressure travels along its top.
@@ -94,7 +94,7 @@ fn travelling(cells: usize, steps: usize) -> Result<Scene, Error> {
         .with_support(Support::fixed(brick::Y_MIN))
         .with_contact(contact)
         .with_boxes([length, 1, 1])
-        .with_analysis(Analysis::quasistatic(1.0, steps));
+        .with_analysis(Analysis::quasistatic(1.0, steps).with_formula(DifferenceFormula::PAPER));
     for metre in 0..length {
         // a hat around the time at which the load is there
         let at = (metre as f64 + 0.5) / length as f64;
