@@ -1,8 +1,6 @@
-//! Check 3: the Signorini bar, whose reaction is known in closed form on every mesh.
+//! The Signorini bar, whose reaction is known in closed form on every mesh.
 
-use crate::common::{block, methods, solve, tight, uniform};
-use signorini_contact::{Contact, Load, Scene, Support};
-use signorini_fem_mesh::{Brick, TetMesh, brick};
+use crate::common::*;
 
 const YOUNG: f64 = 1000.0;
 const GAP: f64 = 1e-3;

@@ -1,11 +1,6 @@
-//! Check 7: a column under cyclic shear, uniform in space, against the same law at one point.
+//! A column under cyclic shear, uniform in space, against the same law at one point.
 
-use crate::common;
-use crate::common::{block, run, uniform};
-use signorini_contact::{
-    Analysis, Contact, DifferenceFormula, Friction, Load, Method, Scene, Settings, Support,
-};
-use signorini_fem_mesh::{History, brick};
+use crate::common::*;
 
 const YOUNG: f64 = 2000.0;
 const SHEAR: f64 = 1000.0;
@@ -78,7 +73,7 @@ fn column(steps: usize, formula: DifferenceFormula, exact: &Point) -> Scene {
 /// Runs the column, compares every step with the one-point law, and returns loss and dissipation of the last cycle.
 fn compare(steps: usize, formula: DifferenceFormula, method: Method) -> (f64, f64) {
     let exact = one_point(steps, formula);
-    let settings = Settings::default().with_tolerance(1e-9).with_method(method);
+    let settings = at(1e-9).with_method(method);
     let (_, levels) = run(column(steps, formula, &exact), settings);
     let area = 0.5;
     let (mut loss, mut dissipation) = (0.0, 0.0);
@@ -137,7 +132,7 @@ fn the_papers_formula_has_a_first_order_signature() {
 
 #[test]
 fn every_method_follows_the_cycle() {
-    for method in common::methods() {
+    for method in methods() {
         compare(5, DifferenceFormula::PAPER, method.clone());
         compare(5, DifferenceFormula::BACKWARD_EULER, method);
     }

@@ -1,10 +1,12 @@
 //! Helpers of the integration tests: scenes, runs, and small linear algebra of their own.
 
-use signorini_contact::{
-    Analysis, Certificate, Coefficient, Contact, ContactState, ContactSummary, DifferenceFormula,
-    Friction, Load, Method, PointState, Scene, Settings, Simulation, State, StepReport, Support,
+pub(crate) use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+pub(crate) use signorini_contact::*;
+pub(crate) use signorini_fem_mesh::{
+    Brick, Decomposition, Facet, FacetTag, History, Hooke, LoadDensity, Materials, Surface,
+    TetMesh, assemble_load, brick, fields,
 };
-use signorini_fem_mesh::{Brick, History, Hooke, Materials, TetMesh, brick};
 
 /// What a test keeps of a level.
 #[derive(Debug, Clone)]
@@ -79,6 +81,19 @@ pub(crate) fn paper_steps(end: f64, steps: usize) -> Analysis {
     Analysis::quasistatic(end, steps).with_formula(DifferenceFormula::PAPER)
 }
 
+/// Random numbers that depend on the seed alone, the same on every machine.
+pub(crate) fn random(seed: u64) -> Pcg64Mcg {
+    Pcg64Mcg::new(u128::from(seed))
+}
+
+pub(crate) fn at(tolerance: f64) -> Settings {
+    Settings::default().with_tolerance(tolerance)
+}
+
+pub(crate) fn by(method: Method) -> Settings {
+    Settings::default().with_method(method)
+}
+
 pub(crate) fn tight() -> Settings {
     Settings::default().with_tolerance(1e-10)
 }
@@ -129,6 +144,50 @@ pub(crate) fn loaded_brick(mesh: TetMesh, traction: History) -> Scene {
         .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(traction))
 }
 
+/// A clamped brick pressed and pulled on a rough floor, one step.
+pub(crate) fn pressed(cells: usize, friction: Friction) -> Scene {
+    Scene::new(block([3.0, 1.0, 1.0], [3 * cells, cells, cells]), steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::pressure(brick::Z_MAX, 1e8))
+        .with_load(Load::traction(brick::X_MAX, [2e8, 0.0, 0.0]))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+        .with_boxes([3, 1, 1])
+        .with_analysis(Analysis::quasistatic(1.0, 1))
+}
+
+/// A clamped brick under a light load, for contacts to be added.
+pub(crate) fn clamped() -> Scene {
+    Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e9, 0.3))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e5]))
+}
+
+/// Tags of a second body.
+pub(crate) fn second(tag: FacetTag) -> FacetTag {
+    FacetTag(tag.0 + 100)
+}
+
+/// A mesh higher up, or lower down.
+pub(crate) fn lifted(mesh: &TetMesh, by: f64) -> TetMesh {
+    let lift = |[x, y, z]: [f64; 3]| [x, y, z + by];
+    mesh.clone().map_points(lift).expect("lifted")
+}
+
+/// A second body behind the first, with tags of its own.
+pub(crate) fn with_second(first: &TetMesh, other: &TetMesh) -> TetMesh {
+    first
+        .append(&other.clone().map_tags(second))
+        .expect("two bodies")
+}
+
+/// Why a scene is refused: the plan says the same before any work.
+pub(crate) fn refused(scene: &Scene) -> ContactError {
+    let planned = Plan::new(scene, &Settings::default()).expect_err("refused by the plan");
+    let found = Simulation::new(scene.clone(), Settings::default()).expect_err("refused");
+    assert_eq!(planned.to_string(), found.to_string());
+    found
+}
+
 /// The benchmark with n = 1.
 pub(crate) fn benchmark(traction: History, steps: usize) -> Scene {
     loaded_brick(block([3.0, 1.0, 1.0], [15, 5, 5]), traction)
@@ -161,6 +220,20 @@ pub(crate) fn norm(x: &[f64]) -> f64 {
     x.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
+/// Root of the energy of the difference of two displacements.
+pub(crate) fn energy_distance(scene: &Scene, a: &[f64], b: &[f64]) -> f64 {
+    let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    fields::strain_energy(scene.mesh(), scene.materials(), &off)
+        .expect("energy")
+        .sqrt()
+}
+
+/// The same relative to the second.
+pub(crate) fn relative_distance(scene: &Scene, own: &[f64], reference: &[f64]) -> f64 {
+    let zero = vec![0.0; reference.len()];
+    energy_distance(scene, own, reference) / energy_distance(scene, reference, &zero)
+}
+
 /// `|a - b| / |b|`; 0 for two zeros.
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
@@ -185,10 +258,11 @@ pub(crate) fn bits(level: &Solved) -> Vec<u64> {
         .collect()
 }
 
-/// All bits of a stored state: multipliers, traces, rates.
-pub(crate) fn state_bits(state: &State) -> String {
-    // the shortest decimals that give the same numbers back, with the sign of zero
-    format!("{state:#?}")
+/// Bits of all steps, and the state at the end.
+pub(crate) fn fingerprint(scene: Scene, settings: Settings) -> (Vec<Vec<u64>>, State) {
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    let steps = rest(&mut simulation).iter().map(bits).collect();
+    (steps, simulation.state().clone())
 }
 
 /// `axis` and `angle` to a rotation matrix.

@@ -1,22 +1,12 @@
 //! Edges and corners: nodes that meet several obstacles, and scenes with several contact surfaces.
 
-use crate::common;
-use crate::common::{block, methods, rotation, run, solve, turn, uniform};
-use signorini_contact::{
-    Analysis, Contact, ContactError, ContactState, Friction, Load, Scene, Settings, Simulation,
-    Support,
-};
-use signorini_fem_mesh::{FacetTag, History, TetMesh, brick};
+use crate::common::*;
 
 const YOUNG: f64 = 1e6;
 const POISSON: f64 = 0.3;
 
 fn cube(cells: usize) -> TetMesh {
     block([1.0; 3], [cells; 3])
-}
-
-fn tight() -> Settings {
-    Settings::default().with_tolerance(1e-9)
 }
 
 fn worst(u: &[f64], mesh: &TetMesh, exact: impl Fn([f64; 3]) -> [f64; 3]) -> f64 {
@@ -57,7 +47,7 @@ fn a_cube_in_a_corner_is_under_hydrostatic_pressure() {
                 let what = format!("{} {boxes:?} {}", contacts.len(), method.name());
                 let scene = cornered(&contacts, cells).with_boxes(boxes);
                 let mesh = scene.mesh().clone();
-                let (simulation, levels) = run(scene, tight().with_method(method));
+                let (simulation, levels) = run(scene, at(1e-9).with_method(method));
                 let gluing = simulation.tfeti().gluing();
                 assert_eq!(
                     gluing.ranges().normal.len(),
@@ -99,7 +89,7 @@ fn a_cube_in_a_box_is_under_uniaxial_strain() {
             .with_load(Load::pressure(brick::Z_MAX, pressure))
             .with_boxes(boxes);
         let mesh = scene.mesh().clone();
-        let level = solve(scene, tight());
+        let level = solve(scene, at(1e-9));
         let off = worst(&level.displacement, &mesh, |x| [0.0, 0.0, strain * x[2]]);
         assert!(off < 1e-6, "{boxes:?}: {off:e}");
     }
@@ -119,17 +109,17 @@ fn rough_corner(friction: Friction) -> Scene {
 #[test]
 fn a_corner_with_friction_does_not_depend_on_the_cut() {
     let scene = rough_corner(Friction::tresca(150.0));
-    let reference = run(scene.clone(), tight()).1;
+    let reference = run(scene.clone(), at(1e-9)).1;
     for boxes in [[1, 1, 1], [3, 1, 1], [2, 2, 2]] {
-        let levels = run(scene.clone().with_boxes(boxes), tight()).1;
+        let levels = run(scene.clone().with_boxes(boxes), at(1e-9)).1;
         for (a, b) in levels.iter().zip(&reference) {
-            let off = common::distance(&a.displacement, &b.displacement);
+            let off = distance(&a.displacement, &b.displacement);
             assert!(off < 1e-5, "{boxes:?}: {off:e}");
             assert!(!a.report.fallback, "{boxes:?}");
         }
         // with Coulomb's law bounds follow the forces: one of several solutions, certified
         let scene = rough_corner(Friction::coulomb(0.3)).with_boxes(boxes);
-        for level in run(scene, tight()).1 {
+        for level in run(scene, at(1e-9)).1 {
             assert!(!level.report.fallback, "{boxes:?}");
         }
     }
@@ -160,7 +150,7 @@ fn a_block_slides_along_a_groove() {
                     Support::components(back.clone(), [true, false, false])
                         .with_motion([0.1, 0.0, 0.0], History::constant(1.0)),
                 );
-            let level = solve(scene, tight().with_method(method.clone()));
+            let level = solve(scene, at(1e-9).with_method(method.clone()));
             let found = -level.summary.friction_force[0];
             let expected = 2.0_f64.sqrt() * coefficient;
             assert!(
@@ -200,7 +190,7 @@ fn each_surface_has_its_own_law() {
         (Friction::tresca(0.05), 0.05 * 2.0),
     ];
     for (wall, own) in walls {
-        let (simulation, levels) = run(scene(wall.clone()), tight());
+        let (simulation, levels) = run(scene(wall.clone()), at(1e-9));
         let level = &levels[0];
         let found = -level.summary.friction_force[0];
         let expected = coefficient * weight + own;
@@ -241,7 +231,7 @@ fn parts_of_a_floor_share_their_nodes() {
         .with_support(
             Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -1e-3], History::constant(1.0)),
         );
-    let level = solve(scene, tight());
+    let level = solve(scene, at(1e-9));
     assert_eq!(level.points.len(), 15);
     let area: f64 = level.points.iter().map(|p| p.area).sum();
     assert!((area - 2.0).abs() < 1e-12);
@@ -301,7 +291,7 @@ fn one_tag_may_meet_two_obstacles() {
         .with_contact(floor.clone())
         .with_contact(wall)
         .with_load(Load::body([500.0, 0.0, -1000.0]));
-    let level = solve(scene, tight());
+    let level = solve(scene, at(1e-9));
     assert_eq!(level.points.len(), 18);
     let wall: f64 = level
         .points
@@ -316,7 +306,7 @@ fn one_tag_may_meet_two_obstacles() {
         .with_contact(floor.clone())
         .with_contact(floor)
         .with_load(Load::body([0.0, 0.0, -1000.0]));
-    let points = solve(same, tight()).points;
+    let points = solve(same, at(1e-9)).points;
     assert_eq!(points.len(), 9);
     let area: f64 = points.iter().map(|p| p.area).sum();
     assert!(
@@ -335,14 +325,14 @@ fn the_angle_of_a_crease_is_checked_and_can_be_chosen() {
     for bad in [0.0, -1.0, 181.0, f64::NAN] {
         let scene = cornered(&[contact(bad)], 2);
         assert!(matches!(
-            Simulation::new(scene, tight()),
+            Simulation::new(scene, at(1e-9)),
             Err(ContactError::Setting { name: "crease", .. })
         ));
     }
     let rows = |degrees| {
         let scene = cornered(&[contact(degrees)], 2)
             .with_support(Support::components(brick::Y_MIN, [false, true, false]));
-        let simulation = Simulation::new(scene, tight()).expect("set-up");
+        let simulation = Simulation::new(scene, at(1e-9)).expect("set-up");
         simulation.constrained_points().len()
     };
     assert_eq!(
@@ -367,7 +357,7 @@ fn a_rough_corner_has_the_same_bits_on_any_number_of_threads() {
     let one = on(1);
     for threads in [2, 3] {
         for (a, b) in one.iter().zip(&on(threads)) {
-            assert_eq!(common::bits(a), common::bits(b), "{threads}");
+            assert_eq!(bits(a), bits(b), "{threads}");
         }
     }
 }

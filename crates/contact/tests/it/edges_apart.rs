@@ -1,9 +1,7 @@
-//! Contacts that a scene names apart stay apart where they share nodes, at any angle between them.
+//! Contacts that a scene names apart stay apart where they share nodes, at any angle between them; on a flat side the nearer
+//! obstacle acts with its own law.
 
-use crate::common;
-use crate::common::{Solved, block, methods, run, solve, uniform};
-use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
-use signorini_fem_mesh::{Facet, FacetTag, History, TetMesh, brick};
+use crate::common::*;
 
 /// How deep nodes are inside an obstacle with one normal, over the largest displacement.
 fn depth(scene: &Scene, level: &Solved, tag: FacetTag, normal: [f64; 3], gap: f64) -> f64 {
@@ -94,7 +92,7 @@ fn the_smaller_the_angle_the_more_it_is_one_side() {
         let side = |tag| Contact::rigid(tag).with_friction(Friction::coulomb(friction));
         let scene = pressed(kinked(angle), side(brick::Z_MIN), side(RIGHT));
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
-        let level = common::step(&mut simulation);
+        let level = step(&mut simulation);
         let found = level.certificate.largest();
         // rows that nearly depend on one another leave the certificate above the tolerance, not above its limit
         assert!(level.report.status.converged() && found < 3e-5, "{found:e}");
@@ -110,7 +108,7 @@ fn the_smaller_the_angle_the_more_it_is_one_side() {
     for friction in [0.0, 0.3] {
         let (points, flat) = of(0.0, friction, Settings::default());
         assert_eq!(points, 27);
-        for settings in methods().map(|m| Settings::default().with_method(m)) {
+        for settings in methods().map(|m| by(m)) {
             for exponent in 1..9 {
                 let angle = 10.0_f64.powi(-exponent);
                 let (points, force) = of(angle, friction, settings.clone());
@@ -198,5 +196,70 @@ fn a_partner_and_an_obstacle_are_two() {
         let level = solve(scene.clone(), Settings::default());
         let floor = depth(&scene, &level, RIGHT, [0.0, 0.0, -1.0], 0.0);
         assert!(floor < 1e-6, "{floor:e}");
+    }
+}
+
+/// A brick whose lower side has another tag beyond x = 1.
+fn two_tags() -> TetMesh {
+    let mesh = block([2.0, 1.0, 1.0], [4, 2, 2]);
+    let points = mesh.points().to_vec();
+    let facets = mesh.facets().iter().map(|f| {
+        let mut facet = *f;
+        let x = f.nodes.iter().map(|n| points[*n as usize][0]).sum::<f64>() / 3.0;
+        if f.tag == brick::Z_MIN && x > 1.0 {
+            facet.tag = RIGHT;
+        }
+        facet
+    });
+    let facets = facets.collect();
+    TetMesh::new(points.clone(), mesh.tets().to_vec(), facets).expect("mesh")
+}
+
+#[test]
+fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
+    let press = 1e-3;
+    let (near, far) = (0.0, 0.4 * press);
+    let mesh = two_tags();
+    let border: Vec<u32> = (0..)
+        .zip(mesh.points())
+        .filter(|(_, x)| x[0] == 1.0 && x[2] == 0.0)
+        .map(|(n, _)| n)
+        .collect();
+    assert_eq!(border.len(), 3);
+    let part = |tag, gap, mu| {
+        Contact::rigid(tag)
+            .with_gap(gap)
+            .with_friction(Friction::coulomb(mu))
+    };
+    let (first, second) = (part(brick::Z_MIN, near, 0.4), part(RIGHT, far, 0.1));
+    for contacts in [[first.clone(), second.clone()], [second, first]] {
+        let nearer = contacts.iter().position(|c| c.tags() == [brick::Z_MIN]);
+        let scene = Scene::new(mesh.clone(), uniform(1e6, 0.3)).with_support(
+            Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -press], History::constant(1.0)),
+        );
+        let scene = contacts.into_iter().fold(scene, Scene::with_contact);
+        let level = solve(scene, tight());
+        for &node in &border {
+            // no deeper than the nearer obstacle lets it
+            let down = -level.displacement[3 * node as usize + 2];
+            assert!(down <= near + 1e-9 * press, "node {node}: {down:e}");
+            let pressed = level
+                .points
+                .iter()
+                .filter(|p| p.node == node && p.normal_force < -1e-3);
+            let pressed: Vec<_> = pressed.collect();
+            assert_eq!(pressed.len(), 1, "{pressed:?}");
+            let (point, force) = (pressed[0], -pressed[0].normal_force);
+            assert_eq!(Some(point.surface), nearer);
+            assert!((point.slip_bound - 0.4 * force).abs() <= 1e-9 * force);
+            let friction = norm(&point.friction_force);
+            assert!((friction - 0.4 * force).abs() <= 1e-6 * force, "{point:?}");
+        }
+        // beyond the border the other part counts
+        let beyond = level.points.iter().filter(|p| Some(p.surface) != nearer);
+        assert!(beyond.clone().count() >= 6);
+        for point in beyond {
+            assert!((point.slip_bound + 0.1 * point.normal_force).abs() < 1e-9);
+        }
     }
 }

@@ -1,13 +1,6 @@
 //! Effects that are absent cost nothing: the counters and sizes say so.
 
-use crate::common;
-use crate::common::{
-    block, foundation, loaded_brick, methods, run, small_benchmark, solve, steel, weakening,
-};
-use signorini_contact::{
-    Analysis, Contact, Counters, Friction, Load, Method, Plan, Scene, Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{History, brick};
+use crate::common::*;
 
 fn statics(friction: Friction) -> Scene {
     small_benchmark(friction, 1).with_analysis(Analysis::statics())
@@ -29,10 +22,7 @@ fn without_friction_there_are_no_tangential_rows() {
         bare.tfeti().dual_dim() + 2 * ranges.normal.len()
     );
     for method in methods() {
-        let level = solve(
-            statics(Friction::None),
-            Settings::default().with_method(method),
-        );
+        let level = solve(statics(Friction::None), by(method));
         assert_eq!(level.report.counters.slip_bound_updates, 0);
         assert!(level.report.fixed_point.is_none());
         assert!(
@@ -49,7 +39,7 @@ fn given_friction_is_one_quadratic_program_a_step() {
     let steps = 5;
     let scene = || small_benchmark(Friction::tresca(3e8), steps);
     for method in [Method::paper(), Method::one_loop()] {
-        let (_, levels) = run(scene(), Settings::default().with_method(method));
+        let (_, levels) = run(scene(), by(method));
         for level in &levels {
             assert_eq!(level.report.counters.quadratic_programs, 1);
             assert_eq!(level.report.counters.slip_bound_updates, 1);
@@ -66,12 +56,12 @@ fn given_friction_is_one_quadratic_program_a_step() {
     }
     // Coulomb friction needs more than one, so that the counter can tell
     let coulomb = small_benchmark(Friction::coulomb(0.3), steps);
-    let (simulation, _) = run(coulomb, Settings::default().with_method(Method::paper()));
+    let (simulation, _) = run(coulomb, by(Method::paper()));
     assert!(simulation.counters().quadratic_programs > steps);
 }
 
 /// The face method writes given bounds once a level.
-fn set_by_hook(level: &common::Solved) -> usize {
+fn set_by_hook(level: &Solved) -> usize {
     assert!(!level.report.fallback);
     1
 }
@@ -116,10 +106,10 @@ fn without_friction_quasistatic_levels_keep_no_traces() {
 #[test]
 fn a_body_without_foundation_never_enters_an_inequality_solver() {
     for method in methods() {
-        let scene = loaded_brick(block([3.0, 1.0, 1.0], [6, 2, 2]), common::ramp())
+        let scene = loaded_brick(block([3.0, 1.0, 1.0], [6, 2, 2]), ramp())
             .with_boxes([3, 1, 1])
-            .with_analysis(common::paper_steps(1.0, 3));
-        let settings = Settings::default().with_method(method);
+            .with_analysis(paper_steps(1.0, 3));
+        let settings = by(method);
         let (simulation, levels) = run(scene, settings);
         assert_eq!(simulation.plan().method, "linear");
         assert!(!simulation.plan().effects.contact);
@@ -141,7 +131,7 @@ fn a_body_without_foundation_never_enters_an_inequality_solver() {
 fn a_constant_coefficient_computes_no_rate() {
     let steps = 4;
     for method in methods() {
-        let settings = Settings::default().with_method(method);
+        let settings = by(method);
         let count = |friction| {
             let (simulation, _) = run(small_benchmark(friction, steps), settings.clone());
             simulation.counters().rate_updates
@@ -170,13 +160,13 @@ fn no_gap_no_offset() {
     let (field, c) = touching(Contact::rigid(brick::Z_MIN).with_gap_field(|_| 0.0));
     assert_eq!((none, zero, field), (false, false, true));
     assert!(a.summary.active > 0);
-    assert_eq!(common::bits(&a), common::bits(&b));
-    assert_eq!(common::bits(&a), common::bits(&c));
+    assert_eq!(bits(&a), bits(&b));
+    assert_eq!(bits(&a), bits(&c));
 }
 
 #[test]
 fn one_supported_subdomain_has_no_interface_rows() {
-    let whole = loaded_brick(block([3.0, 1.0, 1.0], [6, 2, 2]), common::ramp())
+    let whole = loaded_brick(block([3.0, 1.0, 1.0], [6, 2, 2]), ramp())
         .with_contact(foundation(Friction::None));
     let simulation = set_up(whole.clone());
     assert!(simulation.tfeti().gluing().ranges().interface.is_empty());
@@ -201,77 +191,7 @@ fn supports_that_rest_have_no_motion() {
 /// Equal subdomains share one factorisation.
 #[test]
 fn translates_share_their_factors() {
-    let simulation = set_up(common::benchmark(common::ramp(), 1));
+    let simulation = set_up(benchmark(ramp(), 1));
     let report = simulation.tfeti().report();
     assert_eq!((report.subdomains, report.classes.len()), (3, 2));
-}
-
-/// What the plan promises is what the set-up finds.
-/// A mesh in other units or in another place shows in the plan.
-#[test]
-fn the_plan_tells_the_range_of_the_gaps() {
-    let plan = |contact: Contact| {
-        let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel()).with_contact(contact);
-        Plan::new(&scene, &Settings::default()).expect("plan")
-    };
-    let touching = plan(Contact::rigid(brick::Z_MIN));
-    assert_eq!(touching.gaps, Some([0.0; 2]));
-    assert!(touching.to_string().contains("no gap"));
-    let wedge = plan(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 0.25 * x[0] - 0.125));
-    assert_eq!(wedge.gaps, Some([-0.125, 0.375]));
-    let text = wedge.to_string();
-    assert!(
-        text.contains("gaps -1.250e-1 to 3.750e-1 m, starts inside"),
-        "{text}"
-    );
-    let scene =
-        Scene::new(block([1.0; 3], [2; 3]), steel()).with_support(Support::fixed(brick::X_MIN));
-    let none = Plan::new(&scene, &Settings::default()).expect("plan");
-    assert_eq!(none.gaps, None);
-}
-
-#[test]
-fn the_plan_predicts_the_rows() {
-    for scene in [
-        statics(Friction::None),
-        statics(Friction::coulomb(0.3)),
-        common::benchmark(common::ramp(), 3),
-        common::benchmark(common::ramp(), 3).with_boxes([1, 1, 1]),
-    ] {
-        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
-        let simulation = set_up(scene);
-        let ranges = simulation.tfeti().gluing().ranges().clone();
-        assert_eq!(plan.normal_rows, ranges.normal.len());
-        assert_eq!(plan.tangential_rows, ranges.tangential().len());
-        assert_eq!(plan.interface_rows, ranges.interface.len());
-        assert_eq!(plan.dirichlet_rows, ranges.dirichlet.len());
-        assert_eq!(plan.dual(), simulation.tfeti().dual_dim());
-        assert_eq!(plan.primal, simulation.tfeti().torn_dim());
-    }
-}
-
-/// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that outweighs all else.
-#[test]
-fn the_plan_knows_what_very_small_subdomains_cost() {
-    let plan = |n: usize, small: bool| {
-        let mesh = block([3.0, 1.0, 1.0], [3 * n, n, n]);
-        let parts = (0..mesh.tets().len() as u32).collect();
-        let scene = Scene::new(mesh, steel())
-            .with_support(Support::fixed(brick::X_MIN))
-            .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
-            .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01));
-        let scene = if small {
-            scene.with_parts(parts)
-        } else {
-            scene.with_boxes([3, 1, 1])
-        };
-        Plan::new(&scene, &Settings::default()).expect("plan")
-    };
-    let seconds = |p: &Plan| p.estimate.setup_seconds() + p.estimate.solve_seconds();
-    let (coarse, fine) = (plan(3, true), plan(6, true));
-    // eight times as many subdomains, nearly their square
-    assert!(seconds(&fine) > 30.0 * seconds(&coarse));
-    assert!(seconds(&fine) > 30.0 * seconds(&plan(6, false)));
-    assert!(fine.to_string().contains("too small ones"), "{fine}");
-    assert!(!plan(6, false).to_string().contains("too small ones"));
 }

@@ -1,11 +1,6 @@
 //! Bodies that nothing holds: what the messages say, and with which numbers.
 
-use crate::common;
-use crate::common::{block, steel};
-use signorini_contact::{
-    Analysis, Contact, ContactError, Load, Method, Scene, Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{Facet, History, TetMesh, brick};
+use crate::common::*;
 
 fn free(mesh: TetMesh) -> Scene {
     Scene::new(mesh, steel())
@@ -115,12 +110,12 @@ fn of_two_bodies_the_one_pushed_most_is_named() {
     let mut facets = one.facets().to_vec();
     facets.extend(one.facets().iter().map(|f| Facet {
         nodes: f.nodes.map(|n| n + count),
-        tag: signorini_fem_mesh::FacetTag(f.tag.0 + 100),
+        tag: FacetTag(f.tag.0 + 100),
     }));
     let parts = (0..tets.len())
         .map(|t| u32::from(t >= one.tets().len()))
         .collect();
-    let other = signorini_fem_mesh::FacetTag(brick::Z_MAX.0 + 100);
+    let other = FacetTag(brick::Z_MAX.0 + 100);
     let scene = free(TetMesh::new(points, tets, facets).expect("mesh"))
         .with_parts(parts)
         .with_load(Load::pressure(brick::Z_MAX, 3e6))
@@ -153,7 +148,7 @@ fn without_forces_or_in_balance_the_motions_are_free() {
     let floor = cube()
         .with_load(Load::pressure(brick::Z_MAX, 1e7))
         .with_contact(Contact::rigid(brick::Z_MIN));
-    let paper = Settings::default().with_method(Method::paper());
+    let paper = by(Method::paper());
     let turning = cube().with_support(Support::fixed(vec![0]));
     for (scene, settings, expected) in [
         (cube(), Settings::default(), 6),
@@ -182,25 +177,17 @@ fn without_forces_or_in_balance_the_motions_are_free() {
 /// Given friction holds bounds times area whatever the pressure, and no more.
 #[test]
 fn loads_beyond_given_slip_bounds_are_refused() {
-    use signorini_contact::{Contact, ContactError, Friction, Load, Scene, Settings, Simulation};
-    use signorini_fem_mesh::brick;
     let scene = |along: f64| {
-        Scene::new(
-            common::block([2.0, 1.0, 1.0], [4, 2, 2]),
-            common::uniform(1e6, 0.3),
-        )
-        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(30.0)))
-        .with_load(Load::pressure(brick::Z_MAX, 100.0))
-        .with_load(Load::body([0.6 * along / 2.0, 0.8 * along / 2.0, 0.0]))
+        Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e6, 0.3))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(30.0)))
+            .with_load(Load::pressure(brick::Z_MAX, 100.0))
+            .with_load(Load::body([0.6 * along / 2.0, 0.8 * along / 2.0, 0.0]))
     };
     // 30 Pa on 2 m²: 60 N, and 200 N of pressure keep the block from tipping
     for along in [0.0, 20.0, 59.0] {
-        let level = common::solve(scene(along), Settings::default());
+        let level = solve(scene(along), Settings::default());
         let held = level.summary.friction_force;
-        assert!(
-            (common::norm(&held) - along).abs() < 1e-3,
-            "{along}: {held:?}"
-        );
+        assert!((norm(&held) - along).abs() < 1e-3, "{along}: {held:?}");
     }
     for along in [60.1, 90.0] {
         match Simulation::new(scene(along), Settings::default()) {
@@ -227,7 +214,6 @@ fn a_pull_beyond_friction_is_named() {
             error => panic!("{error}"),
         }
     };
-    use signorini_contact::Friction;
     for (friction, weight) in [
         (Friction::coulomb(0.19), 1e4),
         (Friction::tresca(1.9e3), 1e5),

@@ -1,18 +1,9 @@
 //! Obstacles whose gap depends on the place, and that move along the surface: the gap moves with them.
 
-use crate::common;
-use crate::common::{Solved, assert_close, block, ramp, run, uniform};
-use signorini_contact::{
-    Analysis, Contact, ContactError, Friction, Load, Plan, Scene, Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{History, TetMesh, brick, fields};
+use crate::common::*;
 
 const RADIUS: f64 = 2.0;
 const DEPTH: f64 = 0.02;
-
-fn settings() -> Settings {
-    Settings::default().with_tolerance(1e-9)
-}
 
 /// A paraboloid under the plane z = 0 with its top at (x, 1), pressed in by `DEPTH`.
 fn ball(x: f64) -> impl Fn([f64; 3]) -> f64 + Send + Sync + 'static {
@@ -29,8 +20,7 @@ fn scene(contact: Contact, steps: usize) -> Scene {
 
 /// The x coordinate of the centre of pressure.
 fn centre(mesh: &TetMesh, level: &Solved) -> f64 {
-    let moment =
-        |p: &signorini_contact::PointState| -p.normal_force * mesh.points()[p.node as usize][0];
+    let moment = |p: &PointState| -p.normal_force * mesh.points()[p.node as usize][0];
     level.points.iter().map(moment).sum::<f64>() / level.summary.normal_force
 }
 
@@ -44,7 +34,7 @@ fn the_pressure_goes_with_a_ball_that_is_dragged() {
             .with_motion([2.0, 0.0, 0.0], ramp());
         let scene = scene(contact, 4);
         let mesh = scene.mesh().clone();
-        let (_, levels) = run(scene, settings());
+        let (_, levels) = run(scene, at(1e-9));
         for level in &levels {
             let at = 2.0 + 2.0 * level.time;
             let found = centre(&mesh, level);
@@ -69,14 +59,14 @@ fn a_level_is_that_of_an_obstacle_that_stands_there() {
         .clone()
         .with_gap_field(ball(2.0))
         .with_motion(way, ramp());
-    let (_, levels) = run(scene(moving.clone(), 3), settings());
+    let (_, levels) = run(scene(moving.clone(), 3), at(1e-9));
     for level in &levels {
         let w = way.map(|c| level.time * c);
         let there = ball(2.0);
         let still = contact
             .clone()
             .with_gap_field(move |p| there([p[0] - w[0], p[1] - w[1], p[2]]) - w[2]);
-        let (_, still) = run(scene(still, 1), settings());
+        let (_, still) = run(scene(still, 1), at(1e-9));
         assert_close(
             &level.displacement,
             &still[0].displacement,
@@ -107,8 +97,8 @@ fn a_plane_is_where_its_point_has_moved() {
         let scene = Scene::new(arch(block([6.0, 2.0, 1.0], [12, 4, 2])), uniform(1e6, 0.3))
             .with_contact(contact)
             .with_support(Support::fixed(brick::Z_MAX))
-            .with_analysis(common::paper_steps(1.0, 1));
-        run(scene, settings()).1.remove(0)
+            .with_analysis(paper_steps(1.0, 1));
+        run(scene, at(1e-9)).1.remove(0)
     };
     let moved = solved(point, Some(way));
     let there = solved([0, 1, 2].map(|c| point[c] + way[c]), None);
@@ -130,7 +120,7 @@ fn the_work_of_a_wedge_is_stored() {
             .with_motion([2.0, 0.0, 0.0], ramp());
         let scene = scene(contact, steps);
         let (mesh, materials) = (scene.mesh().clone(), scene.materials().clone());
-        let (_, levels) = run(scene, settings());
+        let (_, levels) = run(scene, at(1e-9));
         let last = &levels[levels.len() - 1].displacement;
         let stored = fields::strain_energy(&mesh, &materials, last).expect("energy");
         let work: f64 = levels.iter().map(|l| l.summary.obstacle_work).sum();
@@ -156,18 +146,11 @@ fn a_run_over_a_moving_ball_continues() {
     first.step().expect("step");
     first.step().expect("step");
     second.resume(first.state().clone()).expect("resume");
-    let (all, rest) = (common::rest(&mut whole), common::rest(&mut second));
+    let (all, rest) = (rest(&mut whole), rest(&mut second));
     for (a, b) in all[2..].iter().zip(&rest) {
-        assert_eq!(common::bits(a), common::bits(b));
+        assert_eq!(bits(a), bits(b));
         assert_eq!(a.summary.obstacle_work, b.summary.obstacle_work);
     }
-}
-
-fn refused(scene: &Scene) -> ContactError {
-    let planned = Plan::new(scene, &Settings::default()).expect_err("refused");
-    let found = Simulation::new(scene.clone(), Settings::default()).expect_err("refused");
-    assert_eq!(planned.to_string(), found.to_string());
-    found
 }
 
 /// A field that knows the surface only, or takes an obstacle into a node that a support holds.
@@ -233,7 +216,7 @@ fn curved_sides_take_fields_along_short_ways() {
         Scene::new(bent.clone(), uniform(1e6, 0.3))
             .with_contact(contact)
             .with_support(Support::fixed(brick::Z_MAX))
-            .with_analysis(common::paper_steps(1.0, 2))
+            .with_analysis(paper_steps(1.0, 2))
     };
     let field = Contact::rigid(brick::Z_MIN).with_gap_field(|p| 0.01 + 0.01 * p[1].powi(2));
     let plan = |way: [f64; 3], contact: &Contact| {
@@ -273,8 +256,8 @@ fn a_constant_gap_has_nothing_to_bring() {
         let load = Load::traction(brick::X_MAX, [0.0, 0.0, -1e4]);
         scene(c, 2).with_load(load)
     };
-    let (_, a) = run(loaded(contact([0.0, 0.0, 0.02])), settings());
-    let (_, b) = run(loaded(contact([0.7, -0.3, 0.02])), settings());
+    let (_, a) = run(loaded(contact([0.0, 0.0, 0.02])), at(1e-9));
+    let (_, b) = run(loaded(contact([0.7, -0.3, 0.02])), at(1e-9));
     for (a, b) in a.iter().zip(&b) {
         assert_eq!(a.displacement, b.displacement);
     }

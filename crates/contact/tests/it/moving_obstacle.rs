@@ -1,19 +1,9 @@
 //! Obstacles that move: a plate drawn from under a block is a block drawn over a plate.
 
-use crate::common;
-use crate::common::{block, methods, ramp, run, uniform};
-use signorini_contact::{
-    Analysis, Contact, ContactError, ContactState, DifferenceFormula, Friction, Load, Place, Scene,
-    Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{History, brick, fields};
+use crate::common::*;
 
 const WAY: f64 = 2e-3;
 const PRESSURE: f64 = 1e3;
-
-fn settings() -> Settings {
-    Settings::default().with_tolerance(1e-9)
-}
 
 fn there_and_back() -> History {
     History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, -0.5)]).expect("table")
@@ -39,11 +29,7 @@ fn top() -> Support {
 
 #[test]
 fn a_plate_under_a_block_is_a_block_over_a_plate() {
-    let laws = [
-        Friction::coulomb(0.3),
-        Friction::tresca(200.0),
-        common::weakening(),
-    ];
+    let laws = [Friction::coulomb(0.3), Friction::tresca(200.0), weakening()];
     let way = [WAY, 0.5 * WAY, 0.0];
     for law in laws {
         for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
@@ -53,7 +39,7 @@ fn a_plate_under_a_block_is_a_block_over_a_plate() {
                 let moving = scene(plate, top(), formula, boxes);
                 let drawn = top().with_motion(way, there_and_back());
                 let drawn = scene(floor(law.clone()), drawn, formula, boxes);
-                let settings = settings().with_method(method.clone());
+                let settings = at(1e-9).with_method(method.clone());
                 let (_, a) = run(moving, settings.clone());
                 let (_, b) = run(drawn, settings);
                 for (a, b) in a.iter().zip(&b) {
@@ -65,16 +51,16 @@ fn a_plate_under_a_block_is_a_block_over_a_plate() {
                         .enumerate()
                         .map(|(k, u)| u - shift * way[k % 3])
                         .collect();
-                    common::assert_close(&a.displacement, &relative, 1e-5, &what);
-                    let (x, y) = (common::forces(&a.points), common::forces(&b.points));
-                    common::assert_close(&x, &y, 1e-5, &what);
+                    assert_close(&a.displacement, &relative, 1e-5, &what);
+                    let (x, y) = (forces(&a.points), forces(&b.points));
+                    assert_close(&x, &y, 1e-5, &what);
                     let [p, q] = [a, b].map(|l| l.summary.friction_work);
                     assert!((p - q).abs() <= 1e-5 * q.abs().max(1e-3), "{what}: {p} {q}");
                     let [p, q] = [a, b].map(|l| l.summary.max_slip_rate);
                     assert!((p - q).abs() <= 1e-5 * q.abs().max(1e-6), "{what}: {p} {q}");
                     assert_eq!(b.summary.obstacle_work, 0.0);
                 }
-                let slides = |p: &signorini_contact::PointState| p.state == ContactState::Slip;
+                let slides = |p: &PointState| p.state == ContactState::Slip;
                 assert!(a.iter().any(|l| l.points.iter().any(slides)));
             }
         }
@@ -92,7 +78,7 @@ fn the_work_of_the_obstacle_is_stored_or_lost() {
             .with_analysis(Analysis::quasistatic(1.0, steps));
         let mesh = scene.mesh().clone();
         let materials = scene.materials().clone();
-        let (_, levels) = run(scene, settings());
+        let (_, levels) = run(scene, at(1e-9));
         let energy = |u: &[f64]| fields::strain_energy(&mesh, &materials, u).expect("energy");
         let mut sum = 0.0;
         let (mut lost, mut dragged, mut before) = (0.0, 0.0, 0.0);
@@ -127,8 +113,8 @@ fn an_obstacle_that_rises_closes_the_gap() {
         )
         .with_support(Support::fixed(brick::Z_MAX))
         .with_boxes([1, 1, 2])
-        .with_analysis(common::paper_steps(1.0, 6));
-    let (simulation, levels) = run(scene, settings());
+        .with_analysis(paper_steps(1.0, 6));
+    let (simulation, levels) = run(scene, at(1e-9));
     assert!(simulation.plan().effects.moving_obstacle);
     for level in &levels {
         let depth = (rise * level.time - gap).max(0.0);
@@ -151,7 +137,7 @@ fn nodes_that_are_held_slide_on_a_plate_that_moves() {
     let plate = floor(Friction::coulomb(0.2)).with_motion([0.0, WAY, 0.0], ramp());
     let still = Support::components(brick::Z_MIN, [true, true, false]);
     let scene = scene(plate, still, DifferenceFormula::BACKWARD_EULER, [1, 1, 1]);
-    for level in run(scene, settings()).1 {
+    for level in run(scene, at(1e-9)).1 {
         let friction = level.summary.friction_force[1];
         assert!((friction - 0.2 * 2.0 * PRESSURE).abs() < 1e-5, "{friction}");
         assert!((level.summary.obstacle_work - friction * WAY / 6.0).abs() < 1e-9);
@@ -164,8 +150,8 @@ fn obstacles_that_move_are_checked() {
         let scene = Scene::new(block([1.0; 3], [2, 2, 2]), uniform(1e6, 0.3))
             .with_contact(contact)
             .with_support(Support::fixed(place))
-            .with_analysis(common::paper_steps(1.0, 4));
-        Simulation::new(scene, settings()).err()
+            .with_analysis(paper_steps(1.0, 4));
+        Simulation::new(scene, at(1e-9)).err()
     };
     let up = floor(Friction::None).with_gap(0.1);
     let x = || Place::Tag(brick::X_MIN);
@@ -202,9 +188,9 @@ fn a_run_over_a_moving_plate_continues() {
     }
     let mut second = make();
     second.resume(first.state().clone()).expect("resume");
-    let (all, rest) = (common::rest(&mut whole), common::rest(&mut second));
+    let (all, rest) = (rest(&mut whole), rest(&mut second));
     for (a, b) in all[3..].iter().zip(&rest) {
-        assert_eq!(common::bits(a), common::bits(b));
+        assert_eq!(bits(a), bits(b));
         assert_eq!(a.summary.obstacle_work, b.summary.obstacle_work);
     }
 }

@@ -1,11 +1,6 @@
-//! Checks 1 and 2: uniform stress states, which linear elements hold exactly on every mesh and decomposition.
+//! Uniform stress states, which linear elements hold exactly on every mesh and decomposition.
 
-use crate::common;
-use crate::common::{assert_close, block, count, distance, methods, solve, tight, uniform};
-use signorini_contact::{
-    Contact, ContactError, ContactState, Friction, Load, Scene, Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{Brick, History, TetMesh, brick};
+use crate::common::*;
 
 const YOUNG: f64 = 1000.0;
 const PRESSURE: f64 = 10.0;
@@ -58,7 +53,7 @@ fn node_at(mesh: &TetMesh, place: [f64; 3]) -> u32 {
     mesh.points().iter().position(at).expect("node") as u32
 }
 
-/// Check 1.
+/// Uniform pressure, closed form.
 #[test]
 fn normal_patch_on_any_mesh_and_decomposition() {
     let poisson = 0.3;
@@ -110,7 +105,7 @@ fn sheared(mesh: TetMesh, t: f64, angle: f64, coefficient: f64) -> Scene {
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(coefficient)))
 }
 
-/// Check 2, below the threshold; there is no support at all.
+/// Uniform shear below the threshold, closed form; there is no support at all.
 #[test]
 fn friction_patch_in_all_directions() {
     let (t, coefficient) = (2.5, 0.3);
@@ -121,7 +116,7 @@ fn friction_patch_in_all_directions() {
             let scene = sheared(mesh.clone(), t, angle, coefficient);
             let (cut, scene) = cuts(&scene).swap_remove(k);
             let what = format!("{mesh_name}, {cut}, {angle}");
-            let level = solve(scene, Settings::default().with_tolerance(1e-11));
+            let level = solve(scene, at(1e-11));
             let exact: Vec<f64> = mesh
                 .points()
                 .iter()
@@ -146,7 +141,7 @@ fn friction_patch_in_all_directions() {
     }
 }
 
-/// Check 2: the threshold F p, bracketed to 1e-6 in several directions. The top is moved, so that there is
+/// The threshold F p, bracketed to 1e-6 in several directions. The top is moved, so that there is
 /// equilibrium on both sides of it.
 #[test]
 fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
@@ -164,12 +159,7 @@ fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
                         Support::fixed(brick::Z_MAX).with_motion(top, History::constant(1.0)),
                     )
                     .with_boxes([2, 1, 1]);
-                solve(
-                    scene,
-                    Settings::default()
-                        .with_tolerance(1e-9)
-                        .with_method(method.clone()),
-                )
+                solve(scene, at(1e-9).with_method(method.clone()))
             };
             // the state is reported to 1e-5 of the bound, the difference itself is sharper
             let clear = at(limit * (1.0 - 2e-5));
@@ -188,19 +178,19 @@ fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
                 method.name()
             );
             for (a, b) in above.points.iter().zip(&below.points) {
-                let slip = common::norm(&a.difference);
+                let slip = norm(&a.difference);
                 assert!(
                     (slip / (1e-6 * limit / shear) - 1.0).abs() < 1e-2,
                     "{slip:e}"
                 );
-                let stick = common::norm(&b.difference);
+                let stick = norm(&b.difference);
                 assert!(stick < 1e-9 * limit / shear, "{stick:e}");
             }
         }
     }
 }
 
-/// Check 2, driven by forces alone: above the threshold nothing holds the body, and no method may claim that it
+/// Driven by forces alone: above the threshold nothing holds the body, and no method may claim that it
 /// found an equilibrium.
 #[test]
 fn above_the_threshold_no_equilibrium_is_claimed() {
@@ -209,9 +199,7 @@ fn above_the_threshold_no_equilibrium_is_claimed() {
             let t = 0.3 * PRESSURE * (1.0 + excess);
             let scene = sheared(block([1.0; 3], [2, 2, 2]), t, angle, 0.3).with_boxes([2, 1, 1]);
             // an excess of a millionth is seen by a tolerance below it only
-            let settings = Settings::default()
-                .with_method(method.clone())
-                .with_tolerance(1e-8);
+            let settings = by(method.clone()).with_tolerance(1e-8);
             let mut simulation = match Simulation::new(scene, settings) {
                 Ok(simulation) => simulation,
                 // known before anything is solved
@@ -230,7 +218,7 @@ fn above_the_threshold_no_equilibrium_is_claimed() {
     }
 }
 
-/// Check 2, driven by forces alone, below the threshold: the body is held by friction only, so that the first slip
+/// Driven by forces alone, below the threshold: the body is held by friction only, so that the first slip
 /// bounds (those of no contact force) hold nothing.
 fn held_by_friction(margin: f64) {
     for angle in [0.0, 1.1, 3.0] {

@@ -1,15 +1,134 @@
-//! Reactions of supports: balance with contact and loads, known values, and nothing that depends on how the scene is solved.
+//! Forces, moments and dissipation in every step: reactions of supports, contact and loads are in balance.
 
-use crate::common;
-use crate::common::{
-    assert_close, block, methods, norm, ramp, run, small_benchmark, solve, tight, uniform,
-    weakening,
-};
-use signorini_contact::{
-    Contact, Directions, Friction, Load, Reactions, Scene, Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{FacetTag, Hooke, Materials, Surface, brick};
+use crate::common::*;
 use signorini_tfeti::RowScaling;
+
+/// Forces that the displacement of a level exerts on the nodes: K u, summed over the copies.
+fn internal_forces(simulation: &Simulation, torn: &[f64]) -> Vec<[f64; 3]> {
+    let mut sum = vec![[0.0; 3]; simulation.scene().mesh().points().len()];
+    let mut force = vec![0.0; torn.len()];
+    simulation.tfeti().stiffness_times(torn, &mut force);
+    let subdomains = simulation.decomposition().subdomains();
+    let nodes = subdomains.iter().flat_map(|s| &s.nodes);
+    for (&node, f) in nodes.zip(force.chunks_exact(3)) {
+        (0..3).for_each(|c| sum[node as usize][c] += f[c]);
+    }
+    sum
+}
+
+/// Nodal loads of the benchmark at time t.
+fn loads(mesh: &TetMesh, t: f64) -> Vec<[f64; 3]> {
+    let whole = Decomposition::whole(mesh);
+    let mut sum = vec![[0.0; 3]; mesh.points().len()];
+    for (tag, traction, factor) in [
+        (brick::Z_MAX, [0.0, 0.0, -30e8], ramp().value(t)),
+        (brick::X_MAX, [9e8, 0.0, -15e8], up_down_up().value(t)),
+    ] {
+        let local = assemble_load(mesh, &whole, &LoadDensity::traction(tag, traction));
+        for (node, f) in local.expect("load")[0].chunks_exact(3).enumerate() {
+            (0..3).for_each(|c| sum[node][c] += factor * f[c]);
+        }
+    }
+    sum
+}
+
+/// Sum and moment about the origin.
+fn resultants(points: &[[f64; 3]], forces: &[[f64; 3]]) -> [f64; 6] {
+    let mut sum = [0.0; 6];
+    for (x, f) in points.iter().zip(forces) {
+        let m = cross(*x, *f);
+        for c in 0..3 {
+            sum[c] += f[c];
+            sum[3 + c] += m[c];
+        }
+    }
+    sum
+}
+
+/// What K u leaves over is load, contact force or reaction of a support, node by node; and loads, contact forces and
+/// reactions have neither resultant nor moment.
+#[test]
+fn forces_and_moments_are_in_balance() {
+    for method in methods() {
+        let scene = benchmark(up_down_up(), 10);
+        let mesh = scene.mesh().clone();
+        let fixed = mesh.nodes_on(brick::X_MIN);
+        let (simulation, levels) = run(scene, by(method));
+        for (k, level) in levels.iter().enumerate() {
+            let load = loads(&mesh, level.time);
+            let mut contact = vec![[0.0; 3]; mesh.points().len()];
+            for p in &level.points {
+                // outward normal (0, 0, -1)
+                let f = p.friction_force;
+                contact[p.node as usize] = [f[0], f[1], f[2] - p.normal_force];
+            }
+            let mut reaction = vec![[0.0; 3]; mesh.points().len()];
+            let size = norm(&level.load);
+            for (node, f) in internal_forces(&simulation, &level.torn).iter().enumerate() {
+                let rest = [0, 1, 2].map(|c| f[c] - load[node][c] - contact[node][c]);
+                if fixed.contains(&(node as u32)) {
+                    reaction[node] = rest;
+                } else {
+                    assert!(
+                        norm(&rest) <= 1e-6 * size,
+                        "level {k}, node {node}: {rest:?}"
+                    );
+                }
+            }
+            let points = mesh.points();
+            let [l, c, r] = [&load, &contact, &reaction].map(|f| resultants(points, f));
+            let sum: Vec<f64> = (0..6).map(|i| l[i] + c[i] + r[i]).collect();
+            // the longest arm is that of the opposite corner
+            let good = norm(&sum[..3]) <= 1e-6 * size && norm(&sum[3..]) <= 3.3e-6 * size;
+            assert!(good, "level {k}: {sum:?} of {size:e}");
+            // the sums that the library reports are these
+            for i in 0..3 {
+                assert!((c[i] - level.summary.resultant[i]).abs() <= 1e-12 * size);
+                assert!((l[i] - level.load[i]).abs() <= 1e-12 * size);
+            }
+        }
+    }
+}
+
+/// Friction takes energy in every step, whatever the law and the formula.
+#[test]
+fn no_step_has_negative_dissipation() {
+    let laws = [
+        Friction::tresca(3e8),
+        Friction::coulomb(0.05),
+        Friction::coulomb(0.6),
+        weakening(),
+    ];
+    for law in laws {
+        for formula in [DifferenceFormula::PAPER, DifferenceFormula::BACKWARD_EULER] {
+            let scene = small_benchmark(law.clone(), 20);
+            let analysis = scene.analysis().clone().with_formula(formula);
+            let (_, levels) = run(scene.with_analysis(analysis), at(1e-8));
+            let total: f64 = levels.iter().map(|l| l.summary.dissipation).sum();
+            assert!(total > 0.0, "{law:?}: nothing slides");
+            for (k, level) in levels.iter().enumerate() {
+                let s = &level.summary;
+                assert!(
+                    s.dissipation >= -1e-6 * total,
+                    "{law:?}, level {k}: {:e}",
+                    s.dissipation
+                );
+                for p in &level.points {
+                    let work: f64 = (0..3).map(|c| p.friction_force[c] * p.difference[c]).sum();
+                    assert!(work <= 1e-6 * total, "{law:?}, level {k}, node {}", p.node);
+                    if p.state == ContactState::Open {
+                        assert!(
+                            matches!(law, Friction::Tresca(_)) || norm(&p.friction_force) == 0.0
+                        );
+                    }
+                }
+                if formula.is_one_step() {
+                    assert!((s.dissipation - s.friction_work).abs() <= 1e-9 * total);
+                }
+            }
+        }
+    }
+}
 
 fn reactions(simulation: &Simulation, point: [f64; 3]) -> Reactions {
     let frame = simulation.frame().expect("frame");
@@ -21,7 +140,7 @@ fn assert_balance(simulation: &Simulation, tolerance: f64, what: &str) {
         let r = reactions(simulation, point);
         assert_eq!(r.point, point);
         let rest = r.imbalance();
-        let size = |f: fn(&signorini_contact::Resultant) -> [f64; 3]| {
+        let size = |f: fn(&Resultant) -> [f64; 3]| {
             let parts = r.supports.iter().map(|s| norm(&f(&s.resultant)));
             parts.sum::<f64>() + norm(&f(&r.contact)) + norm(&f(&r.loads))
         };
@@ -40,7 +159,7 @@ fn assert_balance(simulation: &Simulation, tolerance: f64, what: &str) {
 fn supports_contact_and_loads_are_in_balance() {
     for method in methods() {
         let scene = small_benchmark(weakening(), 4);
-        let settings = Settings::default().with_method(method.clone());
+        let settings = by(method.clone());
         let mut simulation = Simulation::new(scene, settings).expect("set-up");
         while !simulation.is_finished() {
             let frame = simulation.step().expect("step");
@@ -109,7 +228,7 @@ fn a_moved_support_pulls_with_the_force_of_the_strain() {
                 .with_motion([0.0, 0.0, stretch], ramp()),
         )
         .with_boxes([2, 1, 2])
-        .with_analysis(common::paper_steps(1.0, 2));
+        .with_analysis(paper_steps(1.0, 2));
     let mut simulation = Simulation::new(scene, tight()).expect("set-up");
     let frame = simulation.step().expect("step");
     let r = frame.reactions().expect("reactions");
@@ -243,13 +362,9 @@ fn a_free_body_on_a_floor_has_no_reactions_but_contact() {
 /// has them at the nodes, opposite at partners.
 #[test]
 fn each_contact_surface_has_its_force() {
-    let second = |tag: FacetTag| FacetTag(tag.0 + 100);
     let lower = block([1.0; 3], [2; 3]);
-    let upper = lower
-        .map_points(|[x, y, z]| [x, y, z + 1.0])
-        .expect("moved");
     let count = lower.points().len();
-    let mesh = lower.append(&upper.map_tags(second)).expect("bodies");
+    let mesh = with_second(&lower, &lifted(&lower, 1.0));
     let rough = |contact: Contact| contact.with_friction(Friction::coulomb(0.3));
     let scene = Scene::new(mesh, uniform(1e4, 0.3))
         .with_load(Load::traction(second(brick::Z_MAX), [1.0, 0.0, -10.0]))
@@ -285,12 +400,8 @@ fn each_contact_surface_has_its_force() {
 /// theirs.
 #[test]
 fn reactions_at_contact_nodes_have_no_contact_forces() {
-    let second = |tag: FacetTag| FacetTag(tag.0 + 100);
     let lower = block([1.0; 3], [2; 3]);
-    let upper = lower
-        .map_points(|[x, y, z]| [x, y, z + 1.0])
-        .expect("moved");
-    let mesh = lower.append(&upper.map_tags(second)).expect("bodies");
+    let mesh = with_second(&lower, &lifted(&lower, 1.0));
     // pushed by a face with contact nodes until it slides, on either side of the contact
     for sides in [
         [second(brick::Z_MIN), brick::Z_MAX],

@@ -1,11 +1,6 @@
-//! Check 4: a block on a wedge (NAFEMS CGS-4). It slides up under the horizontal force F / G = (tan a + mu) / (1 - mu tan a).
+//! A block on a wedge (benchmark NAFEMS CGS-4). It slides up under the horizontal force F / G = (tan a + mu) / (1 - mu tan a).
 
-use crate::common;
-use crate::common::{block, methods, rotation, solve, turn, uniform};
-use signorini_contact::{
-    Contact, ContactError, Friction, Load, Scene, Settings, Simulation, Support,
-};
-use signorini_fem_mesh::{History, TetMesh, brick};
+use crate::common::*;
 
 /// tan a.
 const SLOPE: f64 = 0.1;
@@ -64,9 +59,7 @@ fn the_force_that_moves_the_block() {
                             .with_motion([0.1, 0.0, 0.0], History::constant(1.0)),
                     )
                     .with_support(Support::components(side, [false, true, false]));
-                let settings = Settings::default()
-                    .with_tolerance(1e-8)
-                    .with_method(method.clone());
+                let settings = at(1e-8).with_method(method.clone());
                 let level = solve(scene, settings);
                 // what the contact takes horizontally, the back must give
                 let found = -level.summary.resultant[0] / WEIGHT;
@@ -91,7 +84,7 @@ fn a_ten_thousandth_above_the_threshold_no_equilibrium_is_claimed() {
     for (coefficient, _) in &TABLE[1..] {
         for method in methods() {
             let scene = pushed(threshold(*coefficient) * (1.0 + 1e-4), *coefficient);
-            let settings = Settings::default().with_method(method.clone());
+            let settings = by(method.clone());
             let mut simulation = match Simulation::new(scene, settings) {
                 Ok(simulation) => simulation,
                 // known before anything is solved
@@ -124,7 +117,7 @@ fn half_of_the_threshold_is_held() {
             Settings::default(),
         );
         let normal = level.summary.normal_force;
-        assert!(common::norm(&level.summary.friction_force) <= coefficient * normal * (1.0 + 1e-6));
+        assert!(norm(&level.summary.friction_force) <= coefficient * normal * (1.0 + 1e-6));
     }
 }
 

@@ -1,21 +1,10 @@
-//! Contact between bodies whose contact nodes are supported on one side or on both.
+//! Contact between bodies whose contact nodes supports hold on one side or on both; estimates and reactions of pairs.
 
-use crate::common;
-use crate::common::{
-    assert_close, block, forces, methods, norm, run, solve, tight, uniform, up_down_up, weakening,
-};
-use signorini_contact::{Contact, Friction, Load, Scene, Settings, Support};
-use signorini_fem_mesh::{FacetTag, TetMesh, brick};
-use signorini_tfeti::Directions;
-
-fn second(tag: FacetTag) -> FacetTag {
-    FacetTag(tag.0 + 100)
-}
+use crate::common::*;
+use crate::pairs::beam;
 
 fn block_on(lower: &TetMesh) -> TetMesh {
-    let upper = block([1.0; 3], [2; 3]).map_points(|[x, y, z]| [x, y, z + 1.0]);
-    let upper = upper.expect("moved").map_tags(second);
-    lower.append(&upper).expect("two bodies")
+    with_second(lower, &lifted(&block([1.0; 3], [2; 3]), 1.0))
 }
 
 /// The second body is pushed, and the first one moved, or the obstacle in its place.
@@ -29,7 +18,7 @@ fn pushed(mesh: TetMesh, contact: Contact) -> Scene {
         ))
         .with_load(shear)
         .with_contact(contact.with_friction(weakening()))
-        .with_analysis(common::paper_steps(1.0, 5))
+        .with_analysis(paper_steps(1.0, 5))
 }
 
 /// A surface that supports hold and move as a whole is a rigid obstacle that moves, the history of its slip included.
@@ -111,8 +100,7 @@ fn reactions_have_the_contact_force_on_supported_nodes() {
         for (k, scene) in supported(&friction).into_iter().enumerate() {
             let scene = held(scene, second(brick::Y_MIN), &[[0.0, 1.0, 0.0]]);
             let scene = held(scene, second(brick::X_MAX), &[[1.0, 0.0, 0.0]]);
-            let mut simulation =
-                signorini_contact::Simulation::new(scene, tight()).expect("set-up");
+            let mut simulation = Simulation::new(scene, tight()).expect("set-up");
             let frame = simulation.step().expect("step");
             let reactions = frame.reactions().expect("reactions");
             let rest = reactions.imbalance();
@@ -139,16 +127,14 @@ fn the_algebraic_error_is_estimated_where_both_sides_are_held() {
             let scene = held(scene, second(brick::Y_MAX), &[[0.0, 1.0, 0.0]]);
             let scene = held(scene, second(brick::X_MAX), &[[1.0, 0.0, 0.0]]);
             let exact = solve(scene.clone(), tight().with_tolerance(1e-11)).displacement;
-            let settings = Settings::default().with_tolerance(1e-3);
-            let mut simulation =
-                signorini_contact::Simulation::new(scene, settings).expect("set-up");
+            let settings = at(1e-3);
+            let mut simulation = Simulation::new(scene, settings).expect("set-up");
             let frame = simulation.step().expect("step");
             let found = frame.displacement();
             let off: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| a - b).collect();
             let scene = frame.scene();
             let energy = |u: &[f64]| {
-                signorini_fem_mesh::fields::strain_energy(scene.mesh(), scene.materials(), u)
-                    .expect("energy")
+                fields::strain_energy(scene.mesh(), scene.materials(), u).expect("energy")
             };
             let truth = (energy(&off) / energy(&exact)).sqrt();
             let ratio = frame.algebraic_error().relative() / truth;
@@ -184,5 +170,35 @@ fn friction_joins_bodies_that_no_normal_row_joins() {
             tight().with_method(method),
         );
         assert_close(&level.displacement, &reference.displacement, 1e-6, "cut");
+    }
+}
+
+/// The estimate of the algebraic error bounds the truth, and is not far above it, whichever side supports hold.
+#[test]
+fn the_algebraic_error_is_estimated() {
+    let held = |tag: FacetTag| Support::components(tag, [false, true, false]);
+    for sides in [&[][..], &[brick::Y_MIN], &[second(brick::Y_MIN)]] {
+        let scene = || {
+            let scene = sides.iter().fold(beam(Some(4e11)), |scene, tag| {
+                scene.with_support(held(*tag))
+            });
+            scene.with_analysis(Analysis::Static { time: 1.0 })
+        };
+        let exact = solve(scene(), tight().with_tolerance(1e-11)).displacement;
+        let mut simulation = Simulation::new(scene(), at(1e-4)).expect("set-up");
+        let frame = simulation.step().expect("step");
+        let found = frame.displacement();
+        let off: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| a - b).collect();
+        let estimate = frame.algebraic_error();
+        let fields = |u: &[f64]| {
+            let scene = frame.scene();
+            fields::strain_energy(scene.mesh(), scene.materials(), u).expect("energy")
+        };
+        let truth = (fields(&off) / fields(&exact)).sqrt();
+        let ratio = estimate.relative() / truth;
+        assert!(
+            (0.9..30.0).contains(&ratio),
+            "{sides:?}: {ratio}, {truth:e}"
+        );
     }
 }

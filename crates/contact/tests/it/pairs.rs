@@ -1,24 +1,6 @@
 //! Contact between elastic bodies with matching meshes.
 
-use crate::common;
-use crate::common::{
-    assert_close, block, distance, forces, methods, norm, ramp, run, solve, steel, tight, uniform,
-    up_down_up, weakening,
-};
-use signorini_contact::*;
-use signorini_fem_mesh::{FacetTag, Hooke, Materials, TetMesh, brick};
-
-/// Tags of the second body.
-fn second(tag: FacetTag) -> FacetTag {
-    FacetTag(tag.0 + 100)
-}
-
-/// The second body behind the first, with tags of its own.
-fn with(first: &TetMesh, other: &TetMesh) -> TetMesh {
-    first
-        .append(&other.clone().map_tags(second))
-        .expect("two bodies")
-}
+use crate::common::*;
 
 /// The image of a mesh in the plane z = 0.
 fn mirrored(mesh: &TetMesh) -> TetMesh {
@@ -44,7 +26,7 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
     let pressed = |scene: Scene, tag: FacetTag, sign: f64| {
         scene
             .with_support(Support::fixed(tag).with_motion([0.0, 0.0, -0.02 * sign], ramp()))
-            .with_analysis(common::paper_steps(1.0, 3))
+            .with_analysis(paper_steps(1.0, 3))
     };
     let plane = Contact::rigid(brick::Z_MIN)
         .with_normal([0.0, 0.0, -1.0])
@@ -54,7 +36,7 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
     let (_, reference) = run(alone, tight());
     let open = reference[2].points.iter().filter(|p| p.gap > 1e-4).count();
     assert!(open > 5 && open < 20, "{open} open points");
-    let both = with(&one, &mirrored(&one));
+    let both = with_second(&one, &mirrored(&one));
     for friction in [Friction::None, Friction::coulomb(0.5)] {
         for method in methods() {
             let what = format!("{} {friction:?}", method.name());
@@ -72,7 +54,7 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
                 assert_close(upper, &b.displacement, 1e-6, &what);
                 let image: Vec<f64> = lower.chunks(3).flat_map(|u| [u[0], u[1], -u[2]]).collect();
                 assert_close(&image, &b.displacement, 1e-6, &what);
-                let normal = |points: &[signorini_contact::PointState]| -> Vec<f64> {
+                let normal = |points: &[PointState]| -> Vec<f64> {
                     points.iter().map(|p| p.normal_force).collect()
                 };
                 assert_close(&normal(&a.points), &normal(&b.points), 1e-6, &what);
@@ -84,10 +66,8 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
 /// Two cubes, the second on the first. Planes of symmetry hold them sideways.
 fn column(cells: [usize; 3]) -> TetMesh {
     let lower = block([1.0; 3], cells);
-    let upper = lower
-        .map_points(|[x, y, z]| [x, y, z + 1.0])
-        .expect("moved");
-    with(&lower, &upper)
+    let upper = lifted(&lower, 1.0);
+    with_second(&lower, &upper)
 }
 
 fn joint() -> Contact {
@@ -141,7 +121,7 @@ fn pressure_passes_from_body_to_body() {
 }
 
 /// A clamped beam above a plate: with a plate much stiffer than the beam the floor is rigid, histories of sliding included.
-fn beam(plate: Option<f64>) -> Scene {
+pub(crate) fn beam(plate: Option<f64>) -> Scene {
     let beam = block([3.0, 1.0, 1.0], [6, 2, 2]);
     let loads = |scene: Scene| {
         let q = 1e8;
@@ -151,17 +131,15 @@ fn beam(plate: Option<f64>) -> Scene {
             .with_load(
                 Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(up_down_up()),
             )
-            .with_analysis(common::paper_steps(1.0, 6))
+            .with_analysis(paper_steps(1.0, 6))
     };
     let Some(young) = plate else {
         let floor = Contact::rigid(brick::Z_MIN).with_gap(0.1);
         let scene = Scene::new(beam, steel()).with_contact(floor.with_friction(weakening()));
         return loads(scene).with_boxes([3, 1, 1]);
     };
-    let below = block([3.0, 1.0, 1.0], [6, 2, 2])
-        .map_points(|[x, y, z]| [x, y, z - 1.1])
-        .expect("moved");
-    let mesh = with(&beam, &below);
+    let below = lifted(&block([3.0, 1.0, 1.0], [6, 2, 2]), -1.1);
+    let mesh = with_second(&beam, &below);
     let regions = mesh.components();
     let steel = Hooke::isotropic(211.9e9, 0.277).expect("steel");
     let stiff = Hooke::isotropic(young, 0.277).expect("stiff");
@@ -179,9 +157,9 @@ fn a_stiff_plate_is_a_rigid_floor() {
     let (_, reference) = run(beam(None), tight());
     let mut last = f64::INFINITY;
     for stiffness in [1e3, 1e6] {
-        let settings = Settings::default().with_tolerance(1e-8);
+        let settings = at(1e-8);
         let (_, levels) = run(beam(Some(211.9e9 * stiffness)), settings);
-        let off = |a: &common::Solved, b: &common::Solved| {
+        let off = |a: &Solved, b: &Solved| {
             let beam = b.displacement.len();
             distance(&a.displacement[..beam], &b.displacement)
         };
@@ -226,7 +204,7 @@ fn friction_between_bodies_holds_up_to_its_coefficient() {
             .with_boxes([1, 1, 2])
     };
     for method in methods() {
-        let level = solve(scene(0.2), Settings::default().with_method(method));
+        let level = solve(scene(0.2), by(method));
         let force = level.summary.resultant;
         // on the upper body: it carries its pressure and its push
         for (found, exact) in force.iter().zip([0.0, -0.2e6, 1e6]) {
@@ -252,7 +230,7 @@ fn a_body_drags_the_other_one() {
         .with_support(Support::fixed(brick::Z_MIN).with_motion([0.02, 0.0, 0.0], ramp()))
         .with_support(Support::fixed(second(brick::Z_MAX)).with_motion([0.0, 0.0, -1e-3], ramp()))
         .with_contact(joint().with_friction(Friction::coulomb(0.25)))
-        .with_analysis(common::paper_steps(1.0, 4))
+        .with_analysis(paper_steps(1.0, 4))
         .with_boxes([1, 1, 2]);
     let mut simulation = Simulation::new(scene, tight()).expect("set-up");
     while !simulation.is_finished() {
@@ -295,38 +273,6 @@ fn bodies_come_apart() {
     }
 }
 
-/// The estimate of the algebraic error bounds the truth, and is not far above it, whichever side supports hold.
-#[test]
-fn the_algebraic_error_is_estimated() {
-    let held = |tag: FacetTag| Support::components(tag, [false, true, false]);
-    for sides in [&[][..], &[brick::Y_MIN], &[second(brick::Y_MIN)]] {
-        let scene = || {
-            let scene = sides.iter().fold(beam(Some(4e11)), |scene, tag| {
-                scene.with_support(held(*tag))
-            });
-            scene.with_analysis(Analysis::Static { time: 1.0 })
-        };
-        let exact = solve(scene(), tight().with_tolerance(1e-11)).displacement;
-        let mut simulation =
-            Simulation::new(scene(), Settings::default().with_tolerance(1e-4)).expect("set-up");
-        let frame = simulation.step().expect("step");
-        let found = frame.displacement();
-        let off: Vec<f64> = found.iter().zip(&exact).map(|(a, b)| a - b).collect();
-        let estimate = frame.algebraic_error();
-        let fields = |u: &[f64]| {
-            let scene = frame.scene();
-            signorini_fem_mesh::fields::strain_energy(scene.mesh(), scene.materials(), u)
-                .expect("energy")
-        };
-        let truth = (fields(&off) / fields(&exact)).sqrt();
-        let ratio = estimate.relative() / truth;
-        assert!(
-            (0.9..30.0).contains(&ratio),
-            "{sides:?}: {ratio}, {truth:e}"
-        );
-    }
-}
-
 #[test]
 fn what_cannot_be_paired_is_refused() {
     let fails = |mesh: TetMesh, contact: Contact| {
@@ -336,10 +282,8 @@ fn what_cannot_be_paired_is_refused() {
         Simulation::new(scene, Settings::default()).expect_err("refused")
     };
     // meshes that do not match
-    let upper = block([1.0; 3], [3, 2, 2])
-        .map_points(|[x, y, z]| [x, y, z + 1.0])
-        .expect("moved");
-    let mesh = with(&block([1.0; 3], [2; 3]), &upper);
+    let upper = lifted(&block([1.0; 3], [3, 2, 2]), 1.0);
+    let mesh = with_second(&block([1.0; 3], [2; 3]), &upper);
     let error = fails(mesh, joint());
     assert!(
         matches!(error, ContactError::NoPartner { contact: 0, beside, .. } if beside > 0.1 && beside < 0.5),
@@ -398,12 +342,10 @@ fn what_cannot_be_paired_is_refused() {
 #[test]
 fn partners_are_the_nearest_nodes() {
     let lower = block([1.0, 100.0, 1.0], [40, 2, 1]);
-    let upper = lower
-        .map_points(|[x, y, z]| [x, y, z + 1.5])
-        .expect("moved");
+    let upper = lifted(&lower, 1.5);
     let rigid = Contact::rigid(second(brick::Z_MIN)).with_partner(brick::Z_MAX);
     for contact in [joint(), rigid] {
-        let scene = Scene::new(with(&lower, &upper), uniform(1e9, 0.3))
+        let scene = Scene::new(with_second(&lower, &upper), uniform(1e9, 0.3))
             .with_support(Support::fixed(brick::Z_MIN))
             .with_support(Support::fixed(second(brick::Z_MAX)))
             .with_contact(contact);
@@ -423,11 +365,9 @@ fn partners_are_the_nearest_nodes() {
 fn wall(friction: &Friction) -> Scene {
     let left = block([1.0; 3], [2; 3]);
     let right = left.map_points(|[x, y, z]| [x + 1.0, y, z]).expect("moved");
-    let above = block([2.0, 1.0, 1.0], [4, 2, 2])
-        .map_points(|[x, y, z]| [x, y, z + 1.0])
-        .expect("moved");
+    let above = lifted(&block([2.0, 1.0, 1.0], [4, 2, 2]), 1.0);
     let third = |tag: FacetTag| second(second(tag));
-    let mesh = with(&left, &right)
+    let mesh = with_second(&left, &right)
         .append(&above.map_tags(third))
         .expect("three bodies");
     let rough = |contact: Contact| contact.with_friction(friction.clone());

@@ -1,13 +1,11 @@
-//! Which scenes a stored state can be continued in, and what the refusal of others says.
+//! A run that goes on from a stored state is the run that was never interrupted; which scenes a state fits.
 
-use crate::common;
-use crate::common::{block, rest, state_bits, steel, up_down_up, weakening};
-use signorini_contact::{
-    Accuracy, Analysis, Contact, ContactError, DifferenceFormula, Directions, Friction, Load,
-    Method, Scene, Settings, Simulation, State, Support,
-};
-use signorini_fem_mesh::{Facet, History, Hooke, Materials, SurfaceFrame, TetMesh, brick};
+use crate::common::*;
+use signorini_fem_mesh::SurfaceFrame;
 use signorini_tfeti::RowScaling;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What the variants of the scene change.
 #[derive(Clone)]
@@ -31,8 +29,8 @@ impl Parts {
             contact: Contact::rigid(brick::Z_MIN)
                 .with_gap(0.1)
                 .with_friction(weakening()),
-            load: Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(common::ramp()),
-            analysis: common::paper_steps(1.0, 4),
+            load: Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(ramp()),
+            analysis: paper_steps(1.0, 4),
         }
     }
 
@@ -160,11 +158,11 @@ fn another_scene_is_refused_with_the_part_that_differs() {
     let state = stored();
     for (parts, expected) in cases {
         let mut simulation = parts.simulation();
-        let before = state_bits(simulation.state());
+        let before = simulation.state().clone();
         let found = text(simulation.resume(state.clone()));
         assert!(found.contains(expected), "{expected}: {found}");
         assert!(found.contains("without_origin"), "{found}");
-        assert_eq!(state_bits(simulation.state()), before);
+        assert!(*simulation.state() == before);
     }
 }
 
@@ -205,7 +203,7 @@ fn what_may_change_between_levels_is_accepted() {
         },
         // other levels to come
         Parts {
-            analysis: common::paper_steps(2.0, 8),
+            analysis: paper_steps(2.0, 8),
             ..base.clone()
         },
     ];
@@ -220,8 +218,8 @@ fn what_may_change_between_levels_is_accepted() {
         }
     }
     for settings in [
-        Settings::default().with_tolerance(1e-8),
-        Settings::default().with_method(Method::paper()),
+        at(1e-8),
+        by(Method::paper()),
         Settings::default().with_row_scaling(RowScaling::Chained),
     ] {
         let mut simulation = base.clone().simulation_with(settings);
@@ -256,7 +254,7 @@ fn another_scene_on_purpose_is_possible_by_name() {
         boxes: [6, 1, 1],
         ..Parts::new()
     };
-    other.analysis = common::paper_steps(1.0, 4);
+    other.analysis = paper_steps(1.0, 4);
     let found = text(other.simulation().resume(stored().without_origin()));
     assert!(found.contains("another number of rows"), "{found}");
 }
@@ -269,14 +267,14 @@ fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
     let down = down.expect("table");
     let parts = |steps| Parts {
         mesh: block([2.0, 1.0, 1.0], [4, 2, 2]),
-        materials: common::uniform(1e9, 0.3),
+        materials: uniform(1e9, 0.3),
         boxes: [2, 1, 1],
         supports: vec![Support::fixed(brick::Z_MAX).with_motion([2e-4, 1e-4, -1e-3], down.clone())],
         contact: Contact::rigid(brick::Z_MIN)
             .with_gap(4e-4)
             .with_friction(Friction::coulomb(0.3)),
         load: Load::traction(brick::Z_MIN, [0.0; 3]),
-        analysis: common::paper_steps(1.0, steps),
+        analysis: paper_steps(1.0, steps),
     };
     for settings in [
         Settings::default(),
@@ -287,13 +285,13 @@ fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
             let mut whole = new();
             let (mut states, mut displacements) = (Vec::new(), Vec::new());
             while !whole.is_finished() {
-                displacements.push(common::step(&mut whole).displacement);
+                displacements.push(step(&mut whole).displacement);
                 states.push(whole.state().clone());
             }
             for (level, state) in states.into_iter().enumerate() {
                 let mut again = new();
                 again.resume(state.clone()).expect("resume");
-                assert_eq!(state_bits(again.state()), state_bits(&state), "{level}");
+                assert!(*again.state() == state, "{level}");
                 for (one, expected) in rest(&mut again).iter().zip(&displacements[level + 1..]) {
                     assert_eq!(one.displacement, *expected, "{steps} steps, after {level}");
                 }
@@ -313,18 +311,125 @@ fn a_state_before_the_first_level_starts_any_scene() {
     other.simulation().resume(fresh).expect("resume");
 }
 
-#[cfg(feature = "checkpoint")]
+/// The small benchmark with another modulus.
+fn stiff_as(young: f64) -> Simulation {
+    let base = small_benchmark(weakening(), 6);
+    let elastic = Materials::uniform(Hooke::isotropic(young, 0.277).expect("Hooke"));
+    let mut scene = Scene::new(base.mesh().clone(), elastic)
+        .with_boxes([3, 1, 1])
+        .with_analysis(base.analysis().clone());
+    scene = base
+        .supports()
+        .iter()
+        .cloned()
+        .fold(scene, Scene::with_support);
+    scene = base.loads().iter().cloned().fold(scene, Scene::with_load);
+    scene = base
+        .contacts()
+        .iter()
+        .cloned()
+        .fold(scene, Scene::with_contact);
+    Simulation::new(scene, Settings::default()).expect("set-up")
+}
+
+/// Products with F are those of the stiffness: a body a thousand times stiffer goes on from them only if they are computed anew.
 #[test]
-fn bytes_keep_it() {
-    let bytes = stored().to_bytes().expect("encode");
-    let state = State::from_bytes(&bytes).expect("decode");
-    assert_eq!(state, stored());
-    let mut other = Parts {
-        supports: vec![Support::fixed(brick::X_MAX)],
-        ..Parts::new()
+fn products_of_other_materials_are_computed_anew() {
+    let young = 211.9e9;
+    let mut before = stiff_as(young);
+    for _ in 0..3 {
+        let _ = before.step().expect("step");
     }
-    .simulation();
-    assert!(text(other.resume(state.clone())).contains("supports"));
-    let mut same = Parts::new().simulation();
-    same.resume(state).expect("resume");
+    for factor in [1e-3, 0.3, 3.0, 1e3] {
+        let mut simulation = stiff_as(factor * young);
+        simulation.resume(before.state().clone()).expect("resume");
+        for (k, level) in rest(&mut simulation).iter().enumerate() {
+            assert_certified(
+                level,
+                &format!("modulus times {factor}, level {k} after it"),
+            );
+        }
+    }
+}
+
+#[test]
+fn a_restart_equals_the_uninterrupted_run_bit_by_bit() {
+    let laws = [
+        Friction::None,
+        Friction::tresca(3e8),
+        Friction::coulomb(0.3),
+        weakening(),
+    ];
+    for method in methods() {
+        for law in &laws {
+            let scene = || small_benchmark(law.clone(), 8);
+            let (whole, end) = fingerprint(scene(), by(method.clone()));
+            for cut in [0, 1, 2, 5, 7] {
+                let mut first = Simulation::new(scene(), by(method.clone())).expect("set-up");
+                for _ in 0..cut {
+                    step(&mut first);
+                }
+                let state = first.state().clone();
+                drop(first);
+                let mut second = Simulation::new(scene(), by(method.clone())).expect("set-up");
+                second.resume(state).expect("resume");
+                let tail: Vec<_> = rest(&mut second).iter().map(bits).collect();
+                let what = format!("{}, {law:?}, cut after {cut}", method.name());
+                assert!(tail == whole[cut..], "{what}");
+                assert!(*second.state() == end, "{what}: state");
+            }
+        }
+    }
+}
+
+/// A step that is cut in two after it was tried equals one that was small from the beginning.
+#[test]
+fn a_cut_step_retried_equals_the_small_steps() {
+    for method in methods() {
+        let at = |times: &[f64]| {
+            small_benchmark(Friction::coulomb(0.3), 1).with_analysis(Analysis::Quasistatic {
+                times: times.to_vec(),
+                formula: DifferenceFormula::BACKWARD_EULER,
+            })
+        };
+        let (coarse, fine) = (at(&[0.2, 0.4, 0.8, 1.0]), at(&[0.2, 0.4, 0.6, 0.8, 1.0]));
+        let (expected, _) = fingerprint(fine.clone(), by(method.clone()));
+        let mut tried = Simulation::new(coarse, by(method.clone())).expect("set-up");
+        step(&mut tried);
+        step(&mut tried);
+        let before = tried.state().clone();
+        let rejected = step(&mut tried);
+        let mut retry = Simulation::new(fine, by(method.clone())).expect("set-up");
+        retry.resume(before).expect("resume");
+        let tail: Vec<_> = rest(&mut retry).iter().map(bits).collect();
+        assert!(tail == expected[2..], "{}", method.name());
+        // and the large step was indeed another one
+        assert!(bits(&rejected) != expected[3], "{}", method.name());
+    }
+}
+
+/// A law that fails in the middle of a run: the error comes every time, and the run can go on once the law is well.
+#[test]
+fn a_law_that_fails_or_panics_leaves_the_run_as_it_was() {
+    let mode = Arc::new(AtomicUsize::new(0));
+    let inner = mode.clone();
+    let law = Coefficient::rate_field(move |_, _| match inner.load(Ordering::Relaxed) {
+        0 => 0.3,
+        1 => f64::NAN,
+        _ => panic!("a law of the user"),
+    });
+    let scene = small_benchmark(Friction::Coulomb(law), 4);
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    assert!(simulation.frame().is_none(), "before the first level");
+    step(&mut simulation);
+    let before = simulation.state().clone();
+    for kind in [1, 1, 2, 2] {
+        mode.store(kind, Ordering::Relaxed);
+        let outcome = catch_unwind(AssertUnwindSafe(|| simulation.step().is_err()));
+        assert!(outcome.is_err() == (kind == 2) && outcome.unwrap_or(true));
+        assert!(simulation.frame().is_none() && *simulation.state() == before);
+    }
+    mode.store(0, Ordering::Relaxed);
+    assert_eq!(rest(&mut simulation).len(), 3);
+    assert!(simulation.frame().is_some());
 }

@@ -1,18 +1,7 @@
 //! The number of subdomains changes nothing: direct solve, 1, 3 and 24 subdomains.
 
-use crate::common;
-use crate::common::{
-    assert_close, block, cholesky_solve, forces, foundation, loaded_brick, ramp, run, solve, steel,
-};
-use signorini_contact::{Friction, Preconditioner, Scene, Settings};
-use signorini_fem_mesh::{
-    Brick, Decomposition, Hooke, LoadDensity, TetMesh, assemble_load, assemble_stiffness, brick,
-};
-
-/// Tight enough for the comparisons, and above the rounding error of the iterations.
-fn accurate() -> Settings {
-    Settings::default().with_tolerance(1e-8)
-}
+use crate::common::*;
+use signorini_fem_mesh::assemble_stiffness;
 
 const BOXES: [[usize; 3]; 3] = [[1, 1, 1], [3, 1, 1], [6, 2, 2]];
 
@@ -72,7 +61,7 @@ fn without_contact_any_decomposition_equals_the_direct_solution() {
             for preconditioner in [Preconditioner::Lumped, Preconditioner::Dirichlet] {
                 let scene = loaded_brick(mesh.clone(), ramp()).with_boxes(boxes);
                 // the tolerance is that of the certificate here
-                let settings = accurate().with_tolerance(1e-10);
+                let settings = at(1e-8).with_tolerance(1e-10);
                 let level = solve(scene, settings.with_preconditioner(preconditioner));
                 let what = format!("mesh {k}, {boxes:?}, {preconditioner:?}");
                 assert_close(&level.displacement, &exact, 1e-9, &what);
@@ -84,7 +73,7 @@ fn without_contact_any_decomposition_equals_the_direct_solution() {
 fn compare(scene: &Scene, what: &str) {
     let mut first: Option<Vec<(Vec<f64>, Vec<f64>)>> = None;
     for boxes in BOXES {
-        let (_, levels) = run(scene.clone().with_boxes(boxes), accurate());
+        let (_, levels) = run(scene.clone().with_boxes(boxes), at(1e-8));
         let last = levels.last().expect("levels");
         assert!(last.summary.active > 0, "{what}: nothing touches");
         let found: Vec<_> = levels
@@ -119,12 +108,12 @@ fn with_contact_and_friction_1_3_and_24_subdomains_agree() {
             Friction::None,
             Friction::tresca(2e8),
             Friction::coulomb(0.3),
-            common::weakening(),
+            weakening(),
         ] {
             let what = format!("mesh {k}, {friction:?}");
-            let scene = loaded_brick(mesh.clone(), common::up_down_up())
+            let scene = loaded_brick(mesh.clone(), up_down_up())
                 .with_contact(foundation(friction))
-                .with_analysis(common::paper_steps(1.0, 5));
+                .with_analysis(paper_steps(1.0, 5));
             compare(&scene, &what);
         }
     }
@@ -139,16 +128,12 @@ fn two_materials_agree() {
         .collect();
     let soft = Hooke::isotropic(100e9, 0.3).expect("Hooke");
     let hard = Hooke::isotropic(300e9, 0.2).expect("Hooke");
-    let materials =
-        signorini_fem_mesh::Materials::new(vec![(0, soft), (1, hard)]).expect("materials");
+    let materials = Materials::new(vec![(0, soft), (1, hard)]).expect("materials");
     assert_ne!(format!("{materials:?}"), format!("{:?}", steel()));
     let mesh = mesh.with_regions(regions).expect("regions");
     let scene = Scene::new(mesh, materials)
-        .with_support(signorini_contact::Support::fixed(brick::X_MIN))
-        .with_load(signorini_contact::Load::traction(
-            brick::Z_MAX,
-            [1e8, 0.0, -30e8],
-        ))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::traction(brick::Z_MAX, [1e8, 0.0, -30e8]))
         .with_contact(foundation(Friction::coulomb(0.3)));
     compare(&scene, "two materials");
 }

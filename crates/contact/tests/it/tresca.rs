@@ -1,29 +1,13 @@
-//! Given friction against an interior point method (clarabel) that shares no code with this workspace.
+//! Tresca friction against an interior point method (clarabel) that shares no code with this workspace.
 
-use crate::common;
-use crate::common::{assert_close, block, forces, methods, step, uniform};
+use crate::common::*;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
-use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, SlipBound, Support};
-use signorini_fem_mesh::{LoadDensity, assemble_load, brick};
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::TangentialRows;
 use std::sync::Arc;
 
 const GAP: f64 = 1e-3;
-
-/// A small generator, so that loads differ by seed and not by machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        ((self.0 >> 11) as f64) / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 struct Case {
     loads: Vec<LoadDensity>,
@@ -33,9 +17,11 @@ struct Case {
 }
 
 fn case(seed: u64) -> Case {
-    let mut r = Random(seed);
-    let mut vector =
-        |scale: f64, shift: f64| [scale * r.next(), scale * r.next(), scale * r.next() + shift];
+    let mut random = random(seed);
+    let mut vector = |scale: f64, shift: f64| {
+        let [x, y, z] = [0; 3].map(|_| random.random_range(-scale..scale));
+        [x, y, z + shift]
+    };
     // pushed down, except for the seeds divisible by 5
     let lift = if seed.is_multiple_of(5) { 3.0 } else { -3.0 };
     let loads = vec![
@@ -228,16 +214,16 @@ fn all_methods_agree_with_clarabel() {
         let case = case(seed);
         for method in methods() {
             let what = format!("seed {seed}, {}", method.name());
-            let settings = Settings::default().with_tolerance(1e-8).with_method(method);
+            let settings = at(1e-8).with_method(method);
             let mut simulation = Simulation::new(scene(&case), settings).expect("set-up");
             let level = step(&mut simulation);
-            common::assert_certified(&level, &what);
+            assert_certified(&level, &what);
             let expected = nodal_forces(&reference(&case, &simulation), &simulation);
             let found = forces(&level.points);
             // no contact force at all: measured against the loads, which are of the order of one
-            let size = common::norm(&expected).max(1.0);
+            let size = norm(&expected).max(1.0);
             let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
-            let error = common::norm(&difference) / size;
+            let error = norm(&difference) / size;
             assert!(error <= 1e-6, "{what}: {error:e}");
             open += usize::from(level.summary.active == 0);
             sliding += level.summary.slip;
@@ -256,9 +242,9 @@ fn all_methods_agree_with_clarabel() {
 fn a_zero_bound_is_no_friction() {
     let mut case = case(1);
     case.bound = 0.0;
-    let with = common::solve(scene(&case), common::tight());
+    let with = solve(scene(&case), tight());
     let bare = scene(&case).replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(GAP)));
-    let without = common::solve(bare, common::tight());
+    let without = solve(bare, tight());
     assert_close(
         &with.displacement,
         &without.displacement,

@@ -1,18 +1,12 @@
-//! Turning, shifting and renumbering a scene turns, shifts and renumbers its results.
+//! Turning, shifting, renumbering and other units change the numbers of a result and nothing else.
 
-use crate::common;
-use crate::common::{assert_close, block, cross, rotation, run, turn, up_down_up, weakening};
+use crate::common::*;
 use proptest::prelude::*;
-use signorini_contact::{Contact, Friction, Load, Place, Scene, Settings, Support};
-use signorini_fem_mesh::{Facet, LoadDensity, TetMesh, brick};
+use rand::seq::SliceRandom;
 
 type Rotation = [[f64; 3]; 3];
 
 const IDENTITY: Rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
-fn accurate() -> Settings {
-    Settings::default().with_tolerance(1e-8)
-}
 
 /// The small benchmark with a side load, turned by `r` and shifted, with its parts given by element.
 fn scene(mesh: TetMesh, parts: Vec<u32>, r: &Rotation, shift: [f64; 3], law: Friction) -> Scene {
@@ -23,9 +17,9 @@ fn scene(mesh: TetMesh, parts: Vec<u32>, r: &Rotation, shift: [f64; 3], law: Fri
         })
         .expect("mesh");
     let traction = |tag, v| Load::new(LoadDensity::traction(tag, turn(r, v)));
-    Scene::new(moved, common::steel())
+    Scene::new(moved, steel())
         .with_support(Support::fixed(brick::X_MIN))
-        .with_load(traction(brick::Z_MAX, [0.0, 4e8, -30e8]).with_history(common::ramp()))
+        .with_load(traction(brick::Z_MAX, [0.0, 4e8, -30e8]).with_history(ramp()))
         .with_load(traction(brick::X_MAX, [9e8, 3e8, -15e8]).with_history(up_down_up()))
         .with_contact(
             Contact::rigid(brick::Z_MIN)
@@ -33,7 +27,7 @@ fn scene(mesh: TetMesh, parts: Vec<u32>, r: &Rotation, shift: [f64; 3], law: Fri
                 .with_friction(law),
         )
         .with_parts(parts)
-        .with_analysis(common::paper_steps(1.0, 4))
+        .with_analysis(paper_steps(1.0, 4))
 }
 
 fn brick_mesh() -> TetMesh {
@@ -49,7 +43,7 @@ fn three_parts(mesh: &TetMesh) -> Vec<u32> {
 }
 
 /// Everything of all levels that has a direction, turned back by the inverse of `r`, by mesh node.
-fn turned_back(levels: &[common::Solved], r: &Rotation, nodes: usize) -> Vec<f64> {
+fn turned_back(levels: &[Solved], r: &Rotation, nodes: usize) -> Vec<f64> {
     let mut inverse = IDENTITY;
     for (i, row) in inverse.iter_mut().enumerate() {
         *row = [r[0][i], r[1][i], r[2][i]];
@@ -74,7 +68,7 @@ fn turned_back(levels: &[common::Solved], r: &Rotation, nodes: usize) -> Vec<f64
 fn results(mesh: &TetMesh, r: &Rotation, shift: [f64; 3], law: &Friction) -> Vec<f64> {
     let parts = three_parts(mesh);
     let scene = scene(mesh.clone(), parts, r, shift, law.clone());
-    let (_, levels) = run(scene, accurate());
+    let (_, levels) = run(scene, at(1e-8));
     assert!(levels.iter().any(|l| l.summary.slip > 0));
     turned_back(&levels, r, mesh.points().len())
 }
@@ -109,13 +103,7 @@ fn quarter_turns_and_general_rotations() {
 /// A shuffled list of 0..n that depends on the seed.
 fn shuffled(n: usize, seed: u64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
-    let mut state = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    for i in (1..n).rev() {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        order.swap(i, (state >> 33) as usize % (i + 1));
-    }
+    order.shuffle(&mut random(seed));
     order
 }
 
@@ -160,7 +148,7 @@ fn check_renumbering(seed: u64, law: &Friction) {
             [0.0; 3],
             law.clone(),
         );
-        run(scene, accurate()).1
+        run(scene, at(1e-8)).1
     };
     let reference = solve(&mesh);
     let (other, places) = renumbered(&mesh, seed);
@@ -213,7 +201,7 @@ fn renumbering_subdomains() {
             [0.0; 3],
             Friction::coulomb(0.3),
         );
-        let (_, levels) = run(scene, accurate());
+        let (_, levels) = run(scene, at(1e-8));
         turned_back(&levels, &IDENTITY, mesh.points().len())
     };
     let reference = solve([0, 1, 2]);
@@ -228,13 +216,13 @@ fn supports_may_be_given_in_any_way() {
     let mesh = brick_mesh();
     let nodes = mesh.nodes_on(brick::X_MIN);
     let solve = |supports: Vec<Support>| {
-        let mut scene = common::small_benchmark(Friction::coulomb(0.3), 3);
-        let base = Scene::new(mesh.clone(), common::steel())
+        let mut scene = small_benchmark(Friction::coulomb(0.3), 3);
+        let base = Scene::new(mesh.clone(), steel())
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]))
             .with_contact(scene.contact().expect("contact").clone())
             .with_boxes([3, 1, 1]);
         scene = supports.into_iter().fold(base, Scene::with_support);
-        run(scene, accurate()).1.remove(0).displacement
+        run(scene, at(1e-8)).1.remove(0).displacement
     };
     let reference = solve(vec![Support::fixed(brick::X_MIN)]);
     let reversed: Vec<u32> = nodes.iter().rev().copied().collect();
@@ -270,5 +258,131 @@ proptest! {
     #[test]
     fn any_numbering(seed in 0..u64::MAX / 2, coefficient in 0.05..0.6f64) {
         check_renumbering(seed, &Friction::coulomb(coefficient));
+    }
+}
+
+/// The small benchmark in units in which a metre is `length` and a newton `force` times one; seconds are `time`.
+fn scene_in_units(law: usize, length: f64, force: f64, time: f64) -> Scene {
+    let stress = force / (length * length);
+    let friction = match law {
+        0 => Friction::None,
+        1 => Friction::tresca(3e8 * stress),
+        2 => Friction::coulomb(0.3),
+        _ => Friction::Coulomb(Coefficient::Exponential {
+            fixed: 0.3,
+            kinetic: 0.1,
+            decay: 0.05 * length / time,
+        }),
+    };
+    let history = |table: fn() -> History| {
+        let table = table();
+        History::function(move |t| table.value(t / time))
+    };
+    let q = 1e8 * stress;
+    Scene::new(
+        block([3.0 * length, length, length], [6, 2, 2]),
+        uniform(211.9e9 * stress, 0.277),
+    )
+    .with_support(Support::fixed(brick::X_MIN))
+    .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]).with_history(history(ramp)))
+    .with_load(
+        Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(history(up_down_up)),
+    )
+    .with_load(Load::body([0.0, 1e7 * force / length.powi(3), 0.0]))
+    .with_contact(
+        Contact::rigid(brick::Z_MIN)
+            .with_gap(0.1 * length)
+            .with_friction(friction),
+    )
+    .with_boxes([3, 1, 1])
+    .with_analysis(paper_steps(time, 5))
+}
+
+/// Compares a scene in other units with the original; returns the products of both.
+fn compare_units(
+    law: usize,
+    settings: &Settings,
+    length: f64,
+    force: f64,
+    time: f64,
+) -> [usize; 2] {
+    let (a, reference) = run(scene_in_units(law, 1.0, 1.0, 1.0), settings.clone());
+    let (b, levels) = run(scene_in_units(law, length, force, time), settings.clone());
+    for (k, (x, y)) in levels.iter().zip(&reference).enumerate() {
+        let what = format!("law {law}, {length:e} m, {force:e} N, {time:e} s, level {k}");
+        let u: Vec<f64> = x.displacement.iter().map(|v| v / length).collect();
+        let f: Vec<f64> = forces(&x.points).iter().map(|v| v / force).collect();
+        assert_close(&u, &y.displacement, 1e-7, &what);
+        assert_close(&f, &forces(&y.points), 1e-7, &what);
+        assert_eq!(x.summary.active, y.summary.active, "{what}");
+        let rate = x.summary.max_slip_rate * time / length;
+        assert!(
+            (rate - y.summary.max_slip_rate).abs() <= 1e-6 * rate.max(1e-3),
+            "{what}"
+        );
+        let work = x.summary.dissipation / (force * length);
+        assert!(
+            (work - y.summary.dissipation).abs() <= 1e-6 * work.abs().max(1e3),
+            "{what}"
+        );
+    }
+    assert!(reference.iter().any(|l| l.summary.active > 0));
+    [a.counters().products, b.counters().products]
+}
+
+#[test]
+fn stiffness_and_lengths_scale() {
+    let accurate = at(1e-8);
+    for law in 0..4 {
+        for method in methods() {
+            let settings = accurate.clone().with_method(method);
+            for (length, force) in [
+                (1.0, 1e9),
+                (1.0, 1e-9),
+                (1e-3, 1e-6 * 1e9),
+                (1e3, 1.0),
+                (1e-3, 1.0),
+            ] {
+                let [a, b] = compare_units(law, &settings, length, force, 1.0);
+                // the same iterations up to rounding
+                assert!(a.abs_diff(b) <= 5 + a / 10, "{a} and {b} products");
+            }
+        }
+        let settings = accurate
+            .clone()
+            .with_preconditioner(Preconditioner::Dirichlet);
+        compare_units(law, &settings, 1e-3, 1e3, 1e3);
+    }
+}
+
+/// Powers of two are exact: not one product may differ, nor one bit of the mantissas.
+#[test]
+fn powers_of_two_change_no_bit() {
+    for method in methods() {
+        let settings = by(method.clone());
+        let (length, force) = (2.0_f64.powi(-10), 2.0_f64.powi(30));
+        let (_, reference) = run(scene_in_units(2, 1.0, 1.0, 1.0), settings.clone());
+        let (_, levels) = run(scene_in_units(2, length, force, 1.0), settings);
+        for (x, y) in levels.iter().zip(&reference) {
+            assert_eq!(x.report.counters, y.report.counters, "{}", method.name());
+            for (a, b) in x.torn.iter().zip(&y.torn) {
+                assert_eq!(a / length, *b, "{}", method.name());
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 12,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(20),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn any_units(law in 0..4usize, length in -4.0..4.0f64, force in -9.0..9.0f64, time in -3.0..6.0f64) {
+        let settings = by(Method::default()).with_tolerance(1e-8);
+        compare_units(law, &settings, 10f64.powf(length), 10f64.powf(force), 10f64.powf(time));
     }
 }
