@@ -27,44 +27,55 @@ fn top() -> Support {
     Support::components(brick::Z_MAX, [true, true, false])
 }
 
-#[test]
-fn a_plate_under_a_block_is_a_block_over_a_plate() {
-    let laws = [Friction::coulomb(0.3), Friction::tresca(200.0), weakening()];
+fn plate_is_block(law: Friction) {
     let way = [WAY, 0.5 * WAY, 0.0];
-    for law in laws {
-        for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
-            for method in methods() {
-                let boxes = [2, 1, 1];
-                let plate = floor(law.clone()).with_motion(way.map(|c| -c), there_and_back());
-                let moving = scene(plate, top(), formula, boxes);
-                let drawn = top().with_motion(way, there_and_back());
-                let drawn = scene(floor(law.clone()), drawn, formula, boxes);
-                let settings = at(1e-9).with_method(method.clone());
-                let (_, a) = run(moving, settings.clone());
-                let (_, b) = run(drawn, settings);
-                for (a, b) in a.iter().zip(&b) {
-                    let what = format!("{law:?} {} at {}", method.name(), a.time);
-                    let shift = there_and_back().value(a.time);
-                    let relative: Vec<f64> = b
-                        .displacement
-                        .iter()
-                        .enumerate()
-                        .map(|(k, u)| u - shift * way[k % 3])
-                        .collect();
-                    assert_close(&a.displacement, &relative, 1e-5, &what);
-                    let (x, y) = (forces(&a.points), forces(&b.points));
-                    assert_close(&x, &y, 1e-5, &what);
-                    let [p, q] = [a, b].map(|l| l.summary.friction_work);
-                    assert!((p - q).abs() <= 1e-5 * q.abs().max(1e-3), "{what}: {p} {q}");
-                    let [p, q] = [a, b].map(|l| l.summary.max_slip_rate);
-                    assert!((p - q).abs() <= 1e-5 * q.abs().max(1e-6), "{what}: {p} {q}");
-                    assert_eq!(b.summary.obstacle_work, 0.0);
-                }
-                let slides = |p: &PointState| p.state == ContactState::Slip;
-                assert!(a.iter().any(|l| l.points.iter().any(slides)));
+    for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
+        for method in methods() {
+            let boxes = [2, 1, 1];
+            let plate = floor(law.clone()).with_motion(way.map(|c| -c), there_and_back());
+            let moving = scene(plate, top(), formula, boxes);
+            let drawn = top().with_motion(way, there_and_back());
+            let drawn = scene(floor(law.clone()), drawn, formula, boxes);
+            let settings = at(1e-9).with_method(method.clone());
+            let (_, a) = run(moving, settings.clone());
+            let (_, b) = run(drawn, settings);
+            for (a, b) in a.iter().zip(&b) {
+                let what = format!("{law:?} {} at {}", method.name(), a.time);
+                let shift = there_and_back().value(a.time);
+                let relative: Vec<f64> = b
+                    .displacement
+                    .iter()
+                    .enumerate()
+                    .map(|(k, u)| u - shift * way[k % 3])
+                    .collect();
+                assert_close(&a.displacement, &relative, 1e-5, &what);
+                let (x, y) = (forces(&a.points), forces(&b.points));
+                assert_close(&x, &y, 1e-5, &what);
+                let [p, q] = [a, b].map(|l| l.summary.friction_work);
+                assert!((p - q).abs() <= 1e-5 * q.abs().max(1e-3), "{what}: {p} {q}");
+                let [p, q] = [a, b].map(|l| l.summary.max_slip_rate);
+                assert!((p - q).abs() <= 1e-5 * q.abs().max(1e-6), "{what}: {p} {q}");
+                assert_eq!(b.summary.obstacle_work, 0.0);
             }
+            let slides = |p: &PointState| p.state == ContactState::Slip;
+            assert!(a.iter().any(|l| l.points.iter().any(slides)));
         }
     }
+}
+
+#[test]
+fn a_plate_under_a_block_is_a_block_over_a_plate_with_coulombs_law() {
+    plate_is_block(Friction::coulomb(0.3));
+}
+
+#[test]
+fn a_plate_under_a_block_is_a_block_over_a_plate_with_trescas_law() {
+    plate_is_block(Friction::tresca(200.0));
+}
+
+#[test]
+fn a_plate_under_a_block_is_a_block_over_a_plate_with_a_coefficient_that_falls() {
+    plate_is_block(weakening());
 }
 
 /// What the plate does to the block is friction and elastic energy: with implicit steps up to a part that falls with the step.

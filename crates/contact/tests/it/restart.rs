@@ -34,6 +34,13 @@ impl Parts {
         }
     }
 
+    /// With one part changed.
+    fn with(change: impl FnOnce(&mut Self)) -> Self {
+        let mut parts = Self::new();
+        change(&mut parts);
+        parts
+    }
+
     fn simulation(self) -> Simulation {
         self.simulation_with(Settings::default())
     }
@@ -68,10 +75,6 @@ fn text(outcome: Result<(), ContactError>) -> String {
 #[test]
 fn another_scene_is_refused_with_the_part_that_differs() {
     let base = Parts::new();
-    let times = |times: [f64; 4]| Analysis::Quasistatic {
-        times: times.to_vec(),
-        formula: DifferenceFormula::PAPER,
-    };
     let moved = base.mesh.clone().map_points(|p| {
         let lift = if p == [1.5, 0.5, 0.5] { 1e-9 } else { 0.0 };
         [p[0], p[1], p[2] + lift]
@@ -81,131 +84,76 @@ fn another_scene_is_refused_with_the_part_that_differs() {
     tets.swap(0, 1);
     let facets: Vec<Facet> = base.mesh.facets().to_vec();
     let swapped = TetMesh::new(base.mesh.points().to_vec(), tets, facets);
-    let tilted = Contact::rigid(brick::Z_MIN)
-        .with_normal([0.0, 0.01, -1.0])
-        .with_gap(0.1)
-        .with_friction(weakening());
-    let oblique = [1.0, 1e-3, 0.0];
-    let planes = |normal: [f64; 3]| {
-        let frame = SurfaceFrame::from_normal(normal).expect("frame");
-        let [a, b] = frame.tangents;
-        vec![
-            Support::partial(brick::X_MIN, Directions::Vectors(vec![frame.normal])),
-            Support::partial(brick::X_MAX, Directions::Vectors(vec![a, b])),
-        ]
+    let frame = SurfaceFrame::from_normal([1.0, 1e-3, 0.0]).expect("frame");
+    let oblique = vec![
+        Support::partial(brick::X_MIN, Directions::Vectors(vec![frame.normal])),
+        Support::partial(brick::X_MAX, Directions::Vectors(frame.tangents.to_vec())),
+    ];
+    let times = Analysis::Quasistatic {
+        times: vec![0.125, 0.25, 0.375, 0.5],
+        formula: DifferenceFormula::PAPER,
     };
     let cases = [
         (
-            Parts {
-                mesh: moved.expect("mesh"),
-                ..base.clone()
-            },
-            "other coordinates of the mesh",
+            "coordinates of the mesh",
+            Parts::with(|p| p.mesh = moved.expect("mesh")),
         ),
         (
-            Parts {
-                mesh: swapped.expect("mesh"),
-                ..base.clone()
-            },
-            "other tetrahedra",
+            "tetrahedra",
+            Parts::with(|p| p.mesh = swapped.expect("mesh")),
+        ),
+        ("subdomains", Parts::with(|p| p.boxes = [1, 1, 3])),
+        (
+            "nodes or directions of supports",
+            Parts::with(|p| p.supports = vec![Support::fixed(brick::X_MAX)]),
         ),
         (
-            Parts {
-                boxes: [1, 1, 3],
-                ..base.clone()
-            },
-            "other subdomains",
+            "nodes or directions of supports",
+            Parts::with(|p| p.supports = oblique),
+        ),
+        ("contact points", Parts::with(|p| p.contact = tilted())),
+        (
+            "weights of the difference formula",
+            Parts::with(|p| p.analysis = Analysis::quasistatic(1.0, 4)),
         ),
         (
-            Parts {
-                supports: vec![Support::fixed(brick::X_MAX)],
-                ..base.clone()
-            },
-            "other nodes or directions of supports",
-        ),
-        (
-            Parts {
-                supports: planes(oblique),
-                ..base.clone()
-            },
-            "other nodes or directions of supports",
-        ),
-        (
-            Parts {
-                contact: tilted,
-                ..base.clone()
-            },
-            "other contact points",
-        ),
-        (
-            Parts {
-                analysis: base
-                    .analysis
-                    .clone()
-                    .with_formula(DifferenceFormula::BACKWARD_EULER),
-                ..base.clone()
-            },
-            "other weights of the difference formula",
-        ),
-        (
-            Parts {
-                analysis: times([0.125, 0.25, 0.375, 0.5]),
-                ..base
-            },
-            "other times of the levels solved",
+            "times of the levels solved",
+            Parts::with(|p| p.analysis = times),
         ),
     ];
     let state = stored();
-    for (parts, expected) in cases {
+    for (part, parts) in cases {
         let mut simulation = parts.simulation();
         let before = simulation.state().clone();
         let found = text(simulation.resume(state.clone()));
-        assert!(found.contains(expected), "{expected}: {found}");
+        assert!(found.contains(&format!("other {part}")), "{part}: {found}");
         assert!(found.contains("without_origin"), "{found}");
         assert!(*simulation.state() == before);
     }
 }
 
 #[test]
-fn what_may_change_between_levels_is_accepted() {
-    let base = Parts::new();
+fn what_may_change_between_steps_is_accepted() {
+    let ramped = || up_down_up();
     let twice = vec![
         Support::components(brick::X_MIN, [false, true, true]),
         Support::components(brick::X_MIN, [true, false, false]),
     ];
-    let softer = Materials::uniform(Hooke::isotropic(1e11, 0.3).expect("Hooke"));
+    let moved = Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], ramped());
     let cases = [
-        base.clone(),
-        Parts {
-            load: Load::pressure(brick::Z_MAX, 1e9).with_history(up_down_up()),
-            ..base.clone()
-        },
-        Parts {
-            materials: softer,
-            ..base.clone()
-        },
+        Parts::new(),
+        Parts::with(|p| p.load = Load::pressure(brick::Z_MAX, 1e9).with_history(ramped())),
+        Parts::with(|p| p.materials = uniform(1e11, 0.3)),
         // the same directions by other supports
-        Parts {
-            supports: twice,
-            ..base.clone()
-        },
-        Parts {
-            supports: vec![
-                Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], up_down_up()),
-            ],
-            ..base.clone()
-        },
-        Parts {
-            contact: Contact::rigid(brick::Z_MIN)
+        Parts::with(|p| p.supports = twice),
+        Parts::with(|p| p.supports = vec![moved]),
+        Parts::with(|p| {
+            p.contact = Contact::rigid(brick::Z_MIN)
                 .with_gap(0.05)
-                .with_friction(Friction::coulomb(0.2)),
-            ..base.clone()
-        },
-        // other levels to come
-        Parts {
-            analysis: paper_steps(2.0, 8),
-            ..base.clone()
-        },
+                .with_friction(Friction::coulomb(0.2))
+        }),
+        // other steps to come
+        Parts::with(|p| p.analysis = paper_steps(2.0, 8)),
     ];
     let state = stored();
     for (k, parts) in cases.into_iter().enumerate() {
@@ -222,20 +170,19 @@ fn what_may_change_between_levels_is_accepted() {
         by(Method::paper()),
         Settings::default().with_row_scaling(RowScaling::Chained),
     ] {
-        let mut simulation = base.clone().simulation_with(settings);
+        let mut simulation = Parts::new().simulation_with(settings);
         simulation.resume(state.clone()).expect("resume");
     }
 }
 
+fn tilted() -> Contact {
+    let floor = Contact::rigid(brick::Z_MIN).with_normal([0.0, 0.01, -1.0]);
+    floor.with_gap(0.1).with_friction(weakening())
+}
+
 #[test]
 fn another_scene_on_purpose_is_possible_by_name() {
-    let tilted = Parts {
-        contact: Contact::rigid(brick::Z_MIN)
-            .with_normal([0.0, 0.01, -1.0])
-            .with_gap(0.1)
-            .with_friction(weakening()),
-        ..Parts::new()
-    };
+    let tilted = Parts::with(|p| p.contact = tilted());
     let mut simulation = tilted.clone().simulation();
     simulation
         .resume(stored().without_origin())
@@ -250,11 +197,7 @@ fn another_scene_on_purpose_is_possible_by_name() {
     tilted.simulation().resume(state.clone()).expect("resume");
     assert!(text(Parts::new().simulation().resume(state)).contains("contact points"));
     // sizes still count
-    let mut other = Parts {
-        boxes: [6, 1, 1],
-        ..Parts::new()
-    };
-    other.analysis = paper_steps(1.0, 4);
+    let other = Parts::with(|p| p.boxes = [6, 1, 1]);
     let found = text(other.simulation().resume(stored().without_origin()));
     assert!(found.contains("another number of rows"), "{found}");
 }
@@ -300,14 +243,11 @@ fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
     }
 }
 
-/// Before the first level a state says nothing that another scene could misread.
+/// Before the first step a state says nothing that another scene could misread.
 #[test]
-fn a_state_before_the_first_level_starts_any_scene() {
+fn a_state_before_the_first_step_starts_any_scene() {
     let fresh = Parts::new().simulation().state().clone();
-    let other = Parts {
-        mesh: block([3.0, 1.0, 1.0], [3, 1, 1]),
-        ..Parts::new()
-    };
+    let other = Parts::with(|p| p.mesh = block([3.0, 1.0, 1.0], [3, 1, 1]));
     other.simulation().resume(fresh).expect("resume");
 }
 
@@ -352,34 +292,44 @@ fn products_of_other_materials_are_computed_anew() {
     }
 }
 
-#[test]
-fn a_restart_equals_the_uninterrupted_run_bit_by_bit() {
-    let laws = [
+fn restarts_bit_by_bit(method: &Method) {
+    for law in [
         Friction::None,
         Friction::tresca(3e8),
         Friction::coulomb(0.3),
         weakening(),
-    ];
-    for method in methods() {
-        for law in &laws {
-            let scene = || small_benchmark(law.clone(), 8);
-            let (whole, end) = fingerprint(scene(), by(method.clone()));
-            for cut in [0, 1, 2, 5, 7] {
-                let mut first = Simulation::new(scene(), by(method.clone())).expect("set-up");
-                for _ in 0..cut {
-                    step(&mut first);
-                }
-                let state = first.state().clone();
-                drop(first);
-                let mut second = Simulation::new(scene(), by(method.clone())).expect("set-up");
-                second.resume(state).expect("resume");
-                let tail: Vec<_> = rest(&mut second).iter().map(bits).collect();
-                let what = format!("{}, {law:?}, cut after {cut}", method.name());
-                assert!(tail == whole[cut..], "{what}");
-                assert!(*second.state() == end, "{what}: state");
+    ] {
+        let new = || {
+            Simulation::new(small_benchmark(law.clone(), 8), by(method.clone())).expect("set-up")
+        };
+        let (whole, end) = fingerprint(small_benchmark(law.clone(), 8), by(method.clone()));
+        for after in [0, 1, 2, 5, 7] {
+            let mut first = new();
+            for _ in 0..after {
+                step(&mut first);
             }
+            let mut again = new();
+            again.resume(first.state().clone()).expect("resume");
+            let tail: Vec<_> = rest(&mut again).iter().map(bits).collect();
+            assert!(tail == whole[after..], "{law:?}, after {after}");
+            assert!(*again.state() == end, "{law:?}, after {after}: state");
         }
     }
+}
+
+#[test]
+fn a_restart_of_the_default_method_equals_the_uninterrupted_run_bit_by_bit() {
+    restarts_bit_by_bit(&Method::default());
+}
+
+#[test]
+fn a_restart_of_the_papers_method_equals_the_uninterrupted_run_bit_by_bit() {
+    restarts_bit_by_bit(&Method::paper());
+}
+
+#[test]
+fn a_restart_of_the_one_loop_equals_the_uninterrupted_run_bit_by_bit() {
+    restarts_bit_by_bit(&Method::one_loop());
 }
 
 /// A step that is cut in two after it was tried equals one that was small from the beginning.
