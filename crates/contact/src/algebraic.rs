@@ -417,8 +417,8 @@ mod tests {
             };
             solved.algebraic_error()
         };
-        let gap = estimate(frame.solved).energy;
-        let mut points = frame.solved.to_vec();
+        let gap = estimate(frame.points).energy;
+        let mut points = frame.points.to_vec();
         let mut change = 0.0;
         let weights = frame.model.weights.get().expect("made by the estimate");
         for (point, touch) in points.iter_mut().zip(&frame.model.points) {

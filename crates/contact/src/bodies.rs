@@ -134,8 +134,7 @@ impl Bodies {
     }
 }
 
-/// A number for each body of the coarse space: the same for those that may touch each other, whether the points that may are in
-/// the dual problem or not.
+/// A number for each body of the coarse space: the same for those that may touch each other.
 fn joined(tfeti: &Tfeti, decomposition: &Decomposition, candidates: &[ContactPoint]) -> Vec<u32> {
     let coarse = tfeti.coarse();
     let mut sets = DisjointSets::new(coarse.bodies());

@@ -82,8 +82,8 @@ impl Found {
         })
     }
 
-    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are judged elsewhere: of
-    /// nodes that supports hold ([`driven`](crate::driven)), and of points that screening has left out.
+    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are those
+    /// of nodes that supports hold, judged before anything is solved ([`driven`](crate::driven)).
     pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
         let mut places = places.peekable();
         let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();

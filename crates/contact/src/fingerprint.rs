@@ -122,13 +122,8 @@ fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
 
 /// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the
 /// numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made, which changes F on forces
-/// that are not in balance. `points` are all contact points.
-pub(crate) fn operator(
-    origin: &Fingerprint,
-    model: &Model,
-    settings: &Settings,
-    points: &[ConstrainedPoint],
-) -> u64 {
+/// that are not in balance.
+pub(crate) fn operator(origin: &Fingerprint, model: &Model, settings: &Settings) -> u64 {
     let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
     let body = [origin.points, origin.tets, origin.parts, origin.contact];
     let regions: BTreeSet<u32> = mesh.regions().iter().copied().collect();
@@ -141,7 +136,7 @@ pub(crate) fn operator(
     let entries = entries.flat_map(|(subdomain, dof, coefficient)| {
         [subdomain as u64, dof as u64, number(coefficient)]
     });
-    let scales = points.iter().flat_map(|point| {
+    let scales = model.points.iter().flat_map(|point| {
         let rows = point.directions();
         rows.flat_map(|(direction, row, scale)| {
             let numbers = direction.into_iter().chain([scale]).map(number);

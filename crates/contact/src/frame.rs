@@ -19,9 +19,6 @@ pub struct StepResult<'a> {
     pub(crate) report: &'a StepReport,
     pub(crate) certificate: &'a Certificate,
     pub(crate) summary: &'a ContactSummary,
-    /// States of the points in the dual problem.
-    pub(crate) solved: &'a [PointState],
-    /// States of all points.
     pub(crate) points: &'a [PointState],
     pub(crate) torn: &'a [f64],
     pub(crate) residual: &'a [f64],
@@ -152,7 +149,7 @@ impl StepResult<'_> {
         let solved = Solved {
             model: self.model,
             level: self.level,
-            points: self.solved,
+            points: self.points,
             certificate: self.certificate,
             torn: self.torn,
             residual: self.residual,
@@ -207,14 +204,14 @@ impl StepResult<'_> {
     /// # Errors
     /// None for a frame of a simulation.
     pub fn reactions_about(&self, point: [f64; 3]) -> Result<Reactions, ContactError> {
-        reactions::about(self.model, self.level, self.solved, self.held, point)
+        reactions::about(self.model, self.level, self.points, self.held, point)
     }
 
     /// Reactions of all supports at the mesh nodes, `3 node + component`, N: a field for output. Zero at nodes without support.
     #[must_use]
     pub fn reaction_field(&self) -> Vec<f64> {
         let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
-        for (node, force) in reactions::nodal(self.model, self.solved, self.held) {
+        for (node, force) in reactions::nodal(self.model, self.points, self.held) {
             field[3 * node as usize..][..3].copy_from_slice(&force);
         }
         field
@@ -225,7 +222,7 @@ impl StepResult<'_> {
     #[must_use]
     pub fn contact_force_field(&self) -> Vec<f64> {
         let mut field = vec![0.0; 3 * self.model.scene.mesh.points().len()];
-        for point in self.solved {
+        for point in self.points {
             let force = point.force();
             for (node, sign) in [(Some(point.node), 1.0), (point.partner, -1.0)] {
                 let Some(node) = node else { continue };

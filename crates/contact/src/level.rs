@@ -95,7 +95,13 @@ impl StepProblem {
         self.driven = model.driven(&self.offset);
         self.prescribed.clear();
         if model.plan.effects.motion && model.plan.effects.partners {
-            self.prescribed = between_bodies(&model.points, &self.offset);
+            for point in model.points.iter().filter(|p| p.partner.is_some()) {
+                for (_, row, _) in point.along() {
+                    let rows = self.prescribed.len().max(row + 1);
+                    self.prescribed.resize(rows, 0.0);
+                    self.prescribed[row] = self.offset[row];
+                }
+            }
         }
         self.find_obstacles(model, index);
         if model.plan.effects.gap {
@@ -172,15 +178,14 @@ impl StepProblem {
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m: `value` is
-    /// what `B u` has of it, `prescribed` what supports do beside that.
+    /// what `B u` has of it.
     pub(crate) fn relative(
         &self,
         surface: usize,
         (direction, row, scale): ([f64; 3], usize, f64),
         value: f64,
-        prescribed: &[f64],
     ) -> f64 {
-        (value - at(prescribed, row)) / scale - self.carried(surface, &direction)
+        (value - at(&self.prescribed, row)) / scale - self.carried(surface, &direction)
     }
 
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its motion.
@@ -275,18 +280,6 @@ fn gap_brought(
 /// Pressing force at a point in newtons, not negative.
 pub(crate) fn normal_force(point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
     (-point.scale * lambda[point.row]).max(0.0)
-}
-
-/// Of offsets that supports alone have made those of tangential rows between bodies; all others are zero.
-pub(crate) fn between_bodies(points: &[ConstrainedPoint], offset: &[f64]) -> Vec<f64> {
-    let mut out = Vec::new();
-    for point in points.iter().filter(|p| p.partner.is_some()) {
-        for (_, row, _) in point.along() {
-            out.resize(out.len().max(row + 1), 0.0);
-            out[row] = offset[row];
-        }
-    }
-    out
 }
 
 /// A value by row of a table that may end before; zero there.

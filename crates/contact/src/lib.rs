@@ -17,7 +17,6 @@
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
 //! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`StepResult::discretisation_error`], [`StepDoubling`] |
 //! | to stop where more accuracy is useless | [`Accuracy`] |
-//! | less work where most of a surface stays open | [`Screening`] |
 //! | to follow or end a run | [`Observer`], [`Flow`] |
 //! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
 //!
@@ -108,7 +107,6 @@ mod preconditioner;
 mod reactions;
 mod report;
 mod scene;
-mod screening;
 mod settings;
 mod simulation;
 mod slender;
@@ -133,7 +131,6 @@ pub use point_state::{ContactState, ContactSummary, PointState};
 pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
 pub use report::{Counters, RunReport, StepFailure, StepReport, StepStatus};
 pub use scene::{Load, Partition, Place, Scene, Support};
-pub use screening::Screening;
 pub use settings::{InnerAccuracy, Method, Preconditioner, Settings};
 pub use signorini_tfeti::{Directions, Rate};
 pub use simulation::Simulation;

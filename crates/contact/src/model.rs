@@ -152,60 +152,17 @@ impl Model {
     }
 
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
-        Self::build(scene, settings, None, None)
-    }
-
-    /// The model with rows at some contact points only (ascending places); the plan is that of the whole scene.
-    pub(crate) fn with_points(
-        scene: Scene,
-        settings: &Settings,
-        kept: &[usize],
-    ) -> Result<Self, ContactError> {
-        Self::build(scene, settings, Some(kept), None)
-    }
-
-    /// The same scene with rows at other contact points; what does not depend on them is taken over.
-    pub(crate) fn with_other_points(
-        &self,
-        settings: &Settings,
-        kept: &[usize],
-    ) -> Result<Self, ContactError> {
-        Self::build(self.scene.clone(), settings, Some(kept), Some(self))
-    }
-
-    fn build(
-        scene: Scene,
-        settings: &Settings,
-        kept: Option<&[usize]>,
-        earlier: Option<&Self>,
-    ) -> Result<Self, ContactError> {
-        let (decomposition, (plan, found)) = match earlier {
-            Some(model) => (
-                model.decomposition.clone(),
-                (model.plan.clone(), model.found.clone()),
-            ),
-            None => {
-                scene.validate()?;
-                settings.validate()?;
-                let decomposition = scene.decompose()?;
-                let plan = Plan::with_decomposition(&scene, settings, &decomposition)?;
-                magnitude::check_materials(&scene)?;
-                magnitude::check_motions(&scene)?;
-                (decomposition, plan)
-            }
-        };
+        scene.validate()?;
+        settings.validate()?;
+        let decomposition = scene.decompose()?;
+        let (plan, found) = Plan::with_decomposition(&scene, settings, &decomposition)?;
+        magnitude::check_materials(&scene)?;
+        magnitude::check_motions(&scene)?;
         let (supports, motions) = supports(&scene)?;
         let candidates = &found.points;
-        if earlier.is_none() {
-            magnitude::check_gaps(&scene, &found)?;
-            driven::check(&scene, candidates, &supports, &motions)?;
-        }
-        let places: Vec<usize> = match kept {
-            Some(kept) => kept.to_vec(),
-            None => (0..candidates.len()).collect(),
-        };
-        let nodes = (!scene.contacts.is_empty())
-            .then(|| contact_nodes(&scene, places.iter().map(|&k| &candidates[k])));
+        magnitude::check_gaps(&scene, &found)?;
+        driven::check(&scene, candidates, &supports, &motions)?;
+        let nodes = (!scene.contacts.is_empty()).then(|| contact_nodes(&scene, candidates.iter()));
         let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
             .with_supports(&supports)
             .with_row_scaling(settings.row_scaling)
@@ -213,9 +170,6 @@ impl Model {
             .with_inverse(settings.inverse);
         if let Some(nodes) = &nodes {
             builder = builder.with_contact(nodes);
-        }
-        if let Some(model) = earlier {
-            builder = builder.with_reuse(&model.tfeti);
         }
         let tfeti = builder.build()?;
         let mut loads = Vec::with_capacity(scene.loads.len());
@@ -225,7 +179,7 @@ impl Model {
             magnitude::check_load(&scene, index, precheck::largest_force(&local))?;
             loads.push(tfeti.load_response(&local)?);
         }
-        let points = constrained_points(&scene, candidates, &places, tfeti.gluing());
+        let points = constrained_points(&scene, candidates, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let set = ProductSet::new(vec![
             Segment::upper(vec![0.0; ranges.normal.len()]),
@@ -348,15 +302,14 @@ pub(crate) fn supports(
     Ok((out, motions))
 }
 
-/// The points that have rows; `places` are those of the points that `gluing` was made from.
+/// The points that have rows.
 pub(crate) fn constrained_points(
     scene: &Scene,
     candidates: &[ContactPoint],
-    places: &[usize],
     gluing: &Gluing,
 ) -> Vec<ConstrainedPoint> {
     let point = |info: &tfeti::ContactRows| {
-        let place = places[info.point];
+        let place = info.point;
         let candidate = &candidates[place];
         let tangential = match info.tangential {
             TangentialRows::Disc { row, scale } => Tangential::Plane { row, scale },

@@ -93,49 +93,32 @@ pub struct ContactSummary {
     pub obstacle_work: f64,
 }
 
-/// Values by row at which points are evaluated.
-pub(crate) struct Rows<'a> {
-    /// Multipliers; `None` for open points.
-    pub(crate) lambda: Option<&'a [f64]>,
-    /// `B u`, in row units.
-    pub(crate) displacement: &'a [f64],
-    /// `c`.
-    pub(crate) offset: &'a [f64],
-    /// The part of it between bodies that comes from supports.
-    pub(crate) prescribed: &'a [f64],
-}
-
-/// Evaluates the touch points: `rows` is `B u` in row units.
+/// Evaluates the contact points: `rows` is `B u` in row units.
 pub(crate) fn point_states(
     model: &Model,
     level: &StepProblem,
     lambda: &[f64],
     rows: &[f64],
 ) -> Vec<PointState> {
-    let values = Rows {
-        lambda: Some(lambda),
-        displacement: rows,
-        offset: &level.offset,
-        prescribed: &level.prescribed,
-    };
-    let state = |(k, point): (usize, &ConstrainedPoint)| {
-        let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
-        point_state(model, level, point, &values, bound)
-    };
-    model.points.iter().enumerate().map(state).collect()
+    let states = model.points.iter().enumerate();
+    states
+        .map(|(k, point)| {
+            let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
+            point_state(model, level, point, (lambda, rows), bound)
+        })
+        .collect()
 }
 
 /// Evaluates one point with its slip bound.
-pub(crate) fn point_state(
+fn point_state(
     model: &Model,
     level: &StepProblem,
     point: &ConstrainedPoint,
-    rows: &Rows<'_>,
+    (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
     let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
-    let lambda = |row: usize| rows.lambda.map_or(0.0, |l| l[row]);
-    let normal_force = point.scale * lambda(point.row);
+    let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         Tangential::None => [0.0; 3],
         Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
@@ -145,10 +128,10 @@ pub(crate) fn point_state(
     let mut on_bound = false;
     if let Some((row, count, scale)) = point.tangential.rows() {
         for j in 0..count {
-            let u = rows.displacement[row + j];
-            friction[j] = scale * lambda(row + j);
-            displacement[j] = (u - at(rows.prescribed, row + j)) / scale;
-            difference[j] = alpha * (u - rows.offset[row + j]) / scale;
+            let k = row + j;
+            friction[j] = scale * lambda[k];
+            displacement[j] = (rows[k] - at(&level.prescribed, k)) / scale;
+            difference[j] = alpha * (rows[k] - level.offset[k]) / scale;
         }
         on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
     }
@@ -170,7 +153,7 @@ pub(crate) fn point_state(
         normal_force,
         friction_force: space(friction),
         slip_bound: bound,
-        gap: (rows.offset[point.row] - rows.displacement[point.row]) / point.scale,
+        gap: (level.offset[point.row] - rows[point.row]) / point.scale,
         tangential_displacement: space(displacement),
         difference: space(difference),
         slip_rate: level.step.map_or(0.0, |dt| slip / dt),
@@ -209,7 +192,7 @@ pub(crate) fn summarise(
         for along in touch.along() {
             let (_, k, scale) = along;
             let old = at(before, k - start);
-            let new = level.relative(touch.surface, along, rows[k], &level.prescribed);
+            let new = level.relative(touch.surface, along, rows[k]);
             s.friction_work -= scale * lambda[k] * (new - old);
         }
         if let (Some(now), Some(old)) = (

@@ -159,7 +159,7 @@ fn take_rows(
     }
 }
 
-/// All resultants about a point; `points` are those of the model.
+/// All resultants about a point.
 pub(crate) fn about(
     model: &Model,
     level: &StepProblem,

@@ -95,12 +95,6 @@ pub struct Counters {
     pub rate_updates: usize,
     /// Entries into an inequality solver.
     pub inequality_solves: usize,
-    /// Times screened contact points came back and the level was solved again.
-    pub rebuilds: usize,
-    /// Factorisations of the set-ups that these need.
-    pub factorisations: usize,
-    /// Contact points left out of the dual problem at the end of a level, summed over the levels.
-    pub screened_points: usize,
 }
 
 impl std::ops::AddAssign for Counters {
@@ -115,9 +109,6 @@ impl std::ops::AddAssign for Counters {
         self.slip_bound_updates += o.slip_bound_updates;
         self.rate_updates += o.rate_updates;
         self.inequality_solves += o.inequality_solves;
-        self.rebuilds += o.rebuilds;
-        self.factorisations += o.factorisations;
-        self.screened_points += o.screened_points;
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::accuracy::Accuracy;
 use crate::error::ContactError;
-use crate::screening::Screening;
 use signorini_qp::{ActiveSetSettings, SmalseSettings};
 use signorini_tfeti::{InverseSettings, RowScaling, Sharing};
 
@@ -120,7 +119,6 @@ pub enum Preconditioner {
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
 /// | `max_fallback_products` | most products with F of one call of the face method's fall-back (SMALSE), after which a level ends as `IterationLimit` | >= 1 | 20,000 | |
-/// | `screening` | whether contact points that stay open leave the dual problem | [`Screening`] | off | |
 /// | `busy_waiting` | whether idle threads stay awake during a level | | false | |
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -145,8 +143,6 @@ pub struct Settings {
     pub preconditioner: Preconditioner,
     /// Most products with F that the fall-back of the default method may take at a time.
     pub max_fallback_products: usize,
-    /// Whether contact points that stay open leave the dual problem.
-    pub screening: Screening,
     /// Whether the threads of the pool stay awake while a level is solved, see [`Settings::with_busy_waiting`].
     pub busy_waiting: bool,
 }
@@ -164,7 +160,6 @@ impl Default for Settings {
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
             max_fallback_products: 20_000,
-            screening: Screening::default(),
             busy_waiting: false,
         }
     }
@@ -241,13 +236,6 @@ impl Settings {
         self
     }
 
-    /// Sets whether contact points that stay open leave the dual problem.
-    #[must_use]
-    pub fn with_screening(mut self, screening: Screening) -> Self {
-        self.screening = screening;
-        self
-    }
-
     /// Sets whether the threads of the pool wait for their next part of a level awake. Parallel parts are short, and
     /// waking a thread takes about as long as one of them in scenes of some ten thousand unknowns. For a pool that does
     /// nothing else: all its processors are fully used, and a level waits for other work on the same pool.
@@ -267,7 +255,6 @@ impl Settings {
         }
         self.inverse.validate()?;
         self.accuracy.validate()?;
-        self.screening.validate()?;
         for (name, value) in [
             ("max_fixed_point", self.max_fixed_point),
             ("max_fallback_products", self.max_fallback_products),

@@ -3,7 +3,6 @@
 mod resume;
 mod rounds;
 mod run;
-mod screened;
 
 use crate::accuracy::Controller;
 use crate::certificate::{Certificate, Measured, Sizes, certify, sizes};
@@ -19,7 +18,6 @@ use crate::point_state::{ContactState, ContactSummary, PointState, point_states,
 use crate::pool::on_pool;
 use crate::report::{Counters, StepReport};
 use crate::scene::Scene;
-use crate::screening::Screen;
 use crate::settings::Settings;
 use crate::solver::{Iterate, Solver};
 use crate::state::{Peak, State};
@@ -76,12 +74,6 @@ pub struct Simulation {
     total: Counters,
     setup: Duration,
     controller: Controller,
-    /// With screening: all points, and which of them are in the model.
-    screen: Option<Screen>,
-    /// With screening: states of all points.
-    all: Vec<PointState>,
-    /// Factorisations of the set-ups that screening has made in this level.
-    rebuilt: usize,
 }
 
 /// The plan and how far it is; not the megabytes of tables and vectors.
@@ -106,18 +98,24 @@ impl Simulation {
 
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
-        let (model, screen) = screened::set_up(scene, &settings)?;
-        // with screening the model has no points yet
-        let points = screen.as_ref().map_or(&model.points[..], Screen::points);
-        let places = points.iter().map(|p| (model.law(p), p.node, p.position));
+        let model = Model::new(scene, &settings)?;
+        let places = model
+            .points
+            .iter()
+            .map(|p| (model.law(p), p.node, p.position));
         crate::law::check(places)?;
         crate::held::check(&model)?;
         let origin = || {
             let (scene, gluing) = (&model.scene, model.tfeti.gluing());
             let decomposition = &model.decomposition;
-            let origin =
-                Fingerprint::new(&scene.mesh, &scene.analysis, decomposition, gluing, points);
-            (origin, operator(&origin, &model, &settings, points))
+            let origin = Fingerprint::new(
+                &scene.mesh,
+                &scene.analysis,
+                decomposition,
+                gluing,
+                &model.points,
+            );
+            (origin, operator(&origin, &model, &settings))
         };
         let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);
         let solver = solver?;
@@ -141,9 +139,6 @@ impl Simulation {
             total: Counters::default(),
             setup: start.elapsed(),
             controller: Controller::default(),
-            all: Vec::new(),
-            rebuilt: 0,
-            screen,
             model,
             settings,
             solver,
@@ -168,7 +163,7 @@ impl Simulation {
         &self.model.decomposition
     }
 
-    /// The T-FETI system, with its set-up report. With screening its rows are those of the last level.
+    /// The T-FETI system, with its set-up report.
     #[must_use]
     pub fn tfeti(&self) -> &Tfeti {
         &self.model.tfeti
@@ -177,9 +172,7 @@ impl Simulation {
     /// The touch points.
     #[must_use]
     pub fn constrained_points(&self) -> &[ConstrainedPoint] {
-        self.screen
-            .as_ref()
-            .map_or(&self.model.points, Screen::points)
+        &self.model.points
     }
 
     /// The settings.
@@ -248,36 +241,25 @@ impl Simulation {
             report: &self.report,
             certificate: &self.certificate,
             summary: &self.summary,
-            solved: &self.points,
-            points: self.states(),
+            points: &self.points,
             torn: &self.torn,
             residual: &self.residual,
             held: &self.held,
         }
     }
 
-    /// Solves a level that follows on a state; again with more rows as long as screened points come back.
+    /// Solves a level that follows on a state.
     fn solve_level(
         &mut self,
         state: &State,
         index: usize,
     ) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
         self.controller = state.controller();
-        let expected = self.look_ahead(state)?;
-        let mut view = self.view(state);
-        self.level.prepare(&self.model, &view, index)?;
-        self.start(&view)?;
-        let (mut report, mut lambda, mut rows) = self.solve()?;
-        while self.widen(state, &lambda)? {
-            view = self.view(state);
-            self.level.prepare(&self.model, &view, index)?;
-            let again = self.solve()?;
-            report.counters.rebuilds += 1;
-            (report, lambda, rows) = (report.resumed(again.0), again.1, again.2);
-        }
-        report.counters.rebuilds += usize::from(expected);
+        self.level.prepare(&self.model, state, index)?;
+        self.start(state)?;
+        let (report, lambda, rows) = self.solve()?;
         let before: Vec<f64> = (0..self.model.tangential_rows())
-            .map(|k| view.traces(k).0)
+            .map(|k| state.traces(k).0)
             .collect();
         self.summary = summarise(
             &self.model,
@@ -385,19 +367,16 @@ impl Simulation {
                 // relative to the obstacle or the other body
                 for along in point.along() {
                     let k = along.1;
-                    let prescribed = &self.level.prescribed;
-                    trace[k - start] =
-                        self.level
-                            .relative(point.surface, along, rows[k], prescribed);
+                    trace[k - start] = self.level.relative(point.surface, along, rows[k]);
                 }
             }
-            sliding.extend(self.states().iter().map(|p| p.state == ContactState::Slip));
+            sliding.extend(self.points.iter().map(|p| p.state == ContactState::Slip));
         }
         if effects.history && self.model.any_law(Friction::depends_on_rate) {
-            rate.extend(self.states().iter().map(|p| p.slip_rate));
+            rate.extend(self.points.iter().map(|p| p.slip_rate));
             report.counters.rate_updates += 1;
         }
-        let (mut lambda, mut f_lambda, multiplier) = if quasistatic {
+        let (lambda, f_lambda, multiplier) = if quasistatic {
             // F lambda afresh from the recovered displacement: B u = F lambda + B K+ f + G^T alpha
             let tfeti = &self.model.tfeti;
             let mut f_lambda = rows;
@@ -427,15 +406,6 @@ impl Simulation {
         } else if effects.history {
             state.note_unconverged();
         }
-        if let Some(screen) = &self.screen {
-            report.counters.screened_points = screen.left_out();
-            report.counters.factorisations = std::mem::take(&mut self.rebuilt);
-            (lambda, f_lambda) = (screen.expand(&lambda), screen.expand(&f_lambda));
-            if effects.history {
-                trace = screen.expand_trace(&trace, self.model.tangential_start());
-                screen.fill_trace(&self.model, &self.level, &self.torn, &mut trace);
-            }
-        }
         state.advance(
             self.settings.extrapolate,
             lambda,
@@ -449,10 +419,6 @@ impl Simulation {
         if let Some(accuracy) = &report.accuracy {
             self.controller.errors = accuracy.accumulated;
             state.set_controller(self.controller);
-        }
-        if let Some(screen) = &self.screen {
-            state.set_active(screen.active());
-            state.push_gaps(self.all.iter().map(|p| p.gap).collect());
         }
     }
 }

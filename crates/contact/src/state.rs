@@ -28,10 +28,6 @@ pub struct State {
     rate: Vec<f64>,
     /// Points that slid at the last level.
     sliding: Vec<bool>,
-    /// With screening: points whose rows were in the dual problem at the last level.
-    active: Vec<bool>,
-    /// With screening: gaps of all points at the last level and the one before, m.
-    gaps: [Vec<f64>; 2],
     /// What chooses the tolerance of the next level by estimates of the error.
     controller: Controller,
     /// Largest sizes of each body at the levels so far.
@@ -80,20 +76,14 @@ impl State {
     /// Bytes held.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let pairs = [
-            &self.lambda,
-            &self.f_lambda,
-            &self.multiplier,
-            &self.trace,
-            &self.gaps,
-        ];
+        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
         let numbers: usize = pairs
             .iter()
             .flat_map(|p| p.iter())
             .map(Vec::len)
             .sum::<usize>()
             + self.rate.len();
-        8 * numbers + self.sliding.len() + self.active.len()
+        8 * numbers + self.sliding.len()
     }
 
     /// The same state as the start of another sequence of levels, without what extrapolation needs: the distance
@@ -109,7 +99,6 @@ impl State {
             &mut state.lambda,
             &mut state.f_lambda,
             &mut state.multiplier,
-            &mut state.gaps,
         ] {
             pair[1] = Vec::new();
         }
@@ -162,56 +151,6 @@ impl State {
         }
     }
 
-    /// With screening, which points were in the dual problem at the last level; empty without.
-    pub(crate) fn active(&self) -> &[bool] {
-        &self.active
-    }
-
-    /// Notes which points were in the dual problem at the last level. Products of the level before belong to other rows
-    /// if others were.
-    pub(crate) fn set_active(&mut self, active: &[bool]) {
-        if self.active != active {
-            self.f_lambda[1] = Vec::new();
-            self.multiplier[1] = Vec::new();
-            self.active = active.to_vec();
-        }
-    }
-
-    /// Forgets what holds for one set of rows only: `F lambda` and the multiplier of the coarse equality.
-    pub(crate) fn forget_products(&mut self) {
-        self.f_lambda = Default::default();
-        self.multiplier = Default::default();
-    }
-
-    /// The state on a part of the rows, tangential rows and points.
-    pub(crate) fn part(
-        &self,
-        rows: impl Fn(&[f64]) -> Vec<f64>,
-        tangential: &[usize],
-        points: &[usize],
-    ) -> Self {
-        let pair = |v: &[Vec<f64>; 2]| [rows(&v[0]), rows(&v[1])];
-        Self {
-            level: self.level,
-            lambda: pair(&self.lambda),
-            f_lambda: pair(&self.f_lambda),
-            multiplier: self.multiplier.clone(),
-            trace: [
-                pick(&self.trace[0], tangential),
-                pick(&self.trace[1], tangential),
-            ],
-            rate: pick(&self.rate, points),
-            sliding: pick(&self.sliding, points),
-            active: Vec::new(),
-            gaps: Default::default(),
-            controller: self.controller,
-            peaks: self.peaks.clone(),
-            unconverged: self.unconverged,
-            origin: self.origin,
-            seals: self.seals,
-        }
-    }
-
     /// The first level that did not converge and on whose displacement later levels depend, from 0. `None` where all
     /// converged, and in scenes without history (no friction, or static), whose levels stand alone.
     #[must_use]
@@ -222,17 +161,6 @@ impl State {
     /// Notes that the level that comes next did not converge, although later ones depend on it.
     pub(crate) fn note_unconverged(&mut self) {
         self.unconverged = self.unconverged.or(Some(self.level));
-    }
-
-    /// With screening: gaps of all points at the last level and the one before; empty where they are not known.
-    pub(crate) fn gaps(&self) -> &[Vec<f64>; 2] {
-        &self.gaps
-    }
-
-    /// Notes the gaps of the last level.
-    pub(crate) fn push_gaps(&mut self, gaps: Vec<f64>) {
-        self.gaps.swap(0, 1);
-        self.gaps[0] = gaps;
     }
 
     /// What chooses tolerances by estimates.
@@ -324,16 +252,10 @@ impl State {
     ) -> Result<(), ContactError> {
         let fit = |v: &Vec<f64>, n: usize| v.is_empty() || v.len() == n;
         let pairs = |v: &[Vec<f64>; 2], n: usize| v.iter().all(|v| fit(v, n));
-        let flags = |v: &[bool]| v.is_empty() || v.len() == points;
+        let flags = self.sliding.is_empty() || self.sliding.len() == points;
         // what is most telling first
         let parts = [
-            (
-                "number of contact points",
-                fit(&self.rate, points)
-                    && flags(&self.sliding)
-                    && pairs(&self.gaps, points)
-                    && flags(&self.active),
-            ),
+            ("number of contact points", fit(&self.rate, points) && flags),
             (
                 "number of directions with friction (a coefficient that is zero everywhere is no friction)",
                 pairs(&self.trace, tangential),
@@ -347,13 +269,7 @@ impl State {
                 pairs(&self.multiplier, coarse),
             ),
         ];
-        let numbers = [
-            &self.lambda,
-            &self.f_lambda,
-            &self.multiplier,
-            &self.trace,
-            &self.gaps,
-        ];
+        let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
         let finite = numbers
             .iter()
             .flat_map(|p| p.iter())
@@ -392,13 +308,6 @@ impl State {
         }
         Ok(())
     }
-}
-
-fn pick<T: Copy>(all: &[T], places: &[usize]) -> Vec<T> {
-    if all.is_empty() {
-        return Vec::new();
-    }
-    places.iter().map(|&k| all[k]).collect()
 }
 
 #[cfg(test)]
