@@ -1,6 +1,6 @@
 //! Continuing from a stored state.
 
-use super::Simulation;
+use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::state::State;
 use signorini_qp::SymmetricOperator;

@@ -1,6 +1,6 @@
 //! A state as bytes.
 
-use super::State;
+use super::state::State;
 use crate::error::ContactError;
 use std::path::Path;
 
@@ -108,7 +108,7 @@ fn file_error(path: &Path, what: &'static str, source: std::io::Error) -> Contac
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::tests::state;
+    use crate::state::state::tests::state;
 
     #[test]
     fn bytes_round_trip_and_damage_is_noticed() {

@@ -1,6 +1,6 @@
 //! What a state shows of itself.
 
-use super::State;
+use super::state::State;
 use std::fmt;
 
 /// How far it is and how large; with `{:#?}` all of its numbers.
