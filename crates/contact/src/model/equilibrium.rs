@@ -48,7 +48,7 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
         Err(ContactError::NotHeld {
             level: w.level,
             body: w.way.body,
-            node: model.decomposition.subdomains()[w.way.subdomain].nodes[0],
+            node: model.discrete.decomposition.subdomains()[w.way.subdomain].nodes[0],
             mode: w.mode,
             force: w.force,
             friction: w.friction,
@@ -183,18 +183,17 @@ fn generators(
     let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
     for point in model.points.iter().filter(own) {
         let tangents = point
-            .tangential
-            .rows()
+            .tangential_rows()
             .map_or_else(Vec::new, |(row, count, scale)| {
                 (row..row + count).map(|k| along(k, 1.0 / scale)).collect()
             });
         let (coefficient, given) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
             Friction::Tresca(bound) => {
-                let stress = bound.stress(point.node, point.position)?;
-                (Some(0.0), stress * point.area)
+                let stress = bound.stress(point.node(), point.position())?;
+                (Some(0.0), stress * point.area())
             }
-            Friction::Coulomb(law) => (law.largest(point.position), 0.0),
+            Friction::Coulomb(law) => (law.largest(point.position()), 0.0),
         };
         out.push(Generators {
             normal: along(point.row, -1.0 / point.scale),

@@ -146,39 +146,34 @@ impl Analysis {
         self
     }
 
-    /// Number of time levels to solve.
+    /// The times of all steps, s.
+    pub(crate) fn times(&self) -> &[f64] {
+        match self {
+            Self::Static { time } => std::slice::from_ref(time),
+            Self::Quasistatic { times, .. } => times,
+        }
+    }
+
+    /// Number of steps.
     #[must_use]
     pub fn steps(&self) -> usize {
-        match self {
-            Self::Static { .. } => 1,
-            Self::Quasistatic { times, .. } => times.len(),
-        }
+        self.times().len()
     }
 
-    /// Time of a level, counted from 0.
+    /// Time to which a step leads, counted from 0, s.
     #[must_use]
-    pub fn time(&self, level: usize) -> Option<f64> {
-        match self {
-            Self::Static { time } => (level == 0).then_some(*time),
-            Self::Quasistatic { times, .. } => times.get(level).copied(),
-        }
+    pub fn time(&self, step: usize) -> Option<f64> {
+        self.times().get(step).copied()
     }
 
-    /// Length of the step that ends at a level; `None` for a static scene.
+    /// Length of a step, s; `None` for a static scene.
     #[must_use]
-    pub fn step_size(&self, level: usize) -> Option<f64> {
-        match self {
-            Self::Static { .. } => None,
-            Self::Quasistatic { times, .. } => {
-                let end = times.get(level)?;
-                let start = if level == 0 {
-                    0.0
-                } else {
-                    *times.get(level - 1)?
-                };
-                Some(end - start)
-            }
-        }
+    pub fn step_size(&self, step: usize) -> Option<f64> {
+        let Self::Quasistatic { times, .. } = self else {
+            return None;
+        };
+        let end = times.get(step)?;
+        Some(end - step.checked_sub(1).map_or(0.0, |before| times[before]))
     }
 
     /// The difference formula; `None` for a static scene.

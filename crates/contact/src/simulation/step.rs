@@ -153,7 +153,7 @@ impl Simulation {
                 // relative to the obstacle or the other body
                 for along in point.along() {
                     let k = along.1;
-                    trace[k - start] = self.level.relative(point.surface, along, rows[k]);
+                    trace[k - start] = self.level.relative(point.surface(), along, rows[k]);
                 }
             }
             sliding.extend(self.points.iter().map(|p| p.state == ContactState::Slip));

@@ -37,7 +37,7 @@ pub(crate) struct StepProblem {
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
     /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if none moves.
-    pub(crate) driven: Vec<f64>,
+    pub(crate) prescribed_force: Vec<f64>,
     /// Given slip bound at each point, N, 0 without.
     pub(crate) given: Vec<f64>,
     /// Unit of force of each point, N; empty if it is 1 N everywhere.
@@ -81,48 +81,50 @@ impl StepProblem {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        let cases: Vec<(usize, f64)> = model
-            .motions
-            .iter()
-            .map(|h| h.value(time))
-            .enumerate()
-            .collect();
+        let histories = model.discrete.supports.motions.iter();
+        let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
         self.offset = model.tfeti.prescribed_offsets(&cases);
-        self.driven = model.driven(&self.offset);
+        self.prescribed_force = model.prescribed_force(&self.offset);
         self.prescribed.clear();
         if model.plan.effects.motion && model.plan.effects.partners {
-            for point in model.points.iter().filter(|p| p.partner.is_some()) {
-                for (_, row, _) in point.along() {
-                    let rows = self.prescribed.len().max(row + 1);
-                    self.prescribed.resize(rows, 0.0);
-                    self.prescribed[row] = self.offset[row];
-                }
+            let between = |p: &&ConstrainedPoint| p.contact.sides.partner.is_some();
+            for (_, row, _) in model.points.iter().filter(between).flat_map(|p| p.along()) {
+                let rows = self.prescribed.len().max(row + 1);
+                self.prescribed.resize(rows, 0.0);
+                self.prescribed[row] = self.offset[row];
             }
         }
         self.find_obstacles(model, index);
-        if model.plan.effects.gap {
-            for point in &model.points {
-                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
-            }
-        }
-        if let (true, Some(formula)) = (model.plan.effects.history, analysis.formula()) {
-            let start = model.tangential_start();
-            for point in &model.points {
-                let Some((row, count, scale)) = point.tangential.rows() else {
-                    continue;
-                };
-                for k in row..row + count {
-                    let (last, before) = state.traces(k - start);
-                    self.offset[k] += scale * formula.offset(last, before);
-                }
-            }
-        }
-        self.move_obstacles(model);
+        self.add_offsets(model, state)?;
         self.linear.resize(rows, 0.0);
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
             *d = c - l;
         }
         self.friction(model, state)
+    }
+
+    /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.
+    fn add_offsets(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
+        let effects = &model.plan.effects;
+        let formula = model.scene.analysis.formula().filter(|_| effects.history);
+        let start = model.tangential_start();
+        for point in &model.points {
+            if effects.gap {
+                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
+            }
+            if let (Some(formula), Some((row, count, scale))) = (formula, point.tangential_rows()) {
+                for k in row..row + count {
+                    let (last, before) = state.traces(k - start);
+                    self.offset[k] += scale * formula.offset(last, before);
+                }
+            }
+            if effects.moving_obstacle {
+                for (direction, row, scale) in point.directions() {
+                    self.offset[row] += scale * self.carried(point.contact.surface, &direction);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Where the obstacles that move are.
@@ -138,18 +140,6 @@ impl StepProblem {
                 .map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t)))
                 .collect()
         });
-    }
-
-    /// Offsets of the obstacles that move.
-    fn move_obstacles(&mut self, model: &Model) {
-        if self.obstacles[0].is_empty() {
-            return;
-        }
-        for point in &model.points {
-            for (direction, row, scale) in point.directions() {
-                self.offset[row] += scale * self.carried(point.surface, &direction);
-            }
-        }
     }
 
     /// The gap of a point with what an obstacle that moves along the surface has brought, without what it opens, m.
@@ -191,7 +181,7 @@ impl StepProblem {
 
     fn at_rest(&self, body: usize, size: fn(&Peak) -> f64) -> f64 {
         let earlier = self.peaks.get(body).map_or(0.0, |p| REST * size(p));
-        let driven = self.driven.get(body).map_or(0.0, |f| ROUNDED * f);
+        let driven = self.prescribed_force.get(body).map_or(0.0, |f| ROUNDED * f);
         earlier.max(driven)
     }
 
@@ -223,12 +213,13 @@ impl StepProblem {
         self.coefficients.clear();
         let value = |(k, point): (usize, &ConstrainedPoint)| match model.law(point) {
             Friction::None => Ok((0.0, 0.0)),
-            Friction::Tresca(bound) => {
-                Ok((0.0, bound.stress(point.node, point.position)? * point.area))
-            }
+            Friction::Tresca(bound) => Ok((
+                0.0,
+                bound.stress(point.node(), point.position())? * point.area(),
+            )),
             Friction::Coulomb(law) => {
                 let rate = state.rates().get(k).copied().unwrap_or(0.0);
-                Ok((law.value(point.node, point.position, rate)?, 0.0))
+                Ok((law.value(point.node(), point.position(), rate)?, 0.0))
             }
         };
         let values: Result<Vec<_>, ContactError> =
@@ -259,18 +250,10 @@ fn gap_brought(
     point: &ConstrainedPoint,
     obstacles: &[[f64; 3]],
 ) -> Result<f64, ContactError> {
-    let Some(way) = obstacles.get(point.surface) else {
-        return Ok(point.gap);
-    };
-    let contact = &scene.contacts[point.surface];
-    let normal = &point.frame.normal;
-    contact.gap_brought(
-        point.surface,
-        point.node,
-        point.position,
-        normal,
-        (point.gap, way),
-    )
+    match obstacles.get(point.contact.surface) {
+        Some(way) => point.contact.gap_brought(scene, way),
+        None => Ok(point.contact.gap),
+    }
 }
 
 /// Pressing force at a point in newtons, not negative.
