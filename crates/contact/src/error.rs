@@ -332,13 +332,13 @@ pub enum ContactError {
     },
     /// Loads that nothing can balance.
     #[error(
-        "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
+        "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
         if friction.is_some() { "beyond what friction can hold" } else { "held neither by supports nor by contact" },
         held_remedy(*friction)
     )]
     NotHeld {
-        /// Time level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
         /// The body (part of the mesh that hangs together; of bodies that may touch each other the one that moves most).
         body: usize,
         /// One of its mesh nodes.
