@@ -70,7 +70,7 @@ fn scene(n: usize) -> Result<Scene, Failure> {
                 .with_gap(0.1)
                 .with_friction(friction),
         )
-        .with_analysis(Analysis::quasistatic(1.0, 5)))
+        .with_analysis(Analysis::quasistatic(1.0, 5).with_formula(DifferenceFormula::PAPER)))
 }
 
 fn steps(c: &mut Criterion) -> Result<(), Failure> {

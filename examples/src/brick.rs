@@ -100,7 +100,7 @@ impl Benchmark {
             cells: CELLS,
             loading,
             steps: STEPS,
-            formula: DifferenceFormula::THREE_STEP,
+            formula: DifferenceFormula::PAPER,
             unit: TRACTION_UNIT,
             perturbation: 0.0,
         }

@@ -75,7 +75,9 @@ impl Case {
         };
         Ok(match levels {
             0 => scene,
-            _ => scene.with_analysis(Analysis::quasistatic(1.0, levels)),
+            _ => scene.with_analysis(
+                Analysis::quasistatic(1.0, levels).with_formula(DifferenceFormula::PAPER),
+            ),
         })
     }
 }

@@ -54,7 +54,7 @@ impl FormulaName {
     #[must_use]
     pub fn formula(self) -> DifferenceFormula {
         match self {
-            Self::ThreeStep => DifferenceFormula::THREE_STEP,
+            Self::ThreeStep => DifferenceFormula::PAPER,
             Self::BackwardEuler => DifferenceFormula::BACKWARD_EULER,
         }
     }

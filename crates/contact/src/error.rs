@@ -85,9 +85,7 @@ pub enum ContactError {
         value: f64,
     },
     /// A difference formula is not consistent.
-    #[error(
-        "difference formula {alpha}, {beta}, {gamma}: {rule}; use THREE_STEP or BACKWARD_EULER"
-    )]
+    #[error("difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER")]
     Formula {
         /// Weight of the new level.
         alpha: f64,

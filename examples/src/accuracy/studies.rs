@@ -48,7 +48,7 @@ fn benchmark(n: usize, short: bool) -> Variant {
         n,
         cells: if short { 3 } else { 5 },
         steps: if short { 5 } else { 10 },
-        formula: DifferenceFormula::THREE_STEP,
+        formula: DifferenceFormula::PAPER,
         loading: Loading::C,
         floor: Floor::Weakening,
     }
@@ -217,7 +217,7 @@ fn time(short: bool) -> Result<Vec<Curve>, ExampleError> {
     let text = format!("same mesh, backward Euler, {most} steps, tolerance 1e-9");
     let formulas = [
         ("backward Euler", euler),
-        ("3/2, -2, 1/2", DifferenceFormula::THREE_STEP),
+        ("3/2, -2, 1/2", DifferenceFormula::PAPER),
     ];
     let mut curves = Vec::new();
     for (name, formula) in formulas {

@@ -61,7 +61,11 @@ pub fn cases(cells: usize, steps: usize) -> Result<Vec<Case>, ExampleError> {
         kinetic,
         decay,
     });
-    let history = |scene: Scene| scene.with_analysis(Analysis::quasistatic(DURATION, steps));
+    let history = |scene: Scene| {
+        scene.with_analysis(
+            Analysis::quasistatic(DURATION, steps).with_formula(DifferenceFormula::PAPER),
+        )
+    };
     let full = || history(rough(weakening.clone())).with_boxes([3, 1, 1]);
     let case = |name: &str, scene| Case {
         name: name.to_owned(),

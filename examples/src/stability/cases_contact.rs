@@ -72,7 +72,7 @@ pub fn friction() -> Vec<Case> {
             decay: 1e-4,
         }),
         steps: 20,
-        formula: DifferenceFormula::THREE_STEP,
+        formula: DifferenceFormula::PAPER,
         ..Block::default()
     };
     cases.push(Case::new(
@@ -286,8 +286,7 @@ pub fn sliding() -> Vec<Case> {
                 Ok(
                     driven(1e-3, zigzag(8, 1e-2), 8, Friction::coulomb(0.5))?.map(|scene| {
                         scene.with_analysis(
-                            Analysis::quasistatic(1.0, 8)
-                                .with_formula(DifferenceFormula::THREE_STEP),
+                            Analysis::quasistatic(1.0, 8).with_formula(DifferenceFormula::PAPER),
                         )
                     }),
                 )

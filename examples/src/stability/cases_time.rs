@@ -18,11 +18,8 @@ pub fn cases() -> Vec<Case> {
             1000 => "errors must not build up",
             _ => "ordinary steps",
         };
-        for formula in [
-            DifferenceFormula::BACKWARD_EULER,
-            DifferenceFormula::THREE_STEP,
-        ] {
-            if steps == 0 && formula == DifferenceFormula::THREE_STEP {
+        for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
+            if steps == 0 && formula == DifferenceFormula::PAPER {
                 continue;
             }
             let block = Block {
@@ -31,7 +28,7 @@ pub fn cases() -> Vec<Case> {
                 formula,
                 ..Block::default()
             };
-            let name = if formula == DifferenceFormula::THREE_STEP {
+            let name = if formula == DifferenceFormula::PAPER {
                 "3/2 -2 1/2"
             } else {
                 "backward Euler"

@@ -18,7 +18,7 @@ pub struct DifferenceFormula {
 
 impl DifferenceFormula {
     /// The paper's `3/2, -2, 1/2`.
-    pub const THREE_STEP: Self = Self {
+    pub const PAPER: Self = Self {
         alpha: 1.5,
         beta: -2.0,
         gamma: 0.5,
@@ -89,9 +89,9 @@ impl DifferenceFormula {
 }
 
 impl Default for DifferenceFormula {
-    /// The paper's formula.
+    /// Backward Euler.
     fn default() -> Self {
-        Self::THREE_STEP
+        Self::BACKWARD_EULER
     }
 }
 
@@ -123,9 +123,9 @@ impl Analysis {
         Self::Static { time: 1.0 }
     }
 
-    /// `steps` equal steps up to `end` seconds, with the paper's formula 3/2, -2, 1/2. It remembers the step before the last:
-    /// points that slid creep on where loads are held, and the first step sees one and a half times the slip rate. Use
-    /// [`BACKWARD_EULER`](DifferenceFormula::BACKWARD_EULER) unless you compare with the paper.
+    /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is asked for with
+    /// [`with_formula`](Self::with_formula): it remembers the step before the last, so that points that slid creep on where loads
+    /// are held, and its first step sees one and a half times the slip rate.
     #[must_use]
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         // none, which is refused when the scene is used
@@ -224,10 +224,7 @@ mod tests {
 
     #[test]
     fn the_two_formulas_are_consistent() {
-        for f in [
-            DifferenceFormula::THREE_STEP,
-            DifferenceFormula::BACKWARD_EULER,
-        ] {
+        for f in [DifferenceFormula::PAPER, DifferenceFormula::BACKWARD_EULER] {
             assert_eq!(
                 DifferenceFormula::new(f.alpha(), f.beta(), f.gamma()).unwrap(),
                 f
@@ -240,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_sticking_node_still_moves_half_a_step_with_the_three_step_formula() {
-        let f = DifferenceFormula::THREE_STEP;
+        let f = DifferenceFormula::PAPER;
         let (mut last, mut before) = (1.0, 0.0);
         for _ in 0..60 {
             let next = f.offset(last, before);
@@ -255,7 +252,7 @@ mod tests {
     fn wrong_times_are_refused() {
         let q = |times: Vec<f64>| Analysis::Quasistatic {
             times,
-            formula: DifferenceFormula::default(),
+            formula: DifferenceFormula::PAPER,
         };
         assert!(matches!(q(vec![]).validate(), Err(ContactError::NoLevels)));
         assert!(matches!(

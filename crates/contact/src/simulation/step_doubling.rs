@@ -150,7 +150,7 @@ fn ratio(value: f64, size: f64) -> f64 {
 ///
 /// ```
 /// use signorini_contact::{
-///     Analysis, Contact, DifferenceFormula, Doubling, Friction, Load, Scene, Settings, StepDoubling, Support,
+///     Analysis, Contact, Doubling, Friction, Load, Scene, Settings, StepDoubling, Support,
 /// };
 /// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
 ///
@@ -161,7 +161,7 @@ fn ratio(value: f64, size: f64) -> f64 {
 ///     .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp.clone()))
 ///     .with_load(Load::traction(brick::X_MAX, [1e6, 0.0, 0.0]).with_history(ramp))
 ///     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
-///     .with_analysis(Analysis::quasistatic(1.0, 4).with_formula(DifferenceFormula::BACKWARD_EULER));
+///     .with_analysis(Analysis::quasistatic(1.0, 4));
 /// let mut doubling = StepDoubling::new(&scene, &Settings::default(), Doubling::Local)?;
 /// while !doubling.is_finished() {
 ///     let error = doubling.step()?;
