@@ -42,3 +42,11 @@ pub(crate) const MOST_FRICTION: f64 = 1e3;
 
 /// Accuracy of the factor of friction that is named, relative.
 pub(crate) const FRICTION_FACTOR: f64 = 1e-4;
+
+// ---- steps in time (scene) ----
+
+/// A difference formula is consistent whose sums are off by less.
+pub(crate) const CONSISTENT: f64 = 1e-12;
+
+/// Steps are equal whose lengths differ by less, relative to the longer one.
+pub(crate) const UNEQUAL: f64 = 1e-9;

@@ -37,6 +37,7 @@ impl DiscreteScene {
     pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
         scene.validate()?;
         let decomposition = scene.decompose()?;
+        let supports = Supports::new(scene)?;
         let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
         let surfaces = scene.contacts.iter().map(surface);
         let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
@@ -46,7 +47,6 @@ impl DiscreteScene {
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions)?;
-        let supports = Supports::new(scene)?;
         let constraints = constraints(scene, &points);
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;

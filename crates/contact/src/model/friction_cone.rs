@@ -378,7 +378,7 @@ mod tests {
 
     #[test]
     fn without_contact_points_nothing_is_held() {
-        let mut cone = WrenchCone::new(2, Vec::new());
+        let cone = WrenchCone::new(2, Vec::new());
         assert_eq!(cone.separates(&[0.6, -0.8]), Some(vec![0.6, -0.8]));
     }
 
@@ -399,7 +399,7 @@ mod tests {
                 }
             })
             .collect();
-        let mut cone = WrenchCone::new(6, points);
+        let cone = WrenchCone::new(6, points);
         for (along, expected) in [(0.49, true), (0.499_99, true), (0.500_1, false)] {
             let b = [0.6 * along, 0.8 * along, 1.0, 0.0, 0.0, 0.0];
             let length = norm(&b);

@@ -53,10 +53,10 @@ impl StepProblem {
         index: usize,
     ) -> Result<(), ContactError> {
         let analysis = &model.scene.analysis;
-        let levels = analysis.steps();
+        let steps = analysis.steps();
         let time = analysis
             .time(index)
-            .ok_or(ContactError::Finished { levels })?;
+            .ok_or(ContactError::Finished { steps })?;
         self.index = index;
         self.time = time;
         self.step = analysis.step_size(index);
