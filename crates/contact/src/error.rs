@@ -390,21 +390,9 @@ pub enum ContactError {
         /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// A level did not converge, where that was required.
-    #[error(
-        "level {level}, at {time} s, did not converge ({status}, certificate {certificate:.1e}); {}",
-        status.remedy()
-    )]
-    NotConverged {
-        /// The level, from 0.
-        level: usize,
-        /// Its time in s.
-        time: f64,
-        /// How it ended.
-        status: crate::status::StepStatus,
-        /// The largest relative violation of its certificate.
-        certificate: f64,
-    },
+    /// A step did not converge, where that was required.
+    #[error("{0}")]
+    NotConverged(crate::status::StepFailure),
     /// An earlier level did not converge, on whose displacement later ones depend, where that was required.
     #[error(
         "level {level} did not converge, and the slip of later levels depends on it; continue from a state before it, with smaller steps or other settings"

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// How the solve of a level ended.
+/// How the solve of a step ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StepStatus {
@@ -15,7 +15,7 @@ pub enum StepStatus {
     /// The Coulomb map is not contractive here: successive approximations have no limit from this start. The result is
     /// the last iterate, which solves the given-friction problem of the last slip bounds.
     NotContractive,
-    /// With the normal forces of this level friction does not hold a body: slip bounds and normal forces that agree
+    /// With the normal forces of this step friction does not hold a body: slip bounds and normal forces that agree
     /// leave no balance with the loads. The set-up judges only whether any normal forces could.
     NotHeld,
     /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance (with an
@@ -31,7 +31,7 @@ impl StepStatus {
         self == Self::Converged
     }
 
-    /// What to do about it; empty for a level that converged.
+    /// What to do about it; empty for a step that converged.
     #[must_use]
     pub fn remedy(self) -> &'static str {
         match self {
@@ -64,5 +64,35 @@ impl fmt::Display for StepStatus {
             Self::NotHeld => "not held by friction",
             Self::NotCertified => "not certified",
         })
+    }
+}
+
+/// A step that did not converge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct StepFailure {
+    /// The step, from 0.
+    pub step: usize,
+    /// Its time, s.
+    pub time: f64,
+    /// How it ended.
+    pub status: StepStatus,
+    /// The largest relative violation of its certificate.
+    pub certificate: f64,
+}
+
+impl fmt::Display for StepFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            step,
+            time,
+            status,
+            certificate,
+        } = self;
+        write!(
+            f,
+            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}); {}",
+            status.remedy()
+        )
     }
 }

@@ -50,3 +50,24 @@ pub(crate) const CONSISTENT: f64 = 1e-12;
 
 /// Steps are equal whose lengths differ by less, relative to the longer one.
 pub(crate) const UNEQUAL: f64 = 1e-9;
+
+// ---- rounds of a step and orders in time (simulation) ----
+
+/// Largest certificate of a converged step over the tolerance.
+pub(crate) const CERTIFIED: f64 = 30.0;
+
+/// Aim of a second round, as a fraction of the tolerance.
+pub(crate) const NEXT_AIM: f64 = 0.3;
+
+/// Most by which the tolerance of a round falls below that of the round before.
+pub(crate) const NEXT_TOLERANCE: f64 = 0.01;
+
+/// Smallest tolerance that is tried for a certificate, and the certificate that rounding leaves.
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-10;
+
+/// Differences of runs are time error, and not the solver's, from this many times the solver's errors on.
+pub(crate) const ABOVE_SOLVER: f64 = 3.0;
+
+/// Orders of the time steps that are believed: below, the steps have not settled into a sequence of sticking and sliding, and
+/// no more than the upper one is in the formulas.
+pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];

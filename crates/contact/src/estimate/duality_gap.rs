@@ -77,7 +77,7 @@
 use super::admissible::{Movable, Moved};
 use crate::model::{ConstrainedPoint, Model};
 use crate::report::AlgebraicError;
-use crate::result::{Certificate, PointState};
+use crate::result::Recovered;
 use crate::step::StepProblem;
 use crate::tolerances::REST;
 use crate::vec3::dot;
@@ -151,15 +151,12 @@ pub(crate) struct Caches {
 }
 
 /// What the estimate needs of a solved level.
+#[derive(Clone, Copy)]
 pub(crate) struct Solved<'a> {
     pub(crate) model: &'a Model,
     pub(crate) caches: &'a Caches,
-    pub(crate) level: &'a StepProblem,
-    pub(crate) points: &'a [PointState],
-    pub(crate) certificate: &'a Certificate,
-    pub(crate) torn: &'a [f64],
-    /// `K u - f - Bᵀ lambda`, torn, N.
-    pub(crate) residual: &'a [f64],
+    pub(crate) problem: &'a StepProblem,
+    pub(crate) recovered: &'a Recovered,
 }
 
 impl Solved<'_> {
@@ -168,24 +165,30 @@ impl Solved<'_> {
         let tfeti = &model.tfeti;
         let weights = self.caches.weights.get_or_init(|| Weights::new(model));
         let mut v = self.mean(model.copies());
-        let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(self.torn));
-        let places = || self.points.iter().zip(&model.points).zip(&weights.movable);
+        let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
+        let places = || {
+            self.recovered
+                .points
+                .iter()
+                .zip(&model.points)
+                .zip(&weights.movable)
+        };
         let moved: Vec<Moved> = places()
             .map(|((point, touch), movable)| {
-                Moved::new(touch, point, (self.level, movable), &weights.rows, &mut v)
+                Moved::new(touch, point, (self.problem, movable), &weights.rows, &mut v)
             })
             .collect();
         self.support(&mut v);
         self.agree(&moved, &weights.movable, &mut v);
         let (mut terms, mut change) = (0.0, 0.0);
         for (((point, touch), movable), moved) in places().zip(&moved) {
-            let place = movable.place(self.level, touch, &v);
+            let place = movable.place(self.problem, touch, &v);
             terms += moved.gap(point, &place, movable.value(&mut v));
             change += moved.change;
         }
         // torn difference and its energy
         let balanced = self.balanced(weights);
-        let torn = balanced.as_deref().unwrap_or(self.torn);
+        let torn = balanced.as_deref().unwrap_or(&self.recovered.torn);
         let subdomains = model.discrete.decomposition.subdomains();
         let nodes = || subdomains.iter().flat_map(|s| &s.nodes);
         let mut difference = torn.to_vec();
@@ -208,7 +211,7 @@ impl Solved<'_> {
         });
         let (elastic, energy) = (energy(torn), energy(&difference));
         if balanced.is_none() && !self.is_balanced() {
-            terms += vector::norm(self.residual) * vector::norm(&difference);
+            terms += vector::norm(&self.recovered.residual) * vector::norm(&difference);
         }
         let distance = 0.5 * energy.max(0.0);
         let gap = distance + terms;
@@ -225,20 +228,20 @@ impl Solved<'_> {
     /// What an energy is compared with where the body is at rest, J.
     fn scale_at_rest(&self, torn: &[f64]) -> f64 {
         let (model, copies) = (self.model, self.model.copies());
-        let force = self.level.forces(model);
+        let force = self.problem.forces(model);
         let (mut alone, mut moved) = (0.0_f64, 0.0);
         for (k, (f, u)) in force.chunks_exact(3).zip(torn.chunks_exact(3)).enumerate() {
             let stiffness = copies.weight(k);
             alone += dot(f, f) / stiffness;
             moved += dot(u, u) * stiffness;
         }
-        let works = self.level.peaks.iter();
+        let works = self.problem.peaks.iter();
         let before = REST * REST * works.map(|p| p.multipliers * p.displacement).sum::<f64>();
         0.5 * alone.max(before).max(ROUNDED * moved)
     }
 
     fn is_balanced(&self) -> bool {
-        self.certificate.equilibrium.relative() < BALANCED
+        self.recovered.certificate.equilibrium.relative() < BALANCED
     }
 
     /// The torn displacement with rigid forces balanced by gluing and supports; `None` if they are balanced already.
@@ -253,7 +256,7 @@ impl Solved<'_> {
             .flat_map(|s| {
                 tfeti
                     .kernel(s)
-                    .transpose_times(&self.residual[tfeti.torn_range(s)])
+                    .transpose_times(&self.recovered.residual[tfeti.torn_range(s)])
             })
             .collect();
         let mut lambda = vec![0.0; tfeti.dual_dim()];
@@ -262,7 +265,9 @@ impl Solved<'_> {
         tfeti.add_rows_transposed(&lambda, &mut force);
         let mut u = vec![0.0; tfeti.torn_dim()];
         tfeti.generalised_inverse(&force, &mut u);
-        u.iter_mut().zip(self.torn).for_each(|(u, t)| *u += t);
+        u.iter_mut()
+            .zip(&self.recovered.torn)
+            .for_each(|(u, t)| *u += t);
         Some(u)
     }
 
@@ -276,7 +281,7 @@ impl Solved<'_> {
             .subdomains()
             .iter()
             .flat_map(|s| s.nodes.iter().copied());
-        for ((k, node), u) in copies.enumerate().zip(self.torn.chunks_exact(3)) {
+        for ((k, node), u) in copies.enumerate().zip(self.recovered.torn.chunks_exact(3)) {
             let (node, weight) = (node as usize, weights.weight(k));
             total[node] += weight;
             (0..3).for_each(|c| v[3 * node + c] += weight * u[c]);
@@ -297,14 +302,14 @@ impl Solved<'_> {
         let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
         for row in gluing.ranges().dirichlet.clone() {
             if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
-                let plane = (self.direction(row), self.level.offset[row]);
+                let plane = (self.direction(row), self.problem.offset[row]);
                 planes.entry(node).or_default().push(plane);
             }
         }
         let dependent = |t: &(&ConstrainedPoint, &Movable)| gluing.is_dependent(t.0.node());
         let places = self.model.points.iter().zip(movable);
         for ((touch, movable), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
-            let place = movable.place(self.level, touch, v);
+            let place = movable.place(self.problem, touch, v);
             let planes = planes.entry(movable.node).or_default();
             if moved.touches() {
                 planes.push((place.normal, place.offset));
@@ -322,7 +327,7 @@ impl Solved<'_> {
         on_planes(v);
         for _ in 0..SWEEPS {
             for (touch, movable) in places.clone().filter(dependent) {
-                movable.push_out(self.level, touch, v);
+                movable.push_out(self.problem, touch, v);
             }
         }
         on_planes(v);
@@ -347,7 +352,7 @@ impl Solved<'_> {
             let direction = self.direction(row);
             let value = &mut v[3 * node as usize..][..3];
             let off =
-                (self.level.offset[row] - dot(&direction, value)) / dot(&direction, &direction);
+                (self.problem.offset[row] - dot(&direction, value)) / dot(&direction, &direction);
             for c in 0..3 {
                 value[c] += off * direction[c];
             }
@@ -384,24 +389,23 @@ mod tests {
             .with_load(Load::traction(brick::Z_MIN, [4e3, 0.0, -4e3]));
         let settings = Settings::default().with_tolerance(1e-11);
         let mut simulation = Simulation::new(scene, settings).expect("set-up");
-        let frame = simulation.step().expect("step");
-        let estimate = |points: &[PointState]| {
+        simulation.step().expect("step");
+        let (model, caches) = (&simulation.model, &simulation.caches);
+        let (problem, result) = (&simulation.problem, simulation.result().expect("a result"));
+        let estimate = |recovered: &Recovered| {
             let solved = Solved {
-                model: frame.model,
-                caches: frame.caches,
-                level: frame.level,
-                points,
-                certificate: frame.certificate,
-                torn: frame.torn,
-                residual: frame.residual,
+                model,
+                caches,
+                problem,
+                recovered,
             };
             solved.algebraic_error()
         };
-        let gap = estimate(frame.points).energy;
-        let mut points = frame.points.to_vec();
+        let gap = estimate(&result.recovered).energy;
+        let mut recovered = result.recovered.clone();
         let mut change = 0.0;
-        let weights = frame.caches.weights.get().expect("made by the estimate");
-        for (point, touch) in points.iter_mut().zip(&frame.model.points) {
+        let weights = caches.weights.get().expect("made by the estimate");
+        for (point, touch) in recovered.points.iter_mut().zip(&model.points) {
             if point.state != crate::ContactState::Slip {
                 continue;
             }
@@ -411,7 +415,7 @@ mod tests {
             change += 0.5 * more.powi(2) / (scale.powi(2) * weights.rows[row]);
         }
         assert!(change > 1e4 * gap, "{change:e} {gap:e}");
-        let found = estimate(&points).energy;
+        let found = estimate(&recovered).energy;
         let expected = (gap.sqrt() + change.sqrt()).powi(2);
         assert!(
             (found - expected).abs() <= 1e-2 * expected,

@@ -7,8 +7,7 @@ mod cost;
 mod effects;
 mod plan;
 mod print;
-mod slenderness;
 
-pub use cost::Estimate;
+pub use cost::{Estimate, Times};
 pub use effects::{Effects, FrictionKind};
 pub use plan::Plan;

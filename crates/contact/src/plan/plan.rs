@@ -1,12 +1,11 @@
 //! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
 
-use super::cost::{Estimate, PlanSizes, stiffness_ratio};
+use super::cost::{Estimate, PlanSizes};
 use super::effects::{Effects, FrictionKind};
-use super::slenderness::slenderness;
 use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
 use crate::scene::{Analysis, Friction, Gap, Scene};
-use crate::settings::{Method, Settings};
+use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,8 +25,6 @@ pub struct Plan {
     pub subdomains: usize,
     /// Unknown displacements of all torn subdomains, n_p of the paper.
     pub primal: usize,
-    /// Largest over smallest extent of a subdomain: the mean, weighted by tetrahedra, over 64 of them at most.
-    pub slenderness: f64,
     /// Contact points that can touch: nodes, those in edges and corners counted once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
     pub contact_nodes: usize,
@@ -44,13 +41,13 @@ pub struct Plan {
     pub dirichlet_rows: usize,
     /// Unknowns of the coarse problem.
     pub coarse: usize,
-    /// Time levels.
-    pub levels: usize,
+    /// Time steps.
+    pub steps: usize,
     /// The method that will be used.
-    pub method: &'static str,
+    pub method: MethodKind,
     /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
     pub vector_bytes: u64,
-    /// Estimated memory, products and time.
+    /// Memory, and likely products and times.
     pub estimate: Estimate,
 }
 
@@ -64,10 +61,10 @@ impl Plan {
         Self::of(scene, &DiscreteScene::new(scene)?, settings)
     }
 
-    /// The same plan with times for another machine; [`Rate::measure`] measures this one.
+    /// The same plan with times for a machine; [`Rate::measure`] measures this one.
     #[must_use]
     pub fn with_machine(mut self, rate: Rate) -> Self {
-        self.estimate.rate = rate;
+        self.estimate.times = Some(self.estimate.times_on(rate));
         self
     }
 
@@ -126,15 +123,17 @@ impl Plan {
             moving_obstacle: scene.contacts.iter().any(|c| c.motion.is_some()),
         };
         let method = if effects.contact {
-            settings.method.name()
+            settings.method.kind()
         } else {
-            "linear"
+            MethodKind::Linear
         };
         let primal = decomposition.torn_dofs();
         let dual = normal_rows + tangential_rows + interface_rows + dirichlet_rows;
-        let vectors = match settings.method {
-            Method::ActiveSet(_) => 16,
-            _ => 18,
+        let smalse = [MethodKind::SuccessiveApproximations, MethodKind::OneLoop];
+        let vectors = if smalse.contains(&settings.method.kind()) {
+            18
+        } else {
+            16
         };
         let touched = |node: u32| fixed.contains_key(&node) || touching.contains(&node);
         let forecast = Forecast::new(
@@ -150,17 +149,15 @@ impl Plan {
             primal,
             elements: scene.mesh.tets().len(),
             subdomains: decomposition.subdomains().len(),
-            ratio: largest_ratio(scene)?,
-            slenderness: slenderness(&scene.mesh, decomposition),
+            steps: scene.analysis.steps(),
         };
-        let estimate = Estimate::new(&effects, settings, &scene.analysis, &forecast, sizes);
+        let estimate = Estimate::new(method, settings, &forecast, sizes);
         Ok(Self {
             effects,
             elements: scene.mesh.tets().len(),
             nodes,
             subdomains: decomposition.subdomains().len(),
             primal,
-            slenderness: sizes.slenderness,
             contact_nodes: normal_rows,
             gaps: points.iter().map(|p| p.gap).fold(None, |range, gap| {
                 let [low, high] = range.unwrap_or([gap; 2]);
@@ -171,7 +168,7 @@ impl Plan {
             interface_rows,
             dirichlet_rows,
             coarse: 6 * decomposition.subdomains().len(),
-            levels: scene.analysis.steps(),
+            steps: sizes.steps,
             method,
             vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
             estimate,
@@ -188,16 +185,6 @@ fn has_gap(scene: &Scene, surface: usize, candidates: &[ContactPoint]) -> bool {
             .any(|p| p.surface == surface && p.gap != 0.0),
         _ => true,
     }
-}
-
-/// Largest ratio of compressional to shear stiffness in the mesh.
-fn largest_ratio(scene: &Scene) -> Result<f64, ContactError> {
-    let mut regions = scene.mesh.regions().to_vec();
-    regions.sort_unstable();
-    regions.dedup();
-    regions.into_iter().try_fold(0.0_f64, |most, region| {
-        Ok(most.max(stiffness_ratio(scene.materials.get(region)?)))
-    })
 }
 
 /// Number of directions fixed at each node.

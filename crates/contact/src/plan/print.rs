@@ -1,6 +1,5 @@
 //! The plan as a table.
 
-use super::cost::SLENDER;
 use super::effects::FrictionKind;
 use super::plan::Plan;
 use std::fmt;
@@ -10,58 +9,89 @@ const LARGE: usize = 4000;
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let e = &self.effects;
-        let yes = |on: bool, text: String, absent: &str| {
-            if on { text } else { format!("none ({absent})") }
-        };
-        writeln!(f, "plan")?;
-        writeln!(
-            f,
-            "  mesh        {} tetrahedra, {} nodes",
-            self.elements, self.nodes
+        let cost = &self.estimate;
+        let mb = |bytes: u64| bytes as f64 / 1e6;
+        write!(f, "plan")?;
+        let mut line = |name: &str, text: String| write!(f, "\n  {name:<11} {text}");
+        line(
+            "mesh",
+            format!("{} tetrahedra, {} nodes", self.elements, self.nodes),
         )?;
-        writeln!(
-            f,
-            "  subdomains  {} ({} torn unknowns)",
-            self.subdomains, self.primal
+        line(
+            "subdomains",
+            format!("{} ({} torn unknowns)", self.subdomains, self.primal),
         )?;
         if self.primal > LARGE * self.subdomains {
-            writeln!(
-                f,
-                "              large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
+            line(
+                "",
+                "large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
+                    .to_owned(),
             )?;
         }
-        if self.estimate.is_mostly_coarse() {
-            writeln!(
-                f,
-                "              too small ones: their {} rigid motions take most of the time; some hundred tetrahedra each are faster",
-                self.coarse
+        if cost.is_mostly_coarse() {
+            let motions = self.coarse;
+            line(
+                "",
+                format!(
+                    "too small ones: their {motions} rigid motions take most of the time; some hundred tetrahedra each are faster"
+                ),
             )?;
         }
-        // the estimate of a brick of 3 : 1 has no part for bending
-        if e.contact && self.slenderness > 1.2 * SLENDER {
-            writeln!(
-                f,
-                "              slender ones, {:.0} : 1: such as are as long as thick need far fewer products",
-                self.slenderness
-            )?;
-        }
-        let gluing = format!("{} rows", self.interface_rows);
-        writeln!(
-            f,
-            "  gluing      {}",
-            yes(e.gluing, gluing, "one subdomain")
+        line("gluing", self.gluing_text())?;
+        line("supports", self.supports_text())?;
+        line("contact", self.contact_text())?;
+        line("friction", self.friction_text())?;
+        line("history", self.history_text())?;
+        line(
+            "dual",
+            format!("{} rows, coarse {}", self.dual(), self.coarse),
         )?;
-        let moving = if e.motion { ", moving" } else { "" };
-        writeln!(
-            f,
-            "  supports    {}",
-            yes(
-                e.supports,
-                format!("{} rows{moving}", self.dirichlet_rows),
-                "free body"
-            )
+        line("method", self.method.to_string())?;
+        let [vectors, inverses] = [self.vector_bytes, cost.inverse_bytes].map(mb);
+        let [coarse, tables] = [cost.coarse_bytes, cost.table_bytes].map(mb);
+        line(
+            "memory",
+            format!(
+                "vectors {vectors:.1} MB, inverses {inverses:.1} MB ({} classes), coarse {coarse:.1} MB, tables {tables:.1} MB",
+                cost.classes
+            ),
         )?;
+        line("products", format!("{} are likely", cost.products))?;
+        if let Some(t) = &cost.times {
+            let product = 1e3 * t.product;
+            line(
+                "time",
+                format!(
+                    "set-up {:.2} s, steps {:.2} s, a product {product:.2} ms, on one processor",
+                    t.setup, t.steps
+                ),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Plan {
+    fn gluing_text(&self) -> String {
+        match self.effects.gluing {
+            true => format!("{} rows", self.interface_rows),
+            false => "none (one subdomain)".to_owned(),
+        }
+    }
+
+    fn supports_text(&self) -> String {
+        let moving = if self.effects.motion { ", moving" } else { "" };
+        match self.effects.supports {
+            true => format!("{} rows{moving}", self.dirichlet_rows),
+            false => "none (free body)".to_owned(),
+        }
+    }
+
+    fn contact_text(&self) -> String {
+        let e = &self.effects;
+        if !e.contact {
+            return "none (no inequality solver)".to_owned();
+        }
         let gap = match self.gaps.filter(|_| e.gap) {
             None => "no gap: zero offset".to_owned(),
             Some([low, high]) => {
@@ -75,58 +105,23 @@ impl fmt::Display for Plan {
             ""
         };
         let partners = if e.partners { ", between bodies" } else { "" };
-        let contact = format!("{} nodes, {gap}{moving}{partners}", self.contact_nodes);
-        writeln!(
-            f,
-            "  contact     {}",
-            yes(e.contact, contact, "no inequality solver")
-        )?;
-        let friction = match e.friction {
+        format!("{} nodes, {gap}{moving}{partners}", self.contact_nodes)
+    }
+
+    fn friction_text(&self) -> String {
+        let rows = self.tangential_rows;
+        match self.effects.friction {
             FrictionKind::None => "none (no tangential rows)".to_owned(),
-            FrictionKind::Tresca => format!("given, {} rows, no outer loop", self.tangential_rows),
-            FrictionKind::Coulomb => {
-                format!("Coulomb, {} rows, no slip rate", self.tangential_rows)
-            }
-            FrictionKind::RateDependent => {
-                format!("Coulomb, rate dependent, {} rows", self.tangential_rows)
-            }
-        };
-        writeln!(f, "  friction    {friction}")?;
-        let history = format!("{} levels, old traces kept", self.levels);
-        writeln!(
-            f,
-            "  history     {}",
-            yes(e.history, history, "each level stands alone")
-        )?;
-        writeln!(
-            f,
-            "  dual        {} rows, coarse {}",
-            self.dual(),
-            self.coarse
-        )?;
-        writeln!(f, "  method      {}", self.method)?;
-        let mb = |bytes: u64| bytes as f64 / 1e6;
-        let e = &self.estimate;
-        writeln!(
-            f,
-            "  memory      vectors {:.1} MB; estimated: inverses {:.1} MB ({} classes), coarse {:.1} MB, tables {:.1} MB",
-            mb(self.vector_bytes),
-            mb(e.inverse_bytes),
-            e.classes,
-            mb(e.coarse_bytes),
-            mb(e.table_bytes)
-        )?;
-        write!(
-            f,
-            "  estimate    {} products ({} to {}) of {:.2} ms, set-up {:.2} s, all levels {:.2} s ({:.2} to {:.2}) on one processor",
-            e.products,
-            e.fewest_products,
-            e.most_products,
-            1e3 * e.product_seconds(),
-            e.setup_seconds(),
-            e.solve_seconds(),
-            e.solve_seconds_range()[0],
-            e.solve_seconds_range()[1]
-        )
+            FrictionKind::Tresca => format!("Tresca, {rows} rows, no outer loop"),
+            FrictionKind::Coulomb => format!("Coulomb, {rows} rows, no slip rate"),
+            FrictionKind::RateDependent => format!("Coulomb, rate dependent, {rows} rows"),
+        }
+    }
+
+    fn history_text(&self) -> String {
+        match self.effects.history {
+            true => format!("{} steps, old traces kept", self.steps),
+            false => "none (each step stands alone)".to_owned(),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! What a step cost.
 
-/// What one level cost.
+/// What one step cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Counters {

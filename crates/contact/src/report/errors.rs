@@ -1,6 +1,6 @@
 //! Estimated errors of a step, and of all steps so far.
 
-/// Estimated algebraic error of a level, by the duality gap.
+/// Estimated algebraic error of a step, by the duality gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct AlgebraicError {
@@ -17,7 +17,7 @@ pub struct AlgebraicError {
 
 impl AlgebraicError {
     /// Error relative to the displacement, both in the energy norm: `sqrt(energy / scale)`. 0 where nothing is wrong, infinite
-    /// where something is and there is no scale: no load, no displacement, no level before.
+    /// where something is and there is no scale: no load, no displacement, no step before.
     #[must_use]
     pub fn relative(&self) -> f64 {
         relative(self.energy, self.scale)
@@ -33,36 +33,36 @@ pub(crate) fn relative(energy: f64, scale: f64) -> f64 {
     }
 }
 
-/// What the estimates of a level say.
+/// What the estimates of a step say.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct AccuracyReport {
-    /// Estimated algebraic error of this level alone.
+    /// Estimated algebraic error of this step alone.
     pub algebraic: AlgebraicError,
-    /// The same with what earlier levels have left in it. A run that is resumed from a state without such estimates starts at 0.
+    /// The same with what earlier steps have left in it. A run that is resumed from a state without such estimates starts at 0.
     pub accumulated: AccumulatedError,
     /// Estimated discretisation error relative to the displacement (or to the [scale](AlgebraicError::scale) of a body at rest), in
     /// the energy norm, if it was asked for.
     pub discretisation: Option<f64>,
-    /// The level at which it was estimated: this one or one of the last seven.
+    /// The step at which it was estimated: this one or one of the last seven.
     pub estimated_at: Option<usize>,
     /// The relative algebraic error that was asked for.
     pub target: f64,
-    /// The share of it that this level may have alone.
+    /// The share of it that this step may have alone.
     pub share: f64,
-    /// Whether the level kept its share.
+    /// Whether the step kept its share.
     pub reached: bool,
     /// The largest relative violation of the contact conditions in the certificate that is accepted.
     pub certificate_limit: f64,
-    /// Whether the level kept it.
+    /// Whether the step kept it.
     pub certified: bool,
-    /// Solves of the level, each warm from the one before.
+    /// Solves of the step, each warm from the one before.
     pub rounds: usize,
     /// Tolerance of the last of them.
     pub tolerance: f64,
 }
 
-/// Algebraic error with what earlier levels have left in it: the sum of the roots of all gaps, and the root of their sum.
+/// Algebraic error with what earlier steps have left in it: the sum of the roots of all gaps, and the root of their sum.
 ///
 /// ```
 /// use signorini_contact::{
@@ -79,7 +79,8 @@ pub struct AccuracyReport {
 /// let mut simulation = Simulation::new(scene, Settings::default())?;
 /// let mut error = AccumulatedError::default();
 /// while !simulation.is_finished() {
-///     error.add(&simulation.step()?);
+///     let result = simulation.step()?;
+///     error.add(&result);
 ///     assert!(error.likely() <= error.at_most() && error.at_most() < 1e-4);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -91,7 +92,7 @@ pub struct AccumulatedError {
     sum: f64,
     /// Sum of the gaps, J.
     energy: f64,
-    /// What the last level is compared with, J: its elastic energy, or more at rest.
+    /// What the last step is compared with, J: its elastic energy, or more at rest.
     scale: f64,
 }
 
@@ -110,22 +111,22 @@ impl AccumulatedError {
         [self.sum, self.energy, self.scale]
     }
 
-    /// What the last level may have of a total error `target` (relative, likely) if all levels are to have the same share of
-    /// what is left; `left` levels of `levels` are to be solved, this one with them.
+    /// What the last step may have of a total error `target` (relative, likely) if all steps are to have the same share of
+    /// what is left; `left` steps of `steps` are to be solved, this one with them.
     pub(crate) fn share(
         &self,
         own: &AlgebraicError,
         target: f64,
         left: usize,
-        levels: usize,
+        steps: usize,
     ) -> f64 {
         if own.scale <= 0.0 {
             return target;
         }
         let all = target.powi(2);
         let rest = (all - self.energy / own.scale) / left.max(1) as f64;
-        // where the load has fallen the old error may be more than is wanted: no accuracy of this level helps
-        rest.max(LEAST * all / levels.max(1) as f64).sqrt()
+        // where the load has fallen the old error may be more than is wanted: no accuracy of this step helps
+        rest.max(LEAST * all / steps.max(1) as f64).sqrt()
     }
 
     /// Likely error relative to the last displacement, both in the energy norm. 0 and infinity as in
@@ -135,7 +136,7 @@ impl AccumulatedError {
         relative(self.energy, self.scale)
     }
 
-    /// What the last level is compared with, J.
+    /// What the last step is compared with, J.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
@@ -145,21 +146,21 @@ impl AccumulatedError {
         (self.energy.sqrt() + other.energy.sqrt()).powi(2)
     }
 
-    /// The same if the errors of all levels point in the same direction.
+    /// The same if the errors of all steps point in the same direction.
     #[must_use]
     pub fn at_most(&self) -> f64 {
         relative(self.sum * self.sum, self.scale)
     }
 }
 
-/// Smallest share of a level in the square of the error, relative to an equal share.
+/// Smallest share of a step in the square of the error, relative to an equal share.
 const LEAST: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn level(energy: f64) -> AlgebraicError {
+    fn step(energy: f64) -> AlgebraicError {
         AlgebraicError {
             energy,
             distance: 0.0,
@@ -172,16 +173,16 @@ mod tests {
     fn sums_and_shares() {
         let mut error = AccumulatedError::default();
         for _ in 0..4 {
-            error = error.with(&level(1.0), true);
+            error = error.with(&step(1.0), true);
         }
         assert!((error.likely() - 0.2).abs() < 1e-15 && (error.at_most() - 0.4).abs() < 1e-15);
-        let alone = error.with(&level(1.0), false);
+        let alone = error.with(&step(1.0), false);
         assert!((alone.at_most() - 0.1).abs() < 1e-15);
         // equal shares from the start, all that is left at the end, a floor when nothing is left
         let none = AccumulatedError::default();
-        assert!((none.share(&level(1.0), 0.1, 4, 4) - 0.05).abs() < 1e-15);
-        assert!((error.share(&level(1.0), 0.5, 1, 5) - 0.21_f64.sqrt()).abs() < 1e-15);
-        assert!((error.share(&level(1.0), 0.1, 1, 4) - 0.025).abs() < 1e-15);
+        assert!((none.share(&step(1.0), 0.1, 4, 4) - 0.05).abs() < 1e-15);
+        assert!((error.share(&step(1.0), 0.5, 1, 5) - 0.21_f64.sqrt()).abs() < 1e-15);
+        assert!((error.share(&step(1.0), 0.1, 1, 4) - 0.025).abs() < 1e-15);
         assert_eq!(none.share(&AlgebraicError::default(), 0.1, 1, 1), 0.1);
         assert_eq!(none.likely(), 0.0);
     }

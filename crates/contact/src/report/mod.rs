@@ -15,5 +15,6 @@ pub use counters::Counters;
 pub(crate) use errors::relative;
 pub use errors::{AccumulatedError, AccuracyReport, AlgebraicError};
 pub(crate) use fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
-pub use run::{RunReport, StepFailure};
+pub use run::RunReport;
+pub(crate) use run::require;
 pub use step::StepReport;

@@ -1,72 +1,11 @@
-//! What a run did, and steps that failed.
+//! What a run did.
 
 use super::counters::Counters;
 use super::step::StepReport;
 use crate::error::ContactError;
-use crate::status::StepStatus;
+use crate::status::StepFailure;
 
-impl StepReport {
-    /// An error unless this level and its history converged.
-    pub(crate) fn require(
-        &self,
-        level: usize,
-        time: f64,
-        certificate: f64,
-    ) -> Result<(), ContactError> {
-        StepFailure::of(self, level, time, certificate).map_or(Ok(()), |f| Err(f.error()))?;
-        inherited(self.unconverged_history)
-    }
-}
-
-fn inherited(level: Option<usize>) -> Result<(), ContactError> {
-    level.map_or(Ok(()), |level| {
-        Err(ContactError::UnconvergedHistory { level })
-    })
-}
-
-/// A level that did not converge.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct StepFailure {
-    /// The level, from 0.
-    pub level: usize,
-    /// Its time, s.
-    pub time: f64,
-    /// How it ended.
-    pub status: StepStatus,
-    /// The largest relative violation of its certificate.
-    pub certificate: f64,
-}
-
-impl StepFailure {
-    /// `None` for a level that converged.
-    pub(crate) fn of(
-        report: &StepReport,
-        level: usize,
-        time: f64,
-        certificate: f64,
-    ) -> Option<Self> {
-        (!report.status.converged()).then_some(Self {
-            level,
-            time,
-            status: report.status,
-            certificate,
-        })
-    }
-
-    /// As an error.
-    #[must_use]
-    pub fn error(&self) -> ContactError {
-        ContactError::NotConverged {
-            level: self.level,
-            time: self.time,
-            status: self.status,
-            certificate: self.certificate,
-        }
-    }
-}
-
-/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every level to converge asks
+/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to converge asks
 /// [`require_converged`](Self::require_converged).
 ///
 /// ```
@@ -80,54 +19,67 @@ impl StepFailure {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
-#[must_use = "levels may not have converged: see `first_failure`, or ask `require_converged`"]
+#[must_use = "steps may not have converged: see `first_failure`, or ask `require_converged`"]
 pub struct RunReport {
-    /// Levels solved.
-    pub levels: usize,
-    /// Levels that did not converge, in order.
+    /// Steps solved.
+    pub steps: usize,
+    /// Steps that did not converge, in order.
     pub failures: Vec<StepFailure>,
-    /// The first level before this run that did not converge and on whose displacement its levels depend, see
+    /// The first step before this run that did not converge and on whose displacement its steps depend, see
     /// [`State::unconverged_history`](crate::State::unconverged_history).
     pub unconverged_history: Option<usize>,
     /// What the run cost.
     pub counters: Counters,
-    /// The largest certificate of all its levels.
+    /// The largest certificate of all its steps.
     pub largest_certificate: f64,
 }
 
 impl RunReport {
-    /// Takes a level into account.
-    pub(crate) fn enter(&mut self, report: &StepReport, level: usize, time: f64, certificate: f64) {
-        self.levels += 1;
+    /// Takes a step into account.
+    pub(crate) fn enter(
+        &mut self,
+        report: &StepReport,
+        failure: Option<StepFailure>,
+        certificate: f64,
+    ) {
+        self.steps += 1;
         self.counters += report.counters;
         if certificate.is_nan() || certificate > self.largest_certificate {
             self.largest_certificate = certificate;
         }
-        self.failures
-            .extend(StepFailure::of(report, level, time, certificate));
+        self.failures.extend(failure);
     }
 
-    /// Whether all levels converged, and those before on whose displacement they depend.
+    /// Whether all steps converged, and those before on whose displacement they depend.
     #[must_use]
     pub fn converged(&self) -> bool {
         self.failures.is_empty() && self.unconverged_history.is_none()
     }
 
-    /// The first level of this run that did not converge.
+    /// The first step of this run that did not converge.
     #[must_use]
     pub fn first_failure(&self) -> Option<&StepFailure> {
         self.failures.first()
     }
 
-    /// For those who want every level to converge: an error unless [all did](Self::converged).
+    /// For those who want every step to converge: an error unless [all did](Self::converged).
     ///
     /// # Errors
-    /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: level, status and remedy of the first one.
+    /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: step, status and remedy of the first one.
     pub fn require_converged(&self) -> Result<(), ContactError> {
-        inherited(self.unconverged_history)?;
-        match self.first_failure() {
-            Some(failure) => Err(failure.error()),
-            None => Ok(()),
-        }
+        require(None, self.unconverged_history)?;
+        require(self.first_failure().copied(), None)
+    }
+}
+
+/// An error for a step that failed, or an earlier one on whose displacement it depends.
+pub(crate) fn require(
+    failure: Option<StepFailure>,
+    history: Option<usize>,
+) -> Result<(), ContactError> {
+    match (failure, history) {
+        (Some(failure), _) => Err(ContactError::NotConverged(failure)),
+        (None, Some(level)) => Err(ContactError::UnconvergedHistory { level }),
+        (None, None) => Ok(()),
     }
 }

@@ -6,14 +6,14 @@ use super::fixed_point::FixedPointReport;
 use crate::status::StepStatus;
 use signorini_qp::Steps;
 
-/// Report of one level's solve.
+/// Report of one step's solve.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct StepReport {
     /// How it ended.
     pub status: StepStatus,
     /// Outer iterations under the method's own name: auxiliary problems of the fixed-point loop, outer steps of the
-    /// one inexact loop, faces of the face method.
+    /// one inexact loop, active sets of the active-set method.
     pub iterations: usize,
     /// What it cost.
     pub counters: Counters,
@@ -21,17 +21,17 @@ pub struct StepReport {
     pub steps: Steps,
     /// The fixed-point loop, if there was one.
     pub fixed_point: Option<FixedPointReport>,
-    /// Whether the face method gave up and SMALSE finished the level.
+    /// Whether the active-set method gave up and SMALSE finished the step.
     pub fallback: bool,
     /// Products with F that SMALSE took for that, contained in the counters.
     pub fallback_products: usize,
     /// The solver's own estimate of the relative error of the multipliers, where it has one.
     pub estimated_error: Option<f64>,
-    /// Estimates of the level's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
+    /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
-    /// The first earlier level that did not converge and on whose displacement this one depends, from 0: its slip is part of
-    /// the history of friction, which no certificate of this level can judge. Always `None` in scenes without history (no
-    /// friction, or static). The status of this level does not depend on it.
+    /// The first earlier step that did not converge and on whose displacement this one depends, from 0: its slip is part of
+    /// the history of friction, which no certificate of this step can judge. Always `None` in scenes without history (no
+    /// friction, or static). The status of this step does not depend on it.
     pub unconverged_history: Option<usize>,
 }
 
@@ -51,7 +51,7 @@ impl StepReport {
         }
     }
 
-    /// Takes over the outcome of a further solve of the same level, with the cost of both.
+    /// Takes over the outcome of a further solve of the same step, with the cost of both.
     pub(crate) fn resumed(self, mut next: Self) -> Self {
         next.counters += self.counters;
         next.iterations += self.iterations;

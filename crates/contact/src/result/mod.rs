@@ -8,13 +8,14 @@
 mod certificate;
 mod points;
 mod reactions;
+mod recovered;
 mod summary;
 
 pub use certificate::{Certificate, Violation};
-pub(crate) use certificate::{Measured, Sizes, certify, contact_violation, sizes};
-pub(crate) use points::point_states;
+pub(crate) use certificate::{Sizes, contact_violation};
 pub use points::{ContactState, PointState};
 pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
 pub(crate) use reactions::{nodal_reactions, reactions_about};
+pub(crate) use recovered::Recovered;
 pub use summary::ContactSummary;
 pub(crate) use summary::summarise;

@@ -3,7 +3,7 @@
 //! A support row of `B` with multiplier `lambda` pushes each copy of its node with `lambda` times its coefficients; their sum is
 //! the force on the node. A direction that several supports fix has one row, and belongs to the first of them.
 
-use super::points::PointState;
+use super::recovered::Recovered;
 use crate::discrete::Supports;
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
@@ -107,11 +107,8 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it; it is
 /// taken out here.
-pub(crate) fn nodal_reactions(
-    model: &Model,
-    points: &[PointState],
-    lambda: &[f64],
-) -> BTreeMap<u32, [f64; 3]> {
+pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<u32, [f64; 3]> {
+    let (points, lambda) = (&recovered.points, &recovered.support_multipliers);
     let gluing = model.tfeti.gluing();
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     for (row, lambda) in gluing.ranges().dirichlet.clone().zip(lambda) {
@@ -162,9 +159,8 @@ fn take_rows(
 /// All resultants about a point.
 pub(crate) fn reactions_about(
     model: &Model,
-    level: &StepProblem,
-    points: &[PointState],
-    lambda: &[f64],
+    problem: &StepProblem,
+    recovered: &Recovered,
     about: [f64; 3],
 ) -> Reactions {
     let places = model.scene.mesh.points();
@@ -174,30 +170,26 @@ pub(crate) fn reactions_about(
     };
     let mut contact = Resultant::default();
     let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
-    for (state, point) in points.iter().zip(&model.points) {
+    for (state, point) in recovered.points.iter().zip(&model.points) {
         for (node, weight) in point.contact.sides.nodes() {
-            let force = state.force().map(|f| weight * f);
-            contact.add(arm(node), force);
+            contact.add(arm(node), state.force().map(|f| weight * f));
         }
         for &(node, weight) in point.contact.sides.own.nodes() {
             contacts[state.surface].add(arm(node), state.force().map(|f| weight * f));
         }
     }
     let mut loads = Resultant::default();
-    for (factor, load) in level.factors.iter().zip(&model.loads) {
+    for (factor, load) in problem.factors.iter().zip(&model.loads) {
         let nodes = model.discrete.decomposition.subdomains().iter();
         let nodes = nodes.flat_map(|s| &s.nodes);
         for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
             loads.add(arm(node), force.map(|f| factor * f));
         }
     }
+    let forces = nodal_reactions(model, recovered);
     Reactions {
         point: about,
-        supports: by_support(
-            &model.discrete.supports,
-            &nodal_reactions(model, points, lambda),
-            arm,
-        ),
+        supports: by_support(&model.discrete.supports, &forces, arm),
         contact,
         contacts,
         loads,

@@ -1,11 +1,12 @@
 //! Sums over the contact points at the end of a step.
 
-use super::points::{ContactState, PointState};
+use super::points::ContactState;
+use super::recovered::Recovered;
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::{StepProblem, entry_or_zero};
 
-/// Sums over the contact surface at the end of a level. Between bodies, forces are those on the body that was named first
+/// Sums over the contact surface at the end of a problem. Between bodies, forces are those on the body that was named first
 /// ([`Contact::between`](crate::Contact::between)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
@@ -44,15 +45,14 @@ pub struct ContactSummary {
 /// Sums over the points; `before` are the tangential displacements at the level before.
 pub(crate) fn summarise(
     model: &Model,
-    level: &StepProblem,
-    points: &[PointState],
+    problem: &StepProblem,
+    recovered: &Recovered,
     lambda: &[f64],
-    rows: &[f64],
     before: &[f64],
 ) -> Result<ContactSummary, ContactError> {
     let mut s = ContactSummary::default();
     let start = model.tangential_start();
-    for (point, touch) in points.iter().zip(&model.points) {
+    for (point, touch) in recovered.points.iter().zip(&model.points) {
         let active = point.state != ContactState::Open;
         s.active += usize::from(active);
         s.slip += usize::from(point.state == ContactState::Slip);
@@ -72,12 +72,12 @@ pub(crate) fn summarise(
         for along in touch.along() {
             let (_, k, scale) = along;
             let old = entry_or_zero(before, k - start);
-            let new = level.relative(touch.surface(), along, rows[k]);
+            let new = problem.relative(touch.surface(), along, recovered.rows[k]);
             s.friction_work -= scale * lambda[k] * (new - old);
         }
         if let (Some(now), Some(old)) = (
-            level.obstacles[0].get(touch.surface()),
-            level.obstacles[1].get(touch.surface()),
+            problem.obstacles[0].get(touch.surface()),
+            problem.obstacles[1].get(touch.surface()),
         ) {
             for c in 0..3 {
                 s.obstacle_work += force[c] * (now[c] - old[c]);
@@ -85,8 +85,8 @@ pub(crate) fn summarise(
             if active {
                 let [now, old] = [StepProblem::gap, StepProblem::gap_before];
                 let scene = &model.scene;
-                s.obstacle_work +=
-                    point.normal_force * (now(level, scene, touch)? - old(level, scene, touch)?);
+                s.obstacle_work += point.normal_force
+                    * (now(problem, scene, touch)? - old(problem, scene, touch)?);
             }
         }
     }

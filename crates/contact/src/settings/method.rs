@@ -42,14 +42,38 @@ impl Method {
         }
     }
 
-    /// A short name, as the examples print it.
+    /// Which method it is, without its settings.
     #[must_use]
-    pub fn name(&self) -> &'static str {
+    pub fn kind(&self) -> MethodKind {
         match self {
-            Self::ActiveSet(_) => "face",
-            Self::SuccessiveApproximations { .. } => "paper",
-            Self::OneLoop { .. } => "one-loop",
+            Self::ActiveSet(_) => MethodKind::ActiveSet,
+            Self::SuccessiveApproximations { .. } => MethodKind::SuccessiveApproximations,
+            Self::OneLoop { .. } => MethodKind::OneLoop,
         }
+    }
+}
+
+/// A method by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MethodKind {
+    /// Conjugate gradients: scenes without contact.
+    Linear,
+    /// The default.
+    ActiveSet,
+    /// The paper's fixed-point loop.
+    SuccessiveApproximations,
+    /// The paper's one inexact loop.
+    OneLoop,
+}
+
+impl std::fmt::Display for MethodKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Linear => "linear",
+            Self::ActiveSet => "active-set",
+            Self::SuccessiveApproximations => "paper",
+            Self::OneLoop => "one-loop",
+        })
     }
 }
 

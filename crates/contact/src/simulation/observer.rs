@@ -1,6 +1,6 @@
 //! Observers: what a progress bar, a log or a file writer is told.
 
-use super::frame::StepResult;
+use super::result::StepResult;
 use crate::plan::Plan;
 use std::error::Error;
 
@@ -12,9 +12,9 @@ use std::error::Error;
 /// use signorini_contact::{Flow, StepResult};
 ///
 /// let mut log = Vec::new();
-/// let mut write = |frame: &StepResult<'_>| {
+/// let mut write = |result: &StepResult| {
 ///     use std::io::Write;
-///     Flow::from(writeln!(log, "{} {}", frame.time(), frame.summary().active))
+///     Flow::from(writeln!(log, "{} {}", result.time(), result.summary().active))
 /// };
 /// # fn check(_: &mut impl signorini_contact::Observer) {}
 /// # check(&mut write);
@@ -22,11 +22,11 @@ use std::error::Error;
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Flow {
-    /// Solve the next level.
+    /// Solve the next step.
     Continue,
-    /// End the run after this level; it can be continued later.
+    /// End the run after this step; it can be continued later.
     Stop,
-    /// End the run after this level with [`ContactError::Observer`](crate::ContactError::Observer); it can be continued
+    /// End the run after this step with [`ContactError::Observer`](crate::ContactError::Observer); it can be continued
     /// later.
     Fail(Box<dyn Error + Send + Sync>),
 }
@@ -45,26 +45,26 @@ impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<Self, E>> for Flow {
 
 /// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an observer.
 pub trait Observer {
-    /// The run begins; `levels` are left to solve.
-    fn started(&mut self, plan: &Plan, levels: usize) {
-        let _ = (plan, levels);
+    /// The run begins; `steps` are left to solve.
+    fn started(&mut self, plan: &Plan, steps: usize) {
+        let _ = (plan, steps);
     }
 
-    /// A level is solved.
-    fn step(&mut self, frame: &StepResult<'_>) -> Flow {
-        let _ = frame;
+    /// A step is solved.
+    fn step(&mut self, result: &StepResult) -> Flow {
+        let _ = result;
         Flow::Continue
     }
 
-    /// The run has ended, also by [`Flow::Fail`]; `levels` were solved in it. Not called when a solve ends in an error.
-    fn finished(&mut self, levels: usize) {
-        let _ = levels;
+    /// The run has ended, also by [`Flow::Fail`]; `steps` were solved in it. Not called when a solve ends in an error.
+    fn finished(&mut self, steps: usize) {
+        let _ = steps;
     }
 }
 
-impl<F: FnMut(&StepResult<'_>) -> Flow> Observer for F {
-    fn step(&mut self, frame: &StepResult<'_>) -> Flow {
-        self(frame)
+impl<F: FnMut(&StepResult) -> Flow> Observer for F {
+    fn step(&mut self, result: &StepResult) -> Flow {
+        self(result)
     }
 }
 

@@ -10,7 +10,7 @@ impl Simulation {
     /// Continues from a stored state of the same scene.
     ///
     /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports, contact points with
-    /// their normals and areas, difference formula, and the times of the levels solved so far. Free to change are loads, motions of supports, materials,
+    /// their normals and areas, difference formula, and the times of the steps solved so far. Free to change are loads, motions of supports, materials,
     /// gap, coefficients, times to come, settings and method: the state is then where the changed scene goes on from. A start from
     /// a scene that is another one on purpose needs [`State::without_origin`]; sizes must fit in any case.
     ///
@@ -20,7 +20,7 @@ impl Simulation {
         let refuse = |reason| Err(ContactError::Checkpoint { reason });
         let analysis = &self.model.scene.analysis;
         if state.step() > analysis.steps() {
-            return refuse("it has more levels than this scene".to_owned());
+            return refuse("it has more steps than this scene".to_owned());
         }
         let origin = self.origin.after(analysis, state.step());
         let known = state.origin().filter(|_| state.step() > 0);
@@ -40,7 +40,7 @@ impl Simulation {
         )?;
         state.set_origin(origin);
         self.check_products(&mut state);
-        self.solved = false;
+        self.result = None;
         self.state = Arc::new(state);
         Ok(())
     }
@@ -95,7 +95,7 @@ mod tests {
             for k in 0..2 {
                 let mut product = vec![0.0; dual.dim()];
                 dual.apply(&found.lambda()[k], &mut product, &mut dual.scratch());
-                assert_eq!(found.f_lambda()[k], product, "level {k} ago");
+                assert_eq!(found.f_lambda()[k], product, "step {k} ago");
                 let [new, old] = [&product, &state.f_lambda()[k]].map(|v| vector::norm(v));
                 assert!((new / old - 0.5).abs() < 1e-6, "{new} {old}");
             }

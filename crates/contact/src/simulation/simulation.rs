@@ -1,13 +1,11 @@
-//! The simulation: set-up, levels, recovery, certificate.
+//! The simulation: set-up, and what is asked of it between steps.
 
-use super::frame::StepResult;
-use super::threads::on_pool;
+use super::result::StepResult;
 use crate::error::ContactError;
 use crate::estimate::Caches;
 use crate::model::{ConstrainedPoint, Model, check_equilibrium};
 use crate::plan::Plan;
-use crate::report::{Counters, StepReport};
-use crate::result::{Certificate, ContactSummary, PointState, Sizes};
+use crate::report::Counters;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::solve::{Iterate, Solver};
@@ -18,7 +16,7 @@ use signorini_tfeti::Tfeti;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A scene being simulated, level by level.
+/// A scene being simulated, step by step.
 ///
 /// ```
 /// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
@@ -33,15 +31,15 @@ use std::time::{Duration, Instant};
 ///     .with_analysis(Analysis::quasistatic(1.0, 4));
 /// let mut simulation = Simulation::new(scene, Settings::default())?;
 /// while !simulation.is_finished() {
-///     let frame = simulation.step()?;
-///     assert!(frame.report().status.converged());
-///     assert!(frame.certificate().largest() < 1e-6);
+///     let result = simulation.step()?;
+///     assert!(result.report().status.converged());
+///     assert!(result.certificate().largest() < 1e-6);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Simulation {
-    pub(super) model: Model,
-    pub(super) caches: Caches,
+    pub(crate) model: Arc<Model>,
+    pub(crate) caches: Arc<Caches>,
     pub(super) settings: Settings,
     pub(super) solver: Solver,
     pub(super) state: Arc<State>,
@@ -49,23 +47,13 @@ pub struct Simulation {
     pub(super) origin: Fingerprint,
     /// What products with F depend on.
     pub(super) operator: u64,
-    /// Whether the fields below belong to a level that was solved.
-    pub(super) solved: bool,
-    pub(super) level: StepProblem,
+    pub(crate) problem: Arc<StepProblem>,
     pub(super) iterate: Iterate,
-    pub(super) report: StepReport,
-    pub(super) certificate: Certificate,
-    /// Sizes of the bodies at the level.
-    pub(super) sizes: Vec<Sizes>,
-    pub(super) points: Vec<PointState>,
-    pub(super) summary: ContactSummary,
-    pub(super) torn: Vec<f64>,
-    pub(super) residual: Vec<f64>,
-    /// Multipliers of the support rows.
-    pub(super) held: Vec<f64>,
+    pub(super) controller: Controller,
+    /// Of the last step, if it was solved.
+    pub(super) result: Option<Arc<StepResult>>,
     pub(super) total: Counters,
     pub(super) setup: Duration,
-    pub(super) controller: Controller,
 }
 
 /// The plan and how far it is; not the megabytes of tables and vectors.
@@ -73,7 +61,7 @@ impl std::fmt::Debug for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Simulation")
             .field("plan", &self.model.plan)
-            .field("levels_solved", &self.state.step())
+            .field("steps_solved", &self.state.step())
             .field("total", &self.total)
             .finish_non_exhaustive()
     }
@@ -85,7 +73,7 @@ impl Simulation {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
-        on_pool(false, || Self::set_up(scene, settings))
+        on_pool(|| Self::set_up(scene, settings))
     }
 
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
@@ -109,27 +97,19 @@ impl Simulation {
         let mut state = State::default();
         state.set_origin(origin);
         Ok(Self {
+            model: Arc::new(model),
+            caches: Arc::default(),
+            settings,
+            solver,
             state: Arc::new(state),
             origin,
             operator,
-            solved: false,
-            level: StepProblem::default(),
+            problem: Arc::default(),
             iterate: Iterate::default(),
-            report: StepReport::new(),
-            certificate: Certificate::default(),
-            sizes: Vec::new(),
-            points: Vec::new(),
-            summary: ContactSummary::default(),
-            torn: Vec::new(),
-            residual: Vec::new(),
-            held: Vec::new(),
+            controller: Controller::default(),
+            result: None,
             total: Counters::default(),
             setup: start.elapsed(),
-            controller: Controller::default(),
-            model,
-            caches: Caches::default(),
-            settings,
-            solver,
         })
     }
 
@@ -151,13 +131,14 @@ impl Simulation {
         &self.model.discrete.decomposition
     }
 
-    /// The T-FETI system, with its set-up report.
+    /// The T-FETI system, with its set-up report: for those who measure the solver.
+    #[doc(hidden)]
     #[must_use]
     pub fn tfeti(&self) -> &Tfeti {
         &self.model.tfeti
     }
 
-    /// The touch points.
+    /// The contact points with their rows.
     #[must_use]
     pub fn constrained_points(&self) -> &[ConstrainedPoint] {
         &self.model.points
@@ -175,44 +156,33 @@ impl Simulation {
         self.setup
     }
 
-    /// Counters of all levels so far.
+    /// Counters of all steps so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.total
     }
 
-    /// The state between levels; store it to continue later.
+    /// The state between steps; store it to continue later.
     #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Whether all levels are solved.
+    /// Whether all steps are solved.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.state.step() >= self.model.scene.analysis.steps()
     }
 
-    /// The frame of the last level solved; `None` before the first one, after [`resume`](Self::resume) and after a step that
-    /// failed.
+    /// The result of the last step; `None` before the first one, after [`resume`](Self::resume) and after a step that failed.
     #[must_use]
-    pub fn frame(&self) -> Option<StepResult<'_>> {
-        self.solved.then(|| self.present())
+    pub fn result(&self) -> Option<&Arc<StepResult>> {
+        self.result.as_ref()
     }
+}
 
-    /// The frame of what was computed last.
-    pub(crate) fn present(&self) -> StepResult<'_> {
-        StepResult {
-            model: &self.model,
-            caches: &self.caches,
-            level: &self.level,
-            report: &self.report,
-            certificate: &self.certificate,
-            summary: &self.summary,
-            points: &self.points,
-            torn: &self.torn,
-            residual: &self.residual,
-            held: &self.held,
-        }
-    }
+/// Runs `work` on a thread of the pool of rayon. Parts of it that run in parallel then begin where it runs; from another thread
+/// each of them would cost a change of threads, about as long as a product of a small scene.
+pub(super) fn on_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    rayon::scope(|_| work())
 }

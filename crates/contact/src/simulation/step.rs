@@ -1,210 +1,164 @@
 //! One step: prepared, solved, recovered, remembered.
 
-use super::frame::StepResult;
-use super::simulation::Simulation;
-use super::threads::on_pool;
+use super::result::StepResult;
+use super::simulation::{Simulation, on_pool};
 use crate::error::ContactError;
+use crate::model::Model;
 use crate::report::StepReport;
-use crate::result::{ContactState, Measured, Sizes, certify, point_states, sizes, summarise};
+use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
 use crate::solve::restore_sliding;
-use crate::state::{Peak, State};
+use crate::state::{Kept, Peak, State};
+use crate::step::StepProblem;
 use signorini_qp::vector;
 use std::sync::Arc;
 
 impl Simulation {
-    /// Solves the next level. Not converging is no error: see the frame's report.
+    /// Solves the next step. Not converging is no error: see the report of the result.
     ///
     /// # Errors
-    /// [`ContactError::Finished`] after the last level; a breakdown of a solver. The state is then unchanged.
-    pub fn step(&mut self) -> Result<StepResult<'_>, ContactError> {
-        let index = self.state.step();
+    /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged.
+    pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
         // not taken out: laws of the user may panic
         let state = self.state.clone();
-        self.solved = false;
-        let busy = self.settings.busy_waiting;
-        let outcome = on_pool(busy, || self.solve_level(&state, index));
+        self.result = None;
+        let mut result = on_pool(|| self.solve_after(&state))?;
         drop(state);
-        let (mut report, lambda, rows) = outcome?;
-        report.unconverged_history = self.state.unconverged_history();
-        self.remember(lambda, rows, &mut report);
-        self.total += report.counters;
-        self.report = report;
-        self.solved = true;
-        Ok(self.present())
+        result.report.unconverged_history = self.state.unconverged_history();
+        self.remember(&mut result);
+        self.total += result.report.counters;
+        let result = Arc::new(result);
+        self.result = Some(result.clone());
+        Ok(result)
     }
 
-    /// Solves a level that follows on a state.
-    fn solve_level(
-        &mut self,
-        state: &State,
-        index: usize,
-    ) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
+    /// Solves the step that follows on a state.
+    fn solve_after(&mut self, state: &State) -> Result<StepResult, ContactError> {
         self.controller = state.controller();
-        self.level.prepare(&self.model, state, index)?;
-        self.start(state)?;
-        let (report, lambda, rows) = self.solve()?;
-        let before: Vec<f64> = (0..self.model.tangential_rows())
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, state.step())?;
+        self.start(state);
+        let (report, recovered) = self.solve()?;
+        let (model, problem) = (&self.model, &self.problem);
+        let before: Vec<f64> = (0..model.tangential_rows())
             .map(|k| state.traces(k).0)
             .collect();
-        self.summary = summarise(
-            &self.model,
-            &self.level,
-            &self.points,
-            &lambda,
-            &rows,
-            &before,
-        )?;
-        Ok((report, lambda, rows))
+        Ok(StepResult {
+            summary: summarise(model, problem, &recovered, &self.iterate.lambda, &before)?,
+            model: model.clone(),
+            caches: self.caches.clone(),
+            problem: problem.clone(),
+            report,
+            recovered,
+        })
     }
 
-    /// One run of the solver from the present iterate, and what is recovered from it: multipliers and `B u`.
+    /// One run of the solver from the present iterate, and what is recovered from it.
     pub(super) fn solve_once(
         &mut self,
         tolerance: f64,
-    ) -> Result<(StepReport, Vec<f64>, Vec<f64>), ContactError> {
-        let model = &self.model;
-        let other;
-        let settings = if tolerance == self.settings.tolerance {
-            &self.settings
-        } else {
-            other = self.settings.clone().with_tolerance(tolerance);
-            &other
-        };
-        let mut report = self
-            .solver
-            .solve(model, &self.level, settings, &mut self.iterate)?;
-        // recovery: u, and from it everything that is reported
-        let tfeti = &model.tfeti;
-        let force = self.level.forces(model);
-        let lambda = std::mem::take(&mut self.iterate.lambda);
-        self.torn = tfeti.recover(&force, &lambda, &self.iterate.alpha)?;
+    ) -> Result<(StepReport, Recovered), ContactError> {
+        let (model, problem, iterate) = (&self.model, &self.problem, &mut self.iterate);
+        let settings = self.settings.clone().with_tolerance(tolerance);
+        let mut report = self.solver.solve(model, problem, &settings, iterate)?;
+        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha)?;
         report.counters.products += 1;
-        let mut rows = vec![0.0; tfeti.dual_dim()];
-        tfeti.rows_times(&self.torn, &mut rows);
-        self.residual = tfeti.equilibrium_residual(&self.torn, &force, &lambda)?;
-        let measured = Measured {
-            rows: &rows,
-            u: &self.torn,
-            force: &force,
-            residual: &self.residual,
-        };
-        self.sizes = sizes(model, &self.level, &lambda, &measured);
-        self.certificate = certify(model, &self.level, &lambda, &measured, &self.sizes);
-        self.points = point_states(model, &self.level, &lambda, &rows);
-        let supports = tfeti.gluing().ranges().dirichlet.clone();
-        self.held.clear();
-        self.held.extend_from_slice(&lambda[supports]);
-        Ok((report, lambda, rows))
+        Ok((report, recovered))
     }
 
-    /// Start vectors of a level: zero, the last level, or the line through the last two.
-    fn start(&mut self, state: &State) -> Result<(), ContactError> {
-        let rows = self.model.tfeti.dual_dim();
-        let extrapolate = |pair: &[Vec<f64>; 2], n: usize, on: bool| -> Vec<f64> {
-            let [last, before] = pair;
-            if last.is_empty() {
-                return vec![0.0; n];
-            }
-            let mut x = last.clone();
-            if on && before.len() == n {
-                vector::extrapolate(last, before, 1.0, &mut x);
-            }
-            x
-        };
+    /// Start vectors of a step: zero, the last step, or the line through the last two.
+    fn start(&mut self, state: &State) {
+        let (model, iterate) = (&self.model, &mut self.iterate);
+        let (lambda, f_lambda) = (state.lambda(), state.f_lambda());
         let on = self.settings.extrapolate;
-        // before the first level everything is at rest: zero is known, too
-        let before_known = state.step() != 1 || self.model.plan.levels == 1;
-        let pairs = (state.lambda(), state.f_lambda());
-        let zero = vec![0.0; rows];
-        if on && !before_known && pairs.0[1].is_empty() {
-            let first = [pairs.0[0].clone(), zero.clone()];
-            let product = [pairs.1[0].clone(), zero];
-            self.iterate.lambda = extrapolate(&first, rows, true);
-            self.iterate.f_lambda = extrapolate(&product, rows, true);
-        } else {
-            self.iterate.lambda = extrapolate(pairs.0, rows, on);
-            self.iterate.f_lambda = extrapolate(pairs.1, rows, on);
-        }
-        self.iterate.known = (0..2).all(|k| pairs.0[k].len() == pairs.1[k].len());
-        let coarse = self.model.tfeti.coarse().rows();
-        self.iterate.multiplier = extrapolate(state.multiplier(), coarse, on);
+        let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
+        // before the first step everything is at rest: zero is known, too
+        let from_rest = state.step() == 1 && model.plan.steps > 1 && lambda[1].is_empty();
+        let zero = vec![0.0; if from_rest { rows } else { 0 }];
+        let extrapolated = |[last, before]: &[Vec<f64>; 2]| {
+            let before = if from_rest { &zero } else { before };
+            start_vector(last, before, rows, on)
+        };
+        iterate.lambda = extrapolated(lambda);
+        iterate.f_lambda = extrapolated(f_lambda);
+        iterate.known = (0..2).all(|k| lambda[k].len() == f_lambda[k].len());
+        let [last, before] = state.multiplier();
+        iterate.multiplier = start_vector(last, before, coarse, on);
         if state.sliding().iter().any(|s| *s) {
-            let old = self.iterate.lambda.clone();
-            let mut set = self.model.set.clone();
-            self.level
-                .slip_bounds(&self.model, &self.iterate.lambda, &mut set);
-            restore_sliding(&self.model, &set, state.sliding(), &mut self.iterate.lambda);
-            self.iterate.known &= old == self.iterate.lambda;
+            let old = iterate.lambda.clone();
+            let mut set = model.set.clone();
+            self.problem.slip_bounds(model, &iterate.lambda, &mut set);
+            restore_sliding(model, &set, state.sliding(), &mut iterate.lambda);
+            iterate.known &= old == iterate.lambda;
         }
-        Ok(())
     }
 
-    fn remember(&mut self, lambda: Vec<f64>, rows: Vec<f64>, report: &mut StepReport) {
-        let effects = &self.model.plan.effects;
-        let quasistatic = self.model.plan.levels > 1;
-        let mut trace = Vec::new();
-        let mut sliding = Vec::new();
-        let mut rate = Vec::new();
-        if effects.history {
-            trace.resize(self.model.tangential_rows(), 0.0);
-            let start = self.model.tangential_start();
-            for point in &self.model.points {
-                // relative to the obstacle or the other body
-                for along in point.along() {
-                    let k = along.1;
-                    trace[k - start] = self.level.relative(point.surface(), along, rows[k]);
-                }
-            }
-            sliding.extend(self.points.iter().map(|p| p.state == ContactState::Slip));
+    /// Makes the state after the step.
+    fn remember(&mut self, result: &mut StepResult) {
+        let (model, problem, recovered) = (&self.model, &self.problem, &result.recovered);
+        let history = model.plan.effects.history;
+        let mut kept = Kept::default();
+        if history {
+            kept.trace = traces(model, problem, &recovered.rows);
+            let slides = |p: &PointState| p.state == ContactState::Slip;
+            kept.sliding = recovered.points.iter().map(slides).collect();
         }
-        if effects.history && self.model.any_law(Friction::depends_on_rate) {
-            rate.extend(self.points.iter().map(|p| p.slip_rate));
-            report.counters.rate_updates += 1;
+        if history && model.any_law(Friction::depends_on_rate) {
+            kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
+            result.report.counters.rate_updates += 1;
         }
-        let (lambda, f_lambda, multiplier) = if quasistatic {
-            // F lambda afresh from the recovered displacement: B u = F lambda + B K+ f + G^T alpha
-            let tfeti = &self.model.tfeti;
-            let mut f_lambda = rows;
-            let mut rigid = vec![0.0; f_lambda.len()];
-            tfeti.coarse().apply_transpose(
-                &self.iterate.alpha,
-                &mut rigid,
-                &mut tfeti.coarse().scratch(),
-            );
-            for ((f, load), rigid) in f_lambda.iter_mut().zip(&self.level.load).zip(&rigid) {
-                *f -= load + rigid;
-            }
-            (
-                lambda,
-                f_lambda,
-                std::mem::take(&mut self.iterate.multiplier),
-            )
-        } else {
-            (Vec::new(), Vec::new(), Vec::new())
-        };
+        if model.plan.steps > 1 {
+            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate.alpha);
+            kept.lambda = std::mem::take(&mut self.iterate.lambda);
+            kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
+        }
         let state = Arc::make_mut(&mut self.state);
-        state.pass(self.level.time);
-        if report.status.converged() {
-            // what did not converge is no scale for later levels
-            let peaks: Vec<Peak> = self.sizes.iter().map(Sizes::peak).collect();
+        state.pass(problem.time);
+        if result.report.status.converged() {
+            // what did not converge is no scale for later steps
+            let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
             state.raise(&peaks);
-        } else if effects.history {
+        } else if history {
             state.note_unconverged();
         }
-        state.advance(
-            self.settings.extrapolate,
-            lambda,
-            f_lambda,
-            multiplier,
-            trace,
-            rate,
-            sliding,
-        );
+        state.advance(self.settings.extrapolate, kept);
         state.seal(self.operator);
-        if let Some(accuracy) = &report.accuracy {
+        if let Some(accuracy) = &result.report.accuracy {
             self.controller.errors = accuracy.accumulated;
             state.set_controller(self.controller);
         }
     }
+}
+
+/// The last vector, or the line through the last two; zero before the first.
+fn start_vector(last: &[f64], before: &[f64], n: usize, extrapolate: bool) -> Vec<f64> {
+    if last.is_empty() {
+        return vec![0.0; n];
+    }
+    let mut x = last.to_vec();
+    if extrapolate && before.len() == n {
+        vector::extrapolate(last, before, 1.0, &mut x);
+    }
+    x
+}
+
+/// Tangential displacements relative to the obstacle or the other body, m, by tangential row.
+fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
+    let mut trace = vec![0.0; model.tangential_rows()];
+    let start = model.tangential_start();
+    for point in &model.points {
+        for along in point.along() {
+            let k = along.1;
+            trace[k - start] = problem.relative(point.surface(), along, rows[k]);
+        }
+    }
+    trace
+}
+
+/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`.
+fn product(model: &Model, problem: &StepProblem, rows: &[f64], alpha: &[f64]) -> Vec<f64> {
+    let coarse = model.tfeti.coarse();
+    let mut rigid = vec![0.0; rows.len()];
+    coarse.apply_transpose(alpha, &mut rigid, &mut coarse.scratch());
+    let parts = rows.iter().zip(&problem.load).zip(&rigid);
+    parts.map(|((u, load), rigid)| u - (load + rigid)).collect()
 }

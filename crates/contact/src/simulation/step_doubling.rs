@@ -1,54 +1,29 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
-//! Every step is taken once, and again as two steps of half the length. If the error falls like the step to the power `p`, that of
-//! the *whole* step is the difference times `1 / (1 - 2^-p)`, and that of the *half* steps `2^-p` of that. Both difference formulas are of
-//! first order on sliding that begins, ends and turns, better where nothing changes, and without order where another step
-//! leads to another sequence of sticking and sliding. `Twice` takes quarter steps as well and measures `p`.
-//!
-//! | [`Doubling`] | the half steps start from | tells | formulas | cost |
-//! |---|---|---|---|---|
-//! | `Local` | the same [`State`](crate::State) as the whole step | what this step adds | one-step ones (backward Euler), unequal steps too | 3 runs |
-//! | `Global` | their own last state | what all steps so far have added | all | 3 runs |
-//! | `Twice` | their own last state, and so do quarter steps | the same, with its order and whether it can be trusted | all | 7 runs |
-//!
-//! The three-step formula has no local version: half a step needs the displacement half a step before the start, which is
-//! no level of the run, and equal steps. From rest both start alike: the body is at rest before time 0, so the missing
-//! old displacements are zero.
-//!
-//! **Below the solver.** Both runs carry the errors that their solver has left ([`AccumulatedError::likely`]). A difference that is
-//! not three times as large as both together says nothing of the time steps: `is_below_solver` tells, nothing is said about
-//! reliability, and such steps do not enter the order. A smaller tolerance would show how small the error is. In
-//! [`Doubling::Local`] only what the step itself adds counts: both runs inherit the same.
-//!
-//! The memory is that of two runs, of three with `Twice`.
+//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If the
+//! error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps times
+//! `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where sliding begins,
+//! ends and turns, better where nothing changes, and without order where another step leads to another sequence of sticking
+//! and sliding. A difference that is not three times as large as what the solver has left in both runs
+//! ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
 
-use super::frame::StepResult;
+use super::result::StepResult;
 use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::report::{AccumulatedError, Counters, relative};
-use crate::result::ContactState;
+use crate::result::{ContactState, PointState};
 use crate::scene::{Analysis, Scene};
 use crate::settings::Settings;
+use crate::tolerances::{ABOVE_SOLVER, ORDERS};
 use signorini_fem_mesh::fields;
-
-/// Where the half steps start.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Doubling {
-    /// From the state of the whole step: the error of one step.
-    Local,
-    /// From the last half step: the error of all steps so far.
-    Global,
-    /// As `Global`, with quarter steps, from which the order follows.
-    Twice,
-}
+use std::sync::Arc;
 
 /// Difference between a step and two half steps, at the end of the step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct TimeError {
-    /// Position of the level, from 0.
-    pub level: usize,
+    /// Position of the step, from 0.
+    pub step: usize,
     /// Time, s.
     pub time: f64,
     /// Energy of the difference of the displacements, `1/2 |u - u'|²`, J.
@@ -64,7 +39,7 @@ pub struct TimeError {
     pub contact_force: f64,
     /// Euclidean norm of the nodal contact forces, N.
     pub contact_force_size: f64,
-    /// Difference of the work of friction in this step (`Local`) or since the start (`Global`), J.
+    /// Difference of the work of friction since the start, J.
     pub dissipated_work: f64,
     /// That work, J.
     pub dissipated_work_size: f64,
@@ -72,22 +47,13 @@ pub struct TimeError {
     pub changed_points: usize,
     /// Contact points that touch after the half steps.
     pub touching_points: usize,
-    /// With [`Doubling::Twice`]: energy of the difference of the whole to the quarter steps, J.
-    pub quarter_energy: Option<f64>,
-    /// With [`Doubling::Twice`]: energy of the difference of the half to the quarter steps, J.
-    pub finest_energy: Option<f64>,
-    /// With [`Doubling::Twice`]: order `p` measured on all steps so far in which more differs than the solver leaves; NaN as long
-    /// as there is none.
+    /// Energy of the difference of the whole to the quarter steps, J.
+    pub quarter_energy: f64,
+    /// Energy of the difference of the half to the quarter steps, J.
+    pub finest_energy: f64,
+    /// Order `p` measured on all steps so far in which more differs than the solver leaves; `None` as long as there is none.
     pub order: Option<f64>,
 }
-
-/// Differences are time error, and not the solver's, from this many times the solver's errors on.
-const ABOVE: f64 = 3.0;
-
-/// A smaller order means that the steps have not settled into a sequence of sticking and sliding.
-const LOWEST: f64 = 0.5;
-/// The steps themselves have no more: a larger measured order comes from such a settling.
-const HIGHEST: f64 = 2.5;
 
 impl TimeError {
     /// Difference of the displacements relative to the displacement, in the energy norm. 0 where nothing differs.
@@ -96,36 +62,28 @@ impl TimeError {
         relative(self.energy, self.scale)
     }
 
-    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the finest run
-    /// there is, extrapolated with the measured order (taken into its admissible range), or with order one if none was measured.
+    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the quarter
+    /// steps, extrapolated with the measured order (taken into its admissible range), or with order one if none was measured.
     #[must_use]
     pub fn whole_error(&self) -> f64 {
-        match (self.quarter_energy, self.order) {
-            (Some(energy), Some(order)) => {
-                let order = if order.is_nan() { 1.0 } else { order };
-                let rest = 4.0_f64.powf(-order.clamp(LOWEST, HIGHEST));
-                relative(energy, self.scale) / (1.0 - rest)
-            }
-            _ => 2.0 * self.displacement(),
-        }
+        let order = self.order.unwrap_or(1.0).clamp(ORDERS[0], ORDERS[1]);
+        relative(self.quarter_energy, self.scale) / (1.0 - 4.0_f64.powf(-order))
     }
 
-    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most three times the
-    /// algebraic error. The error of the time steps is then as small as that or smaller; how small only a smaller tolerance can
-    /// tell.
+    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most three times
+    /// the algebraic error. The error of the time steps is then as small as that or smaller; how small only a smaller tolerance
+    /// can tell.
     #[must_use]
     pub fn is_below_solver(&self) -> bool {
-        self.finest_energy.unwrap_or(self.energy) <= ABOVE * ABOVE * self.algebraic
+        self.finest_energy <= ABOVE_SOLVER * ABOVE_SOLVER * self.algebraic
     }
 
-    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to another
-    /// sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` where nobody
-    /// can tell: without [`Doubling::Twice`], and where the difference [is no more than the solver's
-    /// error](Self::is_below_solver).
+    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to
+    /// another sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` where
+    /// the difference [is no more than the solver's error](Self::is_below_solver).
     #[must_use]
     pub fn is_reliable(&self) -> Option<bool> {
-        let order = self.order?;
-        (!self.is_below_solver()).then_some(order >= LOWEST)
+        (!self.is_below_solver()).then(|| self.order.is_some_and(|order| order >= ORDERS[0]))
     }
 
     /// Relative difference of the contact forces. Infinite where no point touches any more after the half steps.
@@ -146,11 +104,11 @@ fn ratio(value: f64, size: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / size }
 }
 
-/// A run beside the same run with steps of half the length.
+/// A run beside the same run with steps of half and of a quarter of the length.
 ///
 /// ```
 /// use signorini_contact::{
-///     Analysis, Contact, Doubling, Friction, Load, Scene, Settings, StepDoubling, Support,
+///     Analysis, Contact, Friction, Load, Scene, Settings, StepDoubling, Support,
 /// };
 /// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
 ///
@@ -162,7 +120,7 @@ fn ratio(value: f64, size: f64) -> f64 {
 ///     .with_load(Load::traction(brick::X_MAX, [1e6, 0.0, 0.0]).with_history(ramp))
 ///     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
 ///     .with_analysis(Analysis::quasistatic(1.0, 4));
-/// let mut doubling = StepDoubling::new(&scene, &Settings::default(), Doubling::Local)?;
+/// let mut doubling = StepDoubling::new(&scene, &Settings::default())?;
 /// while !doubling.is_finished() {
 ///     let error = doubling.step()?;
 ///     assert!(error.displacement() < 0.1);
@@ -173,56 +131,44 @@ fn ratio(value: f64, size: f64) -> f64 {
 pub struct StepDoubling {
     whole: Simulation,
     half: Simulation,
-    quarter: Option<Simulation>,
-    mode: Doubling,
+    quarter: Simulation,
     /// Energies of the differences whole - half and half - quarter, relative, summed over the steps.
     differences: [f64; 2],
     /// Work of friction so far, of the whole and the half steps.
     work: [f64; 2],
-    /// Algebraic errors so far of the whole, half and quarter steps.
-    solver: [AccumulatedError; 3],
+    /// Algebraic errors so far of the half and quarter steps.
+    solver: [AccumulatedError; 2],
 }
 
 impl StepDoubling {
-    /// Sets both runs up.
+    /// Sets the three runs up.
     ///
     /// # Errors
-    /// [`ContactError::Doubling`] for static scenes, and for `Local` with a formula of more than one step; and those
-    /// of [`Simulation::new`].
-    pub fn new(scene: &Scene, settings: &Settings, mode: Doubling) -> Result<Self, ContactError> {
+    /// [`ContactError::Doubling`] for static scenes; and those of [`Simulation::new`].
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
         let Analysis::Quasistatic { times, formula } = scene.analysis() else {
-            return Err(ContactError::Doubling {
-                reason: "a static scene has no time steps",
-            });
+            let reason = "a static scene has no time steps";
+            return Err(ContactError::Doubling { reason });
         };
-        if mode == Doubling::Local && !formula.is_one_step() {
-            return Err(ContactError::Doubling {
-                reason: "a formula of three steps cannot start half a step from one state; use Doubling::Global or backward Euler",
-            });
-        }
         let run = |times: &[f64]| {
-            let analysis = Analysis::Quasistatic {
-                times: times.to_vec(),
-                formula: *formula,
-            };
-            Simulation::new(scene.clone().with_analysis(analysis), settings.clone())
+            let (times, formula) = (times.to_vec(), *formula);
+            let scene = scene
+                .clone()
+                .with_analysis(Analysis::Quasistatic { times, formula });
+            Simulation::new(scene, settings.clone())
         };
         let half = halves(times);
         Ok(Self {
-            whole: Simulation::new(scene.clone(), settings.clone())?,
+            whole: run(times)?,
             half: run(&half)?,
-            quarter: match mode {
-                Doubling::Twice => Some(run(&halves(&half))?),
-                _ => None,
-            },
-            mode,
+            quarter: run(&halves(&half))?,
             differences: [0.0; 2],
             work: [0.0; 2],
-            solver: [AccumulatedError::default(); 3],
+            solver: [AccumulatedError::default(); 2],
         })
     }
 
-    /// Whether all levels are solved.
+    /// Whether all steps are solved.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.whole.is_finished()
@@ -240,20 +186,12 @@ impl StepDoubling {
         &self.half
     }
 
-    /// The run with quarter steps, with [`Doubling::Twice`].
-    #[must_use]
-    pub fn quarter(&self) -> Option<&Simulation> {
-        self.quarter.as_ref()
-    }
-
     /// What all runs have cost.
     #[must_use]
     pub fn counters(&self) -> Counters {
         let mut sum = *self.whole.counters();
         sum += *self.half.counters();
-        if let Some(quarter) = &self.quarter {
-            sum += *quarter.counters();
-        }
+        sum += *self.quarter.counters();
         sum
     }
 
@@ -262,44 +200,46 @@ impl StepDoubling {
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step(&mut self) -> Result<TimeError, ContactError> {
-        if self.mode == Doubling::Local {
-            self.work = [0.0; 2];
-            self.solver = [AccumulatedError::default(); 3];
-            let level = self.whole.state().step();
-            self.half.resume(self.whole.state().rebased(2 * level))?;
-        }
-        let [of_whole, of_half, of_quarter] = &mut self.solver;
-        for _ in 0..2 {
-            let frame = self.half.step()?;
-            self.work[1] += frame.summary().friction_work;
-            of_half.add(&frame);
-        }
-        let frame = self.whole.step()?;
-        self.work[0] += frame.summary().friction_work;
-        of_whole.add(&frame);
-        let mut error = compare(&self.whole.present(), &self.half.present(), self.work)?;
+        let [of_half, of_quarter] = &mut self.solver;
+        let whole = self.whole.step()?;
+        let half = advance(&mut self.half, 2, of_half, &mut self.work[1])?;
+        let quarter = advance(&mut self.quarter, 4, of_quarter, &mut 0.0)?;
+        self.work[0] += whole.summary().friction_work;
+        let mut error = compare(&whole, &half, self.work);
+        error.energy = energy_of_difference(&whole, &half)?;
+        error.quarter_energy = energy_of_difference(&whole, &quarter)?;
+        error.finest_energy = energy_of_difference(&half, &quarter)?;
         error.scale = error.elastic.max(of_half.scale());
-        error.algebraic = of_whole.likely_difference(of_half);
-        if let Some(quarter) = &mut self.quarter {
-            for _ in 0..4 {
-                of_quarter.add(&quarter.step()?);
+        error.algebraic = of_half.likely_difference(of_quarter);
+        if !error.is_below_solver() {
+            let energies = [error.energy, error.finest_energy];
+            for (sum, energy) in self.differences.iter_mut().zip(energies) {
+                *sum += ratio(energy, error.scale);
             }
-            let quarter = quarter.present();
-            let far = energy_of_difference(&self.whole.present(), &quarter)?;
-            let near = energy_of_difference(&self.half.present(), &quarter)?;
-            error.quarter_energy = Some(far);
-            error.finest_energy = Some(near);
-            error.algebraic = of_half.likely_difference(of_quarter);
-            if !error.is_below_solver() {
-                for (sum, energy) in self.differences.iter_mut().zip([error.energy, near]) {
-                    *sum += ratio(energy, error.scale);
-                }
-            }
-            let [first, second] = self.differences;
-            error.order = Some(0.5 * (first / second).log2());
         }
+        let [first, second] = self.differences;
+        let order = 0.5 * (first / second).log2();
+        error.order = (!order.is_nan()).then_some(order);
         Ok(error)
     }
+}
+
+/// Takes some steps of a run, the last of which it returns, and adds up algebraic errors and work of friction.
+fn advance(
+    run: &mut Simulation,
+    steps: usize,
+    errors: &mut AccumulatedError,
+    work: &mut f64,
+) -> Result<Arc<StepResult>, ContactError> {
+    let mut result = run.step()?;
+    for step in 1..=steps {
+        errors.add(&result);
+        *work += result.summary().friction_work;
+        if step < steps {
+            result = run.step()?;
+        }
+    }
+    Ok(result)
 }
 
 /// The times with one more in the middle of each step.
@@ -313,52 +253,42 @@ fn halves(times: &[f64]) -> Vec<f64> {
     halves
 }
 
-fn energy_of_difference(a: &StepResult<'_>, b: &StepResult<'_>) -> Result<f64, ContactError> {
-    let scene = &a.model.scene;
-    let mut difference = a.displacement();
-    let other = b.displacement();
-    difference.iter_mut().zip(&other).for_each(|(a, b)| *a -= b);
+fn energy_of_difference(a: &StepResult, b: &StepResult) -> Result<f64, ContactError> {
+    let (mut difference, other) = (a.displacement(), b.displacement());
+    let numbers = difference.as_flattened_mut().iter_mut();
+    numbers.zip(other.as_flattened()).for_each(|(a, b)| *a -= b);
+    let scene = a.scene();
     Ok(fields::strain_energy(
-        &scene.mesh,
-        &scene.materials,
-        &difference,
+        scene.mesh(),
+        scene.materials(),
+        difference.as_flattened(),
     )?)
 }
 
-fn compare(
-    whole: &StepResult<'_>,
-    half: &StepResult<'_>,
-    work: [f64; 2],
-) -> Result<TimeError, ContactError> {
-    let scene = &whole.model.scene;
-    let other = half.displacement();
-    let (mut force, mut size) = (0.0, 0.0);
-    let (mut changed, mut touching) = (0, 0);
-    for (a, b) in whole.points().iter().zip(half.points()) {
-        force += (a.normal_force - b.normal_force).powi(2);
-        size += b.normal_force.powi(2);
-        changed += usize::from(a.state != b.state);
-        touching += usize::from(b.state != ContactState::Open);
-        for c in 0..3 {
-            force += (a.friction_force[c] - b.friction_force[c]).powi(2);
-            size += b.friction_force[c].powi(2);
-        }
-    }
-    Ok(TimeError {
-        level: whole.step(),
+/// What differs at the contact points; energies are to be entered.
+fn compare(whole: &StepResult, half: &StepResult, work: [f64; 2]) -> TimeError {
+    let mut error = TimeError {
+        step: whole.step(),
         time: whole.time(),
-        energy: energy_of_difference(whole, half)?,
-        scale: 0.0,
-        algebraic: 0.0,
-        elastic: fields::strain_energy(&scene.mesh, &scene.materials, &other)?,
-        contact_force: force.sqrt(),
-        contact_force_size: size.sqrt(),
+        elastic: half.strain_energy(),
         dissipated_work: work[0] - work[1],
         dissipated_work_size: work[1],
-        changed_points: changed,
-        touching_points: touching,
-        quarter_energy: None,
-        finest_energy: None,
-        order: None,
-    })
+        ..TimeError::default()
+    };
+    for (a, b) in whole.points().iter().zip(half.points()) {
+        error.changed_points += usize::from(a.state != b.state);
+        error.touching_points += usize::from(b.state != ContactState::Open);
+        let forces = |p: &PointState| [[p.normal_force, 0.0, 0.0], p.friction_force];
+        for (a, b) in forces(a)
+            .as_flattened()
+            .iter()
+            .zip(forces(b).as_flattened())
+        {
+            error.contact_force += (a - b).powi(2);
+            error.contact_force_size += b.powi(2);
+        }
+    }
+    error.contact_force = error.contact_force.sqrt();
+    error.contact_force_size = error.contact_force_size.sqrt();
+    error
 }

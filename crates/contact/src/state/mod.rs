@@ -8,12 +8,11 @@
 
 #[cfg(feature = "checkpoint")]
 mod bytes;
-mod debug;
 mod fingerprint;
 mod state;
 mod tolerance;
 
 pub(crate) use fingerprint::{Fingerprint, operator_hash};
-pub(crate) use state::Peak;
 pub use state::State;
+pub(crate) use state::{Kept, Peak};
 pub(crate) use tolerance::{Controller, Discretisation, certificate_limit};

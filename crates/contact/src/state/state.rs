@@ -11,7 +11,7 @@ use crate::error::ContactError;
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Levels solved.
-    pub(super) level: usize,
+    pub(super) step: usize,
     /// Multipliers of the last level and the one before.
     pub(super) lambda: [Vec<f64>; 2],
     /// `F lambda` of the same.
@@ -59,11 +59,27 @@ impl Peak {
     }
 }
 
+/// What a step leaves; vectors that the scene does not need are empty.
+#[derive(Debug, Default)]
+pub(crate) struct Kept {
+    pub(crate) lambda: Vec<f64>,
+    /// `F lambda`.
+    pub(crate) f_lambda: Vec<f64>,
+    /// Multiplier of the coarse equality.
+    pub(crate) multiplier: Vec<f64>,
+    /// Tangential displacements, m.
+    pub(crate) trace: Vec<f64>,
+    /// Slip rates, m/s.
+    pub(crate) rate: Vec<f64>,
+    /// Points that slide.
+    pub(crate) sliding: Vec<bool>,
+}
+
 impl State {
     /// Levels solved so far.
     #[must_use]
     pub fn step(&self) -> usize {
-        self.level
+        self.step
     }
 
     /// Bytes held.
@@ -77,25 +93,6 @@ impl State {
             .sum::<usize>()
             + self.rate.len();
         8 * numbers + self.sliding.len()
-    }
-
-    /// The same state as the start of another sequence of levels, without what extrapolation needs: the distance
-    /// between levels is another one there.
-    pub(crate) fn rebased(&self, level: usize) -> Self {
-        let mut state = self.clone();
-        state.level = level;
-        state.origin = None;
-        // a level here ends where its last part does there
-        let parts = level.checked_div(self.level).unwrap_or(1);
-        state.unconverged = self.unconverged.map(|k| (k + 1) * parts - 1);
-        for pair in [
-            &mut state.lambda,
-            &mut state.f_lambda,
-            &mut state.multiplier,
-        ] {
-            pair[1] = Vec::new();
-        }
-        state
     }
 
     /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume) then compares
@@ -153,7 +150,7 @@ impl State {
 
     /// Notes that the level that comes next did not converge, although later ones depend on it.
     pub(crate) fn note_unconverged(&mut self) {
-        self.unconverged = self.unconverged.or(Some(self.level));
+        self.unconverged = self.unconverged.or(Some(self.step));
     }
 
     /// What chooses tolerances by estimates.
@@ -192,17 +189,8 @@ impl State {
         &self.sliding
     }
 
-    /// Takes over the result of a level. Vectors that the scene does not need are empty.
-    pub(crate) fn advance(
-        &mut self,
-        keep_before: bool,
-        lambda: Vec<f64>,
-        f_lambda: Vec<f64>,
-        multiplier: Vec<f64>,
-        trace: Vec<f64>,
-        rate: Vec<f64>,
-        sliding: Vec<bool>,
-    ) {
+    /// Takes over what a step leaves.
+    pub(crate) fn advance(&mut self, keep_before: bool, new: Kept) {
         let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
             pair.swap(0, 1);
             pair[0] = new;
@@ -210,16 +198,16 @@ impl State {
                 pair[1] = Vec::new();
             }
         };
-        push(&mut self.lambda, lambda);
-        push(&mut self.f_lambda, f_lambda);
-        push(&mut self.multiplier, multiplier);
+        push(&mut self.lambda, new.lambda);
+        push(&mut self.f_lambda, new.f_lambda);
+        push(&mut self.multiplier, new.multiplier);
         self.seals.swap(0, 1);
         // old tangential displacements are part of the model, not of the extrapolation
         self.trace.swap(0, 1);
-        self.trace[0] = trace;
-        self.rate = rate;
-        self.sliding = sliding;
-        self.level += 1;
+        self.trace[0] = new.trace;
+        self.rate = new.rate;
+        self.sliding = new.sliding;
+        self.step += 1;
     }
 
     /// Largest sizes of each body at the levels so far; empty before the first.
@@ -282,7 +270,7 @@ impl State {
                     .to_owned(),
             });
         }
-        if self.unconverged.is_some_and(|k| k >= self.level) {
+        if self.unconverged.is_some_and(|k| k >= self.step) {
             return Err(ContactError::Checkpoint {
                 reason: "it says that a level did not converge that it has not solved; use an earlier checkpoint or \
                          start anew"
@@ -303,21 +291,31 @@ impl State {
     }
 }
 
+/// How far it is and how large; not its numbers.
+impl std::fmt::Debug for State {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("State")
+            .field("step", &self.step)
+            .field("memory", &self.memory())
+            .field("unconverged_history", &self.unconverged)
+            .finish_non_exhaustive()
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
 
     pub(crate) fn state() -> State {
         let mut state = State::default();
-        state.advance(
-            true,
-            vec![1.0 / 3.0, -2.0],
-            vec![0.1, 0.2],
-            vec![],
-            vec![1e-300],
-            vec![],
-            vec![true],
-        );
+        let kept = Kept {
+            lambda: vec![1.0 / 3.0, -2.0],
+            f_lambda: vec![0.1, 0.2],
+            trace: vec![1e-300],
+            sliding: vec![true],
+            ..Kept::default()
+        };
+        state.advance(true, kept);
         state
     }
 
@@ -327,14 +325,10 @@ pub(crate) mod tests {
         assert_eq!(state.unconverged_history(), None);
         state.note_unconverged();
         for _ in 0..2 {
-            let empty = || (vec![], vec![], vec![], vec![], vec![]);
-            let (a, b, c, d, e) = empty();
-            state.advance(true, a, b, c, d, e, vec![]);
+            state.advance(true, Kept::default());
             state.note_unconverged();
         }
         assert_eq!((state.step(), state.unconverged_history()), (3, Some(1)));
-        // level 1 in whole steps ends where level 3 in half steps does
-        assert_eq!(state.rebased(6).unconverged_history(), Some(3));
     }
 
     #[test]
@@ -350,7 +344,7 @@ pub(crate) mod tests {
             let error = state.fits(rows, coarse, tangential, points).unwrap_err();
             assert!(error.to_string().contains(part), "{error}");
         }
-        assert!(format!("{state:?}").starts_with("State { level: 1, bytes: "));
+        assert!(format!("{state:?}").starts_with("State { step: 1, memory: "));
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             let mut other = state.clone();
             other.peaks = vec![Peak {
@@ -365,15 +359,14 @@ pub(crate) mod tests {
         let mut other = state.clone();
         other.note_unconverged();
         assert!(other.fits(2, 6, 1, 1).is_err(), "a level to come");
-        state.advance(
-            true,
-            vec![f64::NAN, 0.0],
-            vec![0.0; 2],
-            vec![],
-            vec![0.0],
-            vec![],
-            vec![false],
-        );
+        let kept = Kept {
+            lambda: vec![f64::NAN, 0.0],
+            f_lambda: vec![0.0; 2],
+            trace: vec![0.0],
+            sliding: vec![false],
+            ..Kept::default()
+        };
+        state.advance(true, kept);
         assert!(state.fits(2, 6, 1, 1).is_err());
     }
 }

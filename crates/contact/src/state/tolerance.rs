@@ -14,16 +14,16 @@ const MARGIN: f64 = 0.5;
 pub(crate) struct Discretisation {
     /// Relative to the displacement, in the energy norm.
     pub(crate) relative: f64,
-    /// The level it belongs to, and the energy that it is relative to.
-    pub(crate) level: usize,
+    /// The step it belongs to, and the energy that it is relative to.
+    pub(crate) step: usize,
     pub(crate) scale: f64,
 }
 
 impl Discretisation {
-    /// Whether it will do for another level.
-    pub(crate) fn holds(&self, level: usize, scale: f64) -> bool {
+    /// Whether it will do for another step.
+    pub(crate) fn holds(&self, step: usize, scale: f64) -> bool {
         let range = self.scale / CHANGED..=self.scale * CHANGED;
-        self.scale > 0.0 && range.contains(&scale) && level.abs_diff(self.level) < EVERY
+        self.scale > 0.0 && range.contains(&scale) && step.abs_diff(self.step) < EVERY
     }
 
     /// The algebraic error that is this fraction of it.
@@ -45,16 +45,16 @@ const CERTIFIED: f64 = 5.0;
 const FINEST: f64 = 1e-8;
 const LOOSE: f64 = 1e-2;
 
-/// Levels after which the discretisation error is estimated again, and the factor in the elastic energy.
+/// Steps after which the discretisation error is estimated again, and the factor in the elastic energy.
 const EVERY: usize = 8;
 const CHANGED: f64 = 4.0;
 
-/// Chooses the tolerances of the solves, and remembers the errors of the levels so far.
+/// Chooses the tolerances of the solves, and remembers the errors of the steps so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Controller {
     tolerance: f64,
-    /// Algebraic errors of the levels before.
+    /// Algebraic errors of the steps before.
     pub(crate) errors: AccumulatedError,
     /// Last estimate of the discretisation error.
     pub(crate) discretisation: Discretisation,
@@ -97,7 +97,7 @@ impl Controller {
         true
     }
 
-    /// After a level that reached its targets in the first round: the next may be looser.
+    /// After a step that reached its targets in the first round: the next may be looser.
     pub(crate) fn relax(&mut self, targets: [(f64, f64); 2]) {
         let factor = slack(targets).clamp(1.0, 3.0);
         self.tolerance = (factor * self.tolerance).min(LOOSEST);
@@ -123,7 +123,7 @@ mod tests {
         assert!(!none.holds(0, 1.0) && !none.holds(0, 0.0));
         let known = Discretisation {
             relative: 0.1,
-            level: 3,
+            step: 3,
             scale: 2.0,
         };
         assert!(known.holds(3, 2.0) && known.holds(10, 8.0) && known.holds(4, 0.5));

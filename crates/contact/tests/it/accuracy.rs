@@ -93,7 +93,7 @@ fn balanced_saves_products_and_keeps_the_error() {
         )
         .expect("energy");
         let estimate = simulation
-            .frame()
+            .result()
             .expect("a level")
             .discretisation_error()
             .expect("estimate");
@@ -191,7 +191,11 @@ fn an_accuracy_asked_for_is_kept_over_many_levels() {
             let frame = simulation.step().expect("step");
             let report = frame.report().accuracy.expect("a report");
             assert!(report.reached && frame.report().status.converged());
-            let truth = relative_distance(&scene, &frame.displacement(), &level.displacement);
+            let truth = relative_distance(
+                &scene,
+                frame.displacement().as_flattened(),
+                &level.displacement,
+            );
             worst = worst.max(truth / report.target);
             likely = likely.max(report.accumulated.likely() / report.target);
         }

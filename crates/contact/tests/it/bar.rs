@@ -54,7 +54,7 @@ fn every_method_finds_the_reaction() {
         let scene = bar(block([1.0; 3], [4, 2, 2]), 3.0, 0.0).with_boxes([2, 1, 1]);
         let level = solve(scene, tight().with_method(method.clone()));
         let error = level.summary.normal_force / 2.0 - 1.0;
-        assert!(error.abs() <= 1e-9, "{}: {error:e}", method.name());
+        assert!(error.abs() <= 1e-9, "{}: {error:e}", method.kind());
     }
 }
 

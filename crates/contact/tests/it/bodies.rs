@@ -115,7 +115,7 @@ fn a_light_body_is_solved_beside_a_heavy_one() {
         // steps of the paper's methods are those of the softest body: without a preconditioner stiff ones wait for ever
         let count = if young == 2e11 { 3 } else { 1 };
         for method in methods().into_iter().take(count) {
-            let what = format!("E {young:e}, loads times {factor:e}, {}", method.name());
+            let what = format!("E {young:e}, loads times {factor:e}, {}", method.kind());
             let scene = || on_the_floor(cube_loads(bar_loads(both(young)), factor), friction());
             let settings = by(method.clone());
             let points = last(scene(), settings.clone(), of_the_block, &what);
@@ -275,7 +275,7 @@ fn a_lever_rests_on_a_floor() {
                 .iter()
                 .map(|p| -p.normal_force * (place[p.node as usize][0] - 1.0))
                 .sum();
-            let what = format!("{boxes:?} {}", method.name());
+            let what = format!("{boxes:?} {}", method.kind());
             assert!((moment / weight - 1.0).abs() < 1e-6, "{what}: {moment}");
             let u = &levels[0].displacement;
             let first = reference.get_or_insert_with(|| u.clone());

@@ -8,7 +8,22 @@ pub(crate) use signorini_fem_mesh::{
     TetMesh, assemble_load, brick, fields,
 };
 
-/// What a test keeps of a level.
+/// Solves the next step.
+pub(crate) fn step(simulation: &mut Simulation) -> Solved {
+    let result = simulation.step().expect("step");
+    Solved {
+        time: result.time(),
+        report: result.report().clone(),
+        certificate: *result.certificate(),
+        summary: *result.summary(),
+        points: result.points().to_vec(),
+        displacement: result.displacement().into_flattened(),
+        torn: result.torn_displacement().to_vec(),
+        load: result.load_resultant(),
+    }
+}
+
+/// A result with its fields at hand.
 #[derive(Debug, Clone)]
 pub(crate) struct Solved {
     pub(crate) time: f64,
@@ -19,21 +34,6 @@ pub(crate) struct Solved {
     pub(crate) displacement: Vec<f64>,
     pub(crate) torn: Vec<f64>,
     pub(crate) load: [f64; 3],
-}
-
-/// Solves the next level and keeps it.
-pub(crate) fn step(simulation: &mut Simulation) -> Solved {
-    let frame = simulation.step().expect("step");
-    Solved {
-        time: frame.time(),
-        report: frame.report().clone(),
-        certificate: *frame.certificate(),
-        summary: *frame.summary(),
-        points: frame.points().to_vec(),
-        displacement: frame.displacement(),
-        torn: frame.torn_displacement().to_vec(),
-        load: frame.load_resultant(),
-    }
 }
 
 /// Solves all levels that are left.

@@ -21,7 +21,7 @@ fn the_number_of_threads_changes_no_bit() {
         let one = run(1);
         assert!(one.0.iter().all(|level| !level.is_empty()) && one.1.memory() > 0);
         for threads in [2, 3] {
-            assert!(one == run(threads), "{}, {threads} threads", method.name());
+            assert!(one == run(threads), "{}, {threads} threads", method.kind());
         }
     }
 }
@@ -91,6 +91,6 @@ fn threads_change_no_bit_between_bodies() {
 fn every_run_gives_the_same_bits() {
     for method in methods() {
         let run = || fingerprint(small_benchmark(weakening(), 6), by(method.clone()));
-        assert!(run() == run(), "{}", method.name());
+        assert!(run() == run(), "{}", method.kind());
     }
 }

@@ -54,7 +54,7 @@ fn hydrostatic(contacts: &[Contact], boxes: [usize; 3], method: Method) {
     let corner = levels[0].points.iter().filter(|p| p.node == 0).count();
     assert_eq!(corner, 3);
     let error = simulation
-        .frame()
+        .result()
         .expect("a level")
         .algebraic_error()
         .relative();
@@ -170,7 +170,7 @@ fn a_block_slides_along_a_groove() {
             assert!(
                 (found / expected - 1.0).abs() < 1e-5,
                 "{}: {found} {expected}",
-                method.name()
+                method.kind()
             );
             let up = level.summary.resultant[2];
             assert!((up - 1.0).abs() < 1e-6, "{up}");
@@ -215,7 +215,7 @@ fn each_surface_has_its_own_law() {
         };
         assert!((of(0) + weight).abs() < 1e-6 && (of(1) + side).abs() < 1e-6);
         assert_eq!(simulation.scene().contacts().len(), 2);
-        assert_eq!(simulation.frame().map(|f| f.surfaces().len()), Some(2));
+        assert_eq!(simulation.result().map(|f| f.surfaces().len()), Some(2));
     }
 }
 

@@ -111,7 +111,7 @@ fn a_body_without_foundation_never_enters_an_inequality_solver() {
             .with_analysis(paper_steps(1.0, 3));
         let settings = by(method);
         let (simulation, levels) = run(scene, settings);
-        assert_eq!(simulation.plan().method, "linear");
+        assert_eq!(simulation.plan().method, MethodKind::Linear);
         assert!(!simulation.plan().effects.contact);
         let counters = simulation.counters();
         let expected = Counters::default();

@@ -364,9 +364,9 @@ fn powers_of_two_change_no_bit() {
         let (_, reference) = run(scene_in_units(2, 1.0, 1.0, 1.0), settings.clone());
         let (_, levels) = run(scene_in_units(2, length, force, 1.0), settings);
         for (x, y) in levels.iter().zip(&reference) {
-            assert_eq!(x.report.counters, y.report.counters, "{}", method.name());
+            assert_eq!(x.report.counters, y.report.counters, "{}", method.kind());
             for (a, b) in x.torn.iter().zip(&y.torn) {
-                assert_eq!(a / length, *b, "{}", method.name());
+                assert_eq!(a / length, *b, "{}", method.kind());
             }
         }
     }

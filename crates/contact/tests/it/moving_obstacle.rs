@@ -40,7 +40,7 @@ fn plate_is_block(law: Friction) {
             let (_, a) = run(moving, settings.clone());
             let (_, b) = run(drawn, settings);
             for (a, b) in a.iter().zip(&b) {
-                let what = format!("{law:?} {} at {}", method.name(), a.time);
+                let what = format!("{law:?} {} at {}", method.kind(), a.time);
                 let shift = there_and_back().value(a.time);
                 let relative: Vec<f64> = b
                     .displacement

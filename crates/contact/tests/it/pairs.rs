@@ -39,7 +39,7 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
     let both = with_second(&one, &mirrored(&one));
     for friction in [Friction::None, Friction::coulomb(0.5)] {
         for method in methods() {
-            let what = format!("{} {friction:?}", method.name());
+            let what = format!("{} {friction:?}", method.kind());
             let contact = Contact::between(brick::Z_MIN, second(brick::Z_MIN))
                 .with_normal([0.0, 0.0, -1.0])
                 .with_friction(friction.clone());
@@ -86,7 +86,7 @@ fn pressure_passes_from_body_to_body() {
         ([2, 1, 2], Friction::tresca(1e3)),
     ] {
         for method in methods() {
-            let what = format!("{boxes:?} {} {friction:?}", method.name());
+            let what = format!("{boxes:?} {} {friction:?}", method.kind());
             let mut scene = Scene::new(mesh.clone(), uniform(young, poisson))
                 .with_support(Support::components(brick::Z_MIN, [false, false, true]))
                 .with_load(Load::pressure(second(brick::Z_MAX), pressure))
@@ -246,7 +246,7 @@ fn a_body_drags_the_other_one() {
             "forces between bodies cancel"
         );
     }
-    let frame = simulation.frame().expect("a level");
+    let frame = simulation.result().expect("a level");
     let sum = frame.summary();
     assert_eq!(sum.slip, sum.active);
     // every point slides along x, but for what bulging adds
@@ -402,7 +402,7 @@ fn nodes_may_meet_several_bodies_and_walls() {
     let (young, poisson) = (1e9, 0.3);
     for boxes in [[2, 1, 2], [4, 1, 4]] {
         for method in methods() {
-            let what = format!("{boxes:?} {}", method.name());
+            let what = format!("{boxes:?} {}", method.kind());
             let scene = wall(&Friction::None).with_boxes(boxes);
             let mesh = scene.mesh().clone();
             let level = solve(scene, tight().with_method(method));

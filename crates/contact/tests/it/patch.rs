@@ -167,7 +167,7 @@ fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
                 count(&clear.points, ContactState::Stick),
                 9,
                 "{}",
-                method.name()
+                method.kind()
             );
             let below = at(limit * (1.0 - 1e-6));
             let above = at(limit * (1.0 + 1e-6));
@@ -175,7 +175,7 @@ fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
                 count(&above.points, ContactState::Slip),
                 9,
                 "{}",
-                method.name()
+                method.kind()
             );
             for (a, b) in above.points.iter().zip(&below.points) {
                 let slip = norm(&a.difference);
@@ -210,7 +210,7 @@ fn above_the_threshold_no_equilibrium_is_claimed() {
                 assert!(
                     !frame.report().status.converged(),
                     "{}, {angle}, {excess:e}: {:?}",
-                    method.name(),
+                    method.kind(),
                     frame.report()
                 );
             }

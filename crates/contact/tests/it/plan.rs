@@ -71,7 +71,11 @@ fn the_plan_knows_what_very_small_subdomains_cost() {
         };
         Plan::new(&scene, &Settings::default()).expect("plan")
     };
-    let seconds = |p: &Plan| p.estimate.setup_seconds() + p.estimate.solve_seconds();
+    let seconds = |p: &Plan| {
+        let plan = p.clone().with_machine(Rate::default());
+        let times = plan.estimate.times.expect("a machine");
+        times.setup + times.steps
+    };
     let (coarse, fine) = (plan(3, true), plan(6, true));
     // eight times as many subdomains, nearly their square
     assert!(seconds(&fine) > 30.0 * seconds(&coarse));

@@ -352,9 +352,9 @@ fn a_cut_step_retried_equals_the_small_steps() {
         let mut retry = Simulation::new(fine, by(method.clone())).expect("set-up");
         retry.resume(before).expect("resume");
         let tail: Vec<_> = rest(&mut retry).iter().map(bits).collect();
-        assert!(tail == expected[2..], "{}", method.name());
+        assert!(tail == expected[2..], "{}", method.kind());
         // and the large step was indeed another one
-        assert!(bits(&rejected) != expected[3], "{}", method.name());
+        assert!(bits(&rejected) != expected[3], "{}", method.kind());
     }
 }
 
@@ -370,16 +370,16 @@ fn a_law_that_fails_or_panics_leaves_the_run_as_it_was() {
     });
     let scene = small_benchmark(Friction::Coulomb(law), 4);
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
-    assert!(simulation.frame().is_none(), "before the first level");
+    assert!(simulation.result().is_none(), "before the first level");
     step(&mut simulation);
     let before = simulation.state().clone();
     for kind in [1, 1, 2, 2] {
         mode.store(kind, Ordering::Relaxed);
         let outcome = catch_unwind(AssertUnwindSafe(|| simulation.step().is_err()));
         assert!(outcome.is_err() == (kind == 2) && outcome.unwrap_or(true));
-        assert!(simulation.frame().is_none() && *simulation.state() == before);
+        assert!(simulation.result().is_none() && *simulation.state() == before);
     }
     mode.store(0, Ordering::Relaxed);
     assert_eq!(rest(&mut simulation).len(), 3);
-    assert!(simulation.frame().is_some());
+    assert!(simulation.result().is_some());
 }

@@ -44,11 +44,9 @@ fn the_certificate_of_a_thin_bedded_plate_tells_its_error() {
         )
     };
     let (exact, _, _) = solve(1e-10);
-    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
-    let size = norm(&mut exact.iter().copied());
     for tolerance in [1e-2, 1e-4, 1e-6] {
         let (u, certificate, status) = solve(tolerance);
-        let off = norm(&mut u.iter().zip(&exact).map(|(a, b)| a - b)) / size;
+        let off = distance(u.as_flattened(), exact.as_flattened());
         println!("{tolerance:e}: error {off:.1e}, certificate {certificate:.1e}, {status:?}");
         assert!(
             !status.converged() || off < 30.0 * tolerance,
@@ -143,7 +141,7 @@ fn pressed(friction: Friction, boxes: [usize; 3], steps: usize) -> Scene {
 
 /// All of the bottom is moved along (3, 4, 0) / 5 and back: friction mu N against it at every node, whatever the body does.
 fn dragged(method: Method, boxes: [usize; 3]) {
-    let name = method.name();
+    let name = method.kind();
     let length = 1e-2;
     let way = [0.6 * length, 0.8 * length, 0.0];
     let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 8).with_support(
@@ -291,7 +289,7 @@ fn sliding_nodes_in_a_plane_of_symmetry_have_the_friction_of_the_law() {
         (Friction::tresca(stress), stress),
     ] {
         for method in methods() {
-            let name = method.name();
+            let name = method.kind();
             let (_, levels) = run(half(friction.clone()), at(1e-9).with_method(method));
             let mut slid = 0;
             for point in levels.iter().flat_map(|l| &l.points) {

@@ -213,7 +213,7 @@ fn all_methods_agree_with_clarabel() {
     for seed in 0..12 {
         let case = case(seed);
         for method in methods() {
-            let what = format!("seed {seed}, {}", method.name());
+            let what = format!("seed {seed}, {}", method.kind());
             let settings = at(1e-8).with_method(method);
             let mut simulation = Simulation::new(scene(&case), settings).expect("set-up");
             let level = step(&mut simulation);

@@ -36,11 +36,11 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
         match frame.step() {
             0 => assert!(matches!(
                 strict,
-                Err(ContactError::NotConverged {
-                    level: 0,
+                Err(ContactError::NotConverged(StepFailure {
+                    step: 0,
                     status: StepStatus::NotContractive,
                     ..
-                })
+                }))
             )),
             _ => assert!(matches!(
                 strict,
@@ -64,22 +64,17 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
 fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
     let mut simulation = rough();
     let report = simulation.run(&mut Silent).expect("run");
-    assert_eq!((report.levels, report.failures.len()), (3, 1));
+    assert_eq!((report.steps, report.failures.len()), (3, 1));
     assert!(!report.converged() && report.counters == *simulation.counters());
     let first = *report.first_failure().expect("a failure");
     assert_eq!(
-        (first.level, first.time, first.status),
+        (first.step, first.time, first.status),
         (0, 1.0, StepStatus::NotContractive)
     );
     assert!(first.certificate <= report.largest_certificate);
     let error = report.require_converged().expect_err("not converged");
     let text = error.to_string();
-    for part in [
-        "level 0",
-        "at 1 s",
-        "not contractive",
-        "smaller coefficient",
-    ] {
+    for part in ["step 0", "at 1 s", "not contractive", "smaller coefficient"] {
         assert!(text.contains(part), "{text}");
     }
 }
@@ -87,8 +82,7 @@ fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
 #[test]
 fn an_observer_can_end_a_run_at_the_first_such_level() {
     let mut simulation = rough();
-    let outcome =
-        simulation.run(&mut |frame: &StepResult<'_>| Flow::from(frame.require_converged()));
+    let outcome = simulation.run(&mut |frame: &StepResult| Flow::from(frame.require_converged()));
     let error = outcome.expect_err("not converged");
     assert!(matches!(error, ContactError::Observer { level: 0, .. }));
     assert!(error.to_string().contains("not contractive"), "{error}");
@@ -127,7 +121,7 @@ fn scenes_without_memory_never_set_it() {
     assert!(report.first_failure().is_some(), "{report:?}");
     assert_eq!(report.unconverged_history, None);
     assert_eq!(simulation.state().unconverged_history(), None);
-    let frame = simulation.frame().expect("frame");
+    let frame = simulation.result().expect("frame");
     assert_eq!(frame.unconverged_history(), None);
 }
 
@@ -140,7 +134,7 @@ fn runs_that_converge_are_converged() {
         let report = simulation.run(&mut Silent).expect("run");
         assert!(report.converged() && report.largest_certificate <= 1e-6);
         report.require_converged().expect("converged");
-        assert_eq!(report.levels, 3);
+        assert_eq!(report.steps, 3);
         assert_eq!(simulation.state().unconverged_history(), None);
     }
 }
@@ -183,7 +177,7 @@ fn no_method_claims_what_it_did_not_find() {
                 let (status, _, _, certificate) = first_level(scene, method.clone());
                 let what = format!(
                     "{}, tilt {tilt}, axial {axial}, F {coefficient}",
-                    method.name()
+                    method.kind()
                 );
                 assert!(certificate.is_finite(), "{what}");
                 if status.converged() {
@@ -239,7 +233,7 @@ fn a_body_that_does_not_move_is_certified() {
         assert!(
             status.converged() && certificate <= 1e-6,
             "{}: {status:?}, {certificate:e}",
-            method.name()
+            method.kind()
         );
     }
 }

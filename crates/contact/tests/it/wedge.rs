@@ -67,7 +67,7 @@ fn the_force_that_moves_the_block() {
                 assert!(
                     error.abs() <= 1e-6,
                     "{}, mu {coefficient}, {boxes:?}: {found}, error {error:e}",
-                    method.name()
+                    method.kind()
                 );
             }
         }
@@ -92,7 +92,7 @@ fn a_ten_thousandth_above_the_threshold_no_equilibrium_is_claimed() {
                 Err(error) => panic!("{error}"),
             };
             if let Ok(frame) = simulation.step() {
-                assert!(!frame.report().status.converged(), "{}", method.name());
+                assert!(!frame.report().status.converged(), "{}", method.kind());
             }
         }
     }
