@@ -38,7 +38,7 @@ impl Sink for ReactionTable {
             return Ok(());
         }
         let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
-        let reactions = frame.reactions()?;
+        let reactions = frame.reactions();
         let text = &mut self.text;
         let _ = writeln!(
             text,

@@ -87,40 +87,38 @@ pub enum ContactError {
     /// A difference formula is not consistent.
     #[error("difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER")]
     Formula {
-        /// Weight of the new level.
+        /// Weight of the new displacement.
         alpha: f64,
-        /// Weight of the last level.
+        /// Weight of the last one.
         beta: f64,
-        /// Weight of the level before.
+        /// Weight of the one before.
         gamma: f64,
         /// The broken rule.
         rule: &'static str,
     },
-    /// No time level, or more than can be meant.
+    /// No step, or more than can be meant.
+    #[error("the analysis has no step or more than a hundred million; ask for at least one step")]
+    NoSteps,
+    /// A time out of order or not finite.
     #[error(
-        "the analysis has no time level or more than a hundred million; ask for at least one step"
-    )]
-    NoLevels,
-    /// A time level out of order or not finite.
-    #[error(
-        "time level {level}: {time} s is not finite or not above the level before (the first must be above 0)"
+        "step {step}: its time {time} s is not finite or not above the one before (the first must be above 0)"
     )]
     Time {
-        /// The level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
         /// Its time.
         time: f64,
     },
     /// Unequal steps with a formula that needs equal ones.
     #[error(
-        "time level {level}: step {step} s, but the first is {first} s; the three-step formula needs equal steps, backward Euler does not"
+        "step {step}: its length is {length} s, but that of the first is {first} s; the three-step formula needs equal steps, backward Euler does not"
     )]
     UnequalSteps {
-        /// The level, from 0.
-        level: usize,
-        /// Its step.
-        step: f64,
-        /// The first step.
+        /// The step, from 0.
+        step: usize,
+        /// Its length, s.
+        length: f64,
+        /// That of the first, s.
         first: f64,
     },
     /// A tag of a support or contact surface is on no facet.
@@ -330,13 +328,13 @@ pub enum ContactError {
     },
     /// Loads that nothing can balance.
     #[error(
-        "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
+        "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
         if friction.is_some() { "beyond what friction can hold" } else { "held neither by supports nor by contact" },
         held_remedy(*friction)
     )]
     NotHeld {
-        /// Time level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
         /// The body (part of the mesh that hangs together; of bodies that may touch each other the one that moves most).
         body: usize,
         /// One of its mesh nodes.
@@ -378,11 +376,11 @@ pub enum ContactError {
         /// Why, and what to do.
         reason: &'static str,
     },
-    /// All time levels are solved.
-    #[error("the scene has {levels} time levels and all are solved")]
+    /// All steps are solved.
+    #[error("the scene has {steps} steps and all are solved")]
     Finished {
-        /// Number of levels.
-        levels: usize,
+        /// Number of steps.
+        steps: usize,
     },
     /// An observer failed; the level before is solved and kept.
     #[error("observer, after level {level}: {source}")]

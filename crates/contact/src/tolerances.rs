@@ -14,6 +14,45 @@ pub(crate) const LOOSEST: f64 = 1e-3;
 /// Solves of one step where estimates choose.
 pub(crate) const ROUNDS: usize = 8;
 
+// ---- equilibrium of free bodies (model) ----
+
+/// Work on a free motion below this fraction of the size of the loads is rounding.
+pub(crate) const FREE_WORK: f64 = 1e-9;
+
+/// Loads over their length that differ by less have been judged already.
+pub(crate) const SAME_LOADS: f64 = 1e-12;
+
+/// What is left of loads of length one that contact forces cannot take, below which it is rounding.
+pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
+
+/// Singular values below this part of the largest count as zero where contact forces are found.
+pub(crate) const WRENCH_RANK: f64 = 1e-13;
+
+/// Contact forces below this part of the largest leave.
+pub(crate) const WRENCH_FACTOR: f64 = 1e-14;
+
+/// Loads that would need contact forces that many times their own size count as not held.
+pub(crate) const LEVERAGE: f64 = 1e5;
+
+/// Part by which loads must exceed Tresca friction to count.
+pub(crate) const TRESCA_EXCESS: f64 = 1e-6;
+
+/// Friction so many times as large is none that a remedy could name.
+pub(crate) const MOST_FRICTION: f64 = 1e3;
+
+/// Accuracy of the factor of friction that is named, relative.
+pub(crate) const FRICTION_FACTOR: f64 = 1e-4;
+
+// ---- steps in time (scene) ----
+
+/// A difference formula is consistent whose sums are off by less.
+pub(crate) const CONSISTENT: f64 = 1e-12;
+
+/// Steps are equal whose lengths differ by less, relative to the longer one.
+pub(crate) const UNEQUAL: f64 = 1e-9;
+
+// ---- rounds of a step and orders in time (simulation) ----
+
 /// Largest certificate of a converged step over the tolerance.
 pub(crate) const CERTIFIED: f64 = 30.0;
 

@@ -1,23 +1,22 @@
-//! The scene at the nodes of its mesh: contact points with normals and partners, supports node by node, and all checks.
+//! The scene at the nodes of its mesh, made and checked once: contact points with their sides, supports node by node.
 //!
 //! A node of a contact surface becomes a contact point for each direction in which it meets an obstacle (`points`,
-//! `creases`) or a node of another body (`partners`). Supports become lists of nodes (`supports`). What cannot be meant is
-//! refused here, before any stiffness is made (`check`, `overflow`, `penetration`).
+//! `creases`) or a node of another body (`partners`). What cannot be meant is refused here, before any stiffness is made
+//! (`scene`, `overflow`, `penetration`). `side` says which nodes a contact point moves; all above asks it.
 //!
 //! Uses: `scene`.
-//! In: a scene and its decomposition. Out: what plan and model are made of.
+//! In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
-mod check;
 mod creases;
 mod overflow;
 mod partners;
 mod penetration;
 mod points;
 mod rounding;
+mod scene;
+mod side;
 mod supports;
 
-pub(crate) use check::{check_scene, largest_force};
-pub(crate) use overflow::{check_gaps, check_load, check_materials, check_motions};
-pub(crate) use penetration::check_penetration;
-pub(crate) use points::{ContactPoint, Found};
-pub(crate) use supports::{contact_constraints, lower_supports};
+pub(crate) use points::ContactPoint;
+pub(crate) use scene::DiscreteScene;
+pub(crate) use supports::Supports;

@@ -1,47 +1,44 @@
 //! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
 //! only see norms that are infinite or vanish, and blame their tolerance.
 
-use super::points::Found;
+use super::points::ContactPoint;
 use crate::error::ContactError;
 use crate::scene::{Analysis, Scene};
-use signorini_fem_mesh::History;
+use signorini_fem_mesh::{Decomposition, History, assemble_load};
 use signorini_qp::vector;
+use signorini_tfeti::TfetiError;
 use std::collections::BTreeSet;
 
 /// Largest force in N, displacement and gap in m. The squares of their products are formed (friction times slip): at most 1e308,
 /// so this leaves 28 digits for stiffness and sums.
 const MOST: f64 = 1e70;
 
-/// Materials of the regions in use.
-pub(crate) fn check_materials(scene: &Scene) -> Result<(), ContactError> {
-    for (region, stiffness) in stiffnesses(scene)? {
-        if !(1.0 / MOST..=MOST).contains(&stiffness) {
+/// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh, N/m.
+pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
+    let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
+    let mut ends = [f64::INFINITY, 0.0_f64];
+    for region in regions {
+        let law = scene.materials.get(region).map_err(|source| {
+            let element = scene.mesh.regions().iter().position(|r| *r == region);
+            let element = element.unwrap_or(0);
+            TfetiError::Material {
+                element,
+                message: source.to_string(),
+            }
+        })?;
+        let value = law.bound();
+        if !(1.0 / MOST..=MOST).contains(&value) {
             return Err(ContactError::Stiffness {
                 region,
-                value: stiffness,
+                value,
                 least: 1.0 / MOST,
                 most: MOST,
             });
         }
+        ends = [ends[0].min(value), ends[1].max(value)];
     }
-    Ok(())
-}
-
-/// Regions in use and the largest stiffness of each, Pa.
-fn stiffnesses(scene: &Scene) -> Result<Vec<(u32, f64)>, ContactError> {
-    let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
-    let bound = |region| Ok((region, scene.materials.get(region)?.bound()));
-    regions.into_iter().map(bound).collect()
-}
-
-/// The least and the largest stiffness of a region times the extent of the mesh, N/m.
-fn springs(scene: &Scene) -> Result<[f64; 2], ContactError> {
     let (low, high) = scene.mesh.extent();
     let extent = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
-    let stiffnesses = stiffnesses(scene)?;
-    let ends = stiffnesses
-        .iter()
-        .fold([f64::INFINITY, 0.0], |[a, b], s| [a.min(s.1), b.max(s.1)]);
     Ok(ends.map(|s| s * extent))
 }
 
@@ -58,10 +55,10 @@ fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<
     Ok(())
 }
 
-/// The largest size of a history at the levels, and its time.
-pub(crate) fn largest_factor(analysis: &Analysis, history: &History) -> (f64, f64) {
-    let times = (0..analysis.steps()).filter_map(|level| analysis.time(level));
-    times.fold((0.0, 0.0), |worst: (f64, f64), time| {
+/// The largest size of a history at the steps, and its time.
+pub(super) fn largest_factor(analysis: &Analysis, history: &History) -> (f64, f64) {
+    let times = analysis.times().iter();
+    times.fold((0.0, 0.0), |worst: (f64, f64), &time| {
         let value = history.value(time).abs();
         if value > worst.0 {
             (value, time)
@@ -71,8 +68,8 @@ pub(crate) fn largest_factor(analysis: &Analysis, history: &History) -> (f64, f6
     })
 }
 
-/// Motions of supports and obstacles.
-pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
+/// Refuses motions of supports and obstacles; `spring` is the largest stiffness of a region, N/m.
+pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactError> {
     for (index, support) in scene.supports.iter().enumerate() {
         if let Some((values, history)) = &support.motion {
             let (factor, time) = largest_factor(&scene.analysis, history);
@@ -82,7 +79,7 @@ pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
             let place = || {
                 format!("support {index} at time {time} s: its displacement times the stiffness")
             };
-            expect(factor * size * springs(scene)?[1], "N", place)?;
+            expect(factor * size * spring, "N", place)?;
         }
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
@@ -95,30 +92,39 @@ pub(crate) fn check_motions(scene: &Scene) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// A load, by its largest nodal force with factor one, N.
-pub(crate) fn check_load(scene: &Scene, index: usize, size: f64) -> Result<(), ContactError> {
-    let (factor, time) = largest_factor(&scene.analysis, &scene.loads[index].history);
-    let place = || format!("load {index} at time {time} s: its largest nodal force");
-    expect(factor * size, "N", place)?;
-    let place =
-        || format!("load {index} at time {time} s: its largest nodal force over the stiffness");
-    expect(factor * size / springs(scene)?[0], "m", place)
+/// The nodal forces of each load with factor one, subdomain by subdomain, N; `spring` is the least stiffness of a region, N/m.
+pub(super) fn nodal_loads(
+    scene: &Scene,
+    decomposition: &Decomposition,
+    spring: f64,
+) -> Result<Vec<Vec<Vec<f64>>>, ContactError> {
+    let mut out = Vec::with_capacity(scene.loads.len());
+    for (index, load) in scene.loads.iter().enumerate() {
+        let local = assemble_load(&scene.mesh, decomposition, &load.density)
+            .map_err(|source| ContactError::Load { index, source })?;
+        // a NaN stays one
+        let sizes = local.iter().map(|f| vector::max_abs(f));
+        let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
+        let (factor, time) = largest_factor(&scene.analysis, &load.history);
+        let place =
+            |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
+        expect(factor * size, "N", || place(""))?;
+        expect(factor * size / spring, "m", || place(" over the stiffness"))?;
+        out.push(local);
+    }
+    Ok(out)
 }
 
-/// Gaps at the start, and those that obstacles bring with them at the levels.
-pub(crate) fn check_gaps(scene: &Scene, found: &Found) -> Result<(), ContactError> {
-    for c in &found.conditions {
-        let place = || format!("contact at node {}: the gap", c.node);
+/// Refuses gaps at the start, and those that obstacles bring with them at the steps.
+pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint]) -> Result<(), ContactError> {
+    for c in conditions {
+        let place = || format!("contact at node {}: the gap", c.node());
         expect(c.gap.abs(), "m", place)?;
         let contact = &scene.contacts[c.surface];
         if contact.carries_field() {
-            let times = (0..scene.analysis.steps()).filter_map(|l| scene.analysis.time(l));
-            for time in times {
-                expect(
-                    c.gap_after(scene, &contact.obstacle_at(time))?.abs(),
-                    "m",
-                    place,
-                )?;
+            for &time in scene.analysis.times() {
+                let gap = c.gap_after(scene, &contact.obstacle_at(time))?;
+                expect(gap.abs(), "m", place)?;
             }
         }
     }

@@ -4,53 +4,40 @@
 //! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
 use super::points::ContactPoint;
-use super::rounding::rounding;
-use super::supports::contact_constraints;
 use crate::error::ContactError;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
-use signorini_tfeti::{NodeSupport, PrescribedPoint, prescribed_points};
+use signorini_tfeti::PrescribedPoint;
 
 /// Depth above this share of the displacement or the gap counts.
 const RELATIVE: f64 = 1e-9;
 
-/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some time level.
-pub(crate) fn check_penetration(
+/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step.
+pub(super) fn check_penetration(
     scene: &Scene,
-    candidates: &[ContactPoint],
-    supports: &[NodeSupport],
+    points: &[ContactPoint],
+    prescribed: &[PrescribedPoint],
     motions: &[History],
+    rounding: f64,
 ) -> Result<(), ContactError> {
-    let points = scene.mesh.points();
-    let nodes = contact_constraints(scene, candidates.iter());
-    let held: Vec<(PrescribedPoint, &ContactPoint)> =
-        prescribed_points(&nodes, supports, points.len())?
-            .into_iter()
-            .map(|point| {
-                let candidate = &candidates[point.point];
-                (point, candidate)
-            })
-            .collect();
-    if held.is_empty() {
+    if prescribed.is_empty() {
         return Ok(());
     }
-    let rounding = rounding(&scene.mesh);
-    let times = (0..scene.analysis.steps()).filter_map(|level| scene.analysis.time(level));
-    for time in times {
+    for &time in scene.analysis.times() {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
         let mut deepest: Option<(f64, u32, f64, f64)> = None;
-        for (point, candidate) in &held {
-            let contact = &scene.contacts[candidate.surface];
-            let gap = candidate.gap_after(scene, &contact.obstacle_at(time))?;
-            let displacement: f64 = point
-                .normal
-                .iter()
+        for fixed in prescribed {
+            let point = &points[fixed.point];
+            let contact = &scene.contacts[point.surface];
+            let gap = point.gap_after(scene, &contact.obstacle_at(time))?;
+            let along = fixed.normal.iter();
+            let displacement: f64 = along
                 .map(|&(case, value)| factors[case as usize] * value)
                 .sum();
             let depth = displacement - gap;
             let allowed = rounding + RELATIVE * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
-                deepest = Some((depth, point.node, displacement, gap));
+                deepest = Some((depth, fixed.node, displacement, gap));
             }
         }
         if let Some((depth, node, displacement, gap)) = deepest {

@@ -10,7 +10,7 @@
 use super::creases::{area_vector, creases, length};
 use super::overflow::largest_factor;
 use super::partners::{Partner, partners};
-use super::rounding::rounding;
+use super::side::{Side, Sides};
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal, Scene};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
@@ -27,14 +27,15 @@ const ALONG: f64 = 1e-9;
 const SAME: f64 = 1.0 - 1e-12;
 
 /// A contact point before any row is made.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ContactPoint {
     /// Position of its contact surface in the scene.
     pub(crate) surface: usize,
-    /// Mesh node.
-    pub(crate) node: u32,
-    /// Its partner on another body.
-    pub(crate) partner: Option<u32>,
+    /// The nodes that it is made of.
+    pub(crate) sides: Sides,
+    /// Its place, m.
+    pub(crate) position: [f64; 3],
+    /// Normal into the obstacle and two tangents.
     pub(crate) frame: SurfaceFrame,
     /// A third of the areas of the facets of its side, m².
     pub(crate) area: f64,
@@ -43,64 +44,41 @@ pub(crate) struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// The node that names it.
+    pub(crate) fn node(&self) -> u32 {
+        self.sides.node()
+    }
+
+    /// The gap, m, that the obstacle has brought by moving by `way` along the surface, without what it opens.
+    pub(crate) fn gap_brought(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
+        let contact = &scene.contacts[self.surface];
+        let normal = &self.frame.normal;
+        contact.gap_brought(
+            self.surface,
+            self.node(),
+            self.position,
+            normal,
+            (self.gap, way),
+        )
+    }
+
     /// The gap where the obstacle has moved by `way`, m.
     pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
-        let contact = &scene.contacts[self.surface];
-        let at = scene.mesh.points()[self.node as usize];
-        let normal = &self.frame.normal;
-        let brought = contact.gap_brought(self.surface, self.node, at, normal, (self.gap, way))?;
-        Ok(brought + vector::dot(way, normal))
+        Ok(self.gap_brought(scene, way)? + vector::dot(way, &self.frame.normal))
+    }
+
+    /// Whether two conditions are on the same displacement: one of them then follows from the other.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        self.sides.partner == other.sides.partner
+            && self.frame.normal_part(other.frame.normal) > SAME
     }
 }
 
-/// What a scene has of contact.
-#[derive(Debug, Clone)]
-pub(crate) struct Found {
-    /// The surfaces of its contacts.
-    pub(crate) surfaces: Vec<Surface>,
-    /// What the contacts say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-    pub(crate) conditions: Vec<ContactPoint>,
-    /// The contact points that stand for them.
-    pub(crate) points: Vec<ContactPoint>,
-    /// What of a gap may be rounding, m.
-    pub(crate) rounding: f64,
-}
-
-impl Found {
-    pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
-        let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
-        let surfaces = scene.contacts.iter().map(surface);
-        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
-        let conditions = conditions(scene, &surfaces)?;
-        let rounding = rounding(&scene.mesh);
-        let points = points(scene, &conditions, rounding)?;
-        Ok(Self {
-            surfaces,
-            conditions,
-            points,
-            rounding,
-        })
-    }
-
-    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are those
-    /// of nodes that supports hold, judged before anything is solved ([`check_penetration`]).
-    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
-        let mut places = places.peekable();
-        let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();
-        for (place, point) in self.points.iter().enumerate() {
-            if places.next_if_eq(&place).is_none() {
-                without.entry(point.node).or_default().push(point);
-            }
-        }
-        let left = |c: &&ContactPoint| {
-            let points = without.get(&c.node);
-            !points.is_some_and(|p| p.iter().any(|p| is_same(p, c)))
-        };
-        self.conditions.iter().filter(left).cloned().collect()
-    }
-}
-
-fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
+/// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
+pub(super) fn conditions(
+    scene: &Scene,
+    surfaces: &[Surface],
+) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
         let first = out.len();
@@ -113,14 +91,18 @@ fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, 
         for (local, &node) in surface.nodes().iter().enumerate() {
             let partner = partners.get(local);
             let measured = partner.map_or(0.0, |p: &Partner| p.gap);
-            let gap = contact.gap_at(index, node, scene.mesh.points()[node as usize], measured)?;
+            let position = scene.mesh.points()[node as usize];
+            let gap = contact.gap_at(index, node, position, measured)?;
             let one = [(surface.frames()[local], surface.areas()[local])];
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
                 out.push(ContactPoint {
                     surface: index,
-                    node,
-                    partner: partner.map(|p| p.node),
+                    sides: Sides {
+                        own: Side::node(node),
+                        partner: partner.map(|p| Side::node(p.node)),
+                    },
+                    position,
                     frame: fixed.unwrap_or(frame),
                     area,
                     gap,
@@ -133,7 +115,7 @@ fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, 
 }
 
 /// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
-fn points(
+pub(super) fn points(
     scene: &Scene,
     conditions: &[ContactPoint],
     rounding: f64,
@@ -142,18 +124,19 @@ fn points(
     // points of each node that there may be others of
     let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     let mut count = vec![0u32; scene.mesh.points().len()];
-    conditions.iter().for_each(|c| count[c.node as usize] += 1);
+    conditions
+        .iter()
+        .for_each(|c| count[c.node() as usize] += 1);
     for condition in conditions {
-        if count[condition.node as usize] == 1 {
+        let node = condition.node();
+        if count[node as usize] == 1 {
             out.push(condition.clone());
             continue;
         }
-        let others = known.entry(condition.node).or_default();
-        match others
-            .iter()
-            .find(|k| condition.partner.is_none() && is_same(&out[**k], condition))
-        {
-            Some(&k) => join(scene, rounding, &mut out[k], condition)?,
+        let others = known.entry(node).or_default();
+        let same = |k: &&usize| condition.sides.partner.is_none() && out[**k].is_same(condition);
+        match others.iter().find(same).copied() {
+            Some(k) => join(scene, rounding, &mut out[k], condition)?,
             None => {
                 others.push(out.len());
                 out.push(condition.clone());
@@ -187,11 +170,6 @@ fn fixed_frame(
     Ok(Some(frame))
 }
 
-/// Whether two conditions of a node are on the same displacement: one of them then follows from the other.
-fn is_same(a: &ContactPoint, b: &ContactPoint) -> bool {
-    a.partner == b.partner && a.frame.normal_part(b.frame.normal) > SAME
-}
-
 /// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are its own.
 /// Where both are as near the law is that of the first one, on the area of both; facets that they share count once.
 fn join(
@@ -204,7 +182,7 @@ fn join(
     let nearer = order(other.gap - point.gap, rounding);
     if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
         return Err(ContactError::SharedNode {
-            node: point.node,
+            node: point.node(),
             first: point.surface,
             second: other.surface,
         });
@@ -247,8 +225,8 @@ fn stays(
     if !x.carries_field() && !y.carries_field() {
         return Ok(true);
     }
-    for level in 0..scene.analysis.steps() {
-        let way = x.obstacle_at(scene.analysis.time(level).unwrap_or(0.0));
+    for &time in scene.analysis.times() {
+        let way = x.obstacle_at(time);
         let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
         if order(difference, rounding) != nearer {
             return Ok(false);
@@ -287,8 +265,8 @@ fn check_turn(
         };
         // of a node in a crease the side that the facet belongs to
         let along = |node: u32| {
-            let from = own.partition_point(|c| c.node < node);
-            let sides = own[from..].iter().take_while(|c| c.node == node);
+            let from = own.partition_point(|c| c.node() < node);
+            let sides = own[from..].iter().take_while(|c| c.node() == node);
             let facing = |c: &&ContactPoint| c.frame.normal_part(flat);
             let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
             side.map_or(0.0, |c| factor * c.frame.normal_part(way))

@@ -62,12 +62,12 @@ pub(crate) struct Movable {
 
 impl Movable {
     pub(crate) fn new(model: &Model, touch: &ConstrainedPoint) -> Self {
-        let subdomains = model.decomposition.subdomains();
+        let subdomains = model.discrete.decomposition.subdomains();
         let mut sides = [Side::default(); 2];
         let rows = touch.directions().zip(0..);
         for ((_, row, scale), k) in rows {
             for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
-                let first = subdomains[subdomain].nodes[dof / 3] == touch.node;
+                let first = subdomains[subdomain].nodes[dof / 3] == touch.node();
                 let side = &mut sides[usize::from(!first)];
                 let part = match k {
                     0 => &mut side.normal,
@@ -77,20 +77,20 @@ impl Movable {
             }
         }
         // where supports fix nothing, without rounding
-        let normal = touch.frame.normal;
+        let normal = touch.contact.frame.normal;
         for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
             if (0..3).all(|c| (sign * side.normal[c] - normal[c]).abs() <= SAME) {
                 side.normal = normal.map(|c| sign * c);
             }
         }
         let [mut first, second] = sides;
-        match touch.partner {
+        match touch.partner() {
             None => {
                 for (along, (direction, ..)) in first.along.iter_mut().zip(touch.along()) {
                     *along = direction;
                 }
                 Self {
-                    node: touch.node,
+                    node: touch.node(),
                     own: first,
                     still: None,
                     both: None,
@@ -99,9 +99,9 @@ impl Movable {
             Some(partner) => {
                 let swap = second.freedom() > first.freedom() + SAME;
                 let (node, own, still) = if swap {
-                    (partner, second, (touch.node, first))
+                    (partner, second, (touch.node(), first))
                 } else {
-                    (touch.node, first, (partner, second))
+                    (touch.node(), first, (partner, second))
                 };
                 let rows = touch.directions().count();
                 let held = own.freedom() < rows as f64 - HELD;

@@ -189,7 +189,7 @@ impl Solved<'_> {
         // torn difference and its energy
         let balanced = self.balanced(weights);
         let torn = balanced.as_deref().unwrap_or(&self.recovered.torn);
-        let subdomains = model.decomposition.subdomains();
+        let subdomains = model.discrete.decomposition.subdomains();
         let nodes = || subdomains.iter().flat_map(|s| &s.nodes);
         let mut difference = torn.to_vec();
         for (d, &node) in difference.chunks_exact_mut(3).zip(nodes()) {
@@ -276,6 +276,7 @@ impl Solved<'_> {
         let (mut v, mut total) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
         let copies = self
             .model
+            .discrete
             .decomposition
             .subdomains()
             .iter()
@@ -305,7 +306,7 @@ impl Solved<'_> {
                 planes.entry(node).or_default().push(plane);
             }
         }
-        let dependent = |t: &(&ConstrainedPoint, &Movable)| gluing.is_dependent(t.0.node);
+        let dependent = |t: &(&ConstrainedPoint, &Movable)| gluing.is_dependent(t.0.node());
         let places = self.model.points.iter().zip(movable);
         for ((touch, movable), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
             let place = movable.place(self.problem, touch, v);

@@ -1,13 +1,11 @@
-//! Bodies that nothing joins, and sizes of their own.
+//! Which bodies can touch each other, and to which of them rows and subdomains belong.
 //!
-//! Bodies that may touch each other count as one here, and so do parts that hinges join. An obstacle is rigid, so the others know
-//! nothing of each other: a scene with several is several problems in one. Norms over
-//! all of them would let the heaviest alone decide when the others are done. Every body therefore gets a unit of force: the
-//! problem of a level is solved with forces and displacements of each body divided by it. The conditions are homogeneous,
-//! so that only data change (`d`, `e`, given slip bounds), operators do not; units are powers of two, so that no digit changes.
+//! Bodies that may touch each other count as one here, and so do parts that hinges join. An obstacle is rigid, so the others
+//! know nothing of each other: a scene with several is several problems in one, and norms over all of them would let the
+//! heaviest alone decide when the others are done.
 
-use crate::discrete::ContactPoint;
-use signorini_fem_mesh::{Decomposition, DisjointSets};
+use crate::discrete::DiscreteScene;
+use signorini_fem_mesh::DisjointSets;
 use signorini_tfeti::Tfeti;
 
 /// To which body rows and subdomains belong. With one body there are no tables.
@@ -21,13 +19,9 @@ pub(crate) struct Bodies {
 }
 
 impl Bodies {
-    pub(crate) fn new(
-        tfeti: &Tfeti,
-        decomposition: &Decomposition,
-        candidates: &[ContactPoint],
-    ) -> Self {
+    pub(super) fn new(tfeti: &Tfeti, discrete: &DiscreteScene) -> Self {
         let (coarse, gluing) = (tfeti.coarse(), tfeti.gluing());
-        let numbers = joined(tfeti, decomposition, candidates);
+        let numbers = joined(tfeti, discrete);
         let count = numbers.iter().max().map_or(0, |last| *last as usize + 1);
         if count <= 1 {
             return Self {
@@ -78,15 +72,18 @@ impl Bodies {
 }
 
 /// A number for each body of the coarse space: the same for those that may touch each other.
-fn joined(tfeti: &Tfeti, decomposition: &Decomposition, candidates: &[ContactPoint]) -> Vec<u32> {
+fn joined(tfeti: &Tfeti, discrete: &DiscreteScene) -> Vec<u32> {
     let coarse = tfeti.coarse();
     let mut sets = DisjointSets::new(coarse.bodies());
-    let body = |node: u32| {
-        let copy = decomposition.copies(node as usize)[0];
+    let body = |(node, _): (u32, f64)| {
+        let copy = discrete.decomposition.copies(node as usize)[0];
         coarse.body_of()[copy.subdomain as usize] as usize
     };
-    for (node, partner) in candidates.iter().filter_map(|c| Some((c.node, c.partner?))) {
-        sets.join(body(node), body(partner));
+    for point in discrete.points.iter().filter(|p| p.sides.partner.is_some()) {
+        let mut bodies = point.sides.nodes().map(body);
+        if let Some(first) = bodies.next() {
+            bodies.for_each(|other| sets.join(first, other));
+        }
     }
     sets.numbers()
 }

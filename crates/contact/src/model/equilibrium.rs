@@ -3,19 +3,17 @@
 //! Equilibrium of the rigid motions that supports leave free is necessary: contact forces must exist with `G lambda = e`,
 //! `lambda_nu <= 0` and friction in its cone. On these motions, six a free body at most, that is a small problem: the
 //! loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the cone
-//! is a motion on which the loads work and against which no contact force can. Where larger friction could, the error says so, and by which
-//! factor.
+//! is a motion on which the loads work and against which no contact force can. Where larger friction could, the error says
+//! so, and by which factor.
 
 use super::contact_point::ConstrainedPoint;
 use super::friction_cone::{Generators, Separation, WrenchCone};
 use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
+use crate::tolerances::{FREE_WORK, SAME_LOADS};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
-
-/// Work on a free motion above this fraction of the size of the loads counts.
-const WORK: f64 = 1e-9;
 
 /// Refuses loads that push the body along a rigid motion that neither supports nor contact can stop.
 pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
@@ -37,36 +35,45 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
         }
         if let Some(escape) = escapes(model, body, &motions)? {
             let first = |w: &Escape| {
-                escape.level < w.level || escape.level == w.level && escape.force > w.force
+                escape.step < w.step || escape.step == w.step && escape.force > w.force
             };
             if worst.as_ref().is_none_or(first) {
                 worst = Some(escape);
             }
         }
     }
-    worst.map_or(Ok(()), |w| {
-        Err(ContactError::NotHeld {
-            level: w.level,
-            body: w.way.body,
-            node: model.decomposition.subdomains()[w.way.subdomain].nodes[0],
-            mode: w.mode,
-            force: w.force,
-            friction: w.friction,
-        })
+    let Some(Escape {
+        step,
+        part,
+        mode,
+        force,
+        friction,
+    }) = worst
+    else {
+        return Ok(());
+    };
+    let node = model.discrete.decomposition.subdomains()[part.subdomain].nodes[0];
+    Err(ContactError::NotHeld {
+        step,
+        body: part.body,
+        node,
+        mode,
+        force,
+        friction,
     })
 }
 
 /// Where and how a body gets away.
 struct Escape {
-    level: usize,
-    way: Part,
+    step: usize,
+    part: Part,
     mode: String,
     force: f64,
     /// By which factor friction would have to be larger; `None` where no friction could hold the body.
     friction: Option<f64>,
 }
 
-/// The first level at which nothing can hold a body.
+/// The first step at which nothing can hold a body.
 fn escapes(
     model: &Model,
     body: usize,
@@ -75,26 +82,20 @@ fn escapes(
     let mut cone = WrenchCone::new(motions.len(), generators(model, body, motions)?);
     let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
     let largest = largest.fold(0.0, f64::max);
-    let given = model.any_law(|law| matches!(law, Friction::Tresca(_)));
-    let loads: Vec<(Vec<f64>, f64)> = model
-        .loads
-        .iter()
-        .map(|response| {
-            let work = |m: &&FreeMotion| vector::dot(&m.amplitudes, &response.coarse);
-            let subdomains = response.coarse.chunks_exact(6).enumerate();
-            let square: f64 = subdomains
-                .filter(|(s, _)| model.bodies.of_subdomain(*s) == body)
-                .map(|(_, e)| e.iter().map(|v| v * v).sum::<f64>())
-                .sum();
-            (motions.iter().map(work).collect(), square.sqrt() * largest)
-        })
-        .collect();
-    let analysis = &model.scene.analysis;
+    let tresca = model.any_law(|law| matches!(law, Friction::Tresca(_)));
+    // of each load its work on the motions, and its size
+    let work = |load: &signorini_tfeti::LoadResponse| {
+        let works = motions
+            .iter()
+            .map(|m| vector::dot(&m.amplitudes, &load.coarse));
+        let subdomains = load.coarse.chunks_exact(6).enumerate();
+        let own = subdomains.filter(|(s, _)| model.bodies.of_subdomain(*s) == body);
+        let square: f64 = own.map(|(_, e)| e.iter().map(|v| v * v).sum::<f64>()).sum();
+        (works.collect::<Vec<f64>>(), square.sqrt() * largest)
+    };
+    let loads: Vec<_> = model.loads.iter().map(work).collect();
     let mut approved: Option<Vec<f64>> = None;
-    for level in 0..analysis.steps() {
-        let Some(time) = analysis.time(level) else {
-            break;
-        };
+    for (step, &time) in model.scene.analysis.times().iter().enumerate() {
         let mut b = vec![0.0; motions.len()];
         let mut size = 0.0;
         for (load, (work, part)) in model.scene.loads.iter().zip(&loads) {
@@ -103,65 +104,65 @@ fn escapes(
             size += h.abs() * part;
         }
         let length = vector::norm(&b);
-        if length <= WORK * size {
+        if length <= FREE_WORK * size {
             continue;
         }
-        if given {
+        let found = if tresca {
             // the size of the loads counts
-            if let Some(Separation { motion, given }) = cone.exceeded(&b) {
-                let force = vector::dot(&motion, &b);
-                let friction = cone.friction_needed(&b);
-                let escape = escape(level, motions, &motion, (force, given), friction);
-                return Ok(Some(escape));
+            cone.exceeded(&b)
+        } else {
+            b.iter_mut().for_each(|v| *v /= length);
+            // loads that only grow need no second look
+            let same = |old: &Vec<f64>| vector::distance(old, &b) < SAME_LOADS;
+            if approved.as_ref().is_some_and(same) {
+                continue;
             }
-            continue;
-        }
-        b.iter_mut().for_each(|v| *v /= length);
-        // loads that only grow need no second look
-        let same = |old: &Vec<f64>| vector::distance(old, &b) < 1e-12;
-        if approved.as_ref().is_some_and(same) {
-            continue;
-        }
-        if let Some(motion) = cone.separates(&b) {
-            let force = length * vector::dot(&motion, &b);
-            let friction = cone.friction_needed(&b);
-            let escape = escape(level, motions, &motion, (force, 0.0), friction);
-            return Ok(Some(escape));
+            cone.separates(&b).map(|motion| Separation {
+                motion,
+                tresca: 0.0,
+            })
+        };
+        if let Some(found) = found {
+            let unit = if tresca { 1.0 } else { length };
+            let force = unit * vector::dot(&found.motion, &b);
+            return Ok(Some(escape(
+                step,
+                motions,
+                &found,
+                force,
+                cone.friction_needed(&b),
+            )));
         }
         approved = Some(b);
     }
     Ok(None)
 }
 
-/// The way out: `given` is what given friction takes of the force.
+/// The way out along a motion on which the loads work with `force`, N.
 fn escape(
-    level: usize,
+    step: usize,
     motions: &[&FreeMotion],
-    motion: &[f64],
-    (force, given): (f64, f64),
+    found: &Separation,
+    force: f64,
     friction: Option<f64>,
 ) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
-    let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
-    let (way, mode, share) = describe(motions, &motion);
-    let mode = if given > 0.0 {
-        format!(
-            "{mode}, of which given friction holds {:.3e} N,",
-            given * share
-        )
-    } else {
-        mode
-    };
+    let motion: Vec<f64> = found.motion.iter().map(|v| -v).collect();
+    let (part, mut mode, share) = describe(motions, &motion);
+    if found.tresca > 0.0 {
+        let held = found.tresca * share;
+        mode = format!("{mode}, of which Tresca friction holds {held:.3e} N,");
+    }
     Escape {
-        level,
-        way,
+        step,
+        part,
         mode,
         force: force * share,
         friction,
     }
 }
 
-/// What a force at each touch point does on the motions: newtons to work.
+/// What a force at each contact point does on the motions: newtons to work.
 fn generators(
     model: &Model,
     body: usize,
@@ -183,24 +184,22 @@ fn generators(
     let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
     for point in model.points.iter().filter(own) {
         let tangents = point
-            .tangential
-            .rows()
-            .map_or_else(Vec::new, |(row, count, scale)| {
-                (row..row + count).map(|k| along(k, 1.0 / scale)).collect()
-            });
-        let (coefficient, given) = match model.law(point) {
+            .along()
+            .map(|(_, row, scale)| along(row, 1.0 / scale))
+            .collect();
+        let (coefficient, tresca) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
             Friction::Tresca(bound) => {
-                let stress = bound.stress(point.node, point.position)?;
-                (Some(0.0), stress * point.area)
+                let stress = bound.stress(point.node(), point.position())?;
+                (Some(0.0), stress * point.area())
             }
-            Friction::Coulomb(law) => (law.largest(point.position), 0.0),
+            Friction::Coulomb(law) => (law.largest(point.position()), 0.0),
         };
         out.push(Generators {
             normal: along(point.row, -1.0 / point.scale),
             tangents,
             coefficient,
-            given,
+            tresca,
         });
     }
     Ok(out)

@@ -1,16 +1,21 @@
 //! The cone of the wrenches that contact forces can exert on rigid motions, and the closest point in it.
 //!
 //! Least squares with non-negative coefficients (Lawson and Hanson) over the generators `n + F (t1 cos + t2 sin)` of all
-//! points and angles: in each round the generator that helps most joins those in use, which are never more than there
-//! are motions, up to rounding.
+//! points and angles: each round takes in the generator that helps most; those in use are hardly more than the motions.
 //!
-//! Given friction adds forces that are bounded whatever the pressure: a set of points `z` around the cone. Whether loads lie
-//! in the sum of both is asked by going towards them in steps (Frank and Wolfe, as far as the distance falls): the residual `r` of `b - z` separates `b`
-//! if `b` works more on it than all friction can.
+//! Tresca friction adds forces that are bounded whatever the pressure: a set of points `z` around the cone. Whether loads lie
+//! in the sum of both is asked by going towards them in steps (Frank and Wolfe, as far as the distance falls): the residual
+//! of `b - z` separates `b` if `b` works more on it than all friction can.
 
+use crate::tolerances::{
+    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK,
+    WRENCH_RESIDUAL,
+};
+use crate::vec3::{dot, norm};
 use nalgebra::{DMatrix, DVector};
+use signorini_qp::vector;
 
-/// Force directions of one touch point, as work on the motions.
+/// Force directions of one contact point, as work on the motions.
 #[derive(Debug, Clone)]
 pub(crate) struct Generators {
     /// Of a pressing force of 1 N.
@@ -19,8 +24,30 @@ pub(crate) struct Generators {
     pub(crate) tangents: Vec<Vec<f64>>,
     /// Largest friction over pressure; `None` if friction has no known bound.
     pub(crate) coefficient: Option<f64>,
-    /// Largest friction without pressure, N.
-    pub(crate) given: f64,
+    /// Largest friction without pressure (Tresca), N.
+    pub(crate) tresca: f64,
+}
+
+impl Generators {
+    /// The work of a friction force of 1 N along a motion, at most.
+    fn friction_work(&self, motion: &[f64]) -> f64 {
+        norm(&self.along(motion))
+    }
+
+    /// Adds the friction force of this size that works most on a motion, as work on the motions.
+    fn add_friction(&self, size: f64, motion: &[f64], out: &mut [f64]) {
+        let along = self.along(motion);
+        let length = norm(&along);
+        if length > 0.0 {
+            for (t, a) in self.tangents.iter().zip(&along) {
+                vector::axpy(size * a / length, t, out);
+            }
+        }
+    }
+
+    fn along(&self, motion: &[f64]) -> Vec<f64> {
+        self.tangents.iter().map(|t| dot(t, motion)).collect()
+    }
 }
 
 /// A motion along which loads push more than contact can take.
@@ -28,25 +55,20 @@ pub(crate) struct Generators {
 pub(crate) struct Separation {
     /// The motion, of length one.
     pub(crate) motion: Vec<f64>,
-    /// What given friction takes along it, N.
-    pub(crate) given: f64,
+    /// What Tresca friction takes along it, N.
+    pub(crate) tresca: f64,
 }
 
+/// The cone, and the bounded set of Tresca friction around it.
 #[derive(Debug)]
 pub(crate) struct WrenchCone {
     dim: usize,
     generators: Vec<Generators>,
     /// Norm of the largest generator.
     largest: f64,
-    /// What given friction took of the last loads.
-    held: Vec<f64>,
+    /// What Tresca friction took of the last loads.
+    last_friction: Vec<f64>,
 }
-
-/// A residual below this fraction of the loads is rounding.
-const RESIDUAL: f64 = 1e-8;
-
-/// Loads that would need contact forces that many times their own size count as not held.
-const LEVERAGE: f64 = 1e5;
 
 /// Rounds before the question is left open.
 const ROUNDS: usize = 500;
@@ -54,150 +76,112 @@ const ROUNDS: usize = 500;
 /// Steps towards the loads before the question is left open.
 const STEPS: usize = 200;
 
-/// Part by which loads must exceed given friction to count.
-const MORE: f64 = 1e-6;
-
-/// Friction so many times as large is none that a remedy could name.
-const MUCH: f64 = 1e3;
-
-/// Accuracy of the factor that is named, relative.
-const FACTOR: f64 = 1e-4;
-
 impl WrenchCone {
     pub(crate) fn new(dim: usize, generators: Vec<Generators>) -> Self {
-        let mut largest = 0.0_f64;
-        for g in &generators {
-            for v in std::iter::once(&g.normal).chain(&g.tangents) {
-                largest = largest.max(norm(v));
-            }
-        }
+        let vectors = generators
+            .iter()
+            .flat_map(|g| std::iter::once(&g.normal).chain(&g.tangents));
         Self {
             dim,
+            largest: vectors.map(|v| norm(v)).fold(0.0, f64::max),
             generators,
-            largest,
-            held: Vec::new(),
+            last_friction: Vec::new(),
         }
     }
 
-    /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does not hold; `None` where no
-    /// friction could.
+    /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does not hold;
+    /// `None` where no friction could.
     pub(crate) fn friction_needed(&self, b: &[f64]) -> Option<f64> {
         let holds = |factor: f64| {
             let scaled = self.generators.iter().map(|g| Generators {
                 coefficient: g.coefficient.map(|c| factor * c),
-                given: factor * g.given,
+                tresca: factor * g.tresca,
                 ..g.clone()
             });
-            let mut cone = Self::new(self.dim, scaled.collect());
-            cone.exceeded(b).is_none()
+            Self::new(self.dim, scaled.collect()).exceeded(b).is_none()
         };
-        let (mut low, mut high) = (1.0_f64, MUCH);
+        let (mut low, mut high) = (1.0_f64, MOST_FRICTION);
         if !holds(high) {
             return None;
         }
-        while high > (1.0 + FACTOR) * low {
+        while high > (1.0 + FRICTION_FACTOR) * low {
             let middle = (low * high).sqrt();
-            if holds(middle) {
-                high = middle;
-            } else {
-                low = middle;
-            }
+            *if holds(middle) { &mut high } else { &mut low } = middle;
         }
         Some(low)
     }
 
-    /// Whether the loads `b`, N, are out of reach of cone and given friction.
+    /// Whether the loads `b`, N, are out of reach of cone and Tresca friction.
     pub(crate) fn exceeded(&mut self, b: &[f64]) -> Option<Separation> {
         let size = norm(b);
         // what friction of any size cannot hold: friction much larger than the loads would take many steps to tell
-        let unit: Vec<f64> = b.iter().map(|v| v / size).collect();
-        if let Some(motion) = self.separated(&unit, true) {
-            return Some(Separation { motion, given: 0.0 });
+        if let Some(motion) = self.separated(&scaled(b, size), true) {
+            return Some(Separation {
+                motion,
+                tresca: 0.0,
+            });
         }
         // loads mostly follow one another
-        let mut z = std::mem::take(&mut self.held);
+        let mut z = std::mem::take(&mut self.last_friction);
         z.resize(b.len(), 0.0);
         let mut found = None;
         for _ in 0..STEPS {
             let rest: Vec<f64> = b.iter().zip(&z).map(|(b, z)| b - z).collect();
             let length = norm(&rest);
-            if length <= MORE * size {
+            if length <= TRESCA_EXCESS * size {
                 break;
             }
-            let unit: Vec<f64> = rest.iter().map(|v| v / length).collect();
-            let Some(motion) = self.separates(&unit) else {
+            let Some(motion) = self.separates(&scaled(&rest, length)) else {
                 break;
             };
-            let most = self.most_given(&motion);
-            let given = dot(&most, &motion);
-            if dot(b, &motion) > given + MORE * size {
-                found = Some(Separation { motion, given });
+            let mut most = vec![0.0; motion.len()];
+            for g in self.generators.iter().filter(|g| g.tresca > 0.0) {
+                g.add_friction(g.tresca, &motion, &mut most);
+            }
+            let tresca = dot(&most, &motion);
+            if dot(b, &motion) > tresca + TRESCA_EXCESS * size {
+                found = Some(Separation { motion, tresca });
                 break;
             }
             // the residual is at right angles to the closest point of the cone
             let residual = dot(&motion, &rest);
-            if residual <= MORE * size {
+            if residual <= TRESCA_EXCESS * size {
                 break;
             }
             let way: Vec<f64> = most.iter().zip(&z).map(|(m, z)| m - z).collect();
             let share = (residual * dot(&motion, &way) / dot(&way, &way)).clamp(0.0, 1.0);
-            for (z, w) in z.iter_mut().zip(&way) {
-                *z += share * w;
-            }
+            vector::axpy(share, &way, &mut z);
         }
-        self.held = z;
+        self.last_friction = z;
         found
-    }
-
-    /// The given friction that works most on a motion.
-    fn most_given(&self, motion: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; motion.len()];
-        for g in self.generators.iter().filter(|g| g.given > 0.0) {
-            let along: Vec<f64> = g.tangents.iter().map(|t| dot(t, motion)).collect();
-            let length = norm(&along);
-            if length > 0.0 {
-                for (t, a) in g.tangents.iter().zip(&along) {
-                    for (o, t) in out.iter_mut().zip(t) {
-                        *o += g.given * a / length * t;
-                    }
-                }
-            }
-        }
-        out
     }
 
     /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies in the
     /// cone, or if that remains open.
-    pub(crate) fn separates(&mut self, b: &[f64]) -> Option<Vec<f64>> {
+    pub(crate) fn separates(&self, b: &[f64]) -> Option<Vec<f64>> {
         self.separated(b, false)
     }
 
-    /// The same; with `unbounded`, given friction may be as large as it likes.
-    fn separated(&mut self, b: &[f64], unbounded: bool) -> Option<Vec<f64>> {
+    /// The same; with `unbounded`, Tresca friction may be as large as it likes.
+    fn separated(&self, b: &[f64], unbounded: bool) -> Option<Vec<f64>> {
         let mut used: Vec<Vec<f64>> = Vec::new();
         let mut factors: Vec<f64> = Vec::new();
         for _ in 0..ROUNDS {
             let mut r = b.to_vec();
             for (column, x) in used.iter().zip(&factors) {
-                for (r, c) in r.iter_mut().zip(column) {
-                    *r -= x * c;
-                }
+                vector::axpy(-x, column, &mut r);
             }
             let length = norm(&r);
-            if length <= RESIDUAL {
+            if length <= WRENCH_RESIDUAL {
                 return None;
             }
-            let Some((gain, column)) = self.best(&r, unbounded) else {
-                // no contact force at all: every load separates
-                r.iter_mut().for_each(|v| *v /= length);
-                return Some(r);
-            };
-            // no force needed: the residual separates, unless enormous forces could still close it
-            if LEVERAGE * gain.max(0.0) <= length * length * self.largest {
-                r.iter_mut().for_each(|v| *v /= length);
-                return Some(r);
+            // no contact force at all, or none that helps: the residual separates, unless enormous forces could close it
+            let best = self.best(&r, unbounded);
+            let enough = length * length * self.largest;
+            match best.filter(|(gain, _)| LEVERAGE * gain.max(0.0) > enough) {
+                Some((_, column)) => used.push(column),
+                None => return Some(scaled(&r, length)),
             }
-            used.push(column);
             factors.push(0.0);
             if !improve(self.dim, &mut used, &mut factors, b) {
                 return None;
@@ -208,41 +192,32 @@ impl WrenchCone {
 
     /// The generator with the largest product with `r`; `None` if there is none.
     fn best(&self, r: &[f64], unbounded: bool) -> Option<(f64, Vec<f64>)> {
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        let mut offer = |gain: f64, column: &dyn Fn() -> Vec<f64>| {
+        // parts of pressure and friction of 1 N each
+        let mut best: Option<(f64, &Generators, [f64; 2])> = None;
+        let mut offer = |gain: f64, g, parts| {
             if best.as_ref().is_none_or(|b| gain > b.0) {
-                best = Some((gain, column()));
+                best = Some((gain, g, parts));
             }
         };
         for g in &self.generators {
-            let along: Vec<f64> = g.tangents.iter().map(|t| dot(t, r)).collect();
-            let friction = norm(&along);
-            let direction = |bound: f64| -> Vec<f64> {
-                let mut out = vec![0.0; r.len()];
-                if friction > 0.0 {
-                    for (t, a) in g.tangents.iter().zip(&along) {
-                        for (o, t) in out.iter_mut().zip(t) {
-                            *o += bound * a / friction * t;
-                        }
-                    }
-                }
-                out
-            };
-            let coefficient = g.coefficient.filter(|_| !(unbounded && g.given > 0.0));
-            let bound = coefficient.unwrap_or(0.0);
-            offer(dot(&g.normal, r) + bound * friction, &|| {
-                let mut out = direction(bound);
-                for (o, n) in out.iter_mut().zip(&g.normal) {
-                    *o += n;
-                }
-                out
-            });
+            let coefficient = g.coefficient.filter(|_| !(unbounded && g.tresca > 0.0));
+            let (bound, friction) = (coefficient.unwrap_or(0.0), g.friction_work(r));
+            offer(dot(&g.normal, r) + bound * friction, g, [1.0, bound]);
             if coefficient.is_none() {
-                offer(friction, &|| direction(1.0));
+                offer(friction, g, [0.0, 1.0]);
             }
         }
-        best
+        best.map(|(gain, g, [pressure, friction])| {
+            let mut column = vec![0.0; r.len()];
+            g.add_friction(friction, r, &mut column);
+            vector::axpy(pressure, &g.normal, &mut column);
+            (gain, column)
+        })
     }
+}
+
+fn scaled(v: &[f64], length: f64) -> Vec<f64> {
+    v.iter().map(|v| v / length).collect()
 }
 
 /// Least squares over the columns in use with positive factors; columns that would get negative ones leave.
@@ -254,7 +229,7 @@ fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f6
         }
         let a = DMatrix::from_fn(dim, count, |i, j| used[j][i]);
         let svd = a.svd(true, true);
-        let cut = 1e-13 * svd.singular_values.max();
+        let cut = WRENCH_RANK * svd.singular_values.max();
         let Ok(solution) = svd.solve(&DVector::from_column_slice(b), cut) else {
             return false;
         };
@@ -274,24 +249,16 @@ fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f6
         let keep: Vec<bool> = factors
             .iter()
             .zip(solution.iter())
-            .map(|(f, new)| *new >= 0.0 || *f > 1e-14 * size)
+            .map(|(f, new)| *new >= 0.0 || *f > WRENCH_FACTOR * size)
             .collect();
         if keep.iter().all(|k| *k) {
             return true;
         }
-        let mut k = 0..;
-        used.retain(|_| k.next().is_some_and(|k| keep[k]));
-        let mut k = 0..;
-        factors.retain(|_| k.next().is_some_and(|k| keep[k]));
+        let mut kept = keep.iter();
+        used.retain(|_| kept.next() == Some(&true));
+        let mut kept = keep.iter();
+        factors.retain(|_| kept.next() == Some(&true));
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn norm(v: &[f64]) -> f64 {
-    dot(v, v).sqrt()
 }
 
 #[cfg(test)]
@@ -304,23 +271,23 @@ mod tests {
             normal: vec![1.0, 0.0, x],
             tangents: vec![vec![0.0, 1.0, 0.0]],
             coefficient: Some(coefficient),
-            given: 0.0,
+            tresca: 0.0,
         };
         WrenchCone::new(3, vec![point(-1.0), point(1.0)])
     }
 
     #[test]
-    fn given_friction_holds_up_to_its_bounds() {
+    fn tresca_friction_holds_up_to_its_bounds() {
         let mut cone = two_points(0.0);
         for g in &mut cone.generators {
-            g.given = 5.0;
+            g.tresca = 5.0;
         }
         for along in [0.0, 3.0, 9.999, -9.999] {
             assert_eq!(cone.exceeded(&[7.0, along, 1.0]), None, "{along}");
         }
         for along in [10.001, -30.0] {
             let found = cone.exceeded(&[7.0, along, 1.0]).expect("exceeded");
-            assert!((found.given - 10.0).abs() < 1e-6, "{found:?}");
+            assert!((found.tresca - 10.0).abs() < 1e-6, "{found:?}");
             assert!((found.motion[1] - along.signum()).abs() < 1e-6, "{found:?}");
         }
         // what lifts the body off is not held by it
@@ -329,14 +296,14 @@ mod tests {
 
     /// Friction a million times the loads does not hide what it cannot hold.
     #[test]
-    fn huge_given_friction_holds_no_lift() {
-        for given in [1.0, 1e6, 1e12] {
+    fn huge_tresca_friction_holds_no_lift() {
+        for tresca in [1.0, 1e6, 1e12] {
             let mut cone = two_points(0.0);
             for g in &mut cone.generators {
-                g.given = given;
+                g.tresca = tresca;
             }
             let found = cone.exceeded(&[-1.0, 0.3, 0.1]).expect("lifts off");
-            assert_eq!(found.given, 0.0);
+            assert_eq!(found.tresca, 0.0);
             assert!(found.motion[0] < -0.5 && found.motion[1].abs() < 1e-6);
             assert_eq!(cone.exceeded(&[1.0, 0.3, 0.1]), None);
         }
@@ -350,7 +317,7 @@ mod tests {
         };
         close(two_points(0.3).friction_needed(&[2.0, 1.5, 0.0]), 2.5);
         let mut cone = two_points(0.0);
-        cone.generators.iter_mut().for_each(|g| g.given = 5.0);
+        cone.generators.iter_mut().for_each(|g| g.tresca = 5.0);
         close(cone.friction_needed(&[2.0, 41.0, 0.0]), 4.1);
         // lifted, tipped, or without any friction
         assert_eq!(two_points(0.3).friction_needed(&[-1.0, 0.1, 0.0]), None);
@@ -411,7 +378,7 @@ mod tests {
 
     #[test]
     fn without_contact_points_nothing_is_held() {
-        let mut cone = WrenchCone::new(2, Vec::new());
+        let cone = WrenchCone::new(2, Vec::new());
         assert_eq!(cone.separates(&[0.6, -0.8]), Some(vec![0.6, -0.8]));
     }
 
@@ -428,11 +395,11 @@ mod tests {
                         vec![0.0, 1.0, 0.0, 0.0, 0.0, x],
                     ],
                     coefficient: Some(0.5),
-                    given: 0.0,
+                    tresca: 0.0,
                 }
             })
             .collect();
-        let mut cone = WrenchCone::new(6, points);
+        let cone = WrenchCone::new(6, points);
         for (along, expected) in [(0.49, true), (0.499_99, true), (0.500_1, false)] {
             let b = [0.6 * along, 0.8 * along, 1.0, 0.0, 0.0, 0.0];
             let length = norm(&b);

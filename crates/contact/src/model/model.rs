@@ -1,18 +1,15 @@
 //! The model: everything that is computed once from a scene and read-only afterwards.
 
 use super::bodies::Bodies;
-use super::contact_point::{ConstrainedPoint, Tangential, constrained_points};
-use crate::discrete::{
-    ContactPoint, Found, check_gaps, check_load, check_materials, check_motions, check_penetration,
-    contact_constraints, largest_force, lower_supports,
-};
+use super::contact_point::{ConstrainedPoint, constrained_points};
+use crate::discrete::{ContactPoint, DiscreteScene};
 use crate::error::ContactError;
 use crate::plan::Plan;
 use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
-use signorini_fem_mesh::{Decomposition, History, assemble_load};
 use signorini_qp::{ProductSet, RadiusSlope, Segment};
-use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder};
+use signorini_tfeti::{CopyStiffness, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
+use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
 pub(crate) const DISCS: usize = 1;
@@ -24,30 +21,26 @@ pub(crate) const INTERVALS: usize = 2;
 pub(crate) struct Model {
     pub(crate) scene: Scene,
     pub(crate) plan: Plan,
-    pub(crate) decomposition: Decomposition,
+    pub(crate) discrete: DiscreteScene,
     pub(crate) tfeti: Tfeti,
     pub(crate) bodies: Bodies,
     pub(crate) loads: Vec<LoadResponse>,
-    /// History of each displacement case.
-    pub(crate) motions: Vec<History>,
     pub(crate) points: Vec<ConstrainedPoint>,
-    /// Contact surfaces, fixed nodes included, what contacts say of their nodes, and all points, those left out included.
-    pub(crate) found: Found,
-    /// What of that the certificate judges.
+    /// What the certificate judges of the conditions that contacts state.
     pub(crate) judged: Vec<ContactPoint>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
     /// Stiffness of the support rows, made if supports move.
-    support_stiffness: std::sync::OnceLock<Vec<f64>>,
+    support_stiffness: OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
-    copies: std::sync::OnceLock<signorini_tfeti::CopyStiffness>,
+    copies: OnceLock<CopyStiffness>,
 }
 
 impl Model {
     /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each body the
     /// norm of these forces, N. Empty if no support moves.
-    pub(crate) fn driven(&self, offset: &[f64]) -> Vec<f64> {
-        if self.motions.is_empty() {
+    pub(crate) fn prescribed_force(&self, offset: &[f64]) -> Vec<f64> {
+        if self.discrete.supports.motions.is_empty() {
             return Vec::new();
         }
         let rows = self.tfeti.gluing().ranges().dirichlet.clone();
@@ -65,71 +58,54 @@ impl Model {
     }
 
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales certificates.
-    pub(crate) fn copies(&self) -> &signorini_tfeti::CopyStiffness {
+    pub(crate) fn copies(&self) -> &CopyStiffness {
         self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
     }
 
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
-        scene.validate()?;
-        settings.validate()?;
-        let decomposition = scene.decompose()?;
-        let (plan, found) = Plan::with_decomposition(&scene, settings, &decomposition)?;
-        check_materials(&scene)?;
-        check_motions(&scene)?;
-        let (supports, motions) = lower_supports(&scene)?;
-        let candidates = &found.points;
-        check_gaps(&scene, &found)?;
-        check_penetration(&scene, candidates, &supports, &motions)?;
-        let nodes =
-            (!scene.contacts.is_empty()).then(|| contact_constraints(&scene, candidates.iter()));
-        let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
-            .with_supports(&supports)
+        let mut discrete = DiscreteScene::new(&scene)?;
+        let plan = Plan::of(&scene, &discrete, settings)?;
+        let mut builder = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
+            .with_supports(&discrete.supports.nodes)
             .with_row_scaling(settings.row_scaling)
             .with_sharing(settings.sharing)
             .with_inverse(settings.inverse);
-        if let Some(nodes) = &nodes {
-            builder = builder.with_contact(nodes);
+        if !scene.contacts.is_empty() {
+            builder = builder.with_contact(&discrete.constraints);
         }
         let tfeti = builder.build()?;
-        let mut loads = Vec::with_capacity(scene.loads.len());
-        for (index, load) in scene.loads.iter().enumerate() {
-            let local = assemble_load(&scene.mesh, &decomposition, &load.density)
-                .map_err(|source| ContactError::Load { index, source })?;
-            check_load(&scene, index, largest_force(&local))?;
-            loads.push(tfeti.load_response(&local)?);
-        }
-        let points = constrained_points(&scene, candidates, tfeti.gluing());
+        let loads = std::mem::take(&mut discrete.loads).into_iter();
+        let loads = loads
+            .map(|local| tfeti.load_response(&local))
+            .collect::<Result<_, _>>()?;
+        let points = constrained_points(&discrete.points, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
+        let zeros = |count: usize| vec![0.0; count];
         let set = ProductSet::new(vec![
-            Segment::upper(vec![0.0; ranges.normal.len()]),
-            Segment::discs(vec![0.0; ranges.discs.len() / 2]),
-            Segment::bounds(
-                vec![0.0; ranges.intervals.len()],
-                vec![0.0; ranges.intervals.len()],
-            ),
+            Segment::upper(zeros(ranges.normal.len())),
+            Segment::discs(zeros(ranges.discs.len() / 2)),
+            Segment::bounds(zeros(ranges.intervals.len()), zeros(ranges.intervals.len())),
             Segment::Free(ranges.interface.len() + ranges.dirichlet.len()),
         ])
         .map_err(signorini_qp::QpError::from)?;
         Ok(Self {
-            bodies: Bodies::new(&tfeti, &decomposition, candidates),
-            judged: found.judged(points.iter().map(|p| p.place)),
+            bodies: Bodies::new(&tfeti, &discrete),
+            judged: discrete.judged(points.iter().map(|p| p.place)),
             scene,
             plan,
-            decomposition,
+            discrete,
             tfeti,
             loads,
-            motions,
             points,
-            found,
             set,
-            support_stiffness: std::sync::OnceLock::new(),
-            copies: std::sync::OnceLock::new(),
+            support_stiffness: OnceLock::new(),
+            copies: OnceLock::new(),
         })
     }
 
     /// Friction law of a point.
     pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
-        self.scene.contacts[point.surface].friction()
+        self.scene.contacts[point.contact.surface].friction()
     }
 
     /// Whether the law of some contact surface is such.
@@ -156,14 +132,13 @@ impl Model {
         let ranges = self.tfeti.gluing().ranges();
         for (k, point) in self.points.iter().enumerate() {
             match point.tangential {
-                Tangential::None => {}
-                Tangential::Plane { row, scale } => {
+                TangentialRows::Disc { row, scale } => {
                     let disc = (row - ranges.discs.start) / 2;
                     if let Ok(radii) = set.radii_mut(DISCS) {
                         radii[disc] = bound(k, point) / scale;
                     }
                 }
-                Tangential::Line { row, scale, .. } => {
+                TangentialRows::Interval { row, scale, .. } => {
                     let interval = row - ranges.intervals.start;
                     if let Ok((lower, upper)) = set.bounds_mut(INTERVALS) {
                         let radius = bound(k, point) / scale;
@@ -171,6 +146,7 @@ impl Model {
                         upper[interval] = radius;
                     }
                 }
+                _ => {}
             }
         }
     }
@@ -179,13 +155,13 @@ impl Model {
     /// bound of `coefficient(point)` times the normal force.
     pub(crate) fn slip_slopes(&self, coefficient: impl Fn(usize) -> f64) -> Vec<RadiusSlope> {
         let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
-            Tangential::Plane { row, scale } => Some(RadiusSlope {
+            TangentialRows::Disc { row, scale } => Some(RadiusSlope {
                 disc: row,
                 component: point.row,
                 // normal multipliers are negative where pressed
                 slope: -coefficient(k) * point.scale / scale,
             }),
-            Tangential::None | Tangential::Line { .. } => None,
+            _ => None,
         };
         self.points.iter().enumerate().filter_map(slope).collect()
     }

@@ -2,11 +2,10 @@
 
 use super::cost::{Estimate, PlanSizes};
 use super::effects::{Effects, FrictionKind};
-use crate::discrete::{ContactPoint, Found, check_scene};
+use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
 use crate::scene::{Analysis, Friction, Gap, Scene};
 use crate::settings::{MethodKind, Settings};
-use signorini_fem_mesh::Decomposition;
 use signorini_tfeti::{Directions, Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -59,12 +58,7 @@ impl Plan {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
-        scene.validate()?;
-        settings.validate()?;
-        let decomposition = scene.decompose()?;
-        let (plan, found) = Self::with_decomposition(scene, settings, &decomposition)?;
-        check_scene(scene, &decomposition, &found)?;
-        Ok(plan)
+        Self::of(scene, &DiscreteScene::new(scene)?, settings)
     }
 
     /// The same plan with times for a machine; [`Rate::measure`] measures this one.
@@ -80,13 +74,15 @@ impl Plan {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.dirichlet_rows
     }
 
-    /// The plan, and what it has found of contact.
-    pub(crate) fn with_decomposition(
+    /// The plan of a discrete scene.
+    pub(crate) fn of(
         scene: &Scene,
+        discrete: &DiscreteScene,
         settings: &Settings,
-        decomposition: &Decomposition,
-    ) -> Result<(Self, Found), ContactError> {
-        let fixed = fixed_directions(scene)?;
+    ) -> Result<Self, ContactError> {
+        settings.validate()?;
+        let fixed = fixed_directions(&discrete.supports);
+        let decomposition = &discrete.decomposition;
         let nodes = scene.mesh.points().len();
         let torn_nodes: usize = decomposition
             .subdomains()
@@ -95,14 +91,13 @@ impl Plan {
             .sum();
         let interface_rows = 3 * (torn_nodes - nodes);
         let dirichlet_rows: usize = fixed.values().copied().sum();
-        let found = Found::new(scene)?;
-        let candidates = &found.points;
+        let candidates = &discrete.points;
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
-        let held = |node: u32| fixed.get(&node).copied().unwrap_or(0).min(3);
-        let free = |p: &ContactPoint| 3 - held(p.node).min(p.partner.map_or(3, held));
+        let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
+        let free = |p: &ContactPoint| 3 - p.sides.nodes().map(held).min().unwrap_or(3);
         let points = candidates.iter().filter(|point| free(point) > 0);
         let points: Vec<&ContactPoint> = points.collect();
-        let both = |p: &&ContactPoint| std::iter::once(p.node).chain(p.partner);
+        let both = |p: &&ContactPoint| -> Vec<u32> { p.sides.nodes().map(|n| n.0).collect() };
         let touching: BTreeSet<u32> = points.iter().flat_map(both).collect();
         let normal_rows = points.len();
         let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
@@ -118,7 +113,7 @@ impl Plan {
         let effects = Effects {
             contact: !scene.contacts.is_empty(),
             gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, candidates)),
-            partners: candidates.iter().any(|p| p.partner.is_some()),
+            partners: candidates.iter().any(|p| p.sides.partner.is_some()),
             friction: kind,
             history: kind != FrictionKind::None
                 && matches!(scene.analysis, Analysis::Quasistatic { .. }),
@@ -157,7 +152,7 @@ impl Plan {
             steps: scene.analysis.steps(),
         };
         let estimate = Estimate::new(method, settings, &forecast, sizes);
-        let plan = Self {
+        Ok(Self {
             effects,
             elements: scene.mesh.tets().len(),
             nodes,
@@ -177,8 +172,7 @@ impl Plan {
             method,
             vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
             estimate,
-        };
-        Ok((plan, found))
+        })
     }
 }
 
@@ -194,10 +188,10 @@ fn has_gap(scene: &Scene, surface: usize, candidates: &[ContactPoint]) -> bool {
 }
 
 /// Number of directions fixed at each node.
-fn fixed_directions(scene: &Scene) -> Result<BTreeMap<u32, usize>, ContactError> {
+fn fixed_directions(supports: &Supports) -> BTreeMap<u32, usize> {
     let mut axes: BTreeMap<u32, ([bool; 3], usize)> = BTreeMap::new();
-    for (index, support) in scene.supports.iter().enumerate() {
-        for node in scene.support_nodes(index)? {
+    for support in &supports.nodes {
+        for &node in &support.nodes {
             let entry = axes.entry(node).or_insert(([false; 3], 0));
             match &support.directions {
                 Directions::All => entry.0 = [true; 3],
@@ -208,8 +202,6 @@ fn fixed_directions(scene: &Scene) -> Result<BTreeMap<u32, usize>, ContactError>
         }
     }
     let count = |(on, more): ([bool; 3], usize)| (on.iter().filter(|&&b| b).count() + more).min(3);
-    Ok(axes
-        .into_iter()
-        .map(|(node, entry)| (node, count(entry)))
-        .collect())
+    let nodes = axes.into_iter();
+    nodes.map(|(node, entry)| (node, count(entry))).collect()
 }

@@ -20,11 +20,12 @@
 //! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
 
-use crate::model::{Model, Tangential};
+use crate::model::Model;
 use crate::state::Peak;
 use crate::step::StepProblem;
 use crate::tolerances::{REST, ROUNDED};
 use signorini_qp::vector;
+use signorini_tfeti::TangentialRows;
 
 /// A violation and the quantity it is relative to, in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -186,7 +187,7 @@ pub(crate) fn sizes(
     }
     for point in &model.points {
         let mut sum = (point.scale * lambda[point.row]).powi(2);
-        if let Some((row, count, scale)) = point.tangential.rows() {
+        if let Some((row, count, scale)) = point.tangential_rows() {
             let rows = lambda[row..row + count].iter();
             sum += rows.map(|v| (scale * v).powi(2)).sum::<f64>();
         }
@@ -261,7 +262,7 @@ pub(crate) fn certify(
         let product = (force * open.max(0.0)).abs();
         c.complementarity
             .worsen(product, contact_force * displacement);
-        let Some((row, count, scale)) = point.tangential.rows() else {
+        let Some((row, count, scale)) = point.tangential_rows() else {
             continue;
         };
         let Some(bound) = slip_bound(model, level, k, lambda) else {
@@ -296,7 +297,7 @@ fn judge(model: &Model, level: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &m
     let weights = tfeti.copy_stiffness();
     let along = |node: u32, normal: &[f64; 3]| {
         let (mut sum, mut weight) = (0.0, 0.0);
-        for copy in model.decomposition.copies(node as usize) {
+        for copy in model.discrete.decomposition.copies(node as usize) {
             let first = tfeti.torn_range(copy.subdomain as usize).start;
             let at = first + 3 * copy.local as usize;
             let own = weights.weight(at / 3);
@@ -310,10 +311,16 @@ fn judge(model: &Model, level: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &m
         let way = level.obstacles[0].get(condition.surface);
         let open = condition.gap_after(scene, way.unwrap_or(&[0.0; 3]));
         // no gap at all is no gap that holds
-        let open = open.unwrap_or(f64::NAN) + model.found.rounding;
-        let partner = condition.partner.map_or(0.0, |node| along(node, normal));
-        let depth = along(condition.node, normal) - partner - open;
-        let copies = model.decomposition.copies(condition.node as usize);
+        let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
+        let sides = condition.sides.nodes();
+        let way: f64 = sides
+            .map(|(node, weight)| weight * along(node, normal))
+            .sum();
+        let depth = way - open;
+        let copies = model
+            .discrete
+            .decomposition
+            .copies(condition.node() as usize);
         let body = copies
             .first()
             .map_or(0, |c| model.bodies.of_subdomain(c.subdomain as usize));
@@ -329,7 +336,7 @@ pub(crate) fn slip_bound(
     lambda: &[f64],
 ) -> Option<f64> {
     let point = &model.points[k];
-    if point.tangential == Tangential::None {
+    if point.tangential == TangentialRows::None {
         return None;
     }
     Some(level.bound(k, point, lambda))
@@ -416,7 +423,7 @@ mod tests {
         let (model, level) = first_level(block(GAP, Friction::coulomb(0.3)));
         let point = model.points[4].clone();
         let (row, along, scale) = match point.tangential {
-            Tangential::Plane { row, scale } => (point.row, row, scale),
+            TangentialRows::Disc { row, scale } => (point.row, row, scale),
             other => panic!("{other:?}"),
         };
         let support = model.tfeti.gluing().ranges().dirichlet.start;

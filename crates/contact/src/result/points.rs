@@ -1,8 +1,9 @@
 //! What each touch point does at the end of a level, and sums over them.
 
 use super::certificate::slip_bound;
-use crate::model::{ConstrainedPoint, Model, Tangential};
+use crate::model::{ConstrainedPoint, Model};
 use crate::step::{StepProblem, entry_or_zero};
+use signorini_tfeti::TangentialRows;
 
 /// What a touch point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -83,13 +84,13 @@ fn point_state(
     let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
-        Tangential::None => [0.0; 3],
-        Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
-        Tangential::Plane { .. } => point.frame.vector(0.0, values),
+        TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),
+        TangentialRows::Interval { direction, .. } => direction.map(|d| d * values[0]),
+        _ => [0.0; 3],
     };
     let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
     let mut on_bound = false;
-    if let Some((row, count, scale)) = point.tangential.rows() {
+    if let Some((row, count, scale)) = point.tangential_rows() {
         for j in 0..count {
             let k = row + j;
             friction[j] = scale * lambda[k];
@@ -108,11 +109,11 @@ fn point_state(
     };
     let slip = difference[0].hypot(difference[1]);
     PointState {
-        node: point.node,
-        partner: point.partner,
-        surface: point.surface,
+        node: point.node(),
+        partner: point.partner(),
+        surface: point.surface(),
         state,
-        normal: point.frame.normal,
+        normal: point.contact.frame.normal,
         normal_force,
         friction_force: space(friction),
         slip_bound: bound,
@@ -120,7 +121,7 @@ fn point_state(
         tangential_displacement: space(displacement),
         difference: space(difference),
         slip_rate: level.step.map_or(0.0, |dt| slip / dt),
-        area: point.area,
+        area: point.area(),
     }
 }
 

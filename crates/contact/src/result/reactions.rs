@@ -4,12 +4,11 @@
 //! the force on the node. A direction that several supports fix has one row, and belongs to the first of them.
 
 use super::recovered::Recovered;
-use crate::discrete::lower_supports;
-use crate::error::ContactError;
+use crate::discrete::Supports;
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
 use crate::vec3::dot;
-use signorini_tfeti::{NodeSupport, PrescribedDirection, prescribed_directions};
+use signorini_tfeti::{NodeSupport, PrescribedDirection};
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
@@ -121,15 +120,15 @@ pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<
             force[dof % 3] += lambda * coefficient;
         }
     }
-    for (state, touch) in points.iter().zip(&model.points) {
+    for (state, point) in points.iter().zip(&model.points) {
         let whole = state.force();
         let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
-        for (node, sign) in [(Some(state.node), 1.0), (state.partner, -1.0)] {
-            let Some((node, force)) = node.and_then(|n| Some((n, forces.get_mut(&n)?))) else {
+        for (node, weight) in point.contact.sides.nodes() {
+            let Some(force) = forces.get_mut(&node) else {
                 continue;
             };
-            let mut rest = whole.map(|f| sign * f);
-            take_rows(model, touch, &whole, node, &mut rest);
+            let mut rest = whole.map(|f| weight * f);
+            take_rows(model, point, &whole, node, &mut rest);
             if rest.iter().any(|f| f.abs() > ROUNDING * size) {
                 (0..3).for_each(|c| force[c] -= rest[c]);
             }
@@ -141,13 +140,13 @@ pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
 fn take_rows(
     model: &Model,
-    touch: &ConstrainedPoint,
+    point: &ConstrainedPoint,
     whole: &[f64; 3],
     node: u32,
     rest: &mut [f64; 3],
 ) {
-    let subdomains = model.decomposition.subdomains();
-    for (direction, row, scale) in touch.directions() {
+    let subdomains = model.discrete.decomposition.subdomains();
+    for (direction, row, scale) in point.directions() {
         let lambda = dot(whole, &direction) / scale;
         for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
             if subdomains[subdomain].nodes[dof / 3] == node {
@@ -162,55 +161,52 @@ pub(crate) fn reactions_about(
     model: &Model,
     problem: &StepProblem,
     recovered: &Recovered,
-    point: [f64; 3],
-) -> Result<Reactions, ContactError> {
+    about: [f64; 3],
+) -> Reactions {
     let places = model.scene.mesh.points();
     let arm = |node: u32| {
         let place = places[node as usize];
-        [0, 1, 2].map(|c| place[c] - point[c])
+        [0, 1, 2].map(|c| place[c] - about[c])
     };
     let mut contact = Resultant::default();
     let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
-    for state in &recovered.points {
-        let force = state.force();
-        contact.add(arm(state.node), force);
-        contacts[state.surface].add(arm(state.node), force);
-        if let Some(partner) = state.partner {
-            contact.add(arm(partner), force.map(|f| -f));
+    for (state, point) in recovered.points.iter().zip(&model.points) {
+        for (node, weight) in point.contact.sides.nodes() {
+            contact.add(arm(node), state.force().map(|f| weight * f));
+        }
+        for &(node, weight) in point.contact.sides.own.nodes() {
+            contacts[state.surface].add(arm(node), state.force().map(|f| weight * f));
         }
     }
     let mut loads = Resultant::default();
     for (factor, load) in problem.factors.iter().zip(&model.loads) {
-        let nodes = model.decomposition.subdomains().iter();
+        let nodes = model.discrete.decomposition.subdomains().iter();
         let nodes = nodes.flat_map(|s| &s.nodes);
         for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
             loads.add(arm(node), force.map(|f| factor * f));
         }
     }
-    Ok(Reactions {
-        point,
-        supports: by_support(model, &nodal_reactions(model, recovered), arm)?,
+    let forces = nodal_reactions(model, recovered);
+    Reactions {
+        point: about,
+        supports: by_support(&model.discrete.supports, &forces, arm),
         contact,
         contacts,
         loads,
-    })
+    }
 }
 
 /// Splits nodal forces among the supports: each has the part along the directions that it is the first to fix.
 fn by_support(
-    model: &Model,
+    supports: &Supports,
     forces: &BTreeMap<u32, [f64; 3]>,
     arm: impl Fn(u32) -> [f64; 3],
-) -> Result<Vec<SupportReaction>, ContactError> {
-    let (supports, _) = lower_supports(&model.scene)?;
-    let mut held: BTreeMap<u32, Vec<PrescribedDirection>> = BTreeMap::new();
-    for direction in prescribed_directions(&supports, model.scene.mesh.points().len())? {
-        held.entry(direction.node).or_default().push(direction);
-    }
+) -> Vec<SupportReaction> {
     let reaction = |(index, support): (usize, &NodeSupport)| {
         let mut reaction = SupportReaction::default();
         for node in &support.nodes {
-            let (Some(whole), Some(held)) = (forces.get(node), held.get(node)) else {
+            let (Some(whole), Some(held)) = (forces.get(node), supports.directions.get(node))
+            else {
                 continue;
             };
             let mut own = held.iter().filter(|h| h.support == index).peekable();
@@ -227,5 +223,5 @@ fn by_support(
         }
         reaction
     };
-    Ok(supports.iter().enumerate().map(reaction).collect())
+    supports.nodes.iter().enumerate().map(reaction).collect()
 }

@@ -188,7 +188,7 @@ impl Contact {
         self
     }
 
-    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero before the first level, as
+    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero before the first step, as
     /// that of the body. Along the normal it opens or closes the gap; along the surface it drags the body by friction: slip is
     /// the displacement of the body relative to the obstacle. A rotating obstacle is none of these.
     ///

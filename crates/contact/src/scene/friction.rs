@@ -97,7 +97,7 @@ impl fmt::Debug for SlipBound {
 
 /// The coefficient of Coulomb friction, script F of the paper.
 ///
-/// A coefficient that depends on the slip rate is evaluated with the rate of the previous time level, and with
+/// A coefficient that depends on the slip rate is evaluated with the rate of the step before, and with
 /// rate 0 in the first step, as in the paper (after (2.11)).
 #[derive(Clone)]
 #[non_exhaustive]

@@ -88,8 +88,8 @@ impl Support {
 
     /// The fixed directions follow `history(t) * displacement` (m) instead of staying at zero.
     ///
-    /// A support that fixes the normal displacement of a contact node must keep it outside the obstacle at all time
-    /// levels: no contact force can stop it there, and the scene is refused.
+    /// A support that fixes the normal displacement of a contact node must keep it outside the obstacle at all
+    /// times: no contact force can stop it there, and the scene is refused.
     ///
     /// Supports that share nodes must move them alike: equal displacements with equal histories, which are equal tables
     /// or clones of one function.

@@ -1,8 +1,9 @@
-//! Time levels and the three-step formula (2.9).
+//! Steps in time and the difference formula (2.9).
 
 use crate::error::ContactError;
+use crate::tolerances::{CONSISTENT, UNEQUAL};
 
-/// The difference formula (2.9): `du/dt` at level `i+1` is about
+/// The difference formula (2.9): `du/dt` at the end of step `i+1` is about
 /// `(alpha u[i+1] + beta u[i] + gamma u[i-1]) / dt`.
 ///
 /// With `alpha = 3/2, beta = -2, gamma = 1/2` (the paper's choice) a node that *sticks* obeys
@@ -47,34 +48,34 @@ impl DifferenceFormula {
         if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
             return error("alpha must be positive and all three finite");
         }
-        if (alpha + beta + gamma).abs() > 1e-12 * alpha {
+        if (alpha + beta + gamma).abs() > CONSISTENT * alpha {
             return error("the sum must be 0");
         }
-        if (-beta - 2.0 * gamma - 1.0).abs() > 1e-12 {
+        if (-beta - 2.0 * gamma - 1.0).abs() > CONSISTENT {
             return error("-beta - 2 gamma must be 1");
         }
         Ok(Self { alpha, beta, gamma })
     }
 
-    /// Weight of the new level.
+    /// Weight of the new displacement.
     #[must_use]
     pub fn alpha(&self) -> f64 {
         self.alpha
     }
 
-    /// Weight of the last level.
+    /// Weight of the last one.
     #[must_use]
     pub fn beta(&self) -> f64 {
         self.beta
     }
 
-    /// Weight of the level before the last.
+    /// Weight of the one before.
     #[must_use]
     pub fn gamma(&self) -> f64 {
         self.gamma
     }
 
-    /// Whether only one old level is needed.
+    /// Whether only one old displacement is needed.
     #[must_use]
     pub fn is_one_step(&self) -> bool {
         self.gamma == 0.0
@@ -106,7 +107,7 @@ pub enum Analysis {
     },
     /// A sequence of states; friction acts against the difference (2.9). The body is at rest before time 0.
     Quasistatic {
-        /// The levels in s, strictly increasing, the first above 0.
+        /// The times in s, strictly increasing, the first above 0.
         times: Vec<f64>,
         /// The difference formula.
         formula: DifferenceFormula,
@@ -146,39 +147,34 @@ impl Analysis {
         self
     }
 
-    /// Number of time levels to solve.
+    /// The times of all steps, s.
+    pub(crate) fn times(&self) -> &[f64] {
+        match self {
+            Self::Static { time } => std::slice::from_ref(time),
+            Self::Quasistatic { times, .. } => times,
+        }
+    }
+
+    /// Number of steps.
     #[must_use]
     pub fn steps(&self) -> usize {
-        match self {
-            Self::Static { .. } => 1,
-            Self::Quasistatic { times, .. } => times.len(),
-        }
+        self.times().len()
     }
 
-    /// Time of a level, counted from 0.
+    /// Time to which a step leads, counted from 0, s.
     #[must_use]
-    pub fn time(&self, level: usize) -> Option<f64> {
-        match self {
-            Self::Static { time } => (level == 0).then_some(*time),
-            Self::Quasistatic { times, .. } => times.get(level).copied(),
-        }
+    pub fn time(&self, step: usize) -> Option<f64> {
+        self.times().get(step).copied()
     }
 
-    /// Length of the step that ends at a level; `None` for a static scene.
+    /// Length of a step, s; `None` for a static scene.
     #[must_use]
-    pub fn step_size(&self, level: usize) -> Option<f64> {
-        match self {
-            Self::Static { .. } => None,
-            Self::Quasistatic { times, .. } => {
-                let end = times.get(level)?;
-                let start = if level == 0 {
-                    0.0
-                } else {
-                    *times.get(level - 1)?
-                };
-                Some(end - start)
-            }
-        }
+    pub fn step_size(&self, step: usize) -> Option<f64> {
+        let Self::Quasistatic { times, .. } = self else {
+            return None;
+        };
+        let end = times.get(step)?;
+        Some(end - step.checked_sub(1).map_or(0.0, |before| times[before]))
     }
 
     /// The difference formula; `None` for a static scene.
@@ -191,35 +187,40 @@ impl Analysis {
     }
 
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
-        match self {
-            Self::Static { time } if time.is_finite() => Ok(()),
-            Self::Static { time } => Err(ContactError::Time {
-                level: 0,
-                time: *time,
-            }),
-            Self::Quasistatic { times, formula } => {
-                if times.is_empty() {
-                    return Err(ContactError::NoLevels);
-                }
-                let mut before = 0.0;
-                for (level, &time) in times.iter().enumerate() {
-                    if !(time.is_finite() && time > before) {
-                        return Err(ContactError::Time { level, time });
-                    }
-                    before = time;
-                }
-                if !formula.is_one_step() {
-                    let first = times[0];
-                    for level in 1..times.len() {
-                        let step = times[level] - times[level - 1];
-                        if (step - first).abs() > 1e-9 * first.max(step) {
-                            return Err(ContactError::UnequalSteps { level, step, first });
-                        }
-                    }
-                }
-                Ok(())
+        let (times, formula) = match self {
+            Self::Static { time } if time.is_finite() => return Ok(()),
+            Self::Static { time } => {
+                return Err(ContactError::Time {
+                    step: 0,
+                    time: *time,
+                });
+            }
+            Self::Quasistatic { times, formula } => (times, formula),
+        };
+        let Some(&first) = times.first() else {
+            return Err(ContactError::NoSteps);
+        };
+        let mut before = 0.0;
+        for (step, &time) in times.iter().enumerate() {
+            if !(time.is_finite() && time > before) {
+                return Err(ContactError::Time { step, time });
+            }
+            before = time;
+        }
+        if formula.is_one_step() {
+            return Ok(());
+        }
+        for (step, pair) in times.windows(2).enumerate() {
+            let length = pair[1] - pair[0];
+            if (length - first).abs() > UNEQUAL * first.max(length) {
+                return Err(ContactError::UnequalSteps {
+                    step: step + 1,
+                    length,
+                    first,
+                });
             }
         }
+        Ok(())
     }
 }
 
@@ -259,18 +260,18 @@ mod tests {
             times,
             formula: DifferenceFormula::PAPER,
         };
-        assert!(matches!(q(vec![]).validate(), Err(ContactError::NoLevels)));
+        assert!(matches!(q(vec![]).validate(), Err(ContactError::NoSteps)));
         assert!(matches!(
             q(vec![0.0]).validate(),
-            Err(ContactError::Time { level: 0, .. })
+            Err(ContactError::Time { step: 0, .. })
         ));
         assert!(matches!(
             q(vec![1.0, 1.0]).validate(),
-            Err(ContactError::Time { level: 1, .. })
+            Err(ContactError::Time { step: 1, .. })
         ));
         assert!(matches!(
             q(vec![1.0, 3.0]).validate(),
-            Err(ContactError::UnequalSteps { level: 1, .. })
+            Err(ContactError::UnequalSteps { step: 1, .. })
         ));
         assert!(
             q(vec![1.0, 3.0])

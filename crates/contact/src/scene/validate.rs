@@ -1,4 +1,4 @@
-//! What can be said against a scene without any computation.
+//! What can be said against a scene without nodes and rows.
 
 use super::contact::{Contact, ContactNormal};
 use super::friction::Friction;
@@ -8,28 +8,33 @@ use crate::error::ContactError;
 use signorini_fem_mesh::FacetTag;
 
 impl Scene {
-    /// Nodes of the support at a position, checked.
+    /// Nodes of the support at a position, checked; as many displacements as nodes, if it has not one for all.
     pub(crate) fn support_nodes(&self, support: usize) -> Result<Vec<u32>, ContactError> {
-        match &self.supports[support].place {
-            Place::Tag(tag) => {
-                let nodes = self.mesh.nodes_on(*tag);
-                if nodes.is_empty() {
-                    return Err(self.unknown_tag("support", support, *tag));
-                }
-                Ok(nodes)
-            }
-            Place::Nodes(nodes) => {
-                let count = self.mesh.points().len();
-                match nodes.iter().find(|&&n| n as usize >= count) {
-                    Some(&node) => Err(ContactError::UnknownNode {
-                        support,
-                        node,
-                        nodes: count,
-                    }),
-                    None => Ok(nodes.clone()),
-                }
-            }
+        let count = self.mesh.points().len();
+        let own = &self.supports[support];
+        let nodes = match &own.place {
+            Place::Tag(tag) => self.mesh.nodes_on(*tag),
+            Place::Nodes(nodes) => nodes.clone(),
+        };
+        if let (Place::Tag(tag), []) = (&own.place, &nodes[..]) {
+            return Err(self.unknown_tag("support", support, *tag));
         }
+        if let Some(&node) = nodes.iter().find(|&&n| n as usize >= count) {
+            return Err(ContactError::UnknownNode {
+                support,
+                node,
+                nodes: count,
+            });
+        }
+        let values = own.motion.as_ref().map_or(1, |(values, _)| values.len());
+        if values != 1 && values != nodes.len() {
+            return Err(ContactError::ValueCount {
+                support,
+                values,
+                nodes: nodes.len(),
+            });
+        }
+        Ok(nodes)
     }
 
     fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
@@ -45,43 +50,18 @@ impl Scene {
         }
     }
 
-    /// Checks what needs no computation.
+    /// Checks what needs neither nodes nor computation.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         self.analysis.validate()?;
-        for (index, support) in self.supports.iter().enumerate() {
-            let nodes = self.support_nodes(index)?;
-            if let Some((values, _)) = &support.motion
-                && values.len() != 1
-                && values.len() != nodes.len()
-            {
-                let (values, nodes) = (values.len(), nodes.len());
-                return Err(ContactError::ValueCount {
-                    support: index,
-                    values,
-                    nodes,
-                });
-            }
-        }
-        for level in 0..self.analysis.steps() {
-            let time = self.analysis.time(level).unwrap_or(0.0);
-            let histories = (self
-                .loads
-                .iter()
-                .enumerate()
-                .map(|(i, l)| ("load", i, &l.history)))
-            .chain(
-                self.supports
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(i, s)| s.motion.as_ref().map(|m| ("support", i, &m.1))),
-            )
-            .chain(
-                self.contacts
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(i, c)| c.motion.as_ref().map(|m| ("contact", i, &m.1))),
-            );
-            for (what, index, history) in histories {
+        let loads = self.loads.iter().enumerate();
+        let supports = self.supports.iter().enumerate();
+        let contacts = self.contacts.iter().enumerate();
+        let histories: Vec<_> = (loads.map(|(k, l)| ("load", k, &l.history)))
+            .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
+            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
+            .collect();
+        for &time in self.analysis.times() {
+            for &(what, index, history) in &histories {
                 let value = history.value(time);
                 if !value.is_finite() {
                     return Err(ContactError::HistoryValue {

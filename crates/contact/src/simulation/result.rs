@@ -46,13 +46,13 @@ impl StepResult {
     /// The decomposition.
     #[must_use]
     pub fn decomposition(&self) -> &Decomposition {
-        &self.model.decomposition
+        &self.model.discrete.decomposition
     }
 
     /// All contact surfaces, in the order of [`Scene::contacts`].
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
-        &self.model.found.surfaces
+        &self.model.discrete.surfaces
     }
 
     /// How the step was solved.
@@ -159,10 +159,8 @@ impl StepResult {
     }
 
     /// Reactions of the supports, with moments about the origin. See [`reactions_about`](Self::reactions_about).
-    ///
-    /// # Errors
-    /// None for a result of a simulation.
-    pub fn reactions(&self) -> Result<Reactions, ContactError> {
+    #[must_use]
+    pub fn reactions(&self) -> Reactions {
         self.reactions_about([0.0; 3])
     }
 
@@ -180,7 +178,7 @@ impl StepResult {
     ///     .with_support(Support::fixed(brick::Z_MIN))
     ///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
     /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let reactions = simulation.step()?.reactions_about([0.5, 0.5, 0.0])?;
+    /// let reactions = simulation.step()?.reactions_about([0.5, 0.5, 0.0]);
     /// for support in &reactions.supports {
     ///     let resultant = support.resultant;
     ///     assert!((resultant.force[2] - 1e6).abs() < 1.0);
@@ -188,10 +186,8 @@ impl StepResult {
     /// }
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    ///
-    /// # Errors
-    /// None for a result of a simulation.
-    pub fn reactions_about(&self, point: [f64; 3]) -> Result<Reactions, ContactError> {
+    #[must_use]
+    pub fn reactions_about(&self, point: [f64; 3]) -> Reactions {
         reactions_about(&self.model, &self.problem, &self.recovered, point)
     }
 
@@ -210,11 +206,10 @@ impl StepResult {
     #[must_use]
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
-        for point in &self.recovered.points {
-            let force = point.force();
-            for (node, sign) in [(Some(point.node), 1.0), (point.partner, -1.0)] {
-                let Some(node) = node else { continue };
-                (0..3).for_each(|c| field[node as usize][c] += sign * force[c]);
+        for (state, point) in self.recovered.points.iter().zip(&self.model.points) {
+            let force = state.force();
+            for (node, weight) in point.contact.sides.nodes() {
+                (0..3).for_each(|c| field[node as usize][c] += weight * force[c]);
             }
         }
         field

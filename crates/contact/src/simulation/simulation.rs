@@ -6,7 +6,7 @@ use crate::estimate::Caches;
 use crate::model::{ConstrainedPoint, Model, check_equilibrium};
 use crate::plan::Plan;
 use crate::report::Counters;
-use crate::scene::{Scene, check_laws};
+use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::solve::{Iterate, Solver};
 use crate::state::{Controller, Fingerprint, State, operator_hash};
@@ -79,15 +79,10 @@ impl Simulation {
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let model = Model::new(scene, &settings)?;
-        let places = model
-            .points
-            .iter()
-            .map(|p| (model.law(p), p.node, p.position));
-        check_laws(places)?;
         check_equilibrium(&model)?;
         let origin = || {
             let (scene, gluing) = (&model.scene, model.tfeti.gluing());
-            let decomposition = &model.decomposition;
+            let decomposition = &model.discrete.decomposition;
             let origin = Fingerprint::new(
                 &scene.mesh,
                 &scene.analysis,
@@ -133,7 +128,7 @@ impl Simulation {
     /// The decomposition.
     #[must_use]
     pub fn decomposition(&self) -> &Decomposition {
-        &self.model.decomposition
+        &self.model.discrete.decomposition
     }
 
     /// The T-FETI system, with its set-up report: for those who measure the solver.

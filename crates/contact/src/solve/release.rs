@@ -12,10 +12,11 @@
 //! | `d` | direction in the null space along which `a` moves |
 //! | `held` | rows that stay: those at their bound that `d` would take across it |
 
-use crate::model::{ConstrainedPoint, Model, Tangential};
+use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
 use nalgebra::{DMatrix, DVector};
 use signorini_tfeti::Dependency;
+use signorini_tfeti::TangentialRows;
 
 /// A point within rounding of its bound.
 const AT_BOUND: f64 = 1.0 - 1e-9;
@@ -82,9 +83,9 @@ impl Exchange {
         let place = |(k, point): (usize, &ConstrainedPoint)| {
             let normal = of(point.row)?;
             let (tangential, scale) = match point.tangential {
-                Tangential::None => (Vec::new(), 1.0),
-                Tangential::Line { row, scale, .. } => (vec![of(row)?], scale),
-                Tangential::Plane { row, scale } => (vec![of(row)?, of(row + 1)?], scale),
+                TangentialRows::Disc { row, scale } => (vec![of(row)?, of(row + 1)?], scale),
+                TangentialRows::Interval { row, scale, .. } => (vec![of(row)?], scale),
+                _ => (Vec::new(), 1.0),
             };
             Some(Place {
                 point: k,
@@ -118,7 +119,7 @@ impl Exchange {
                 found = self.way(model, level, &r, lambda, false);
             }
             let (d, length) = found;
-            let small = d.norm() <= model.found.rounding || d.norm() * stiffness <= limit;
+            let small = d.norm() <= model.discrete.rounding || d.norm() * stiffness <= limit;
             if small || !length.is_finite() {
                 break;
             }

@@ -17,10 +17,10 @@ fn units(model: &Model, level: &StepProblem, start: &[f64]) -> Vec<f64> {
         loads[bodies.of_subdomain(subdomain)] += signorini_qp::vector::dot(own, own);
     }
     // where supports move a body, warm starts may be rounding errors
-    let driven = |b: usize| level.driven.get(b).copied().unwrap_or(0.0);
+    let prescribed = |b: usize| level.prescribed_force.get(b).copied().unwrap_or(0.0);
     let known = |b: usize| squares[b].max(loads[b]).sqrt().max(level.rest(b));
     (0..bodies.count())
-        .map(|b| power_of_two(known(b).max(driven(b))))
+        .map(|b| power_of_two(known(b).max(prescribed(b))))
         .collect()
 }
 
@@ -50,7 +50,7 @@ pub(super) fn scaled(
         peak.multipliers /= unit;
         peak.force /= unit;
     }
-    divide(&mut scaled.driven, &own);
+    divide(&mut scaled.prescribed_force, &own);
     scaled.units = model.points.iter().map(|p| units.rows[p.row]).collect();
     divide(&mut iterate.lambda, &units.rows);
     divide(&mut iterate.f_lambda, &units.rows);

@@ -1,7 +1,8 @@
 //! Start vectors of a step.
 
-use crate::model::{DISCS, Model, Tangential};
+use crate::model::{DISCS, Model};
 use signorini_qp::{ProductSet, Segment};
+use signorini_tfeti::TangentialRows;
 
 /// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a
 /// little inside, where they would be taken for sticking.
@@ -16,7 +17,7 @@ pub(crate) fn restore_sliding(
     };
     let start = model.tfeti.gluing().ranges().discs.start;
     for (point, _) in model.points.iter().zip(sliding).filter(|(_, s)| **s) {
-        if let Tangential::Plane { row, .. } = point.tangential {
+        if let TangentialRows::Disc { row, .. } = point.tangential {
             let radius = radii[(row - start) / 2];
             let length = lambda[row].hypot(lambda[row + 1]);
             if length > 0.0 {

@@ -112,12 +112,13 @@ fn number(x: f64) -> u64 {
 }
 
 fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
-    let [a, b] = point.frame.tangents;
-    let numbers = [point.frame.normal, a, b].into_iter().flatten();
-    let nodes = std::iter::once(point.node).chain(point.partner);
+    let frame = point.frame();
+    let [a, b] = frame.tangents;
+    let numbers = [frame.normal, a, b].into_iter().flatten();
+    let nodes = point.contact.sides.nodes();
     nodes
-        .map(u64::from)
-        .chain(numbers.chain([point.area]).map(number))
+        .flat_map(|(node, weight)| [u64::from(node), number(weight)])
+        .chain(numbers.chain([point.area()]).map(number))
 }
 
 /// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the

@@ -18,10 +18,10 @@ pub(crate) fn block(gap: f64, friction: Friction) -> Scene {
         .with_boxes([2, 1, 1])
 }
 
-/// Its model and first level.
+/// Its model and first step.
 pub(crate) fn first_level(scene: Scene) -> (Model, StepProblem) {
     let model = Model::new(scene, &Settings::default()).expect("model");
-    let mut level = StepProblem::default();
-    level.prepare(&model, &State::default(), 0).expect("level");
-    (model, level)
+    let mut problem = StepProblem::default();
+    problem.prepare(&model, &State::default(), 0).expect("step");
+    (model, problem)
 }

@@ -1,4 +1,4 @@
-//! One time level: the dual problem at a time, and the slip bounds.
+//! The dual problem of one step: offsets, loads, and slip bounds that follow the normal forces.
 
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
@@ -8,7 +8,7 @@ use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::{ProductSet, vector};
 
-/// Data of one level; vectors are allocated once and rewritten.
+/// Data of one step; vectors are allocated once and rewritten.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct StepProblem {
     /// Position in the analysis, from 0.
@@ -27,25 +27,25 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
-    /// Displacement of the obstacle of each contact surface, now and at the level before; empty where none moves.
+    /// Displacement of the obstacle of each contact surface, now and a step before; empty where none moves.
     pub(crate) obstacles: [Vec<[f64; 3]>; 2],
     /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not in `B u`.
     /// By contact row, in row units; empty where no support moves such a point.
     pub(crate) prescribed: Vec<f64>,
-    /// Largest sizes of each body at earlier levels.
+    /// Largest sizes of each body at earlier steps.
     pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
     /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if none moves.
-    pub(crate) driven: Vec<f64>,
-    /// Given slip bound at each point, N, 0 without.
-    pub(crate) given: Vec<f64>,
+    pub(crate) prescribed_force: Vec<f64>,
+    /// Slip bound of Tresca friction at each point, N, 0 without.
+    pub(crate) tresca: Vec<f64>,
     /// Unit of force of each point, N; empty if it is 1 N everywhere.
     pub(crate) units: Vec<f64>,
 }
 
 impl StepProblem {
-    /// Computes the data of level `index` from the model and the state before it.
+    /// Computes the data of step `index` from the model and the state before it.
     pub(crate) fn prepare(
         &mut self,
         model: &Model,
@@ -53,10 +53,10 @@ impl StepProblem {
         index: usize,
     ) -> Result<(), ContactError> {
         let analysis = &model.scene.analysis;
-        let levels = analysis.steps();
+        let steps = analysis.steps();
         let time = analysis
             .time(index)
-            .ok_or(ContactError::Finished { levels })?;
+            .ok_or(ContactError::Finished { steps })?;
         self.index = index;
         self.time = time;
         self.step = analysis.step_size(index);
@@ -73,56 +73,61 @@ impl StepProblem {
                 .map(|load| load.history.value(time)),
         );
         let rows = model.tfeti.dual_dim();
-        self.load.resize(rows, 0.0);
-        self.load.fill(0.0);
-        self.rhs.resize(model.tfeti.coarse().rows(), 0.0);
-        self.rhs.fill(0.0);
+        for (vector, len) in [
+            (&mut self.load, rows),
+            (&mut self.rhs, model.tfeti.coarse().rows()),
+        ] {
+            vector.clear();
+            vector.resize(len, 0.0);
+        }
         for (factor, load) in self.factors.iter().zip(&model.loads) {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        let cases: Vec<(usize, f64)> = model
-            .motions
-            .iter()
-            .map(|h| h.value(time))
-            .enumerate()
-            .collect();
+        let histories = model.discrete.supports.motions.iter();
+        let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
         self.offset = model.tfeti.prescribed_offsets(&cases);
-        self.driven = model.driven(&self.offset);
+        self.prescribed_force = model.prescribed_force(&self.offset);
         self.prescribed.clear();
         if model.plan.effects.motion && model.plan.effects.partners {
-            for point in model.points.iter().filter(|p| p.partner.is_some()) {
-                for (_, row, _) in point.along() {
-                    let rows = self.prescribed.len().max(row + 1);
-                    self.prescribed.resize(rows, 0.0);
-                    self.prescribed[row] = self.offset[row];
-                }
+            let between = |p: &&ConstrainedPoint| p.contact.sides.partner.is_some();
+            for (_, row, _) in model.points.iter().filter(between).flat_map(|p| p.along()) {
+                let rows = self.prescribed.len().max(row + 1);
+                self.prescribed.resize(rows, 0.0);
+                self.prescribed[row] = self.offset[row];
             }
         }
         self.find_obstacles(model, index);
-        if model.plan.effects.gap {
-            for point in &model.points {
-                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
-            }
-        }
-        if let (true, Some(formula)) = (model.plan.effects.history, analysis.formula()) {
-            let start = model.tangential_start();
-            for point in &model.points {
-                let Some((row, count, scale)) = point.tangential.rows() else {
-                    continue;
-                };
-                for k in row..row + count {
-                    let (last, before) = state.traces(k - start);
-                    self.offset[k] += scale * formula.offset(last, before);
-                }
-            }
-        }
-        self.move_obstacles(model);
+        self.add_offsets(model, state)?;
         self.linear.resize(rows, 0.0);
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
             *d = c - l;
         }
         self.friction(model, state)
+    }
+
+    /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.
+    fn add_offsets(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
+        let effects = &model.plan.effects;
+        let formula = model.scene.analysis.formula().filter(|_| effects.history);
+        let start = model.tangential_start();
+        for point in &model.points {
+            if effects.gap {
+                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
+            }
+            if let (Some(formula), Some((row, count, scale))) = (formula, point.tangential_rows()) {
+                for k in row..row + count {
+                    let (last, before) = state.traces(k - start);
+                    self.offset[k] += scale * formula.offset(last, before);
+                }
+            }
+            if effects.moving_obstacle {
+                for (direction, row, scale) in point.directions() {
+                    self.offset[row] += scale * self.carried(point.contact.surface, &direction);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Where the obstacles that move are.
@@ -140,24 +145,12 @@ impl StepProblem {
         });
     }
 
-    /// Offsets of the obstacles that move.
-    fn move_obstacles(&mut self, model: &Model) {
-        if self.obstacles[0].is_empty() {
-            return;
-        }
-        for point in &model.points {
-            for (direction, row, scale) in point.directions() {
-                self.offset[row] += scale * self.carried(point.surface, &direction);
-            }
-        }
-    }
-
     /// The gap of a point with what an obstacle that moves along the surface has brought, without what it opens, m.
     pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[0])
     }
 
-    /// The same at the level before.
+    /// The same a step before.
     pub(crate) fn gap_before(
         &self,
         scene: &Scene,
@@ -168,9 +161,8 @@ impl StepProblem {
 
     /// Displacement of the obstacle of a surface along a direction, m.
     pub(crate) fn carried(&self, surface: usize, direction: &[f64; 3]) -> f64 {
-        self.obstacles[0]
-            .get(surface)
-            .map_or(0.0, |w| dot(w, direction))
+        let way = self.obstacles[0].get(surface);
+        way.map_or(0.0, |w| dot(w, direction))
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m: `value` is
@@ -191,20 +183,20 @@ impl StepProblem {
 
     fn at_rest(&self, body: usize, size: fn(&Peak) -> f64) -> f64 {
         let earlier = self.peaks.get(body).map_or(0.0, |p| REST * size(p));
-        let driven = self.driven.get(body).map_or(0.0, |f| ROUNDED * f);
-        earlier.max(driven)
+        let rounding = self.prescribed_force.get(body).map_or(0.0, |f| ROUNDED * f);
+        earlier.max(rounding)
     }
 
     /// What vanishing multipliers are measured against, N: all, and those of contact.
     pub(crate) fn least(&self) -> [f64; 2] {
-        let sizes = |of: fn(&Peak) -> f64| match self.peaks.len() {
-            0 | 1 => self.at_rest(0, of),
+        let sizes: [fn(&Peak) -> f64; 2] = [|p| p.multipliers, |p| p.force];
+        sizes.map(|size| match self.peaks.len() {
+            0 | 1 => self.at_rest(0, size),
             n => (0..n)
-                .map(|b| self.at_rest(b, of).powi(2))
+                .map(|b| self.at_rest(b, size).powi(2))
                 .sum::<f64>()
                 .sqrt(),
-        };
-        [sizes(|p| p.multipliers), sizes(|p| p.force)]
+        })
     }
 
     /// The torn load, N.
@@ -213,44 +205,44 @@ impl StepProblem {
         model.tfeti.combine_forces(&loads)
     }
 
+    /// Coefficients and Tresca bounds of all points; anew only where the coefficient follows the slip rate.
     fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
-        if !model.any_law(Friction::is_some)
-            || (!self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate))
-        {
+        let known = !self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate);
+        if known || !model.any_law(Friction::is_some) {
             return Ok(());
         }
-        // none where the law fails at a point: a later level must not take a part for all
+        // none where the law fails at a point: a later step must not take a part for all
         self.coefficients.clear();
-        let value = |(k, point): (usize, &ConstrainedPoint)| match model.law(point) {
-            Friction::None => Ok((0.0, 0.0)),
-            Friction::Tresca(bound) => {
-                Ok((0.0, bound.stress(point.node, point.position)? * point.area))
-            }
-            Friction::Coulomb(law) => {
-                let rate = state.rates().get(k).copied().unwrap_or(0.0);
-                Ok((law.value(point.node, point.position, rate)?, 0.0))
-            }
+        let value = |(k, point): (usize, &ConstrainedPoint)| -> Result<_, ContactError> {
+            let (node, place) = (point.node(), point.position());
+            let rate = state.rates().get(k).copied().unwrap_or(0.0);
+            Ok(match model.law(point) {
+                Friction::None => (0.0, 0.0),
+                Friction::Tresca(bound) => (0.0, bound.stress(node, place)? * point.area()),
+                Friction::Coulomb(law) => (law.value(node, place, rate)?, 0.0),
+            })
         };
-        let values: Result<Vec<_>, ContactError> =
-            model.points.iter().enumerate().map(value).collect();
-        (self.coefficients, self.given) = values?.into_iter().unzip();
+        let values: Result<Vec<_>, _> = model.points.iter().enumerate().map(value).collect();
+        (self.coefficients, self.tresca) = values?.into_iter().unzip();
         Ok(())
     }
 
-    /// Writes the slip bounds into the set: given ones, or the coefficients times the normal forces in `lambda`.
+    /// Writes the slip bounds into the set: those of Tresca friction, or the coefficients times the normal forces in `lambda`.
     pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
         model.set_slip_bounds(set, |k, point| self.bound(k, point, lambda));
     }
 
-    /// Slip bound of a point in units of force of its body (newtons), `-F_i lambda_nu,i` or the given one; 0 without friction.
+    /// Slip bound of a point in units of force of its body (newtons), `-F_i lambda_nu,i` or that of Tresca
+    /// friction; 0 without friction.
     pub(crate) fn bound(&self, k: usize, point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
-        match (self.given.get(k), self.coefficients.get(k)) {
-            (Some(given), Some(coefficient)) => {
-                let unit = self.units.get(k).copied().unwrap_or(1.0);
-                given / unit + coefficient * normal_force(point, lambda)
-            }
-            _ => 0.0,
-        }
+        let (Some(tresca), Some(coefficient)) = (self.tresca.get(k), self.coefficients.get(k))
+        else {
+            return 0.0;
+        };
+        let unit = self.units.get(k).copied().unwrap_or(1.0);
+        // pressing force, not negative
+        let pressure = (-point.scale * lambda[point.row]).max(0.0);
+        tresca / unit + coefficient * pressure
     }
 }
 
@@ -259,23 +251,10 @@ fn gap_brought(
     point: &ConstrainedPoint,
     obstacles: &[[f64; 3]],
 ) -> Result<f64, ContactError> {
-    let Some(way) = obstacles.get(point.surface) else {
-        return Ok(point.gap);
-    };
-    let contact = &scene.contacts[point.surface];
-    let normal = &point.frame.normal;
-    contact.gap_brought(
-        point.surface,
-        point.node,
-        point.position,
-        normal,
-        (point.gap, way),
-    )
-}
-
-/// Pressing force at a point in newtons, not negative.
-pub(crate) fn normal_force(point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
-    (-point.scale * lambda[point.row]).max(0.0)
+    match obstacles.get(point.contact.surface) {
+        Some(way) => point.contact.gap_brought(scene, way),
+        None => Ok(point.contact.gap),
+    }
 }
 
 /// A value by row of a table that may end before; zero there.

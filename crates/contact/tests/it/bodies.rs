@@ -67,7 +67,7 @@ fn last(
     let positions: Vec<f64> = simulation
         .constrained_points()
         .iter()
-        .map(|p| p.position[1])
+        .map(|p| p.position()[1])
         .collect();
     let mut points = Vec::new();
     while !simulation.is_finished() {

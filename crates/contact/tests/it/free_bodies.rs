@@ -24,7 +24,7 @@ fn not_held(scene: Scene) -> (usize, usize, String, f64) {
     let text = error.to_string();
     match error {
         ContactError::NotHeld {
-            level,
+            step,
             body,
             mode,
             force,
@@ -34,7 +34,7 @@ fn not_held(scene: Scene) -> (usize, usize, String, f64) {
                 text.contains(&format!("{force:.3e} N;")) && text.contains(&mode),
                 "{text}"
             );
-            (level, body, mode, force)
+            (step, body, mode, force)
         }
         other => panic!("{other}"),
     }
@@ -192,7 +192,7 @@ fn loads_beyond_given_slip_bounds_are_refused() {
     for along in [60.1, 90.0] {
         match Simulation::new(scene(along), Settings::default()) {
             Err(ContactError::NotHeld { mode, force, .. }) => {
-                assert!(mode.contains("given friction holds 6.000e1 N"), "{mode}");
+                assert!(mode.contains("Tresca friction holds 6.000e1 N"), "{mode}");
                 assert!((force / along - 1.0).abs() < 1e-3, "{force}");
             }
             Err(error) => panic!("{error}"),

@@ -136,7 +136,7 @@ fn reference(case: &Case, simulation: &Simulation) -> Vec<f64> {
             &[0.0],
             SupportedConeT::NonnegativeConeT(1),
         );
-        let bound = bound_at(case, point.position) * point.area;
+        let bound = bound_at(case, point.position()) * point.area();
         match info.tangential {
             TangentialRows::Disc { row, scale } => cones.add(
                 vec![vec![], vec![(row, -1.0)], vec![(row + 1, -1.0)]],

@@ -115,7 +115,7 @@ impl<'a> Judge<'a> {
         let report = Report {
             points: frame.points(),
             u: frame.displacement().into_flattened(),
-            reactions: frame.reactions()?,
+            reactions: frame.reactions(),
             time: frame.time(),
         };
         let mut worst = Worst::default();

@@ -246,7 +246,7 @@ fn contact_and_friction() {
         "a slip bound that is NaN": attempt(given(SlipBound::StressField(std::sync::Arc::new(|x| (x[0] - 1.5).sqrt())))) => Error::Contact(ContactError::SlipBound { .. }), "node";
         "a free body": attempt(
             Scene::new(mesh(), steel()).with_load(Load::body([0.0, 0.0, -1e3]))
-        ) => Error::Contact(ContactError::NotHeld { level: 0, body: 0, .. }), "level 0", "body 0", "translation";
+        ) => Error::Contact(ContactError::NotHeld { step: 0, body: 0, .. }), "step 0", "body 0", "translation";
         "a body pushed along a smooth floor": attempt(
             standing(Contact::rigid(brick::Z_MIN)).with_load(Load::traction(brick::X_MAX, [1e3, 0.0, 0.0]))
         ) => Error::Contact(ContactError::NotHeld { .. }), "body 0", "held neither by supports nor by contact";
@@ -257,7 +257,7 @@ fn contact_and_friction() {
             standing(Contact::rigid(brick::Z_MIN))
                 .with_load(Load::body([1e3, 0.0, 0.0]).with_history(History::table(vec![(0.5, 0.0), (1.0, 1.0)]).expect("table")))
                 .with_analysis(Analysis::quasistatic(1.0, 4))
-        ) => Error::Contact(ContactError::NotHeld { level: 2, .. }), "level 2";
+        ) => Error::Contact(ContactError::NotHeld { step: 2, .. }), "step 2";
     });
     assert_eq!(count, 22);
 }
@@ -278,14 +278,14 @@ fn times_and_settings() {
         loosest: 1e-3,
     };
     let count = check(cases! {
-        "no time level": attempt(quasistatic(&[], euler)) => Error::Contact(ContactError::NoLevels), "no time level";
-        "a first level at zero": attempt(quasistatic(&[0.0, 1.0], euler)) => Error::Contact(ContactError::Time { level: 0, .. }), "level 0";
-        "times that go back": attempt(quasistatic(&[0.5, 0.25], euler)) => Error::Contact(ContactError::Time { level: 1, .. }), "level 1";
-        "a time that is NaN": attempt(quasistatic(&[0.5, f64::NAN], euler)) => Error::Contact(ContactError::Time { level: 1, .. }), "level 1";
-        "a static time that is infinite": attempt(good().with_analysis(Analysis::Static { time: f64::INFINITY })) => Error::Contact(ContactError::Time { .. }), "level 0";
-        "unequal steps with three levels": attempt(quasistatic(&[0.25, 0.5, 1.0], three)) => Error::Contact(ContactError::UnequalSteps { level: 2, .. }), "level 2", "backward Euler";
-        "no steps": attempt(good().with_analysis(Analysis::quasistatic(1.0, 0))) => Error::Contact(ContactError::NoLevels), "no time level";
-        "a negative duration": attempt(good().with_analysis(Analysis::quasistatic(-1.0, 2))) => Error::Contact(ContactError::Time { level: 0, .. }), "level 0";
+        "no step": attempt(quasistatic(&[], euler)) => Error::Contact(ContactError::NoSteps), "no step";
+        "a first level at zero": attempt(quasistatic(&[0.0, 1.0], euler)) => Error::Contact(ContactError::Time { step: 0, .. }), "step 0";
+        "times that go back": attempt(quasistatic(&[0.5, 0.25], euler)) => Error::Contact(ContactError::Time { step: 1, .. }), "step 1";
+        "a time that is NaN": attempt(quasistatic(&[0.5, f64::NAN], euler)) => Error::Contact(ContactError::Time { step: 1, .. }), "step 1";
+        "a static time that is infinite": attempt(good().with_analysis(Analysis::Static { time: f64::INFINITY })) => Error::Contact(ContactError::Time { .. }), "step 0";
+        "unequal steps with three levels": attempt(quasistatic(&[0.25, 0.5, 1.0], three)) => Error::Contact(ContactError::UnequalSteps { step: 2, .. }), "step 2", "backward Euler";
+        "no steps": attempt(good().with_analysis(Analysis::quasistatic(1.0, 0))) => Error::Contact(ContactError::NoSteps), "no step";
+        "a negative duration": attempt(good().with_analysis(Analysis::quasistatic(-1.0, 2))) => Error::Contact(ContactError::Time { step: 0, .. }), "step 0";
         "an inconsistent formula": made(DifferenceFormula::new(1.0, -1.0, 0.5)) => Error::Contact(ContactError::Formula { .. }), "sum";
         "a formula of another rate": made(DifferenceFormula::new(2.0, -2.0, 0.0)) => Error::Contact(ContactError::Formula { .. }), "must be 1";
         "a tolerance of zero": with(Settings::default().with_tolerance(0.0)) => Error::Contact(ContactError::Setting { name: "tolerance", .. }), "tolerance";
@@ -331,7 +331,7 @@ fn checkpoints_and_the_end() {
     let count = check(cases! {
         "a checkpoint of another scene": made(set_up(4).resume(state.clone())) => Error::Contact(ContactError::Checkpoint { .. }), "another scene";
         "a checkpoint of a longer scene": made(short.resume(state)) => Error::Contact(ContactError::Checkpoint { .. }), "more steps";
-        "a step after the last": step_after_the_end => Error::Contact(ContactError::Finished { levels: 3 }), "3 time levels";
+        "a step after the last": step_after_the_end => Error::Contact(ContactError::Finished { steps: 3 }), "3 steps";
     });
     assert_eq!(count, 3);
 }
