@@ -100,7 +100,7 @@ impl StepResult {
         &self.summary
     }
 
-    /// States of the contact points, in the order of the plan's contact nodes.
+    /// States of the contact points, in the order of the rows.
     #[must_use]
     pub fn points(&self) -> &[PointState] {
         &self.recovered.points
@@ -115,27 +115,24 @@ impl StepResult {
     /// Displacement of each mesh node, m: the mean of the copies.
     #[must_use]
     pub fn displacement(&self) -> Vec<[f64; 3]> {
-        as_vectors(&self.model.tfeti.nodal_mean(&self.recovered.torn))
+        let mean = self.model.tfeti.nodal_mean(&self.recovered.torn);
+        mean.as_chunks().0.to_vec()
     }
 
     /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; not a number where the displacement is none.
     #[must_use]
     pub fn stress(&self) -> Vec<[f64; 6]> {
-        let Scene {
-            mesh, materials, ..
-        } = &self.model.scene;
-        fields::stresses(mesh, materials, self.displacement().as_flattened())
-            .unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
+        let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
+        let stresses = fields::stresses(mesh, materials, self.displacement().as_flattened());
+        stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
     }
 
     /// Elastic energy, J; not a number if the displacement is none.
     #[must_use]
     pub fn strain_energy(&self) -> f64 {
-        let Scene {
-            mesh, materials, ..
-        } = &self.model.scene;
-        fields::strain_energy(mesh, materials, self.displacement().as_flattened())
-            .unwrap_or(f64::NAN)
+        let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
+        let energy = fields::strain_energy(mesh, materials, self.displacement().as_flattened());
+        energy.unwrap_or(f64::NAN)
     }
 
     /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
@@ -228,11 +225,6 @@ impl StepResult {
         }
         sum
     }
-}
-
-/// Three numbers a node.
-fn as_vectors(field: &[f64]) -> Vec<[f64; 3]> {
-    field.as_chunks().0.to_vec()
 }
 
 /// The error of the mesh, by recovered strains.

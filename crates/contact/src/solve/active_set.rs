@@ -180,7 +180,7 @@ impl ActiveSetSolver {
             if !solved
                 || !self
                     .exchanges
-                    .settle(model, problem, residual, limit, &mut iterate.lambda)
+                    .settle(task, residual, limit, &mut iterate.lambda)
             {
                 break status;
             }

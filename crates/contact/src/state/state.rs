@@ -85,14 +85,7 @@ impl State {
     /// Bytes held.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        let numbers: usize = pairs
-            .iter()
-            .flat_map(|p| p.iter())
-            .map(Vec::len)
-            .sum::<usize>()
-            + self.rate.len();
-        8 * numbers + self.sliding.len()
+        8 * self.numbers().map(Vec::len).sum::<usize>() + self.sliding.len()
     }
 
     /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume) then compares
@@ -231,63 +224,54 @@ impl State {
         tangential: usize,
         points: usize,
     ) -> Result<(), ContactError> {
-        let fit = |v: &Vec<f64>, n: usize| v.is_empty() || v.len() == n;
-        let pairs = |v: &[Vec<f64>; 2], n: usize| v.iter().all(|v| fit(v, n));
-        let flags = self.sliding.is_empty() || self.sliding.len() == points;
+        let refuse = |reason: String| Err(ContactError::Checkpoint { reason });
+        let fit = |length: usize, n: usize| length == 0 || length == n;
+        let pairs = |v: &[Vec<f64>; 2], n: usize| v.iter().all(|v| fit(v.len(), n));
         // what is most telling first
         let parts = [
-            ("number of contact points", fit(&self.rate, points) && flags),
             (
-                "number of directions with friction (a coefficient that is zero everywhere is no friction)",
+                "contact points",
+                fit(self.rate.len(), points) && fit(self.sliding.len(), points),
+            ),
+            (
+                "directions with friction (a coefficient that is zero everywhere is no friction)",
                 pairs(&self.trace, tangential),
             ),
             (
-                "number of rows (gluing, supports, contact)",
+                "rows (gluing, supports, contact)",
                 pairs(&self.lambda, rows) && pairs(&self.f_lambda, rows),
             ),
             (
-                "number of rigid motions of subdomains",
+                "rigid motions of subdomains",
                 pairs(&self.multiplier, coarse),
             ),
         ];
-        let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        let finite = numbers
-            .iter()
-            .flat_map(|p| p.iter())
-            .chain([&self.rate])
-            .flatten()
-            .all(|v| v.is_finite());
         if let Some((part, _)) = parts.iter().find(|(_, good)| !good) {
-            return Err(ContactError::Checkpoint {
-                reason: format!(
-                    "it belongs to another scene, with another {part}; continue with the scene that it was stored with"
-                ),
-            });
+            return refuse(format!(
+                "it belongs to another scene, with another number of {part}; continue with the scene that it was stored with"
+            ));
         }
-        if !finite {
-            return Err(ContactError::Checkpoint {
-                reason: "it contains NaN or infinity; use an earlier checkpoint or start anew"
-                    .to_owned(),
-            });
-        }
-        if self.unconverged.is_some_and(|k| k >= self.step) {
-            return Err(ContactError::Checkpoint {
-                reason: "it says that a level did not converge that it has not solved; use an earlier checkpoint or \
-                         start anew"
-                    .to_owned(),
-            });
-        }
-        let peaks = self.peaks.iter();
-        let sizes = peaks.flat_map(|p| [p.multipliers, p.force, p.displacement]);
+        let sizes = self
+            .peaks
+            .iter()
+            .flat_map(|p| [p.multipliers, p.force, p.displacement]);
         let mut sizes = sizes.chain(self.controller.numbers());
-        if !sizes.all(|v| v.is_finite() && v >= 0.0) {
-            return Err(ContactError::Checkpoint {
-                reason: "an error, a tolerance or a size of earlier levels in it is negative, NaN or infinite; use an \
-                         earlier checkpoint or start anew"
-                    .to_owned(),
-            });
-        }
-        Ok(())
+        let damage = if !self.numbers().flatten().all(|v| v.is_finite()) {
+            "it contains NaN or infinity"
+        } else if self.unconverged.is_some_and(|k| k >= self.step) {
+            "it says that a step did not converge that it has not solved"
+        } else if !sizes.all(|v| v.is_finite() && v >= 0.0) {
+            "an error, a tolerance or a size of earlier steps in it is negative, NaN or infinite"
+        } else {
+            return Ok(());
+        };
+        refuse(format!("{damage}; use an earlier checkpoint or start anew"))
+    }
+
+    /// All vectors of numbers.
+    fn numbers(&self) -> impl Iterator<Item = &Vec<f64>> {
+        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        pairs.into_iter().flatten().chain([&self.rate])
     }
 }
 
