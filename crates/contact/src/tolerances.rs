@@ -71,3 +71,28 @@ pub(crate) const ABOVE_SOLVER: f64 = 3.0;
 /// Orders of the time steps that are believed: below, the steps have not settled into a sequence of sticking and sliding, and
 /// no more than the upper one is in the formulas.
 pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
+
+// ---- the duality gap (estimate) ----
+
+/// Components of unit directions that differ by less are the same.
+pub(crate) const SAME_DIRECTION: f64 = 1e-12;
+
+/// Freedom of a node (3 without supports) that supports take counts above this.
+pub(crate) const FREEDOM_TAKEN: f64 = 1e-8;
+
+/// Positions that differ by less than this part of displacement and offset are the same.
+pub(crate) const SAME_POSITION: f64 = 1e-12;
+
+/// Relative change of a slip bound that is judged by the stiffness of the node. Larger ones move the whole body, and the gap,
+/// which overrates small changes, is the safer measure.
+pub(crate) const NEAR_BOUND: f64 = 0.01;
+
+/// Planes of one node are parallel below this singular value over the largest.
+pub(crate) const PARALLEL: f64 = 1e-6;
+
+/// Imbalance of subdomains relative to their forces that is rounding.
+pub(crate) const BALANCED: f64 = 1e-12;
+
+/// Elastic energy that may be rounding, relative to that of all nodes moved alone: that of a body that moves without strain is
+/// a difference of numbers this much larger, or more.
+pub(crate) const NO_STRAIN: f64 = 1e-12;

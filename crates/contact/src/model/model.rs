@@ -103,6 +103,15 @@ impl Model {
         })
     }
 
+    /// The direction that a support row fixes, times the scale of the row.
+    pub(crate) fn support_direction(&self, row: usize) -> [f64; 3] {
+        let mut direction = [0.0; 3];
+        for (_, dof, coefficient) in self.tfeti.gluing().row(row) {
+            direction[dof % 3] += coefficient;
+        }
+        direction
+    }
+
     /// Friction law of a point.
     pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
         self.scene.contacts[point.contact.surface].friction()
