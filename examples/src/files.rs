@@ -59,7 +59,7 @@ impl Sink for RunFiles {
         self.series = Some(Series {
             body: PvdSeries::create(&folder, "body")?,
             surface: contact_surface(simulation)?,
-            levels: simulation.plan().levels,
+            levels: simulation.plan().steps,
             contact: PvdSeries::create(&folder, "contact")?,
             folder,
         });
@@ -89,17 +89,20 @@ impl Sink for RunFiles {
 
 impl Series {
     fn write_body(&mut self, simulation: &Simulation, reactions: bool) -> Result<(), ExampleError> {
-        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+        let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
         let mesh = simulation.scene().mesh();
-        let stress = frame.stress()?;
+        let stress = frame.stress();
         let nodal = nodal_average(mesh, &stress)?;
         let mut points = vec![
-            Field::vector("displacement", frame.displacement()),
+            Field::vector("displacement", frame.displacement().into_flattened()),
             Field::symmetric_tensor("stress", &nodal),
             Field::scalar("von_mises", nodal.iter().map(von_mises).collect()),
         ];
         if reactions {
-            points.push(Field::vector("reaction", frame.reaction_field()));
+            points.push(Field::vector(
+                "reaction",
+                frame.reaction_field().into_flattened(),
+            ));
         }
         let cells = [Field::scalar(
             "von_mises",
@@ -112,12 +115,12 @@ impl Series {
     }
 
     fn write_contact(&mut self, simulation: &Simulation) -> Result<(), ExampleError> {
-        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+        let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
         let mesh = simulation.scene().mesh();
         let patch = ContactPatch::new(&self.surface, mesh.points(), frame.points());
         let u = frame.displacement();
-        let at = |node: &u32| &u[3 * *node as usize..3 * *node as usize + 3];
-        let displacement = self.surface.nodes().iter().flat_map(at).copied().collect();
+        let at = |node: &u32| u[*node as usize];
+        let displacement = self.surface.nodes().iter().flat_map(at).collect();
         let friction = patch.friction_force.iter().flatten().copied().collect();
         let state = patch.state.iter().map(|s| state_number(*s)).collect();
         let fields = [

@@ -104,9 +104,6 @@ pub struct Common {
     /// Threads; 0 takes all cores.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
-    /// Threads stay awake between the parallel parts of a level.
-    #[arg(long)]
-    pub busy_waiting: bool,
     /// Cells along the edge of a subdomain, H/h.
     #[arg(long, default_value_t = CELLS, value_parser = positive)]
     pub cells: usize,
@@ -128,7 +125,6 @@ impl Common {
         Settings::default()
             .with_method(self.method.method())
             .with_tolerance(self.tolerance)
-            .with_busy_waiting(self.busy_waiting)
     }
 }
 

@@ -19,7 +19,7 @@ pub struct Progress {
 
 impl Sink for Progress {
     fn started(&mut self, label: &str, simulation: &Simulation) -> Result<(), ExampleError> {
-        let bar = ProgressBar::new(simulation.plan().levels as u64);
+        let bar = ProgressBar::new(simulation.plan().steps as u64);
         let style = ProgressStyle::with_template(TEMPLATE)
             .unwrap_or_else(|_| ProgressStyle::default_bar())
             .progress_chars("=> ");

@@ -28,7 +28,7 @@ impl ReactionTable {
 impl Sink for ReactionTable {
     fn started(&mut self, label: &str, simulation: &Simulation) -> Result<(), ExampleError> {
         self.label = label.to_owned();
-        self.levels = simulation.plan().levels;
+        self.levels = simulation.plan().steps;
         self.text.clear();
         Ok(())
     }
@@ -37,7 +37,7 @@ impl Sink for ReactionTable {
         if step.step < self.levels {
             return Ok(());
         }
-        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+        let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
         let reactions = frame.reactions();
         let text = &mut self.text;
         let _ = writeln!(

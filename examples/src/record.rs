@@ -124,7 +124,7 @@ pub struct StepRecord {
 impl StepRecord {
     /// Reads a frame.
     #[must_use]
-    pub fn new(frame: &StepResult<'_>) -> Self {
+    pub fn new(frame: &StepResult) -> Self {
         let (sum, report) = (frame.summary(), frame.report());
         Self {
             step: frame.step() + 1,

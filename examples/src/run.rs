@@ -19,7 +19,7 @@ pub trait Sink: Send {
         Ok(())
     }
 
-    /// A level is solved: `simulation.frame()` has its fields.
+    /// A level is solved: `simulation.result()` has its fields.
     ///
     /// # Errors
     /// [`ExampleError`] ends the run.
@@ -97,7 +97,7 @@ pub fn run(
         sink.started(&label, &simulation)?;
     }
     let mut solve = Duration::ZERO;
-    let mut steps = Vec::with_capacity(simulation.plan().levels);
+    let mut steps = Vec::with_capacity(simulation.plan().steps);
     while !simulation.is_finished() {
         let start = Instant::now();
         let frame = simulation.step()?;
@@ -128,7 +128,7 @@ fn collect(
     RunRecord {
         n: header.n,
         loading: header.loading.clone(),
-        method: simulation.plan().method.to_owned(),
+        method: simulation.plan().method.to_string(),
         threads: rayon::current_num_threads(),
         n_s: simulation.plan().subdomains,
         n_p: simulation.plan().primal,
@@ -142,7 +142,7 @@ fn collect(
         peak_rss_bytes: peak_memory(),
         it_name: header.it_name.clone(),
         cells: header.cells,
-        tolerance: simulation.settings().tolerance,
+        tolerance: simulation.settings().tolerance(),
         formula: header.formula.clone(),
         faces: counters.faces,
         quadratic_programs: counters.quadratic_programs,

@@ -129,15 +129,14 @@ impl Snapshot {
         header: &Header,
     ) -> Result<Self, ExampleError> {
         let mesh = simulation.scene().mesh();
-        let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+        let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
         let surface = contact_surface(simulation)?;
-        let displacement = frame.displacement();
         Ok(Self {
             label: label.to_owned(),
             loading: header.loading.clone(),
             time: frame.time(),
             points: mesh.points().to_vec(),
-            displacement: displacement.as_chunks::<3>().0.to_vec(),
+            displacement: frame.displacement(),
             triangles: mesh.facets().iter().map(|f| f.nodes).collect(),
             contact: ContactPatch::new(&surface, mesh.points(), frame.points()),
         })

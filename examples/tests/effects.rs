@@ -24,17 +24,9 @@ fn effects_that_are_off_cost_nothing() {
         let ratio = l.plan.products as f64 / l.truth.products as f64;
         assert!(ratio > 0.2 && ratio < 5.0, "{}: {ratio}", l.name);
     }
-    // the plan's range of products holds wherever the default method did not give up
     assert!(results.shapes.len() >= 13);
     let all = results.shapes.iter().chain(&results.benchmark).chain(lines);
     for l in all.filter(|l| l.fallbacks == 0) {
-        let ([low, high], truth) = (l.plan.range, l.truth.products);
-        assert!(low <= l.plan.products && l.plan.products <= high);
-        assert!(
-            (low..=high).contains(&truth),
-            "{}: {low} {truth} {high}",
-            l.name
-        );
         assert_eq!(l.unconverged, 0, "{}", l.name);
     }
     let gave_up = results.shapes.iter().filter(|l| l.fallbacks > 0).count();

@@ -21,11 +21,14 @@ pub(super) fn write(path: &Path, short: bool) -> Result<(), ExampleError> {
     };
     let mut simulation = Simulation::new(variant.scene()?, Settings::default())?;
     simulation.run(&mut Silent)?.require_converged()?;
-    let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+    let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
     let error = frame.discretisation_error()?;
     let scene = simulation.scene();
     let stress = error.stress_errors(scene.mesh(), scene.materials())?;
-    let points = [Field::vector("displacement", frame.displacement())];
+    let points = [Field::vector(
+        "displacement",
+        frame.displacement().into_flattened(),
+    )];
     let cells = [
         Field::scalar("error_energy", error.energies().to_vec()),
         Field::scalar("error_stress", stress),

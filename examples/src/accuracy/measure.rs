@@ -80,14 +80,14 @@ fn once(scene: &Scene, settings: &Settings) -> Result<Solution, ExampleError> {
         certificate = certificate.max(frame.certificate().largest());
         unconverged += usize::from(!frame.report().status.converged());
     }
-    let frame = simulation.frame().ok_or(ExampleError::NoLevel)?;
+    let frame = simulation.result().ok_or(ExampleError::NoLevel)?;
     let forces = frame
         .points()
         .iter()
         .flat_map(|p| std::iter::once(p.normal_force).chain(p.friction_force))
         .collect();
     Ok(Solution {
-        displacement: frame.displacement(),
+        displacement: frame.displacement().into_flattened(),
         forces,
         resultant: frame.summary().resultant,
         work,

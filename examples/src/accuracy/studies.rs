@@ -102,16 +102,16 @@ fn tolerance(short: bool) -> Result<Vec<Curve>, ExampleError> {
     };
     let mut curves = Vec::new();
     for method in [Method::default(), Method::paper(), Method::one_loop()] {
-        let name = method.name();
+        let kind = method.kind();
         let settings = Settings::default().with_method(method);
         // the paper's methods are slow: every other tolerance
-        let chosen: Vec<f64> = match name {
-            "face" => tolerances.to_vec(),
+        let chosen: Vec<f64> = match kind {
+            signorini::contact::MethodKind::ActiveSet => tolerances.to_vec(),
             _ => tolerances.iter().copied().step_by(2).collect(),
         };
         curves.push(along_tolerances(
             Study::Tolerance,
-            name,
+            &kind.to_string(),
             &variant,
             &settings,
             &chosen,

@@ -1,4 +1,4 @@
-//! Scenes that are not the brick of the benchmark: what the plan's range of products is held against.
+//! Scenes that are not the brick of the benchmark: what the plan's products are held against.
 
 use signorini::contact::Accuracy;
 use signorini::prelude::*;

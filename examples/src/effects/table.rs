@@ -60,15 +60,13 @@ pub(super) fn estimates(
         let (p, t) = (&l.plan, &l.truth);
         writeln!(
             out,
-            "| {} | {} | {} | {:.2} / {:.2} | {} ({} to {}) / {} | {:.3} / {:.3} | {:.2} / {:.2} |",
+            "| {} | {} | {} | {:.2} / {:.2} | {} / {} | {:.3} / {:.3} | {:.2} / {:.2} |",
             l.name,
             pair(p.rows(), t.rows()),
             pair(p.factorisations, t.factorisations),
             p.bytes as f64 / 1e6,
             t.bytes as f64 / 1e6,
             p.products,
-            p.range[0],
-            p.range[1],
             t.products,
             p.setup_seconds,
             t.setup_seconds,
@@ -82,14 +80,14 @@ pub(super) fn estimates(
 pub(super) fn shapes(lines: &[Line], out: &mut impl Write) -> Result<(), ExampleError> {
     writeln!(
         out,
-        "\nOther scenes: the plan's products (likely, and their range) and the truth.\n\n\
-         | scene | levels | rows | likely | range | truth | truth / likely | levels that fell back |\n|---|---|---|---|---|---|---|---|"
+        "\nOther scenes: the plan's products and the truth.\n\n\
+         | scene | levels | rows | likely | truth | truth / likely | levels that fell back |\n|---|---|---|---|---|---|---|"
     )?;
     for l in lines {
-        let ([low, high], truth) = (l.plan.range, l.truth.products);
+        let truth = l.truth.products;
         writeln!(
             out,
-            "| {} | {} | {} | {} | {low} to {high} | {truth} | {:.2} | {} |",
+            "| {} | {} | {} | {} | {truth} | {:.2} | {} |",
             l.name,
             l.levels,
             l.truth.rows(),

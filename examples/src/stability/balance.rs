@@ -147,8 +147,8 @@ impl Ledger {
     }
 
     /// Enters a level.
-    pub fn enter(&mut self, frame: &StepResult<'_>) {
-        let u = frame.displacement();
+    pub fn enter(&mut self, frame: &StepResult) {
+        let u = frame.displacement().into_flattened();
         let internal: Vec<f64> = self
             .rows
             .iter()

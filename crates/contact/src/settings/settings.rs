@@ -129,6 +129,12 @@ impl Settings {
         self
     }
 
+    /// The relative accuracy of a step.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         let check = |good, name, value, range| match good {
             true => Ok(()),

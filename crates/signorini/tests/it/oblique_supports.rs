@@ -1,6 +1,5 @@
 //! Supports oblique to a contact surface with friction: their rows and those of the contact depend on one another.
 
-use signorini::contact::StepStatus;
 use signorini::prelude::*;
 
 /// A brick pressed on a floor, its foot guided along a random oblique direction, in coordinates turned about (1, 1, 1).

@@ -172,7 +172,7 @@ fn meshes_and_materials() {
         "a region with two materials": made(Materials::new(vec![(1, lame), (1, lame)])) => Error::Material(MaterialError::Repeated { region: 1 }), "region 1";
         "a region without a material": attempt(
             Scene::new(two_regions(), Materials::new(vec![(0, lame)]).expect("materials")).with_support(Support::fixed(brick::X_MIN))
-        ) => Error::Contact(ContactError::Tfeti(TfetiError::Material { element: 2, .. })), "tetrahedron 2", "region 7";
+        ) => Error::Tfeti(TfetiError::Material { element: 2, .. }), "tetrahedron 2", "region 7";
     });
     assert_eq!(count, 20);
 }
@@ -183,24 +183,24 @@ fn decompositions_supports_and_loads() {
     let ends: Vec<u32> = (0..tets).map(|t| u32::from((5..10).contains(&t))).collect();
     let nan = f64::NAN;
     let count = check(cases! {
-        "no boxes": attempt(good().with_boxes([3, 0, 1])) => Error::Contact(ContactError::Decomposition(DecompositionError::NoBoxes { axis: "y", .. })), "along y";
-        "parts for other elements": attempt(good().with_parts(vec![0; tets - 1])) => Error::Contact(ContactError::Decomposition(DecompositionError::PartCount { .. })), "part numbers";
-        "a part number left out": attempt(good().with_parts(vec![1; tets])) => Error::Contact(ContactError::Decomposition(DecompositionError::EmptyPart { part: 0, .. })), "part 0";
-        "a part in two pieces": attempt(good().with_parts(ends)) => Error::Contact(ContactError::Decomposition(DecompositionError::DisconnectedPart { part: 0, .. })), "part 0", "2 pieces";
+        "no boxes": attempt(good().with_boxes([3, 0, 1])) => Error::Decomposition(DecompositionError::NoBoxes { axis: "y", .. }), "along y";
+        "parts for other elements": attempt(good().with_parts(vec![0; tets - 1])) => Error::Decomposition(DecompositionError::PartCount { .. }), "part numbers";
+        "a part number left out": attempt(good().with_parts(vec![1; tets])) => Error::Decomposition(DecompositionError::EmptyPart { part: 0, .. }), "part 0";
+        "a part in two pieces": attempt(good().with_parts(ends)) => Error::Decomposition(DecompositionError::DisconnectedPart { part: 0, .. }), "part 0", "2 pieces";
         "a support on an unknown tag": attempt(good().with_support(Support::fixed(FacetTag(99)))) => Error::Contact(ContactError::UnknownTag { tag: 99, .. }), "support 1", "99", "the tags 1, 2, 3";
         "a support at an unknown node": attempt(good().with_support(Support::fixed(vec![5, 1000]))) => Error::Contact(ContactError::UnknownNode { node: 1000, .. }), "support 1", "1000", "from 0";
-        "a support without nodes": attempt(good().with_support(Support::fixed(Vec::new()))) => Error::Contact(ContactError::Tfeti(TfetiError::EmptySupport { support: 1, .. })), "support 1";
-        "a support without directions": attempt(good().with_support(Support::components(brick::X_MAX, [false; 3]))) => Error::Contact(ContactError::Tfeti(TfetiError::EmptySupport { .. })), "directions";
-        "a direction of length zero": attempt(good().with_support(Support::partial(brick::X_MAX, Directions::Vectors(vec![[0.0; 3]])))) => Error::Contact(ContactError::Tfeti(TfetiError::BadDirection { support: 1, .. })), "support 1";
+        "a support without nodes": attempt(good().with_support(Support::fixed(Vec::new()))) => Error::Tfeti(TfetiError::EmptySupport { support: 1, .. }), "support 1";
+        "a support without directions": attempt(good().with_support(Support::components(brick::X_MAX, [false; 3]))) => Error::Tfeti(TfetiError::EmptySupport { .. }), "directions";
+        "a direction of length zero": attempt(good().with_support(Support::partial(brick::X_MAX, Directions::Vectors(vec![[0.0; 3]])))) => Error::Tfeti(TfetiError::BadDirection { support: 1, .. }), "support 1";
         "contradictory supports": attempt(
             good().with_support(Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], History::constant(1.0)))
-        ) => Error::Contact(ContactError::Tfeti(TfetiError::ContradictorySupports { first: 0, second: 1, .. })), "supports 0 and 1", "node";
+        ) => Error::Tfeti(TfetiError::ContradictorySupports { first: 0, second: 1, .. }), "supports 0 and 1", "node";
         "displacements for other nodes": attempt(
             good().with_support(Support::fixed(brick::X_MAX).with_motions(vec![[0.0; 3]; 3], History::constant(1.0)))
         ) => Error::Contact(ContactError::ValueCount { values: 3, .. }), "support 1", "3 displacements";
         "a displacement that is NaN": attempt(
             good().with_support(Support::fixed(brick::X_MAX).with_motion([nan, 0.0, 0.0], History::constant(1.0)))
-        ) => Error::Contact(ContactError::Tfeti(TfetiError::BadMotion { support: 1, .. })), "support 1";
+        ) => Error::Tfeti(TfetiError::BadMotion { support: 1, .. }), "support 1";
         "a support history that is infinite": attempt(
             good().with_support(Support::fixed(brick::X_MAX).with_motion([1.0; 3], History::function(|_| f64::INFINITY)))
         ) => Error::Contact(ContactError::HistoryValue { what: "support", index: 1, .. }), "support 1";
@@ -228,7 +228,7 @@ fn contact_and_friction() {
     let count = check(cases! {
         "contact on an unknown tag": attempt(good().replace_contact(Some(Contact::rigid(FacetTag(9))))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact 0", "tag 9";
         "a crease of no angle": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_crease(0.0)))) => Error::Contact(ContactError::Setting { name: "crease", .. }), "crease", "(0, 180]";
-        "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_tag(brick::Z_MIN)))) => Error::Contact(ContactError::Surface(SurfaceError::RepeatedTag { .. })), "twice";
+        "a contact tag twice": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_tag(brick::Z_MIN)))) => Error::Surface(SurfaceError::RepeatedTag { .. }), "twice";
         "a normal of length zero": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
         "a half-space without a direction": attempt(good().replace_contact(Some(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3])))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "0.0";
         "a gap that is NaN": attempt(good().replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(nan)))) => Error::Contact(ContactError::Gap { .. }), "node", "gap";
@@ -294,13 +294,13 @@ fn times_and_settings() {
         "an accuracy factor above one": with(Settings::default().with_method(Method::SuccessiveApproximations {
             smalse: SmalseSettings::default(), accuracy
         })) => Error::Contact(ContactError::Setting { .. }), "accuracy.factor";
-        "a forcing term of one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(1.0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "forcing";
-        "no faces": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_faces(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_faces";
-        "no patience": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_patience(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "patience";
-        "a settled share above one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_settled_fraction(1.5)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "settled";
-        "no products expected, before any work": made(Plan::new(&good(), &no_products)) => Error::Contact(ContactError::Tfeti(TfetiError::Setting { .. })), "expected_products";
-        "a negative penalty": smalse(|s| s.with_penalty(-1.0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "penalty";
-        "no outer steps": smalse(|s| s.with_max_outer(0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_outer";
+        "a forcing term of one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(1.0)))) => Error::Qp(QpError::Setting { .. }), "forcing";
+        "no faces": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_faces(0)))) => Error::Qp(QpError::Setting { .. }), "max_faces";
+        "no patience": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_patience(0)))) => Error::Qp(QpError::Setting { .. }), "patience";
+        "a settled share above one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_settled_fraction(1.5)))) => Error::Qp(QpError::Setting { .. }), "settled";
+        "no products expected, before any work": made(Plan::new(&good(), &no_products)) => Error::Tfeti(TfetiError::Setting { .. }), "expected_products";
+        "a negative penalty": smalse(|s| s.with_penalty(-1.0)) => Error::Qp(QpError::Setting { .. }), "penalty";
+        "no outer steps": smalse(|s| s.with_max_outer(0)) => Error::Qp(QpError::Setting { .. }), "max_outer";
     });
     assert_eq!(count, 21);
 }
@@ -330,7 +330,7 @@ fn checkpoints_and_the_end() {
     let step_after_the_end = made(first.step().map(|_| ()));
     let count = check(cases! {
         "a checkpoint of another scene": made(set_up(4).resume(state.clone())) => Error::Contact(ContactError::Checkpoint { .. }), "another scene";
-        "a checkpoint of a longer scene": made(short.resume(state)) => Error::Contact(ContactError::Checkpoint { .. }), "more levels";
+        "a checkpoint of a longer scene": made(short.resume(state)) => Error::Contact(ContactError::Checkpoint { .. }), "more steps";
         "a step after the last": step_after_the_end => Error::Contact(ContactError::Finished { steps: 3 }), "3 steps";
     });
     assert_eq!(count, 3);
