@@ -7,19 +7,11 @@
 use super::rounding::rounding;
 use crate::error::ContactError;
 use crate::scene::{Contact, Gap};
+use crate::tolerances::{BESIDE, FACING, MOST_TILT, TILT};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use std::collections::HashMap;
-
-/// Distance of a partner from the normal, over the size of the facets (the root of the area of a node), that is allowed;
-/// what is allowed more over the gap; and the most of that, over the size again.
-const BESIDE: f64 = 0.02;
-const TILT: f64 = 0.1;
-const MOST: f64 = 0.2;
-
-/// Cosine between a normal and that of the other side reversed above which they face each other.
-const FACING: f64 = 0.1;
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
@@ -147,7 +139,7 @@ impl Side {
             0.0 => 0.0,
             slope => slope * most,
         };
-        let reach = (BESIDE + MOST) * size + along;
+        let reach = (BESIDE + MOST_TILT) * size + along;
         let list = &self.sorted[axis];
         let from = list.partition_point(|(x, _)| *x < at[axis] - reach);
         let near = list[from..].iter();
@@ -158,7 +150,7 @@ impl Side {
                 continue;
             };
             let distance = partner.gap.hypot(beside);
-            let allowed = BESIDE * size + (TILT * partner.gap.abs()).min(MOST * size);
+            let allowed = BESIDE * size + (TILT * partner.gap.abs()).min(MOST_TILT * size);
             if beside <= allowed && found.is_none_or(|f| distance < f.1) {
                 found = Some((partner, distance));
             }

@@ -13,18 +13,11 @@ use super::partners::{Partner, partners};
 use super::side::{Side, Sides};
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal, Scene};
+use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
 use signorini_qp::vector;
 use std::cmp::Ordering;
 use std::collections::HashMap;
-
-/// Cosine to the outward normal below which a direction counts as along the surface.
-const ALONG: f64 = 1e-9;
-
-/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
-/// angle (tests/edges_apart.rs). Within smaller ones a node would have twice the same row, which [`ContactConstraints`] refuses, and one
-/// condition keeps the other to 1.4e-6 of the way along the surface, which the certificate sees.
-const SAME: f64 = 1.0 - 1e-12;
 
 /// A contact point before any row is made.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +63,7 @@ impl ContactPoint {
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.sides.partner == other.sides.partner
-            && self.frame.normal_part(other.frame.normal) > SAME
+            && self.frame.normal_part(other.frame.normal) > SAME_NORMAL
     }
 }
 
@@ -234,10 +227,6 @@ fn stays(
     }
     Ok(true)
 }
-
-/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a twentieth of
-/// the way.
-const TURN: f64 = 0.1;
 
 /// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
 fn check_turn(

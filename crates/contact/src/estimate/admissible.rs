@@ -6,7 +6,7 @@
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
 use crate::step::StepProblem;
-use crate::tolerances::{FREEDOM_TAKEN, NEAR_BOUND, SAME_DIRECTION, SAME_POSITION};
+use crate::tolerances::{FREEDOM_TAKEN, NEAR_BOUND, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, Vector3};
 
@@ -49,7 +49,7 @@ impl AdmissibleNode {
         // where supports fix nothing, without rounding
         let normal = rows[0].0;
         for (part, sign) in parts.iter_mut().zip([1.0, -1.0]) {
-            if (0..3).all(|c| (sign * part[0][c] - normal[c]).abs() <= SAME_DIRECTION) {
+            if (0..3).all(|c| (sign * part[0][c] - normal[c]).abs() <= ROUNDING) {
                 part[0] = normal.map(|c| sign * c);
             }
         }
@@ -61,7 +61,7 @@ impl AdmissibleNode {
                 }
                 (point.node(), first, None)
             }
-            Some(partner) if freedom(&second) > freedom(&first) + SAME_DIRECTION => {
+            Some(partner) if freedom(&second) > freedom(&first) + ROUNDING => {
                 (partner, second, Some((point.node(), first)))
             }
             Some(partner) => (point.node(), first, Some((partner, second))),
@@ -237,7 +237,7 @@ impl Correction {
 
     /// The node's share of the gap at its final position, which supports may have changed, J.
     pub(crate) fn gap(mut self, state: &PointState, conditions: &Conditions, value: &[f64]) -> f64 {
-        let far = |a: f64, b: f64, size: f64| (a - b).abs() > SAME_POSITION * size;
+        let far = |a: f64, b: f64, size: f64| (a - b).abs() > ROUNDING * size;
         let size = value.iter().map(|v| v.abs()).fold(0.0, f64::max);
         let open = conditions.depth(value);
         if far(open, self.open, size + conditions.obstacle().1.abs()) {

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::report::AlgebraicError;
 use crate::result::Recovered;
 use crate::step::StepProblem;
-use crate::tolerances::{BALANCED, NO_STRAIN, PARALLEL, REST};
+use crate::tolerances::{NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::StrainRecovery;
@@ -159,7 +159,7 @@ impl Solved<'_> {
     }
 
     fn is_balanced(&self) -> bool {
-        self.recovered.certificate.equilibrium.relative() < BALANCED
+        self.recovered.certificate.equilibrium.relative() < ROUNDING
     }
 
     /// The torn displacement with rigid forces balanced by gluing and supports; `None` if they are balanced already.

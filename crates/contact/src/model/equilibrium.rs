@@ -11,7 +11,7 @@ use super::friction_cone::{Generators, Separation, WrenchCone};
 use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
-use crate::tolerances::{FREE_WORK, SAME_LOADS};
+use crate::tolerances::{FREE_WORK, ROUNDING};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
 
@@ -113,7 +113,7 @@ fn escapes(
         } else {
             b.iter_mut().for_each(|v| *v /= length);
             // loads that only grow need no second look
-            let same = |old: &Vec<f64>| vector::distance(old, &b) < SAME_LOADS;
+            let same = |old: &Vec<f64>| vector::distance(old, &b) < ROUNDING;
             if approved.as_ref().is_some_and(same) {
                 continue;
             }

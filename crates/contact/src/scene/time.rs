@@ -1,7 +1,7 @@
 //! Steps in time and the difference formula (2.9).
 
 use crate::error::ContactError;
-use crate::tolerances::{CONSISTENT, UNEQUAL};
+use crate::tolerances::{ROUNDING, UNEQUAL};
 
 /// The difference formula (2.9): `du/dt` at the end of step `i+1` is about
 /// `(alpha u[i+1] + beta u[i] + gamma u[i-1]) / dt`.
@@ -48,10 +48,10 @@ impl DifferenceFormula {
         if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
             return error("alpha must be positive and all three finite");
         }
-        if (alpha + beta + gamma).abs() > CONSISTENT * alpha {
+        if (alpha + beta + gamma).abs() > ROUNDING * alpha {
             return error("the sum must be 0");
         }
-        if (-beta - 2.0 * gamma - 1.0).abs() > CONSISTENT {
+        if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
             return error("-beta - 2 gamma must be 1");
         }
         Ok(Self { alpha, beta, gamma })
