@@ -147,7 +147,7 @@ impl StepRecord {
             status: report.status.to_string(),
             unconverged_history: frame.unconverged_history().map(|level| level + 1),
             fallback: report.fallback,
-            faces: report.counters.faces,
+            faces: report.counters.active_sets,
             quadratic_programs: report.counters.quadratic_programs,
             contraction: report.fixed_point.as_ref().and_then(|f| f.rate),
             load: frame.load_resultant(),

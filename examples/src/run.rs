@@ -144,7 +144,7 @@ fn collect(
         cells: header.cells,
         tolerance: simulation.settings().tolerance(),
         formula: header.formula.clone(),
-        faces: counters.faces,
+        faces: counters.active_sets,
         quadratic_programs: counters.quadratic_programs,
         preconditionings: counters.preconditionings,
         projections: counters.projections,

@@ -382,24 +382,24 @@ pub enum ContactError {
         /// Number of steps.
         steps: usize,
     },
-    /// An observer failed; the level before is solved and kept.
-    #[error("observer, after level {level}: {source}")]
+    /// An observer failed; the step before is solved and kept.
+    #[error("observer, after step {step}: {source}")]
     Observer {
-        /// Time level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
         /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// A step did not converge, where that was required.
     #[error("{0}")]
     NotConverged(crate::status::StepFailure),
-    /// An earlier level did not converge, on whose displacement later ones depend, where that was required.
+    /// An earlier step did not converge, on whose displacement later ones depend, where that was required.
     #[error(
-        "level {level} did not converge, and the slip of later levels depends on it; continue from a state before it, with smaller steps or other settings"
+        "step {step} did not converge, and the slip of later steps depends on it; continue from a state before it, with smaller steps or other settings"
     )]
     UnconvergedHistory {
-        /// The level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
     },
     /// A checkpoint does not belong to this scene or is damaged.
     #[error("checkpoint: {reason}")]

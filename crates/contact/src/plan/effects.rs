@@ -6,7 +6,7 @@
 pub enum FrictionKind {
     /// No tangential rows.
     None,
-    /// One quadratic program a level.
+    /// One quadratic program a step.
     Tresca,
     /// Slip bounds follow the contact forces.
     Coulomb,

@@ -16,8 +16,8 @@ pub struct Counters {
     pub coarse_factorisations: usize,
     /// Quadratic programs (given-friction problems) solved by SMALSE.
     pub quadratic_programs: usize,
-    /// Faces of the face method.
-    pub faces: usize,
+    /// Active sets that were solved on.
+    pub active_sets: usize,
     /// Times the slip bounds were rewritten.
     pub slip_bound_updates: usize,
     /// Times slip rates were computed.
@@ -27,16 +27,16 @@ pub struct Counters {
 }
 
 impl std::ops::AddAssign for Counters {
-    fn add_assign(&mut self, o: Self) {
-        self.products += o.products;
-        self.setup_products += o.setup_products;
-        self.preconditionings += o.preconditionings;
-        self.projections += o.projections;
-        self.coarse_factorisations += o.coarse_factorisations;
-        self.quadratic_programs += o.quadratic_programs;
-        self.faces += o.faces;
-        self.slip_bound_updates += o.slip_bound_updates;
-        self.rate_updates += o.rate_updates;
-        self.inequality_solves += o.inequality_solves;
+    fn add_assign(&mut self, other: Self) {
+        self.products += other.products;
+        self.setup_products += other.setup_products;
+        self.preconditionings += other.preconditionings;
+        self.projections += other.projections;
+        self.coarse_factorisations += other.coarse_factorisations;
+        self.quadratic_programs += other.quadratic_programs;
+        self.active_sets += other.active_sets;
+        self.slip_bound_updates += other.slip_bound_updates;
+        self.rate_updates += other.rate_updates;
+        self.inequality_solves += other.inequality_solves;
     }
 }

@@ -79,7 +79,7 @@ pub(crate) fn require(
 ) -> Result<(), ContactError> {
     match (failure, history) {
         (Some(failure), _) => Err(ContactError::NotConverged(failure)),
-        (None, Some(level)) => Err(ContactError::UnconvergedHistory { level }),
+        (None, Some(step)) => Err(ContactError::UnconvergedHistory { step }),
         (None, None) => Ok(()),
     }
 }

@@ -1,4 +1,4 @@
-//! The certificate of a level: how far the recovered displacement and the multipliers are from all conditions,
+//! The certificate of a step: how far the recovered displacement and the multipliers are from all conditions,
 //! in physical units. It uses no residual of any solver.
 //!
 //! | condition | violation | unit | relative to |
@@ -17,7 +17,7 @@
 //! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
 //! held, so that a body that does not move has a scale too.
 //!
-//! `r` is the slip bound of the level's own normal forces and `dU` the tangential difference `u_T - z`. The
+//! `r` is the slip bound of the step's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
 
 use crate::model::Model;
@@ -56,7 +56,7 @@ impl Violation {
     }
 }
 
-/// Violations of all conditions at the end of a level.
+/// Violations of all conditions at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Certificate {
@@ -149,7 +149,7 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    /// What later levels of the body remember.
+    /// What later steps of the body remember.
     pub(crate) fn peak(&self) -> Peak {
         Peak {
             multipliers: self.multipliers,
@@ -162,7 +162,7 @@ impl Sizes {
 /// Sizes of every body.
 pub(crate) fn sizes(
     model: &Model,
-    level: &StepProblem,
+    problem: &StepProblem,
     lambda: &[f64],
     m: &Measured<'_>,
 ) -> Vec<Sizes> {
@@ -202,7 +202,7 @@ pub(crate) fn sizes(
     let mut all = inner.clone();
     bodies.add_squares(lambda, 0..contact, &mut all);
     for (body, own) in out.iter_mut().enumerate() {
-        let peak = level.peaks.get(body).copied().unwrap_or_default();
+        let peak = problem.peaks.get(body).copied().unwrap_or_default();
         own.multipliers = all[body].sqrt();
         own.residual = own.residual.sqrt();
         own.displacement = own.displacement.max(REST * peak.displacement);
@@ -222,7 +222,7 @@ pub(crate) fn sizes(
 
 pub(crate) fn certify(
     model: &Model,
-    level: &StepProblem,
+    problem: &StepProblem,
     lambda: &[f64],
     m: &Measured<'_>,
     sizes: &[Sizes],
@@ -249,13 +249,13 @@ pub(crate) fn certify(
     }
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
-        let jump = (m.rows[row] - level.offset[row]).abs();
+        let jump = (m.rows[row] - problem.offset[row]).abs();
         c.continuity.worsen(jump, own.displacement);
     }
     for (k, point) in model.points.iter().enumerate() {
         let own = &sizes[model.bodies.of_row(point.row)];
         let (contact_force, displacement) = (own.contact_force, own.displacement);
-        let open = (level.offset[point.row] - m.rows[point.row]) / point.scale;
+        let open = (problem.offset[point.row] - m.rows[point.row]) / point.scale;
         let force = point.scale * lambda[point.row];
         c.gap.worsen(-open, displacement);
         c.sign.worsen(force, contact_force);
@@ -265,13 +265,13 @@ pub(crate) fn certify(
         let Some((row, count, scale)) = point.tangential_rows() else {
             continue;
         };
-        let Some(bound) = slip_bound(model, level, k, lambda) else {
+        let Some(bound) = slip_bound(model, problem, k, lambda) else {
             continue;
         };
         let mut slip = [0.0; 2];
         let mut friction = [0.0; 2];
         for j in 0..count {
-            slip[j] = (m.rows[row + j] - level.offset[row + j]) / scale;
+            slip[j] = (m.rows[row + j] - problem.offset[row + j]) / scale;
             friction[j] = scale * lambda[row + j];
         }
         let (length, size) = (slip[0].hypot(slip[1]), friction[0].hypot(friction[1]));
@@ -286,13 +286,13 @@ pub(crate) fn certify(
             contact_force.max(bound) * displacement,
         );
     }
-    judge(model, level, m.u, sizes, &mut c.gap);
+    judge(model, problem, m.u, sizes, &mut c.gap);
     c
 }
 
 /// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each contact by itself,
 /// and mean displacements of its nodes.
-fn judge(model: &Model, level: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &mut Violation) {
+fn judge(model: &Model, problem: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &mut Violation) {
     let (tfeti, scene) = (&model.tfeti, &model.scene);
     let weights = tfeti.copy_stiffness();
     let along = |node: u32, normal: &[f64; 3]| {
@@ -308,7 +308,7 @@ fn judge(model: &Model, level: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &m
     };
     for condition in &model.judged {
         let normal = &condition.frame.normal;
-        let way = level.obstacles[0].get(condition.surface);
+        let way = problem.obstacles[0].get(condition.surface);
         let open = condition.gap_after(scene, way.unwrap_or(&[0.0; 3]));
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
@@ -328,10 +328,10 @@ fn judge(model: &Model, level: &StepProblem, u: &[f64], sizes: &[Sizes], gap: &m
     }
 }
 
-/// Slip bound of a point in newtons, from the level's own normal forces.
+/// Slip bound of a point in newtons, from the step's own normal forces.
 pub(crate) fn slip_bound(
     model: &Model,
-    level: &StepProblem,
+    problem: &StepProblem,
     k: usize,
     lambda: &[f64],
 ) -> Option<f64> {
@@ -339,7 +339,7 @@ pub(crate) fn slip_bound(
     if point.tangential == TangentialRows::None {
         return None;
     }
-    Some(level.bound(k, point, lambda))
+    Some(problem.bound(k, point, lambda))
 }
 
 #[cfg(test)]
@@ -348,7 +348,7 @@ mod tests {
     use crate::Friction;
     use crate::Settings;
     use crate::State;
-    use crate::step::example::{block, first_level};
+    use crate::step::example::{block, first_step};
     use crate::{Analysis, Contact, Scene, Support};
     use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
 
@@ -356,8 +356,8 @@ mod tests {
     fn judged(scene: Scene, displacement: [f64; 3]) -> Violation {
         let mut model = Model::new(scene, &Settings::default()).expect("model");
         model.points.clear();
-        let mut level = StepProblem::default();
-        level.prepare(&model, &State::default(), 0).expect("level");
+        let mut problem = StepProblem::default();
+        problem.prepare(&model, &State::default(), 0).expect("step");
         let u = displacement.repeat(model.tfeti.torn_dim() / 3);
         let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
         let measured = Measured {
@@ -366,8 +366,8 @@ mod tests {
             force: &zero,
             residual: &zero,
         };
-        let sizes = sizes(&model, &level, &lambda, &measured);
-        certify(&model, &level, &lambda, &measured, &sizes).gap
+        let sizes = sizes(&model, &problem, &lambda, &measured);
+        certify(&model, &problem, &lambda, &measured, &sizes).gap
     }
 
     fn cube() -> Scene {
@@ -420,7 +420,7 @@ mod tests {
     #[test]
     fn each_condition_is_seen() {
         const GAP: f64 = 1e-3;
-        let (model, level) = first_level(block(GAP, Friction::coulomb(0.3)));
+        let (model, problem) = first_step(block(GAP, Friction::coulomb(0.3)));
         let point = model.points[4].clone();
         let (row, along, scale) = match point.tangential {
             TangentialRows::Disc { row, scale } => (point.row, row, scale),
@@ -471,12 +471,12 @@ mod tests {
         for (name, multipliers, moves, off, expected) in cases {
             let mut lambda = vec![0.0; model.tfeti.dual_dim()];
             // open everywhere, and all else where it wants to be
-            let mut rows = level.offset.clone();
+            let mut rows = problem.offset.clone();
             model.points.iter().for_each(|p| rows[p.row] = 0.0);
             multipliers.iter().for_each(|&(k, value)| lambda[k] = value);
             moves
                 .iter()
-                .for_each(|&(k, by)| rows[k] = level.offset[k] + by);
+                .for_each(|&(k, by)| rows[k] = problem.offset[k] + by);
             let mut residual = vec![0.0; torn];
             residual[7] = off;
             let measured = Measured {
@@ -485,8 +485,8 @@ mod tests {
                 force: &vec![0.0; torn],
                 residual: &residual,
             };
-            let sizes = sizes(&model, &level, &lambda, &measured);
-            let certificate = certify(&model, &level, &lambda, &measured, &sizes);
+            let sizes = sizes(&model, &problem, &lambda, &measured);
+            let certificate = certify(&model, &problem, &lambda, &measured, &sizes);
             for (part, violation) in certificate.parts() {
                 let expected = if part == name { expected } else { 0.0 };
                 let near = (violation.value - expected).abs() <= 1e-12 * expected.max(1e-9);

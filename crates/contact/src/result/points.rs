@@ -1,11 +1,11 @@
-//! What each touch point does at the end of a level, and sums over them.
+//! What each contact point does at the end of a step, and sums over them.
 
 use super::certificate::slip_bound;
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::{StepProblem, entry_or_zero};
 use signorini_tfeti::TangentialRows;
 
-/// What a touch point does.
+/// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ContactState {
@@ -17,7 +17,7 @@ pub enum ContactState {
     Slip,
 }
 
-/// State of one touch point at the end of a level.
+/// State of one contact point at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
@@ -60,15 +60,15 @@ impl PointState {
 /// Evaluates the contact points: `rows` is `B u` in row units.
 pub(crate) fn point_states(
     model: &Model,
-    level: &StepProblem,
+    problem: &StepProblem,
     lambda: &[f64],
     rows: &[f64],
 ) -> Vec<PointState> {
     let states = model.points.iter().enumerate();
     states
         .map(|(k, point)| {
-            let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
-            point_state(model, level, point, (lambda, rows), bound)
+            let bound = slip_bound(model, problem, k, lambda).unwrap_or(0.0);
+            point_state(model, problem, point, (lambda, rows), bound)
         })
         .collect()
 }
@@ -76,7 +76,7 @@ pub(crate) fn point_states(
 /// Evaluates one point with its slip bound.
 fn point_state(
     model: &Model,
-    level: &StepProblem,
+    problem: &StepProblem,
     point: &ConstrainedPoint,
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
@@ -94,8 +94,8 @@ fn point_state(
         for j in 0..count {
             let k = row + j;
             friction[j] = scale * lambda[k];
-            displacement[j] = (rows[k] - entry_or_zero(&level.prescribed, k)) / scale;
-            difference[j] = alpha * (rows[k] - level.offset[k]) / scale;
+            displacement[j] = (rows[k] - entry_or_zero(&problem.prescribed, k)) / scale;
+            difference[j] = alpha * (rows[k] - problem.offset[k]) / scale;
         }
         on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
     }
@@ -117,10 +117,10 @@ fn point_state(
         normal_force,
         friction_force: space(friction),
         slip_bound: bound,
-        gap: (level.offset[point.row] - rows[point.row]) / point.scale,
+        gap: (problem.offset[point.row] - rows[point.row]) / point.scale,
         tangential_displacement: space(displacement),
         difference: space(difference),
-        slip_rate: level.step.map_or(0.0, |dt| slip / dt),
+        slip_rate: problem.step.map_or(0.0, |dt| slip / dt),
         area: point.area(),
     }
 }
@@ -129,12 +129,12 @@ fn point_state(
 mod tests {
     use super::*;
     use crate::Friction;
-    use crate::step::example::{block, first_level};
+    use crate::step::example::{block, first_step};
 
     /// Sliding is friction on its bound, against the slip; friction along it is a wrong one, not sliding.
     #[test]
     fn friction_along_the_slip_is_no_sliding() {
-        let (model, level) = first_level(block(0.0, Friction::coulomb(0.5)));
+        let (model, problem) = first_step(block(0.0, Friction::coulomb(0.5)));
         let point = &model.points[4];
         let (_, row, _) = point.along().next().expect("friction");
         for (pressed, friction, slip, expected) in [
@@ -144,10 +144,10 @@ mod tests {
             (0.0, 0.0, -1e-3, ContactState::Open),
         ] {
             let mut lambda = vec![0.0; model.tfeti.dual_dim()];
-            let mut rows = level.offset.clone();
+            let mut rows = problem.offset.clone();
             (lambda[point.row], lambda[row]) = (-pressed, friction);
             rows[row] += slip;
-            let states = point_states(&model, &level, &lambda, &rows);
+            let states = point_states(&model, &problem, &lambda, &rows);
             assert_eq!(states[4].state, expected, "{friction} N, {slip} m");
         }
     }

@@ -61,7 +61,7 @@ pub struct SupportReaction {
     pub nodes: Vec<NodalForce>,
 }
 
-/// Forces on the body at the end of a level, and their moments about a point.
+/// Forces on the body at the end of a step, and their moments about a point.
 ///
 /// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs to that one, and a
 /// later support has what it adds at right angles to it. At a contact node whose normal a support fixes, the support's

@@ -42,7 +42,7 @@ pub struct ContactSummary {
     pub obstacle_work: f64,
 }
 
-/// Sums over the points; `before` are the tangential displacements at the level before.
+/// Sums over the points; `before` are the tangential displacements at the step before.
 pub(crate) fn summarise(
     model: &Model,
     problem: &StepProblem,

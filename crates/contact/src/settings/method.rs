@@ -2,7 +2,7 @@
 
 use signorini_qp::{ActiveSetSettings, SmalseSettings};
 
-/// How the inequality-constrained problem of a time level is solved.
+/// How the inequality-constrained problem of a step is solved.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
@@ -84,7 +84,7 @@ impl Default for Method {
 }
 
 fn paper_smalse() -> SmalseSettings {
-    // a level that starts from nothing takes many short outer steps on large problems
+    // a step that starts from nothing takes many short outer steps on large problems
     SmalseSettings::default().with_max_outer(5000)
 }
 

@@ -100,7 +100,7 @@ impl StepResult {
         &self.summary
     }
 
-    /// States of the touch points, in the order of the plan's contact nodes.
+    /// States of the contact points, in the order of the plan's contact nodes.
     #[must_use]
     pub fn points(&self) -> &[PointState] {
         &self.recovered.points

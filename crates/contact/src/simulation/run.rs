@@ -32,8 +32,8 @@ impl Simulation {
                 Flow::Continue => {}
                 Flow::Stop => break,
                 Flow::Fail(source) => {
-                    let level = result.step();
-                    failed = Some(ContactError::Observer { level, source });
+                    let step = result.step();
+                    failed = Some(ContactError::Observer { step, source });
                     break;
                 }
             }

@@ -1,9 +1,9 @@
-//! The default method: the face method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
+//! The default method: the active-set method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
 //!
-//! Where the face method makes no progress, the paper's method solves the level: from the last iterate where a limit was
-//! reached, from the start of the level where the face method stagnated. It is proved to solve every given-friction problem.
+//! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a limit was
+//! reached, from the start of the step where the active-set method stagnated. It is proved to solve every given-friction problem.
 
-use super::iterate::{Iterate, is_coulomb, level_status};
+use super::iterate::{Iterate, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
 use super::smalse::SmalseSolver;
@@ -15,12 +15,10 @@ use crate::settings::Settings;
 use crate::status::StepStatus;
 use crate::step::StepProblem;
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, Status, active_set, vector,
+    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status,
+    active_set, vector,
 };
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
-
-/// Safety factor between the tolerance of a level and the estimated error at which the face method stops.
-const SAFETY: f64 = 1.0;
 
 /// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
@@ -34,7 +32,7 @@ const SHARED: f64 = 0.5;
 /// What a release would change, over the error of a solved face, from which on it is worth it.
 const CONTRADICTION: f64 = 10.0;
 
-/// Solves of a level with contradicting points released.
+/// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
 
 #[derive(Debug)]
@@ -94,52 +92,72 @@ impl ActiveSetSolver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
         report.counters.inequality_solves = 1;
-        level.slip_bounds(model, &iterate.lambda, &mut self.set);
-        report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
         let start = iterate.lambda.clone();
-        self.space.set_rhs(&level.rhs);
-        let problem = ActiveSetProblem {
+        let status = self.active_sets(model, problem, settings, iterate, &mut report)?;
+        report.status = step_status(status);
+        if !report.status.converged() {
+            return self.fall_back(model, problem, settings, iterate, start, report);
+        }
+        iterate.known = true;
+        iterate.alpha.resize(problem.rhs.len(), 0.0);
+        let mut residual = iterate.f_lambda.clone();
+        vector::axpy(-1.0, &problem.linear, &mut residual);
+        self.space.amplitudes(&residual, &mut iterate.alpha);
+        Ok(report)
+    }
+
+    /// Active sets with slip bounds that follow, again as long as rows of one node contradict each other.
+    fn active_sets(
+        &mut self,
+        model: &Model,
+        problem: &StepProblem,
+        settings: &Settings,
+        iterate: &mut Iterate,
+        report: &mut StepReport,
+    ) -> Result<Status, ContactError> {
+        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+        let mut updates = usize::from(model.any_law(Friction::is_some));
+        self.space.set_rhs(&problem.rhs);
+        let dual = ActiveSetProblem {
             operator: model.tfeti.dual(),
             preconditioner: &self.preconditioner,
             scale: &self.scale,
-            linear: &level.linear,
-            rhs: &level.rhs,
+            linear: &problem.linear,
+            rhs: &problem.rhs,
         };
-        let [least, least_contact] = level.least();
-        let face_settings = self
-            .settings
-            .clone()
-            .with_tolerance(settings.tolerance * SAFETY)
+        let [least, least_contact] = problem.least();
+        let tolerance = settings.tolerance;
+        let settings = self.settings.clone().with_tolerance(tolerance);
+        let settings = settings
             .with_error_floor(least)
             .with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
-            let slopes = model.slip_slopes(|k| level.coefficients[k]);
+            let slopes = model.slip_slopes(|k| problem.coefficients[k]);
             self.work.set_slopes(&slopes);
         }
-        let mut updates = 0;
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             if coulomb {
-                level.slip_bounds(model, x, set);
+                problem.slip_bounds(model, x, set);
                 updates += 1;
             }
         };
         let mut turns = 0;
         let status = loop {
             let outcome = active_set(
-                &problem,
+                &dual,
                 &mut self.space,
                 &mut self.set,
                 &mut iterate.lambda,
                 &mut iterate.f_lambda,
                 iterate.known,
-                &face_settings,
+                &settings,
                 &mut self.work,
                 &mut hook,
             );
@@ -149,52 +167,38 @@ impl ActiveSetSolver {
                     report.counters.products += outcome.products();
                     report.counters.preconditionings += outcome.preconditionings;
                     report.counters.coarse_factorisations += outcome.factorisations;
-                    report.counters.faces += outcome.faces;
+                    report.counters.active_sets += outcome.faces;
                     report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
                     outcome.status
                 }
                 // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
-                Err(
-                    signorini_qp::QpError::CoarseDeficient { .. }
-                    | signorini_qp::QpError::NotFinite { .. },
-                ) => Status::Stagnated,
+                Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => {
+                    Status::Stagnated
+                }
                 Err(error) => return Err(error.into()),
             };
-            let limit = CONTRADICTION
-                * face_settings.tolerance
-                * vector::norm(&iterate.lambda).max(face_settings.error_floor);
-            if status != Status::Converged
-                || turns == TURNS
-                || !self.exchanges.settle(
-                    model,
-                    level,
-                    self.work.residual(),
-                    (&self.scale, limit),
-                    &mut iterate.lambda,
-                )
+            let size = vector::norm(&iterate.lambda).max(least);
+            let limit = (&self.scale[..], CONTRADICTION * tolerance * size);
+            let residual = self.work.residual();
+            let solved = status == Status::Converged && turns < TURNS;
+            if !solved
+                || !self
+                    .exchanges
+                    .settle(model, problem, residual, limit, &mut iterate.lambda)
             {
                 break status;
             }
             iterate.known = false;
             turns += 1;
         };
-        report.counters.slip_bound_updates += updates;
-        report.status = level_status(status);
-        if report.status.converged() {
-            iterate.known = true;
-            iterate.alpha.resize(level.rhs.len(), 0.0);
-            let mut residual = iterate.f_lambda.clone();
-            vector::axpy(-1.0, &level.linear, &mut residual);
-            self.space.amplitudes(&residual, &mut iterate.alpha);
-            return Ok(report);
-        }
-        self.fall_back(model, level, settings, iterate, start, report)
+        report.counters.slip_bound_updates = updates;
+        Ok(status)
     }
 
     fn fall_back(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
         start: Vec<f64>,
@@ -213,7 +217,7 @@ impl ActiveSetSolver {
         // other normal forces may hold the body yet
         let not_held = report.status == StepStatus::NotHeld;
         let limit = settings.max_fallback_products;
-        let outcome = paper.solve_within(limit, model, level, settings, iterate);
+        let outcome = paper.solve_within(limit, model, problem, settings, iterate);
         self.paper = Some(paper);
         let second = outcome?;
         report.fallback = true;

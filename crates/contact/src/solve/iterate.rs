@@ -5,7 +5,7 @@ use crate::scene::Friction;
 use crate::status::StepStatus;
 use signorini_qp::Status;
 
-/// Iterate of a level in and out of a solver.
+/// Iterate of a step in and out of a solver.
 #[derive(Debug, Default)]
 pub(crate) struct Iterate {
     /// Multipliers.
@@ -20,8 +20,8 @@ pub(crate) struct Iterate {
     pub(crate) alpha: Vec<f64>,
 }
 
-/// Status of a level from the status of a quadratic program.
-pub(crate) fn level_status(status: Status) -> StepStatus {
+/// Status of a step from the status of a quadratic program.
+pub(crate) fn step_status(status: Status) -> StepStatus {
     match status {
         Status::Converged => StepStatus::Converged,
         Status::Infeasible => StepStatus::NotHeld,

@@ -1,7 +1,7 @@
 //! Scenes without contact: projected preconditioned conjugate gradients, no inequality anywhere.
 
 use super::coarse::orthonormal_coarse;
-use super::iterate::{Iterate, level_status};
+use super::iterate::{Iterate, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use crate::error::ContactError;
 use crate::model::Model;
@@ -11,7 +11,7 @@ use crate::step::StepProblem;
 use signorini_qp::{CgWorkspace, Tolerance, projected_cg};
 use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
 
-/// Estimated error of the multipliers, over the tolerance of a level, at which conjugate gradients stop: no condition but continuity
+/// Estimated error of the multipliers, over the tolerance of a step, at which conjugate gradients stop: no condition but continuity
 /// is left to them, and what copies differ by, over the largest displacement, is a thirtieth of that error and less. The certificate tells
 /// where it is not.
 const SLACK: f64 = 30.0;
@@ -47,33 +47,33 @@ impl LinearSolver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         self.coarse
-            .rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
+            .rhs(&problem.rhs, &mut self.rhs, &mut self.coarse_scratch);
         let outcome = projected_cg(
             model.tfeti.dual(),
-            &level.linear,
+            &problem.linear,
             &self.coarse,
             &self.rhs,
             &self.preconditioner,
             Tolerance::Error {
                 factor: settings.tolerance * SLACK,
-                least: level.least()[0],
+                least: problem.least()[0],
             },
             10_000,
             &mut iterate.lambda,
             &mut self.work,
         )?;
         let mut report = StepReport::new();
-        report.status = level_status(outcome.status);
+        report.status = step_status(outcome.status);
         report.iterations = outcome.iterations;
         report.counters.products = outcome.products;
         report.counters.preconditionings = outcome.preconditionings;
         iterate.known = false;
-        iterate.alpha.resize(level.rhs.len(), 0.0);
+        iterate.alpha.resize(problem.rhs.len(), 0.0);
         self.coarse.amplitudes(
             self.work.equality_multiplier(),
             &mut iterate.alpha,

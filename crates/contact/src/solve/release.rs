@@ -63,14 +63,14 @@ impl Exchanges {
     pub(crate) fn settle(
         &self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         residual: &[f64],
         (scale, limit): (&[f64], f64),
         lambda: &mut [f64],
     ) -> bool {
         let mut any = false;
         for exchange in &self.0 {
-            any |= exchange.settle(model, level, residual, (scale, limit), lambda);
+            any |= exchange.settle(model, problem, residual, (scale, limit), lambda);
         }
         any
     }
@@ -103,7 +103,7 @@ impl Exchange {
     fn settle(
         &self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         residual: &[f64],
         (scale, limit): (&[f64], f64),
         lambda: &mut [f64],
@@ -113,10 +113,10 @@ impl Exchange {
         let mut any = false;
         // each step ends at a bound
         for _ in 0..2 * self.rows.len() {
-            let mut found = self.way(model, level, &r, lambda, true);
+            let mut found = self.way(model, problem, &r, lambda, true);
             if found.1.is_infinite() {
                 // slip bounds outgrow friction: with those of now
-                found = self.way(model, level, &r, lambda, false);
+                found = self.way(model, problem, &r, lambda, false);
             }
             let (d, length) = found;
             let small = d.norm() <= model.discrete.rounding || d.norm() * stiffness <= limit;
@@ -135,7 +135,7 @@ impl Exchange {
     fn held(
         &self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         r: &DVector<f64>,
         lambda: &[f64],
     ) -> Vec<bool> {
@@ -144,7 +144,7 @@ impl Exchange {
             let normal = place.normal;
             held[normal] = lambda[self.rows[normal]] >= 0.0 && r[normal] <= 0.0;
             let point = &model.points[place.point];
-            let radius = level.bound(place.point, point, lambda) / place.scale;
+            let radius = problem.bound(place.point, point, lambda) / place.scale;
             let (mut square, mut along) = (0.0, 0.0);
             for k in &place.tangential {
                 let a = lambda[self.rows[*k]];
@@ -162,12 +162,12 @@ impl Exchange {
     fn way(
         &self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         r: &DVector<f64>,
         lambda: &[f64],
         follow: bool,
     ) -> (DVector<f64>, f64) {
-        let mut held = self.held(model, level, r, lambda);
+        let mut held = self.held(model, problem, r, lambda);
         loop {
             let d = self.descent(r, &held);
             let mut length = f64::INFINITY;
@@ -181,7 +181,7 @@ impl Exchange {
                 let mut stops = vec![(std::slice::from_ref(&place.normal), opens)];
                 // friction of a point that slides follows its bound afterwards
                 if place.tangential.iter().any(|k| !held[*k]) {
-                    let slides = self.slides(model, level, place, lambda, (&d, follow));
+                    let slides = self.slides(model, problem, place, lambda, (&d, follow));
                     stops.push((&place.tangential, slides));
                 }
                 for (rows, to) in stops {
@@ -222,16 +222,16 @@ impl Exchange {
     fn slides(
         &self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         place: &Place,
         lambda: &[f64],
         (d, follow): (&DVector<f64>, bool),
     ) -> f64 {
         let point = &model.points[place.point];
-        let radius = level.bound(place.point, point, lambda) / place.scale;
+        let radius = problem.bound(place.point, point, lambda) / place.scale;
         let normal = self.rows[place.normal];
         let slope = match follow && (lambda[normal] < 0.0 || d[place.normal] < 0.0) {
-            true => level.coefficients[place.point] * point.scale / place.scale,
+            true => problem.coefficients[place.point] * point.scale / place.scale,
             false => 0.0,
         };
         let growth = -slope * d[place.normal];

@@ -6,19 +6,19 @@ use crate::step::StepProblem;
 
 /// The units of force of all bodies, N: the nearest powers of two to the sizes of their multipliers, or of their loads
 /// or of what moved supports would do to their nodes if these are larger.
-fn units(model: &Model, level: &StepProblem, start: &[f64]) -> Vec<f64> {
+fn units(model: &Model, problem: &StepProblem, start: &[f64]) -> Vec<f64> {
     let bodies = &model.bodies;
     let mut squares = vec![0.0; bodies.count()];
     bodies.add_squares(start, 0..start.len(), &mut squares);
-    let force = level.forces(model);
+    let force = problem.forces(model);
     let mut loads = vec![0.0; bodies.count()];
     for subdomain in 0..model.tfeti.subdomains() {
         let own = &force[model.tfeti.torn_range(subdomain)];
         loads[bodies.of_subdomain(subdomain)] += signorini_qp::vector::dot(own, own);
     }
     // where supports move a body, warm starts may be rounding errors
-    let prescribed = |b: usize| level.prescribed_force.get(b).copied().unwrap_or(0.0);
-    let known = |b: usize| squares[b].max(loads[b]).sqrt().max(level.rest(b));
+    let prescribed = |b: usize| problem.prescribed_force.get(b).copied().unwrap_or(0.0);
+    let known = |b: usize| squares[b].max(loads[b]).sqrt().max(problem.rest(b));
     (0..bodies.count())
         .map(|b| power_of_two(known(b).max(prescribed(b))))
         .collect()
@@ -27,14 +27,14 @@ fn units(model: &Model, level: &StepProblem, start: &[f64]) -> Vec<f64> {
 /// The data of a step and the iterate in units of the bodies, and the units of all rows; `None` for one body.
 pub(super) fn scaled(
     model: &Model,
-    level: &StepProblem,
+    problem: &StepProblem,
     iterate: &mut Iterate,
 ) -> Option<(StepProblem, Units)> {
     let bodies = &model.bodies;
     if bodies.count() <= 1 {
         return None;
     }
-    let own = units(model, level, &iterate.lambda);
+    let own = units(model, problem, &iterate.lambda);
     let rows = 0..model.tfeti.dual_dim();
     let subdomains = 0..model.tfeti.subdomains();
     let units = Units {
@@ -43,7 +43,7 @@ pub(super) fn scaled(
             .flat_map(|s| [own[bodies.of_subdomain(s)]; 6])
             .collect(),
     };
-    let mut scaled = level.clone();
+    let mut scaled = problem.clone();
     divide(&mut scaled.linear, &units.rows);
     divide(&mut scaled.rhs, &units.coarse);
     for (peak, unit) in scaled.peaks.iter_mut().zip(&own) {

@@ -2,7 +2,7 @@
 //! (Algorithm 4.1), and the one inexact loop in which the slip bounds follow the outer steps of SMALSE.
 
 use super::coarse::orthonormal_coarse;
-use super::iterate::{Iterate, is_coulomb, level_status};
+use super::iterate::{Iterate, is_coulomb, step_status};
 use crate::error::ContactError;
 use crate::model::{DISCS, INTERVALS, Model};
 use crate::report::{
@@ -18,13 +18,13 @@ use signorini_qp::{
 };
 use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
 
-/// Safety factor between the tolerance of a level and those of SMALSE.
+/// Safety factor between the tolerance of a step and those of SMALSE.
 const SAFETY: f64 = 0.05;
 
 /// Relative changes below this one that do not halve are put down to the inner solve.
 const STALL: f64 = 1e-4;
 
-/// How often a level may tighten the inner tolerance tenfold.
+/// How often a step may tighten the inner tolerance tenfold.
 const MAX_TIGHTENINGS: usize = 3;
 
 pub(crate) struct SmalseSolver {
@@ -88,12 +88,12 @@ impl SmalseSolver {
         &mut self,
         limit: usize,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         self.left = limit;
-        let report = self.solve(model, level, settings, iterate);
+        let report = self.solve(model, problem, settings, iterate);
         self.left = usize::MAX;
         report
     }
@@ -101,31 +101,36 @@ impl SmalseSolver {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         self.coarse
-            .rhs(&level.rhs, &mut self.rhs, &mut self.coarse_scratch);
+            .rhs(&problem.rhs, &mut self.rhs, &mut self.coarse_scratch);
         iterate.multiplier.resize(self.rhs.len(), 0.0);
         let mut report = StepReport::new();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
         if !is_coulomb(model) {
-            level.slip_bounds(model, &iterate.lambda, &mut self.set);
+            problem.slip_bounds(model, &iterate.lambda, &mut self.set);
             report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
-            let qp =
-                self.given_friction(model, level, settings.tolerance * SAFETY, &mut (), iterate)?;
+            let qp = self.given_friction(
+                model,
+                problem,
+                settings.tolerance * SAFETY,
+                &mut (),
+                iterate,
+            )?;
             add(&mut report, &qp);
             report.iterations = 1;
-            report.status = level_status(qp.status);
+            report.status = step_status(qp.status);
         } else if self.one_loop {
-            self.inexact_loop(model, level, settings, iterate, &mut report)?;
+            self.inexact_loop(model, problem, settings, iterate, &mut report)?;
         } else {
-            self.fixed_point(model, level, settings, iterate, &mut report)?;
+            self.fixed_point(model, problem, settings, iterate, &mut report)?;
         }
         iterate.known = false;
-        iterate.alpha.resize(level.rhs.len(), 0.0);
+        iterate.alpha.resize(problem.rhs.len(), 0.0);
         self.coarse.amplitudes(
             self.work.equality_multiplier(),
             &mut iterate.alpha,
@@ -138,7 +143,7 @@ impl SmalseSolver {
     fn given_friction(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         tolerance: f64,
         hook: &mut impl OuterHook<ProductSet>,
         iterate: &mut Iterate,
@@ -151,7 +156,7 @@ impl SmalseSolver {
         let operator = model.tfeti.dual();
         let report = smalse(
             operator,
-            &level.linear,
+            &problem.linear,
             &self.coarse,
             &self.rhs,
             &mut self.set,
@@ -170,7 +175,7 @@ impl SmalseSolver {
     fn fixed_point(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
         report: &mut StepReport,
@@ -188,7 +193,7 @@ impl SmalseSolver {
         let outcome = successive_approximations(
             &mut x,
             settings.tolerance,
-            level.least()[1],
+            problem.least()[1],
             settings.max_fixed_point,
             |x, change| {
                 // Small contact forces under large loads: changes that stall above the tolerance are
@@ -211,10 +216,10 @@ impl SmalseSolver {
                     _ => target,
                 };
                 iterate.lambda[normal.clone()].copy_from_slice(x);
-                level.slip_bounds(model, &iterate.lambda, &mut self.set);
+                problem.slip_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
                 let qp = self
-                    .given_friction(model, level, tolerance, &mut (), iterate)
+                    .given_friction(model, problem, tolerance, &mut (), iterate)
                     .map_err(Some)?;
                 inner = qp.status;
                 add(report, &qp);
@@ -235,7 +240,7 @@ impl SmalseSolver {
         };
         report.iterations = outcome.evaluations;
         report.status = match outcome.verdict {
-            Verdict::Converged => level_status(inner),
+            Verdict::Converged => step_status(inner),
             Verdict::NotContractive => StepStatus::NotContractive,
             _ => StepStatus::IterationLimit,
         };
@@ -252,22 +257,22 @@ impl SmalseSolver {
     fn inexact_loop(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
         report: &mut StepReport,
     ) -> Result<(), ContactError> {
-        level.slip_bounds(model, &iterate.lambda, &mut self.set);
+        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
         let tolerance = settings.tolerance * SAFETY;
         let mut contraction = Contraction::new();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;
         // bounds of normal forces that vanish
-        let coefficient = level.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
-        let least = coefficient * level.least()[1];
+        let coefficient = problem.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let least = coefficient * problem.least()[1];
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
-            level.slip_bounds(model, step.x, set);
+            problem.slip_bounds(model, step.x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
@@ -283,11 +288,11 @@ impl SmalseSolver {
                 HookAction::SetChanged
             }
         };
-        let qp = self.given_friction(model, level, tolerance, &mut hook, iterate)?;
+        let qp = self.given_friction(model, problem, tolerance, &mut hook, iterate)?;
         add(report, &qp);
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;
-        report.status = level_status(qp.status);
+        report.status = step_status(qp.status);
         let verdict = if report.status.converged() {
             Verdict::Converged
         } else {

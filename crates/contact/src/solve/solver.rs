@@ -1,4 +1,4 @@
-//! The solver of a level: chooses by effect and method, owns all work memory.
+//! The solver of a step: chooses by effect and method, owns all work memory.
 
 use super::active_set::ActiveSetSolver;
 use super::iterate::Iterate;
@@ -37,18 +37,18 @@ impl Solver {
         })
     }
 
-    /// Solves a level; every body in a unit of force of its own .
+    /// Solves a step; every body in a unit of force of its own .
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        let Some((level, units)) = scaled(model, level, iterate) else {
-            return self.solve_plain(model, level, settings, iterate);
+        let Some((problem, units)) = scaled(model, problem, iterate) else {
+            return self.solve_plain(model, problem, settings, iterate);
         };
-        let report = self.solve_plain(model, &level, settings, iterate);
+        let report = self.solve_plain(model, &problem, settings, iterate);
         units.restore(iterate);
         report
     }
@@ -56,14 +56,14 @@ impl Solver {
     fn solve_plain(
         &mut self,
         model: &Model,
-        level: &StepProblem,
+        problem: &StepProblem,
         settings: &Settings,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         match self {
-            Self::Linear(solver) => solver.solve(model, level, settings, iterate),
-            Self::ActiveSet(solver) => solver.solve(model, level, settings, iterate),
-            Self::Paper(solver) => solver.solve(model, level, settings, iterate),
+            Self::Linear(solver) => solver.solve(model, problem, settings, iterate),
+            Self::ActiveSet(solver) => solver.solve(model, problem, settings, iterate),
+            Self::Paper(solver) => solver.solve(model, problem, settings, iterate),
         }
     }
 }

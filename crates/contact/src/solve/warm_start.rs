@@ -4,7 +4,7 @@ use crate::model::{DISCS, Model};
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::TangentialRows;
 
-/// Puts the friction forces of points that slid at the last level back on their circles: extrapolation leaves them a
+/// Puts the friction forces of points that slid at the last step back on their circles: extrapolation leaves them a
 /// little inside, where they would be taken for sticking.
 pub(crate) fn restore_sliding(
     model: &Model,

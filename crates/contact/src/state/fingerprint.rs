@@ -1,7 +1,7 @@
 //! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean something else.
 //!
 //! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between two
-//! levels, and so may settings: the state is then where the changed scene goes on from.
+//! steps, and so may settings: the state is then where the changed scene goes on from.
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Analysis, DifferenceFormula};
@@ -20,7 +20,7 @@ pub(crate) struct Fingerprint {
     supports: u64,
     contact: u64,
     formula: u64,
-    /// Times of the levels solved.
+    /// Times of the steps solved.
     times: u64,
 }
 
@@ -45,15 +45,15 @@ impl Fingerprint {
         }
     }
 
-    /// The fingerprint after a further level at this time.
+    /// The fingerprint after a further step at this time.
     pub(crate) fn pass(&mut self, time: f64) {
         self.times = mix(self.times ^ number(time)).wrapping_add(1);
     }
 
-    /// The fingerprint after the first levels of an analysis.
-    pub(crate) fn after(mut self, analysis: &Analysis, levels: usize) -> Self {
+    /// The fingerprint after the first steps of an analysis.
+    pub(crate) fn after(mut self, analysis: &Analysis, steps: usize) -> Self {
         self.times = 0;
-        let times = (0..levels).filter_map(|level| analysis.time(level));
+        let times = (0..steps).filter_map(|step| analysis.time(step));
         times.for_each(|time| self.pass(time));
         self
     }
@@ -68,7 +68,7 @@ impl Fingerprint {
                 (f.supports, "nodes or directions of supports"),
                 (f.contact, "contact points (nodes, normals or areas)"),
                 (f.formula, "weights of the difference formula"),
-                (f.times, "times of the levels solved so far"),
+                (f.times, "times of the steps solved so far"),
             ]
         };
         let pairs = parts(self).into_iter().zip(parts(other));
@@ -78,7 +78,7 @@ impl Fingerprint {
 }
 
 /// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in lanes: it is
-/// taken at every level.
+/// taken at every step.
 pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
     let mut lanes = [operator; 8];
     for part in [lambda, f_lambda] {

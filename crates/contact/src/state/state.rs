@@ -1,34 +1,34 @@
-//! The state between time levels: one value, with feature `checkpoint` also as bytes.
+//! The state between time steps: one value, with feature `checkpoint` also as bytes.
 
 use super::fingerprint::{Fingerprint, seal};
 use super::tolerance::Controller;
 use crate::error::ContactError;
 
-/// What one level hands to the next.
+/// What one step hands to the next.
 ///
 /// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
 #[derive(Clone, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
-    /// Levels solved.
+    /// Steps solved.
     pub(super) step: usize,
-    /// Multipliers of the last level and the one before.
+    /// Multipliers of the last step and the one before.
     pub(super) lambda: [Vec<f64>; 2],
     /// `F lambda` of the same.
     pub(super) f_lambda: [Vec<f64>; 2],
     /// Multiplier of the coarse equality, for the methods that carry one.
     pub(super) multiplier: [Vec<f64>; 2],
-    /// Tangential displacements of the last level and the one before, m, one a tangential row.
+    /// Tangential displacements of the last step and the one before, m, one a tangential row.
     pub(super) trace: [Vec<f64>; 2],
-    /// Slip rate at each touch point, m/s; only if the coefficient depends on it.
+    /// Slip rate at each contact point, m/s; only if the coefficient depends on it.
     pub(super) rate: Vec<f64>,
-    /// Points that slid at the last level.
+    /// Points that slid at the last step.
     pub(super) sliding: Vec<bool>,
-    /// What chooses the tolerance of the next level by estimates of the error.
+    /// What chooses the tolerance of the next step by estimates of the error.
     pub(super) controller: Controller,
-    /// Largest sizes of each body at the levels so far.
+    /// Largest sizes of each body at the steps so far.
     pub(super) peaks: Vec<Peak>,
-    /// With history: the first level that did not converge.
+    /// With history: the first step that did not converge.
     pub(super) unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
     pub(super) origin: Option<Fingerprint>,
@@ -36,7 +36,7 @@ pub struct State {
     pub(super) seals: [u64; 2],
 }
 
-/// Largest sizes of a body at earlier levels: what a level where forces and displacements vanish is measured against.
+/// Largest sizes of a body at earlier steps: what a step where forces and displacements vanish is measured against.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Peak {
@@ -76,7 +76,7 @@ pub(crate) struct Kept {
 }
 
 impl State {
-    /// Levels solved so far.
+    /// Steps solved so far.
     #[must_use]
     pub fn step(&self) -> usize {
         self.step
@@ -114,7 +114,7 @@ impl State {
         self.origin = Some(origin);
     }
 
-    /// Notes that the product of the last level is one with this F.
+    /// Notes that the product of the last step is one with this F.
     pub(crate) fn seal(&mut self, operator: u64) {
         self.seals[0] = seal(operator, &self.lambda[0], &self.f_lambda[0]);
     }
@@ -134,21 +134,21 @@ impl State {
         }
     }
 
-    /// Notes the time of the level that is being taken over.
+    /// Notes the time of the step that is being taken over.
     pub(crate) fn pass(&mut self, time: f64) {
         if let Some(origin) = &mut self.origin {
             origin.pass(time);
         }
     }
 
-    /// The first level that did not converge and on whose displacement later levels depend, from 0. `None` where all
-    /// converged, and in scenes without history (no friction, or static), whose levels stand alone.
+    /// The first step that did not converge and on whose displacement later steps depend, from 0. `None` where all
+    /// converged, and in scenes without history (no friction, or static), whose steps stand alone.
     #[must_use]
     pub fn unconverged_history(&self) -> Option<usize> {
         self.unconverged
     }
 
-    /// Notes that the level that comes next did not converge, although later ones depend on it.
+    /// Notes that the step that comes next did not converge, although later ones depend on it.
     pub(crate) fn note_unconverged(&mut self) {
         self.unconverged = self.unconverged.or(Some(self.step));
     }
@@ -210,12 +210,12 @@ impl State {
         self.step += 1;
     }
 
-    /// Largest sizes of each body at the levels so far; empty before the first.
+    /// Largest sizes of each body at the steps so far; empty before the first.
     pub(crate) fn peaks(&self) -> &[Peak] {
         &self.peaks
     }
 
-    /// Takes the sizes of a level into account, one a body.
+    /// Takes the sizes of a step into account, one a body.
     pub(crate) fn raise(&mut self, sizes: &[Peak]) {
         self.peaks.resize(sizes.len(), Peak::default());
         for (peak, size) in self.peaks.iter_mut().zip(sizes) {
@@ -320,7 +320,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn the_first_level_that_did_not_converge_is_kept() {
+    fn the_first_step_that_did_not_converge_is_kept() {
         let mut state = state();
         assert_eq!(state.unconverged_history(), None);
         state.note_unconverged();

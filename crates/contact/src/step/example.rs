@@ -19,7 +19,7 @@ pub(crate) fn block(gap: f64, friction: Friction) -> Scene {
 }
 
 /// Its model and first step.
-pub(crate) fn first_level(scene: Scene) -> (Model, StepProblem) {
+pub(crate) fn first_step(scene: Scene) -> (Model, StepProblem) {
     let model = Model::new(scene, &Settings::default()).expect("model");
     let mut problem = StepProblem::default();
     problem.prepare(&model, &State::default(), 0).expect("step");

@@ -116,7 +116,7 @@ fn a_body_without_foundation_never_enters_an_inequality_solver() {
         let counters = simulation.counters();
         let expected = Counters::default();
         assert_eq!(counters.inequality_solves, expected.inequality_solves);
-        assert_eq!((counters.quadratic_programs, counters.faces), (0, 0));
+        assert_eq!((counters.quadratic_programs, counters.active_sets), (0, 0));
         assert_eq!(
             (counters.setup_products, counters.slip_bound_updates),
             (0, 0)

@@ -117,7 +117,7 @@ fn another_scene_is_refused_with_the_part_that_differs() {
             Parts::with(|p| p.analysis = Analysis::quasistatic(1.0, 4)),
         ),
         (
-            "times of the levels solved",
+            "times of the steps solved",
             Parts::with(|p| p.analysis = times),
         ),
     ];

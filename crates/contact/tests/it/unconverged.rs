@@ -44,7 +44,7 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
             )),
             _ => assert!(matches!(
                 strict,
-                Err(ContactError::UnconvergedHistory { level: 0 })
+                Err(ContactError::UnconvergedHistory { step: 0 })
             )),
         }
     }
@@ -84,7 +84,7 @@ fn an_observer_can_end_a_run_at_the_first_such_level() {
     let mut simulation = rough();
     let outcome = simulation.run(&mut |frame: &StepResult| Flow::from(frame.require_converged()));
     let error = outcome.expect_err("not converged");
-    assert!(matches!(error, ContactError::Observer { level: 0, .. }));
+    assert!(matches!(error, ContactError::Observer { step: 0, .. }));
     assert!(error.to_string().contains("not contractive"), "{error}");
     assert_eq!(simulation.state().step(), 1);
 }
@@ -104,7 +104,7 @@ fn a_resumed_run_knows_what_it_continues() {
         .expect_err("an unconverged history");
     assert!(matches!(
         error,
-        ContactError::UnconvergedHistory { level: 0 }
+        ContactError::UnconvergedHistory { step: 0 }
     ));
 }
 

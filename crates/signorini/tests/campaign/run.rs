@@ -112,7 +112,7 @@ fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
         out.push(Level {
             status: report.status,
             products: report.counters.products,
-            faces: report.counters.faces,
+            faces: report.counters.active_sets,
             fallback: report.fallback,
             inherited: frame.unconverged_history().is_some(),
             certificate: frame.certificate().largest(),

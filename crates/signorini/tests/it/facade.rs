@@ -92,12 +92,12 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
             Ok(())
         })
     });
-    let Err(error @ ContactError::Observer { level: 1, .. }) = outcome else {
+    let Err(error @ ContactError::Observer { step: 1, .. }) = outcome else {
         panic!("an error is expected, not {outcome:?}");
     };
     assert_eq!(
         error.to_string(),
-        "observer, after level 1: the disk is full"
+        "observer, after step 1: the disk is full"
     );
     assert_eq!(simulation.state().step(), 2);
     simulation.run(&mut Silent)?.require_converged()?;
@@ -126,7 +126,7 @@ fn errors_print_their_sentences() -> Result<(), Error> {
     let error = Error::from(outcome.expect_err("an observer that fails"));
     assert_eq!(
         format!("{error:?}"),
-        "observer, after level 0: no frame was kept\n  because the disk is full"
+        "observer, after step 0: no frame was kept\n  because the disk is full"
     );
     let io = Error::from(std::io::Error::other("the disk is full"));
     assert_eq!(format!("{io:?}"), "the disk is full");
