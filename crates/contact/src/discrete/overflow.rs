@@ -1,5 +1,5 @@
-//! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
-//! only see norms that are infinite or vanish, and blame their tolerance.
+//! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is
+//! solved: solvers would only see norms that are infinite or vanish, and blame their tolerance.
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
@@ -10,7 +10,8 @@ use signorini_qp::vector;
 use signorini_tfeti::TfetiError;
 use std::collections::BTreeSet;
 
-/// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh, N/m.
+/// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh,
+/// N/m.
 pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
     let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
     let mut ends = [f64::INFINITY, 0.0_f64];
@@ -89,7 +90,8 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
     Ok(())
 }
 
-/// The nodal forces of each load with factor one, subdomain by subdomain, N; `spring` is the least stiffness of a region, N/m.
+/// The nodal forces of each load with factor one, subdomain by subdomain, N; `spring` is the least stiffness of a
+/// region, N/m.
 pub(super) fn nodal_loads(
     scene: &Scene,
     decomposition: &Decomposition,

@@ -1,8 +1,8 @@
 //! Partners: which node of the other body a contact node may touch.
 //!
-//! Meshes match, so that the partner of a node lies on its normal. What is small against the facets is put down to rounding,
-//! and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do not face each other
-//! are no partners: a thin body has nodes of its far side on the same normal.
+//! Meshes match, so that the partner of a node lies on its normal. What is small against the facets is put down to
+//! rounding, and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do
+//! not face each other are no partners: a thin body has nodes of its far side on the same normal.
 
 use super::rounding::rounding;
 use crate::error::ContactError;
@@ -24,8 +24,8 @@ pub(super) struct Partner {
     pub(super) gap: f64,
 }
 
-/// The partners of the nodes of a surface, node by node; none where the contact is with a rigid obstacle. `fixed` is the
-/// frame of a contact with one direction.
+/// The partners of the nodes of a surface, node by node; none where the contact is with a rigid obstacle. `fixed` is
+/// the frame of a contact with one direction.
 pub(super) fn partners(
     mesh: &TetMesh,
     index: usize,

@@ -1,7 +1,7 @@
 //! Contact nodes whose normal displacement is prescribed by supports.
 //!
-//! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
-//! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
+//! They have no contact row, since no contact force can change their displacement. That is right only as long as they
+//! stay outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
 use super::points::ContactPoint;
 use crate::error::ContactError;

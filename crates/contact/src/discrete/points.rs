@@ -1,11 +1,12 @@
 //! Where contact can happen: the contact points of all surfaces, with normal, area and gap.
 //!
-//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two contacts
-//! meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all of
-//! their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the conditions follows
-//! from the other. Between bodies a node is one point, with a partner.
+//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two
+//! contacts meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all
+//! of their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the
+//! conditions follows from the other. Between bodies a node is one point, with a partner.
 //!
-//! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate judges the former.
+//! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
+//! judges the former.
 
 use super::creases::{area_vector, creases, length};
 use super::overflow::largest_factor;
@@ -163,8 +164,9 @@ fn fixed_frame(
     Ok(Some(frame))
 }
 
-/// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are its own.
-/// Where both are as near the law is that of the first one, on the area of both; facets that they share count once.
+/// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are
+/// its own. Where both are as near the law is that of the first one, on the area of both; facets that they share
+/// count once.
 fn join(
     scene: &Scene,
     rounding: f64,

@@ -1,7 +1,7 @@
 //! The best admissible position of one contact node, and its share of the duality gap.
 //!
-//! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more freedom.
-//! Where it is not free either, both move, each where it can.
+//! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more
+//! freedom. Where it is not free either, both move, each where it can.
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
@@ -10,8 +10,8 @@ use crate::tolerances::{FREEDOM_TAKEN, NEAR_BOUND, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, Vector3};
 
-/// What the rows of a contact point measure of the displacement of one node, in metres: a direction for each row, the normal
-/// one first, without the parts along directions that supports fix.
+/// What the rows of a contact point measure of the displacement of one node, in metres: a direction for each row, the
+/// normal one first, without the parts along directions that supports fix.
 type RowPart = [[f64; 3]; 3];
 
 /// Sum of the squares: 3 for a node without supports.

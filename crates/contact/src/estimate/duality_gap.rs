@@ -1,8 +1,9 @@
 //! The algebraic error of a step by the duality gap; docs/theory.md derives it.
 //!
-//! The recovered torn displacement `u` is in equilibrium with the multipliers, but only nearly continuous and admissible.
-//! From it a continuous, admissible `v` is made: the mean of the copies of each node weighted by stiffness, moved at contact
-//! nodes ([`admissible`](super::admissible)), set to the supports. With slip bounds `r`, gaps `g` and rest positions `z`
+//! The recovered torn displacement `u` is in equilibrium with the multipliers, but only nearly continuous and
+//! admissible. From it a continuous, admissible `v` is made: the mean of the copies of each node weighted by
+//! stiffness, moved at contact nodes ([`admissible`](super::admissible)), set to the supports. With slip bounds `r`,
+//! gaps `g` and rest positions `z`
 //!
 //! ```text
 //! gap = 1/2 |v - u|² + sum lambda_nu (v_nu - g) + sum ( r |v_T - z| + lambda_T . (v_T - z) )
@@ -201,8 +202,8 @@ impl Solved<'_> {
         v
     }
 
-    /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one may undo
-    /// another. Points that touch stay at their obstacles, others are moved out of theirs.
+    /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one
+    /// may undo another. Points that touch stay at their obstacles, others are moved out of theirs.
     fn agree(&self, moved: &[Correction], nodes: &[AdmissibleNode], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         if gluing.dependent_nodes().is_empty() {

@@ -248,7 +248,8 @@ impl fmt::Debug for Coefficient {
     }
 }
 
-/// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any work.
+/// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any
+/// work.
 pub(crate) fn check_laws<'a>(
     points: impl IntoIterator<Item = (&'a Friction, u32, [f64; 3])>,
 ) -> Result<(), ContactError> {

@@ -74,11 +74,13 @@ impl Scene {
         self
     }
 
-    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall without.
+    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall
+    /// without.
     ///
-    /// Surfaces may share nodes, and even tags. A node then has one contact point for each direction of contact. Where the
-    /// directions are the same (to 1.4e-6 radians) it has one for all of them: that of the obstacle that is nearer, with its
-    /// law and area; where both are as near, with the law of the contact that was added first and the area of both.
+    /// Surfaces may share nodes, and even tags. A node then has one contact point for each direction of contact.
+    /// Where the directions are the same (to 1.4e-6 radians) it has one for all of them: that of the obstacle that is
+    /// nearer, with its law and area; where both are as near, with the law of the contact that was added first and
+    /// the area of both.
     #[must_use]
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
