@@ -90,9 +90,9 @@ mod vec3;
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
 pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
-pub use report::fixed_point;
 pub use report::{
-    AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport,
+    AccumulatedError, AccuracyReport, AlgebraicError, Counters, FixedPointReport, RunReport,
+    StepReport, Verdict,
 };
 pub use result::{
     Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant,

@@ -140,3 +140,8 @@ pub(crate) const ABOVE_SOLVER: f64 = 3.0;
 /// Orders of the time steps that are believed: below, the steps have not settled into a sequence of sticking and sliding, and
 /// no more than the upper one is in the formulas.
 pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
+
+/// Estimated error of the multipliers, over the tolerance of a step, at which conjugate gradients stop without contact: no
+/// condition but continuity is left to them, and what copies differ by, over the largest displacement, is a thirtieth of that
+/// error and less. The certificate tells where it is not.
+pub(crate) const LINEAR_SLACK: f64 = 30.0;

@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
-use crate::solve::restore_sliding;
+use crate::solve::{Task, restore_sliding};
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
@@ -59,7 +59,12 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let (model, problem, iterate) = (&self.model, &self.problem, &mut self.iterate);
         let settings = self.settings.clone().with_tolerance(tolerance);
-        let mut report = self.solver.solve(model, problem, &settings, iterate)?;
+        let task = Task {
+            model,
+            problem,
+            settings: &settings,
+        };
+        let mut report = self.solver.solve(task, iterate)?;
         let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha)?;
         report.counters.products += 1;
         Ok((report, recovered))

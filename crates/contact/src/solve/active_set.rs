@@ -3,7 +3,7 @@
 //! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a limit was
 //! reached, from the start of the step where the active-set method stagnated. It is proved to solve every given-friction problem.
 
-use super::iterate::{Iterate, is_coulomb, step_status};
+use super::iterate::{Iterate, Task, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
 use super::smalse::SmalseSolver;
@@ -13,7 +13,6 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
-use crate::step::StepProblem;
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status,
     active_set, vector,
@@ -52,7 +51,7 @@ impl ActiveSetSolver {
     pub(crate) fn new(
         model: &Model,
         settings: &Settings,
-        face: &ActiveSetSettings,
+        own: &ActiveSetSettings,
     ) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
@@ -84,30 +83,28 @@ impl ActiveSetSolver {
             scale,
             set: model.set.clone(),
             exchanges: Exchanges::new(model),
-            settings: face.clone(),
+            settings: own.clone(),
             paper: None,
         })
     }
 
     pub(crate) fn solve(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
         report.counters.inequality_solves = 1;
         let start = iterate.lambda.clone();
-        let status = self.active_sets(model, problem, settings, iterate, &mut report)?;
+        let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
         if !report.status.converged() {
-            return self.fall_back(model, problem, settings, iterate, start, report);
+            return self.fall_back(task, iterate, start, report);
         }
         iterate.known = true;
-        iterate.alpha.resize(problem.rhs.len(), 0.0);
+        iterate.alpha.resize(task.problem.rhs.len(), 0.0);
         let mut residual = iterate.f_lambda.clone();
-        vector::axpy(-1.0, &problem.linear, &mut residual);
+        vector::axpy(-1.0, &task.problem.linear, &mut residual);
         self.space.amplitudes(&residual, &mut iterate.alpha);
         Ok(report)
     }
@@ -115,12 +112,11 @@ impl ActiveSetSolver {
     /// Active sets with slip bounds that follow, again as long as rows of one node contradict each other.
     fn active_sets(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
+        let Task { model, problem, .. } = task;
         problem.slip_bounds(model, &iterate.lambda, &mut self.set);
         let mut updates = usize::from(model.any_law(Friction::is_some));
         self.space.set_rhs(&problem.rhs);
@@ -132,7 +128,7 @@ impl ActiveSetSolver {
             rhs: &problem.rhs,
         };
         let [least, least_contact] = problem.least();
-        let tolerance = settings.tolerance;
+        let tolerance = task.settings.tolerance;
         let settings = self.settings.clone().with_tolerance(tolerance);
         let settings = settings
             .with_error_floor(least)
@@ -197,9 +193,7 @@ impl ActiveSetSolver {
 
     fn fall_back(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
         start: Vec<f64>,
         mut report: StepReport,
@@ -211,13 +205,12 @@ impl ActiveSetSolver {
         }
         let mut paper = match self.paper.take() {
             Some(paper) => paper,
-            None => Box::new(SmalseSolver::new(model, settings)?),
+            None => Box::new(SmalseSolver::new(task.model, task.settings)?),
         };
         iterate.multiplier.clear();
         // other normal forces may hold the body yet
         let not_held = report.status == StepStatus::NotHeld;
-        let limit = settings.max_fallback_products;
-        let outcome = paper.solve_within(limit, model, problem, settings, iterate);
+        let outcome = paper.solve_within(task.settings.max_fallback_products, task, iterate);
         self.paper = Some(paper);
         let second = outcome?;
         report.fallback = true;

@@ -15,8 +15,9 @@ mod release;
 mod scaling;
 mod smalse;
 mod solver;
+mod successive;
 mod warm_start;
 
-pub(crate) use iterate::Iterate;
+pub(crate) use iterate::{Iterate, Task};
 pub(crate) use solver::Solver;
 pub(crate) use warm_start::restore_sliding;

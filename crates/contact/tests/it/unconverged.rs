@@ -1,7 +1,6 @@
 //! Steps that do not converge: no method claims what it did not find, who depends on them knows it, who wants errors gets them.
 
 use crate::common::*;
-use signorini_contact::fixed_point::Verdict;
 use signorini_qp::ActiveSetSettings;
 
 /// A cantilever pressed on an oblique obstacle, where with this coefficient successive approximations have no limit, then lifted.
