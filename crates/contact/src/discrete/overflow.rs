@@ -1,19 +1,17 @@
-//! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is solved: solvers would
-//! only see norms that are infinite or vanish, and blame their tolerance.
+//! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is
+//! solved: solvers would only see norms that are infinite or vanish, and blame their tolerance.
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
 use crate::scene::{Analysis, Scene};
+use crate::tolerances::LARGEST;
 use signorini_fem_mesh::{Decomposition, History, assemble_load};
 use signorini_qp::vector;
 use signorini_tfeti::TfetiError;
 use std::collections::BTreeSet;
 
-/// Largest force in N, displacement and gap in m. The squares of their products are formed (friction times slip): at most 1e308,
-/// so this leaves 28 digits for stiffness and sums.
-const MOST: f64 = 1e70;
-
-/// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh, N/m.
+/// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh,
+/// N/m.
 pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
     let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
     let mut ends = [f64::INFINITY, 0.0_f64];
@@ -27,12 +25,12 @@ pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
             }
         })?;
         let value = law.bound();
-        if !(1.0 / MOST..=MOST).contains(&value) {
+        if !(1.0 / LARGEST..=LARGEST).contains(&value) {
             return Err(ContactError::Stiffness {
                 region,
                 value,
-                least: 1.0 / MOST,
-                most: MOST,
+                least: 1.0 / LARGEST,
+                most: LARGEST,
             });
         }
         ends = [ends[0].min(value), ends[1].max(value)];
@@ -44,12 +42,12 @@ pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
 
 /// Refuses what is too large; what is not a number is left to others.
 fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
-    if value > MOST {
+    if value > LARGEST {
         return Err(ContactError::TooLarge {
             place: place(),
             value,
             unit,
-            most: MOST,
+            most: LARGEST,
         });
     }
     Ok(())
@@ -92,7 +90,8 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
     Ok(())
 }
 
-/// The nodal forces of each load with factor one, subdomain by subdomain, N; `spring` is the least stiffness of a region, N/m.
+/// The nodal forces of each load with factor one, subdomain by subdomain, N; `spring` is the least stiffness of a
+/// region, N/m.
 pub(super) fn nodal_loads(
     scene: &Scene,
     decomposition: &Decomposition,

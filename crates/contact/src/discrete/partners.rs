@@ -1,40 +1,32 @@
 //! Partners: which node of the other body a contact node may touch.
 //!
-//! Meshes match, so that the partner of a node lies on its normal. What is small against the facets is put down to rounding,
-//! and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of
-//! its far side on the same normal.
+//! Meshes match, so that the partner of a node lies on its normal. What is small against the facets is put down to
+//! rounding, and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do
+//! not face each other are no partners: a thin body has nodes of its far side on the same normal.
 
 use super::rounding::rounding;
 use crate::error::ContactError;
 use crate::scene::{Contact, Gap};
+use crate::tolerances::{BESIDE, FACING, MOST_TILT, TILT};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use std::collections::HashMap;
-
-/// Distance of a partner from the normal, over the size of the facets (the root of the area of a node), that is allowed;
-/// what is allowed more over the gap; and the most of that, over the size again.
-const BESIDE: f64 = 0.02;
-const TILT: f64 = 0.1;
-const MOST: f64 = 0.2;
-
-/// Cosine between a normal and that of the other side reversed above which they face each other.
-const FACING: f64 = 0.1;
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
 
 /// The partner of a contact node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Partner {
-    pub(crate) node: u32,
+pub(super) struct Partner {
+    pub(super) node: u32,
     /// Distance along the normal of the contact node, m; negative where the bodies overlap.
-    pub(crate) gap: f64,
+    pub(super) gap: f64,
 }
 
-/// The partners of the nodes of a surface, node by node; none where the contact is with a rigid obstacle. `fixed` is the
-/// frame of a contact with one direction.
-pub(crate) fn partners(
+/// The partners of the nodes of a surface, node by node; none where the contact is with a rigid obstacle. `fixed` is
+/// the frame of a contact with one direction.
+pub(super) fn partners(
     mesh: &TetMesh,
     index: usize,
     contact: &Contact,
@@ -44,102 +36,113 @@ pub(crate) fn partners(
     if contact.partner.is_empty() {
         return Ok(Vec::new());
     }
-    let other = Side::new(mesh, Surface::new(mesh, &contact.partner)?);
+    let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
     let rounding = rounding(mesh);
-    let found: Vec<Result<Partner, ContactError>> = surface
+    let partner = |(local, &node): (usize, &u32)| {
+        let seen_from = Viewer {
+            node,
+            at: mesh.points()[node as usize],
+            normal: fixed.unwrap_or(&surface.frames()[local]).normal,
+            size: surface.areas()[local].sqrt(),
+        };
+        let size = seen_from.size;
+        let Some(mut partner) = other.partner(&seen_from) else {
+            let (beside, limit) = (other.beside(&seen_from), BESIDE * size);
+            return Err(ContactError::NoPartner {
+                contact: index,
+                node,
+                beside,
+                limit,
+            });
+        };
+        let depth = -partner.gap;
+        if matches!(contact.gap, Gap::Measured) && depth > size {
+            let partner = partner.node;
+            return Err(ContactError::Overlap {
+                contact: index,
+                node,
+                partner,
+                depth,
+                size,
+            });
+        }
+        if depth.abs() <= rounding {
+            partner.gap = 0.0;
+        }
+        Ok(partner)
+    };
+    let found: Vec<_> = surface
         .nodes()
         .par_iter()
         .enumerate()
-        .map(|(local, &node)| {
-            let normal = fixed.unwrap_or(&surface.frames()[local]).normal;
-            let size = surface.areas()[local].sqrt();
-            let partner = other.partner(mesh, node, normal, size);
-            let partner = partner.ok_or_else(|| ContactError::NoPartner {
-                contact: index,
-                node,
-                beside: other.beside(mesh, node, normal),
-                limit: BESIDE * size,
-            })?;
-            if matches!(contact.gap, Gap::Measured) && -partner.gap > size {
-                return Err(ContactError::Overlap {
-                    contact: index,
-                    node,
-                    partner: partner.node,
-                    depth: -partner.gap,
-                    size,
-                });
-            }
-            let gap = if partner.gap.abs() > rounding {
-                partner.gap
-            } else {
-                0.0
-            };
-            Ok(Partner { gap, ..partner })
-        })
+        .map(partner)
         .collect();
     // of several errors the first, whichever thread has found one
     let found: Vec<Partner> = found.into_iter().collect::<Result<_, _>>()?;
     let mut owners = HashMap::new();
-    for (partner, &node) in found.iter().zip(surface.nodes()) {
-        if let Some(first) = owners.insert(partner.node, node)
-            && distance(mesh, first, node) > rounding
+    for (&Partner { node: partner, .. }, &second) in found.iter().zip(surface.nodes()) {
+        let place = |node: u32| &mesh.points()[node as usize];
+        if let Some(first) = owners.insert(partner, second)
+            && vector::distance(place(first), place(second)) > rounding
         {
             return Err(ContactError::SharedPartner {
                 contact: index,
-                partner: partner.node,
+                partner,
                 first,
-                second: node,
+                second,
             });
         }
     }
     Ok(found)
 }
 
-fn distance(mesh: &TetMesh, a: u32, b: u32) -> f64 {
-    let [a, b] = [a, b].map(|node| &mesh.points()[node as usize]);
-    vector::distance(a, b)
+/// A contact node that looks for its partner.
+struct Viewer {
+    node: u32,
+    at: [f64; 3],
+    normal: [f64; 3],
+    /// Root of the area of the node, m.
+    size: f64,
 }
 
 /// The other side, with its nodes in the order of each coordinate.
-struct Side {
+struct OtherSide<'a> {
+    mesh: &'a TetMesh,
     surface: Surface,
     /// Coordinate and place in the surface.
     sorted: [Vec<(f64, u32)>; 3],
 }
 
-impl Side {
-    fn new(mesh: &TetMesh, surface: Surface) -> Self {
+impl<'a> OtherSide<'a> {
+    fn new(mesh: &'a TetMesh, surface: Surface) -> Self {
         let sorted = [0, 1, 2].map(|c| {
             let nodes = surface.nodes().iter().zip(0..);
-            let mut list: Vec<(f64, u32)> = nodes
-                .map(|(&node, local)| (mesh.points()[node as usize][c], local))
-                .collect();
+            let places = nodes.map(|(&node, local)| (mesh.points()[node as usize][c], local));
+            let mut list: Vec<(f64, u32)> = places.collect();
             list.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             list
         });
-        Self { surface, sorted }
+        Self {
+            mesh,
+            surface,
+            sorted,
+        }
     }
 
-    /// The nearest node at the normal of a node with facets of this size.
-    fn partner(&self, mesh: &TetMesh, node: u32, normal: [f64; 3], size: f64) -> Option<Partner> {
-        let search = |most: f64| self.nearest(mesh, node, normal, size, most);
-        let near = search(NEAR * size).filter(|(_, distance)| *distance <= NEAR * size);
-        let found = near.or_else(|| search(f64::INFINITY));
+    /// The nearest node at the normal of a node.
+    fn partner(&self, from: &Viewer) -> Option<Partner> {
+        let near = NEAR * from.size;
+        let found = self
+            .nearest(from, near)
+            .filter(|(_, distance)| *distance <= near);
+        let found = found.or_else(|| self.nearest(from, f64::INFINITY));
         found.map(|(partner, _)| partner)
     }
 
     /// The nearest of the nodes that may be closer than `most`, with its distance.
-    fn nearest(
-        &self,
-        mesh: &TetMesh,
-        node: u32,
-        normal: [f64; 3],
-        size: f64,
-        most: f64,
-    ) -> Option<(Partner, f64)> {
-        let at = mesh.points()[node as usize];
+    fn nearest(&self, from: &Viewer, most: f64) -> Option<(Partner, f64)> {
         // along the axis on which the normal is shortest
-        let slope = |c: &usize| normal[*c].abs();
+        let slope = |c: &usize| from.normal[*c].abs();
         let axis = (0..3)
             .min_by(|a, b| slope(a).total_cmp(&slope(b)))
             .unwrap_or(0);
@@ -147,18 +150,17 @@ impl Side {
             0.0 => 0.0,
             slope => slope * most,
         };
-        let reach = (BESIDE + MOST) * size + along;
-        let list = &self.sorted[axis];
-        let from = list.partition_point(|(x, _)| *x < at[axis] - reach);
-        let near = list[from..].iter();
-        let near = near.take_while(|(x, _)| *x <= at[axis] + reach);
+        let reach = (BESIDE + MOST_TILT) * from.size + along;
+        let (list, at) = (&self.sorted[axis], from.at[axis]);
+        let near = list[list.partition_point(|(x, _)| *x < at - reach)..].iter();
         let mut found = None::<(Partner, f64)>;
-        for &(_, local) in near {
-            let Some((partner, beside)) = self.seen(mesh, node, normal, local as usize) else {
+        for &(_, local) in near.take_while(|(x, _)| *x <= at + reach) {
+            let Some((partner, beside)) = self.seen(from, local as usize) else {
                 continue;
             };
             let distance = partner.gap.hypot(beside);
-            let allowed = BESIDE * size + (TILT * partner.gap.abs()).min(MOST * size);
+            let tilted = (TILT * partner.gap.abs()).min(MOST_TILT * from.size);
+            let allowed = BESIDE * from.size + tilted;
             if beside <= allowed && found.is_none_or(|f| distance < f.1) {
                 found = Some((partner, distance));
             }
@@ -167,34 +169,23 @@ impl Side {
     }
 
     /// How far from the normal of a node the next of all nodes that face it is, m; infinite if none does.
-    fn beside(&self, mesh: &TetMesh, node: u32, normal: [f64; 3]) -> f64 {
-        let all = 0..self.surface.nodes().len();
-        let seen = all.filter_map(|local| self.seen(mesh, node, normal, local));
+    fn beside(&self, from: &Viewer) -> f64 {
+        let seen = (0..self.surface.nodes().len()).filter_map(|local| self.seen(from, local));
         seen.fold(f64::INFINITY, |least, (_, beside)| least.min(beside))
     }
 
-    /// A node of the other side as it is seen from a node: along its normal, and beside it. `None` if it does not face it.
-    fn seen(
-        &self,
-        mesh: &TetMesh,
-        node: u32,
-        normal: [f64; 3],
-        local: usize,
-    ) -> Option<(Partner, f64)> {
-        let candidate = self.surface.nodes()[local];
-        let facing = -self.surface.frames()[local].normal_part(normal);
-        if candidate == node || facing < FACING {
+    /// A node of this side as it is seen from a node: along its normal, and beside it. `None` if it does not face it.
+    fn seen(&self, from: &Viewer, local: usize) -> Option<(Partner, f64)> {
+        let node = self.surface.nodes()[local];
+        let facing = -self.surface.frames()[local].normal_part(from.normal);
+        if node == from.node || facing < FACING {
             return None;
         }
-        let [at, to] = [node, candidate].map(|n| mesh.points()[n as usize]);
-        let way = [0, 1, 2].map(|c| to[c] - at[c]);
-        let gap = vector::dot(&way, &normal);
-        let beside = vector::norm(&[0, 1, 2].map(|c| way[c] - gap * normal[c]));
-        let partner = Partner {
-            node: candidate,
-            gap,
-        };
-        Some((partner, beside))
+        let to = self.mesh.points()[node as usize];
+        let way = [0, 1, 2].map(|c| to[c] - from.at[c]);
+        let gap = vector::dot(&way, &from.normal);
+        let beside = vector::norm(&[0, 1, 2].map(|c| way[c] - gap * from.normal[c]));
+        Some((Partner { node, gap }, beside))
     }
 }
 

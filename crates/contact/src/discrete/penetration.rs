@@ -1,16 +1,14 @@
 //! Contact nodes whose normal displacement is prescribed by supports.
 //!
-//! They have no contact row, since no contact force can change their displacement. That is right only as long as they stay
-//! outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
+//! They have no contact row, since no contact force can change their displacement. That is right only as long as they
+//! stay outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
 use crate::scene::Scene;
+use crate::tolerances::DEPTH;
 use signorini_fem_mesh::History;
 use signorini_tfeti::PrescribedPoint;
-
-/// Depth above this share of the displacement or the gap counts.
-const RELATIVE: f64 = 1e-9;
 
 /// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step.
 pub(super) fn check_penetration(
@@ -35,7 +33,7 @@ pub(super) fn check_penetration(
                 .map(|&(case, value)| factors[case as usize] * value)
                 .sum();
             let depth = displacement - gap;
-            let allowed = rounding + RELATIVE * gap.abs().max(displacement.abs());
+            let allowed = rounding + DEPTH * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
                 deepest = Some((depth, fixed.node, displacement, gap));
             }

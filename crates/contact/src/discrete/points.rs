@@ -1,11 +1,12 @@
 //! Where contact can happen: the contact points of all surfaces, with normal, area and gap.
 //!
-//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two contacts
-//! meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all of
-//! their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the conditions follows
-//! from the other. Between bodies a node is one point, with a partner.
+//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two
+//! contacts meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all
+//! of their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the
+//! conditions follows from the other. Between bodies a node is one point, with a partner.
 //!
-//! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate judges the former.
+//! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
+//! judges the former.
 
 use super::creases::{area_vector, creases, length};
 use super::overflow::largest_factor;
@@ -13,18 +14,11 @@ use super::partners::{Partner, partners};
 use super::side::{Side, Sides};
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal, Scene};
+use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
 use signorini_qp::vector;
 use std::cmp::Ordering;
 use std::collections::HashMap;
-
-/// Cosine to the outward normal below which a direction counts as along the surface.
-const ALONG: f64 = 1e-9;
-
-/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
-/// angle (tests/edges_apart.rs). Within smaller ones a node would have twice the same row, which [`ContactConstraints`] refuses, and one
-/// condition keeps the other to 1.4e-6 of the way along the surface, which the certificate sees.
-const SAME: f64 = 1.0 - 1e-12;
 
 /// A contact point before any row is made.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,7 +64,7 @@ impl ContactPoint {
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         self.sides.partner == other.sides.partner
-            && self.frame.normal_part(other.frame.normal) > SAME
+            && self.frame.normal_part(other.frame.normal) > SAME_NORMAL
     }
 }
 
@@ -170,8 +164,9 @@ fn fixed_frame(
     Ok(Some(frame))
 }
 
-/// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are its own.
-/// Where both are as near the law is that of the first one, on the area of both; facets that they share count once.
+/// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are
+/// its own. Where both are as near the law is that of the first one, on the area of both; facets that they share
+/// count once.
 fn join(
     scene: &Scene,
     rounding: f64,
@@ -234,10 +229,6 @@ fn stays(
     }
     Ok(true)
 }
-
-/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a twentieth of
-/// the way.
-const TURN: f64 = 0.1;
 
 /// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
 fn check_turn(

@@ -32,8 +32,8 @@ pub(crate) struct DiscreteScene {
 }
 
 impl DiscreteScene {
-    /// Refuses all that can be wrong with a scene but two things, which only the set-up can judge: subdomains that cannot be
-    /// factored, and loads that neither supports nor contact hold.
+    /// Refuses all that can be wrong with a scene but two things, which only the set-up can judge: subdomains that
+    /// cannot be factored, and loads that neither supports nor contact hold.
     pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
         scene.validate()?;
         let decomposition = scene.decompose()?;
@@ -72,8 +72,8 @@ impl DiscreteScene {
         })
     }
 
-    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are those
-    /// of nodes that supports hold, judged before anything is solved.
+    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are
+    /// those of nodes that supports hold, judged before anything is solved.
     pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
         let mut places = places.peekable();
         let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();

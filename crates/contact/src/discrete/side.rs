@@ -5,19 +5,14 @@
 pub(crate) struct Side(Vec<(u32, f64)>);
 
 impl Side {
-    /// A side that is one node.
+    /// A single node.
     pub(crate) fn node(node: u32) -> Self {
         Self(vec![(node, 1.0)])
     }
 
-    /// Its nodes and their weights.
+    /// The nodes and their weights.
     pub(crate) fn nodes(&self) -> &[(u32, f64)] {
         &self.0
-    }
-
-    /// The node that names the side.
-    pub(crate) fn first(&self) -> u32 {
-        self.0[0].0
     }
 }
 
@@ -31,20 +26,20 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// The node that names the point.
+    /// The node that names the point: the first.
     pub(crate) fn node(&self) -> u32 {
-        self.own.first()
+        self.own.nodes()[0].0
     }
 
     /// The node that names the other side.
     pub(crate) fn partner(&self) -> Option<u32> {
-        self.partner.as_ref().map(Side::first)
+        self.partner.as_ref().map(|side| side.nodes()[0].0)
     }
 
-    /// The relative displacement of the sides as a sum: nodes with their weights, those of the partner negative.
+    /// The displacement of one side relative to the other as a sum: nodes with weights, those of the partner negative.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = (u32, f64)> {
         let partner = self.partner.iter().flat_map(Side::nodes);
         let partner = partner.map(|&(node, weight)| (node, -weight));
-        self.own.0.iter().copied().chain(partner)
+        self.own.nodes().iter().copied().chain(partner)
     }
 }

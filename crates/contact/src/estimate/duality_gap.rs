@@ -1,105 +1,32 @@
-//! Estimate of the algebraic error of a level by the duality gap.
+//! The algebraic error of a step by the duality gap; docs/theory.md derives it.
 //!
-//! Let `K` be the stiffness, `f` the load, `g` the gaps, `z` the tangential positions of rest, `r` the slip
-//! bounds, `u*` the solution of the discrete problem with given bounds `r`: the minimiser of
-//!
-//! ```text
-//! J(v) = 1/2 vᵀ K v - fᵀ v + sum r |v_T - z|      over continuous v that obey the supports and v_nu <= g.
-//! ```
-//!
-//! The recovered displacement `u` of the torn body is in equilibrium with the multipliers, `K u = f + Bᵀ lambda`
-//! (5.26), but only nearly continuous and only nearly admissible. Make from it a continuous, admissible `v`: the
-//! mean of the copies of each node weighted by their stiffness, moved at contact nodes (below), set to the supports.
-//! Then `fᵀ v = uᵀ K v - lambdaᵀ B v`, gluing and supports drop out of `lambdaᵀ (B v - c)`, and
+//! The recovered torn displacement `u` is in equilibrium with the multipliers, but only nearly continuous and
+//! admissible. From it a continuous, admissible `v` is made: the mean of the copies of each node weighted by
+//! stiffness, moved at contact nodes ([`admissible`](super::admissible)), set to the supports. With slip bounds `r`,
+//! gaps `g` and rest positions `z`
 //!
 //! ```text
-//! J(v) = 1/2 |v - u|² - 1/2 |u|² + lambdaᵀ B v + sum r |v_T - z|,        |w|² = wᵀ K w, torn
-//! D    = inf over v of the Lagrangian = -1/2 |u|² + lambdaᵀ c            (dual value of lambda)
-//! gap  = J(v) - D
-//!      = 1/2 |v - u|² + sum lambda_nu (v_nu - g) + sum ( r |v_T - z| + lambda_T . (v_T - z) )  >= 0.
+//! gap = 1/2 |v - u|² + sum lambda_nu (v_nu - g) + sum ( r |v_T - z| + lambda_T . (v_T - z) )
 //! ```
 //!
-//! All three terms are non-negative if `lambda_nu <= 0` and `|lambda_T| <= r`. `J` grows at least quadratically from
-//! its minimum, `J(v) - J(u*) >= 1/2 |v - u*|²`, and so does `-D`, `J(u*) - D >= 1/2 |u - u*|²`. Their sum is the gap:
-//!
-//! ```text
-//! 1/2 |v - u*|² + 1/2 |u - u*|² <= gap.
-//! ```
-//!
-//! This bounds the errors of `v` and of the torn displacement at once, without any constant.
-//!
-//! **The mean that is handed out** ([`StepResult::displacement`](crate::StepResult::displacement)), the plain one of the copies, is neither: it is not moved, and does not
-//! obey the supports better than the copies do. Subdomains that are off as a whole strain nothing while they are torn, and much in the
-//! mean; its error was up to four times the bound. So the estimate is at least `1/2 |mean - v|²`. By the triangle inequality it is
-//! then no less than half the error of the mean, as a norm.
-//!
-//! **The move at contact nodes.** Every admissible `v` gives a bound; a good one costs little. At a node with
-//! stiffness `k` in the direction of the row, the move that minimises the gap with all other nodes held is
-//! `v_nu - g <- min(0, v_nu - g - lambda_nu / k)`, and `v_T - z` goes to `w = v_T - z - lambda_T / k` shortened by
-//! `r / k`. Pressed nodes come to lie on the obstacle, sticking ones at rest, sliding ones move against their friction.
-//!
-//! **What is not exact.**
-//! - *Pulling forces* (`lambda_nu > 0`, by the tolerance) enter as `|lambda_nu (v_nu - g)|`.
-//! - *Friction off its bound.* Solvers stop with `|lambda_T|` a little above or below the `r` of a sliding node: slip
-//!   bounds still move. First order in `r - |lambda_T|`, the gap would overrate this. Where they differ by less than a
-//!   hundredth the bound belongs
-//!   to the problem with `r' = |lambda_T|`, and the way from `r'` to `r` adds, as an error norm, that of the force
-//!   `r - r'` on the node with its own stiffness `k`: `sqrt(sum (r - r')² / (2 k))`. The body is softer than one node;
-//!   this part is an estimate.
-//! - *Equilibrium of subdomains as rigid bodies* holds to rounding with the face method, to the tolerance with SMALSE. The
-//!   unbalanced rest is then carried by gluing and support forces, `lambda' = lambda + W Gᵀ (G W Gᵀ)⁻¹ (e - G lambda)` with
-//!   weights `W` that leave contact forces alone, and `u' = u + K+ Bᵀ (lambda' - lambda)` takes the place of `u`: one
-//!   more product. If contact alone holds the body, the rest `q = K u - f - Bᵀ lambda` adds its norm times that of `v - u`.
-//! - *Coulomb friction.* `r = F |lambda_nu|` is taken from the level's own `lambda_nu`, so `u*` is the solution of
-//!   *its* given-friction problem, one evaluation of the map (3.15) away. With contraction rate `q` of the map the distance
-//!   to its fixed point is at most `1 / (1 - q)` times the estimate; `q` is about 0.06 on the benchmark. Where the
-//!   map is not contractive the estimate says nothing about the Coulomb problem.
-//! - *Nodes in edges* of obstacles are moved out of one after the other, ten times. Between obstacles that are not
-//!   perpendicular a small depth may be left.
-//! - *The level before* is taken as it is: errors of old tangential positions are not in the estimate.
-//!   [`AccumulatedError`](crate::AccumulatedError) adds them up.
-//!
-//! # At rest
-//!
-//! A relative error needs something to compare with. Where nothing is strained (loads on supported nodes, a body that is
-//! unloaded again, one that only moves with its supports) the elastic energy is rounding, and an error relative to it
-//! would be about one whatever is done. [`AlgebraicError::scale`] therefore is the largest of
-//!
-//! - the elastic energy,
-//! - `1/2 sum |f|² / k`: what the load of each node would do to it with all others held. A body that is free to give way
-//!   has more elastic energy than a quarter of this,
-//! - `1e-6 / 2` times the largest norm of the multipliers times the largest displacement of the levels before: a thousandth of
-//!   both,
-//! - `1e-12 / 2 sum k |u|²`: below it elastic energies are rounding.
-//!
-//! With no load, no displacement and no level before there is nothing wrong either, and the relative error is 0.
+//! is at least `1/2 |v - u*|² + 1/2 |u - u*|²`, `u*` the solution of the discrete problem with the slip bounds `r`.
 
-use super::admissible::{Movable, Moved};
-use crate::model::{ConstrainedPoint, Model};
+use super::admissible::{AdmissibleNode, Correction};
+use crate::model::Model;
 use crate::report::AlgebraicError;
 use crate::result::Recovered;
 use crate::step::StepProblem;
-use crate::tolerances::REST;
+use crate::tolerances::{NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::StrainRecovery;
 use signorini_qp::vector;
-use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
+use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// Moves out of one obstacle after another, for nodes in edges; one is enough between perpendicular ones.
 const SWEEPS: usize = 10;
-
-/// Planes of one node count as parallel below this singular value over the largest.
-const PARALLEL: f64 = 1e-6;
-
-/// Relative imbalance that counts as rounding.
-const BALANCED: f64 = 1e-12;
-
-/// Elastic energy that may be rounding, relative to that of all nodes moved alone: elastic energies of bodies that move without
-/// strain are differences of numbers this much larger, or more.
-const ROUNDED: f64 = 1e-12;
 
 /// Stiffnesses that weigh contact nodes, computed once when first needed.
 #[derive(Debug)]
@@ -107,23 +34,24 @@ pub(crate) struct Weights {
     /// Stiffness in the direction of the contact rows, N/m, by row.
     rows: Vec<f64>,
     /// What moves at each contact point.
-    movable: Vec<Movable>,
-    /// Made where a level needs it: solvers of the face method leave nothing to balance.
+    nodes: Vec<AdmissibleNode>,
+    /// Made where a step needs it: the active-set method leaves nothing to balance.
     interior: OnceLock<Option<CoarseFactor>>,
 }
 
 impl Weights {
-    pub(crate) fn new(model: &Model) -> Self {
+    fn new(model: &Model) -> Self {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
+        let nodes = model
+            .points
+            .iter()
+            .map(|p| AdmissibleNode::new(model, p))
+            .collect();
         Self {
             rows,
-            movable: model
-                .points
-                .iter()
-                .map(|p| Movable::new(model, p))
-                .collect(),
+            nodes,
             interior: OnceLock::new(),
         }
     }
@@ -150,7 +78,7 @@ pub(crate) struct Caches {
     pub(crate) recovery: OnceLock<StrainRecovery>,
 }
 
-/// What the estimate needs of a solved level.
+/// What the estimate needs of a solved step.
 #[derive(Clone, Copy)]
 pub(crate) struct Solved<'a> {
     pub(crate) model: &'a Model,
@@ -161,29 +89,20 @@ pub(crate) struct Solved<'a> {
 
 impl Solved<'_> {
     pub(crate) fn algebraic_error(&self) -> AlgebraicError {
-        let model = self.model;
-        let tfeti = &model.tfeti;
+        let (model, tfeti) = (self.model, &self.model.tfeti);
         let weights = self.caches.weights.get_or_init(|| Weights::new(model));
-        let mut v = self.mean(model.copies());
+        let mut v = self.mean();
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
-        let places = || {
-            self.recovered
-                .points
-                .iter()
-                .zip(&model.points)
-                .zip(&weights.movable)
-        };
-        let moved: Vec<Moved> = places()
-            .map(|((point, touch), movable)| {
-                Moved::new(touch, point, (self.problem, movable), &weights.rows, &mut v)
-            })
+        let points = || self.recovered.points.iter().zip(&weights.nodes);
+        let moved: Vec<Correction> = points()
+            .map(|(state, node)| Correction::new(node, state, self.problem, &weights.rows, &mut v))
             .collect();
         self.support(&mut v);
-        self.agree(&moved, &weights.movable, &mut v);
+        self.agree(&moved, &weights.nodes, &mut v);
         let (mut terms, mut change) = (0.0, 0.0);
-        for (((point, touch), movable), moved) in places().zip(&moved) {
-            let place = movable.place(self.problem, touch, &v);
-            terms += moved.gap(point, &place, movable.value(&mut v));
+        for ((state, node), moved) in points().zip(&moved) {
+            let conditions = node.conditions(self.problem, &v);
+            terms += moved.gap(state, &conditions, node.value(&mut v));
             change += moved.change;
         }
         // torn difference and its energy
@@ -237,11 +156,11 @@ impl Solved<'_> {
         }
         let works = self.problem.peaks.iter();
         let before = REST * REST * works.map(|p| p.multipliers * p.displacement).sum::<f64>();
-        0.5 * alone.max(before).max(ROUNDED * moved)
+        0.5 * alone.max(before).max(NO_STRAIN * moved)
     }
 
     fn is_balanced(&self) -> bool {
-        self.recovered.certificate.equilibrium.relative() < BALANCED
+        self.recovered.certificate.equilibrium.relative() < ROUNDING
     }
 
     /// The torn displacement with rigid forces balanced by gluing and supports; `None` if they are balanced already.
@@ -252,35 +171,26 @@ impl Solved<'_> {
         let tfeti = &self.model.tfeti;
         let interior = weights.interior(tfeti)?;
         // Rᵀ (K u - f - Bᵀ lambda) = e - G lambda
-        let missing: Vec<f64> = (0..tfeti.subdomains())
-            .flat_map(|s| {
-                tfeti
-                    .kernel(s)
-                    .transpose_times(&self.recovered.residual[tfeti.torn_range(s)])
-            })
-            .collect();
+        let residual = |s: usize| &self.recovered.residual[tfeti.torn_range(s)];
+        let missing = (0..tfeti.subdomains()).map(|s| tfeti.kernel(s).transpose_times(residual(s)));
+        let missing: Vec<f64> = missing.flatten().collect();
         let mut lambda = vec![0.0; tfeti.dual_dim()];
         interior.particular(&missing, &mut lambda, &mut interior.scratch());
         let mut force = vec![0.0; tfeti.torn_dim()];
         tfeti.add_rows_transposed(&lambda, &mut force);
         let mut u = vec![0.0; tfeti.torn_dim()];
         tfeti.generalised_inverse(&force, &mut u);
-        u.iter_mut()
-            .zip(&self.recovered.torn)
-            .for_each(|(u, t)| *u += t);
+        vector::axpy(1.0, &self.recovered.torn, &mut u);
         Some(u)
     }
 
-    fn mean(&self, weights: &CopyStiffness) -> Vec<f64> {
+    /// The mean of the copies of each node, weighted by their stiffness.
+    fn mean(&self) -> Vec<f64> {
+        let weights = self.model.copies();
         let nodes = self.model.scene.mesh.points().len();
         let (mut v, mut total) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
-        let copies = self
-            .model
-            .discrete
-            .decomposition
-            .subdomains()
-            .iter()
-            .flat_map(|s| s.nodes.iter().copied());
+        let subdomains = self.model.discrete.decomposition.subdomains().iter();
+        let copies = subdomains.flat_map(|s| s.nodes.iter().copied());
         for ((k, node), u) in copies.enumerate().zip(self.recovered.torn.chunks_exact(3)) {
             let (node, weight) = (node as usize, weights.weight(k));
             total[node] += weight;
@@ -292,9 +202,9 @@ impl Solved<'_> {
         v
     }
 
-    /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one may undo
-    /// another. Points that touch stay at their obstacles, others are moved out of theirs.
-    fn agree(&self, moved: &[Moved], movable: &[Movable], v: &mut [f64]) {
+    /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one
+    /// may undo another. Points that touch stay at their obstacles, others are moved out of theirs.
+    fn agree(&self, moved: &[Correction], nodes: &[AdmissibleNode], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         if gluing.dependent_nodes().is_empty() {
             return;
@@ -302,21 +212,22 @@ impl Solved<'_> {
         let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
         for row in gluing.ranges().dirichlet.clone() {
             if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
-                let plane = (self.direction(row), self.problem.offset[row]);
+                let plane = (self.model.support_direction(row), self.problem.offset[row]);
                 planes.entry(node).or_default().push(plane);
             }
         }
-        let dependent = |t: &(&ConstrainedPoint, &Movable)| gluing.is_dependent(t.0.node());
-        let places = self.model.points.iter().zip(movable);
-        for ((touch, movable), moved) in places.clone().zip(moved).filter(|p| dependent(&p.0)) {
-            let place = movable.place(self.problem, touch, v);
-            let planes = planes.entry(movable.node).or_default();
+        let points = self.model.points.iter().zip(nodes).zip(moved);
+        let dependent = points.filter(|((point, _), _)| gluing.is_dependent(point.node()));
+        let dependent: Vec<_> = dependent.map(|((_, node), moved)| (node, moved)).collect();
+        for (node, moved) in &dependent {
+            let conditions = node.conditions(self.problem, v);
+            let planes = planes.entry(node.node).or_default();
             if moved.touches() {
-                planes.push((place.normal, place.offset));
+                planes.push(conditions.obstacle());
             }
-            // with given friction also where the contact is open
+            // with Tresca friction also where the contact is open
             if moved.sticks() {
-                planes.extend_from_slice(place.along());
+                planes.extend_from_slice(conditions.along());
             }
         }
         let on_planes = |v: &mut [f64]| {
@@ -326,20 +237,11 @@ impl Solved<'_> {
         };
         on_planes(v);
         for _ in 0..SWEEPS {
-            for (touch, movable) in places.clone().filter(dependent) {
-                movable.push_out(self.problem, touch, v);
-            }
+            dependent
+                .iter()
+                .for_each(|(node, _)| node.push_out(self.problem, v));
         }
         on_planes(v);
-    }
-
-    /// The direction that a support row fixes, times the scale of the row.
-    fn direction(&self, row: usize) -> [f64; 3] {
-        let mut direction = [0.0; 3];
-        for (_, dof, coefficient) in self.model.tfeti.gluing().row(row) {
-            direction[dof % 3] += coefficient;
-        }
-        direction
     }
 
     /// Sets supported directions to their prescribed values.
@@ -349,10 +251,10 @@ impl Solved<'_> {
             let Some(node) = gluing.node(row) else {
                 continue;
             };
-            let direction = self.direction(row);
+            let direction = self.model.support_direction(row);
             let value = &mut v[3 * node as usize..][..3];
-            let off =
-                (self.problem.offset[row] - dot(&direction, value)) / dot(&direction, &direction);
+            let missing = self.problem.offset[row] - dot(&direction, value);
+            let off = missing / dot(&direction, &direction);
             for c in 0..3 {
                 value[c] += off * direction[c];
             }

@@ -4,7 +4,8 @@ use crate::discrete::ContactPoint;
 use signorini_fem_mesh::SurfaceFrame;
 use signorini_tfeti::{ContactRows, Gluing, TangentialRows};
 
-/// A node that can touch an obstacle or a node of another body. A node in an edge or a corner is several, with other normals.
+/// A node that can touch an obstacle or a node of another body. A node in an edge or a corner is several, with other
+/// normals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstrainedPoint {
     /// What the scene says of it.

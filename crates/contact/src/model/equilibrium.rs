@@ -1,17 +1,17 @@
 //! Whether supports and contact can hold the body against its loads, judged before anything is solved.
 //!
-//! Equilibrium of the rigid motions that supports leave free is necessary: contact forces must exist with `G lambda = e`,
-//! `lambda_nu <= 0` and friction in its cone. On these motions, six a free body at most, that is a small problem: the
-//! loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the cone
-//! is a motion on which the loads work and against which no contact force can. Where larger friction could, the error says
-//! so, and by which factor.
+//! Equilibrium of the rigid motions that supports leave free is necessary: contact forces must exist with `G lambda =
+//! e`, `lambda_nu <= 0` and friction in its cone. On these motions, six a free body at most, that is a small problem:
+//! the loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the
+//! cone is a motion on which the loads work and against which no contact force can. Where larger friction could, the
+//! error says so, and by which factor.
 
 use super::contact_point::ConstrainedPoint;
 use super::friction_cone::{Generators, Separation, WrenchCone};
 use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
-use crate::tolerances::{FREE_WORK, SAME_LOADS};
+use crate::tolerances::{FREE_WORK, ROUNDING};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
 
@@ -113,7 +113,7 @@ fn escapes(
         } else {
             b.iter_mut().for_each(|v| *v /= length);
             // loads that only grow need no second look
-            let same = |old: &Vec<f64>| vector::distance(old, &b) < SAME_LOADS;
+            let same = |old: &Vec<f64>| vector::distance(old, &b) < ROUNDING;
             if approved.as_ref().is_some_and(same) {
                 continue;
             }

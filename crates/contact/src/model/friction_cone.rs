@@ -1,11 +1,12 @@
 //! The cone of the wrenches that contact forces can exert on rigid motions, and the closest point in it.
 //!
-//! Least squares with non-negative coefficients (Lawson and Hanson) over the generators `n + F (t1 cos + t2 sin)` of all
-//! points and angles: each round takes in the generator that helps most; those in use are hardly more than the motions.
+//! Least squares with non-negative coefficients (Lawson and Hanson) over the generators `n + F (t1 cos + t2 sin)` of
+//! all points and angles: each round takes in the generator that helps most; those in use are hardly more than the
+//! motions.
 //!
-//! Tresca friction adds forces that are bounded whatever the pressure: a set of points `z` around the cone. Whether loads lie
-//! in the sum of both is asked by going towards them in steps (Frank and Wolfe, as far as the distance falls): the residual
-//! of `b - z` separates `b` if `b` works more on it than all friction can.
+//! Tresca friction adds forces that are bounded whatever the pressure: a set of points `z` around the cone. Whether
+//! loads lie in the sum of both is asked by going towards them in steps (Frank and Wolfe, as far as the distance
+//! falls): the residual of `b - z` separates `b` if `b` works more on it than all friction can.
 
 use crate::tolerances::{
     FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK,
@@ -89,8 +90,8 @@ impl WrenchCone {
         }
     }
 
-    /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does not hold;
-    /// `None` where no friction could.
+    /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does
+    /// not hold; `None` where no friction could.
     pub(crate) fn friction_needed(&self, b: &[f64]) -> Option<f64> {
         let holds = |factor: f64| {
             let scaled = self.generators.iter().map(|g| Generators {
@@ -156,8 +157,8 @@ impl WrenchCone {
         found
     }
 
-    /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies in the
-    /// cone, or if that remains open.
+    /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies
+    /// in the cone, or if that remains open.
     pub(crate) fn separates(&self, b: &[f64]) -> Option<Vec<f64>> {
         self.separated(b, false)
     }
@@ -175,7 +176,7 @@ impl WrenchCone {
             if length <= WRENCH_RESIDUAL {
                 return None;
             }
-            // no contact force at all, or none that helps: the residual separates, unless enormous forces could close it
+            // no force, or none that helps: the residual separates, unless enormous forces could close it
             let best = self.best(&r, unbounded);
             let enough = length * length * self.largest;
             match best.filter(|(gain, _)| LEVERAGE * gain.max(0.0) > enough) {

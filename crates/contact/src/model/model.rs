@@ -37,8 +37,8 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each body the
-    /// norm of these forces, N. Empty if no support moves.
+    /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each
+    /// body the norm of these forces, N. Empty if no support moves.
     pub(crate) fn prescribed_force(&self, offset: &[f64]) -> Vec<f64> {
         if self.discrete.supports.motions.is_empty() {
             return Vec::new();
@@ -57,7 +57,8 @@ impl Model {
         out
     }
 
-    /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales certificates.
+    /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
+    /// certificates.
     pub(crate) fn copies(&self) -> &CopyStiffness {
         self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
     }
@@ -101,6 +102,15 @@ impl Model {
             support_stiffness: OnceLock::new(),
             copies: OnceLock::new(),
         })
+    }
+
+    /// The direction that a support row fixes, times the scale of the row.
+    pub(crate) fn support_direction(&self, row: usize) -> [f64; 3] {
+        let mut direction = [0.0; 3];
+        for (_, dof, coefficient) in self.tfeti.gluing().row(row) {
+            direction[dof % 3] += coefficient;
+        }
+        direction
     }
 
     /// Friction law of a point.
@@ -151,8 +161,8 @@ impl Model {
         }
     }
 
-    /// How the slip bounds that [`set_slip_bounds`](Self::set_slip_bounds) writes to discs follow the normal rows, for a
-    /// bound of `coefficient(point)` times the normal force.
+    /// How the slip bounds that [`set_slip_bounds`](Self::set_slip_bounds) writes to discs follow the normal rows,
+    /// for a bound of `coefficient(point)` times the normal force.
     pub(crate) fn slip_slopes(&self, coefficient: impl Fn(usize) -> f64) -> Vec<RadiusSlope> {
         let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
             TangentialRows::Disc { row, scale } => Some(RadiusSlope {

@@ -7,6 +7,7 @@ use super::recovered::Recovered;
 use crate::discrete::Supports;
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
+use crate::tolerances::ROUNDING;
 use crate::vec3::dot;
 use signorini_tfeti::{NodeSupport, PrescribedDirection};
 use std::collections::BTreeMap;
@@ -99,9 +100,6 @@ impl Reactions {
         sum
     }
 }
-
-/// Share of a contact force below which a difference is rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// Forces of all supports by node, from the multipliers of the support rows.
 ///

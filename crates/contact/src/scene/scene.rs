@@ -41,7 +41,7 @@ pub struct Scene {
     pub(crate) supports: Vec<Support>,
     pub(crate) loads: Vec<Load>,
     pub(crate) contacts: Vec<Contact>,
-    pub(crate) cut: Partition,
+    pub(crate) partition: Partition,
     pub(crate) analysis: Analysis,
 }
 
@@ -55,7 +55,7 @@ impl Scene {
             supports: Vec::new(),
             loads: Vec::new(),
             contacts: Vec::new(),
-            cut: Partition::Whole,
+            partition: Partition::Whole,
             analysis: Analysis::statics(),
         }
     }
@@ -74,12 +74,13 @@ impl Scene {
         self
     }
 
-    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall without.
+    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall
+    /// without.
     ///
-    /// Surfaces may share nodes, and even tags (one surface between two obstacles). A node then has one contact point for
-    /// each direction of contact, however little they differ. Only where the directions are the same (two parts of a flat floor with
-    /// different friction, to 1.4e-6 radians) it has one for all of them: of the obstacle that is nearer, with its law and area; where
-    /// both are as near, with the law of the contact that was added first and the area of both.
+    /// Surfaces may share nodes, and even tags. A node then has one contact point for each direction of contact.
+    /// Where the directions are the same (to 1.4e-6 radians) it has one for all of them: that of the obstacle that is
+    /// nearer, with its law and area; where both are as near, with the law of the contact that was added first and
+    /// the area of both.
     #[must_use]
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
@@ -97,14 +98,14 @@ impl Scene {
     /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
     #[must_use]
     pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {
-        self.cut = Partition::Boxes(boxes);
+        self.partition = Partition::Boxes(boxes);
         self
     }
 
     /// Cuts the body by part numbers, one an element.
     #[must_use]
     pub fn with_parts(mut self, parts: Vec<u32>) -> Self {
-        self.cut = Partition::Parts(parts);
+        self.partition = Partition::Parts(parts);
         self
     }
 
@@ -142,7 +143,7 @@ impl Scene {
     /// How the body is cut.
     #[must_use]
     pub fn partition(&self) -> &Partition {
-        &self.cut
+        &self.partition
     }
 
     /// The first contact surface, if any.
@@ -169,7 +170,7 @@ impl Scene {
     /// [`ContactError::Decomposition`] for a zero count of boxes, and for part numbers with gaps or
     /// disconnected parts.
     pub fn decompose(&self) -> Result<Decomposition, ContactError> {
-        Ok(match &self.cut {
+        Ok(match &self.partition {
             Partition::Whole => Decomposition::whole(&self.mesh),
             Partition::Boxes(boxes) => Decomposition::boxes(&self.mesh, *boxes)?,
             Partition::Parts(parts) => Decomposition::from_parts(&self.mesh, parts)?,

@@ -1,7 +1,7 @@
 //! Steps in time and the difference formula (2.9).
 
 use crate::error::ContactError;
-use crate::tolerances::{CONSISTENT, UNEQUAL};
+use crate::tolerances::{ROUNDING, UNEQUAL};
 
 /// The difference formula (2.9): `du/dt` at the end of step `i+1` is about
 /// `(alpha u[i+1] + beta u[i] + gamma u[i-1]) / dt`.
@@ -48,10 +48,10 @@ impl DifferenceFormula {
         if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
             return error("alpha must be positive and all three finite");
         }
-        if (alpha + beta + gamma).abs() > CONSISTENT * alpha {
+        if (alpha + beta + gamma).abs() > ROUNDING * alpha {
             return error("the sum must be 0");
         }
-        if (-beta - 2.0 * gamma - 1.0).abs() > CONSISTENT {
+        if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
             return error("-beta - 2 gamma must be 1");
         }
         Ok(Self { alpha, beta, gamma })
@@ -81,8 +81,7 @@ impl DifferenceFormula {
         self.gamma == 0.0
     }
 
-    /// `z` of section 3: the displacement at which the difference vanishes,
-    /// `-(beta u[i] + gamma u[i-1]) / alpha`.
+    /// `z` of section 3: the displacement at which the difference vanishes, `-(beta u[i] + gamma u[i-1]) / alpha`.
     #[must_use]
     pub fn offset(&self, last: f64, before: f64) -> f64 {
         -(self.beta * last + self.gamma * before) / self.alpha
@@ -124,9 +123,9 @@ impl Analysis {
         Self::Static { time: 1.0 }
     }
 
-    /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is asked for with
-    /// [`with_formula`](Self::with_formula): it remembers the step before the last, so that points that slid creep on where loads
-    /// are held, and its first step sees one and a half times the slip rate.
+    /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is
+    /// asked for with [`with_formula`](Self::with_formula): it remembers the step before the last, so that points
+    /// that slid creep on where loads are held, and its first step sees one and a half times the slip rate.
     #[must_use]
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         // none, which is refused when the scene is used

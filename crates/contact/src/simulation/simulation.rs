@@ -81,15 +81,7 @@ impl Simulation {
         let model = Model::new(scene, &settings)?;
         check_equilibrium(&model)?;
         let origin = || {
-            let (scene, gluing) = (&model.scene, model.tfeti.gluing());
-            let decomposition = &model.discrete.decomposition;
-            let origin = Fingerprint::new(
-                &scene.mesh,
-                &scene.analysis,
-                decomposition,
-                gluing,
-                &model.points,
-            );
+            let origin = Fingerprint::new(&model);
             (origin, operator_hash(&origin, &model, &settings))
         };
         let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);

@@ -6,8 +6,6 @@
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Analysis, DifferenceFormula};
 use crate::settings::Settings;
-use signorini_fem_mesh::{Decomposition, TetMesh};
-use signorini_tfeti::Gluing;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
@@ -25,22 +23,18 @@ pub(crate) struct Fingerprint {
 }
 
 impl Fingerprint {
-    pub(crate) fn new(
-        mesh: &TetMesh,
-        analysis: &Analysis,
-        decomposition: &Decomposition,
-        gluing: &Gluing,
-        points: &[ConstrainedPoint],
-    ) -> Self {
+    pub(crate) fn new(model: &Model) -> Self {
+        let mesh = &model.scene.mesh;
         let coordinates = mesh.points().iter().flatten();
         let tets = mesh.tets().iter().flatten();
+        let parts = model.discrete.decomposition.parts().iter();
         Self {
             points: hash(coordinates.map(|x| number(*x))),
             tets: hash(tets.map(|n| u64::from(*n))),
-            parts: hash(decomposition.parts().iter().map(|p| u64::from(*p))),
-            supports: supports(gluing),
-            contact: hash(points.iter().flat_map(point)),
-            formula: analysis.formula().map_or(0, formula),
+            parts: hash(parts.map(|p| u64::from(*p))),
+            supports: supports(model),
+            contact: hash(model.points.iter().flat_map(point)),
+            formula: model.scene.analysis.formula().map_or(0, formula),
             times: 0,
         }
     }
@@ -161,25 +155,17 @@ fn formula(formula: DifferenceFormula) -> u64 {
 
 /// The fixed directions of each node, as the projector on them, rounded: neither the order of supports nor the scale of
 /// their rows counts.
-fn supports(gluing: &Gluing) -> u64 {
+fn supports(model: &Model) -> u64 {
+    let gluing = model.tfeti.gluing();
     let mut nodes: BTreeMap<u32, [f64; 6]> = BTreeMap::new();
     for row in gluing.ranges().dirichlet.clone() {
-        let mut d = [0.0; 3];
-        for (_, dof, coefficient) in gluing.row(row) {
-            d[dof % 3] += coefficient;
-        }
+        let d = model.support_direction(row);
         let square = d.iter().map(|v| v * v).sum::<f64>();
         let Some(node) = gluing.node(row).filter(|_| square > 0.0) else {
             continue;
         };
-        let products = [
-            d[0] * d[0],
-            d[1] * d[1],
-            d[2] * d[2],
-            d[1] * d[2],
-            d[0] * d[2],
-            d[0] * d[1],
-        ];
+        let pairs = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+        let products = pairs.map(|(a, b)| d[a] * d[b]);
         let projector = nodes.entry(node).or_default();
         for (sum, product) in projector.iter_mut().zip(products) {
             *sum += product / square;

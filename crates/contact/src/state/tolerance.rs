@@ -1,12 +1,9 @@
 //! What chooses the tolerance of the next step by estimates of its error.
 
 use crate::report::AccumulatedError;
-use crate::tolerances::LOOSEST;
-
-/// The smallest tolerance a solver is asked for.
-const TIGHTEST: f64 = 1e-12;
-/// What is missing is exceeded by this factor, so that one more round is usually enough.
-const MARGIN: f64 = 0.5;
+use crate::tolerances::{
+    CHANGED, CONTACT_LIMIT, CONTACT_LIMITS, EXACT_MESH, LOOSEST, MARGIN, TIGHTEST,
+};
 
 /// An estimate of the discretisation error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,22 +29,14 @@ impl Discretisation {
     }
 }
 
-/// A smaller discretisation error counts as this.
-const EXACT_MESH: f64 = 1e-6;
-
 /// Largest relative violation of the contact conditions that goes with a target.
 pub(crate) fn certificate_limit(target: f64) -> f64 {
-    (CERTIFIED * target).clamp(FINEST, LOOSE)
+    let [least, most] = CONTACT_LIMITS;
+    (CONTACT_LIMIT * target).clamp(least, most)
 }
 
-/// Violation of the certificate over the target, and the range of what is asked for.
-const CERTIFIED: f64 = 5.0;
-const FINEST: f64 = 1e-8;
-const LOOSE: f64 = 1e-2;
-
-/// Steps after which the discretisation error is estimated again, and the factor in the elastic energy.
+/// Steps after which the discretisation error is estimated again.
 const EVERY: usize = 8;
-const CHANGED: f64 = 4.0;
 
 /// Chooses the tolerances of the solves, and remembers the errors of the steps so far.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -29,14 +29,15 @@ pub(crate) struct StepProblem {
     pub(crate) rhs: Vec<f64>,
     /// Displacement of the obstacle of each contact surface, now and a step before; empty where none moves.
     pub(crate) obstacles: [Vec<[f64; 3]>; 2],
-    /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not in `B u`.
-    /// By contact row, in row units; empty where no support moves such a point.
+    /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not
+    /// in `B u`. By contact row, in row units; empty where no support moves such a point.
     pub(crate) prescribed: Vec<f64>,
     /// Largest sizes of each body at earlier steps.
     pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
-    /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if none moves.
+    /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if
+    /// none moves.
     pub(crate) prescribed_force: Vec<f64>,
     /// Slip bound of Tresca friction at each point, N, 0 without.
     pub(crate) tresca: Vec<f64>,
@@ -165,8 +166,8 @@ impl StepProblem {
         way.map_or(0.0, |w| dot(w, direction))
     }
 
-    /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m: `value` is
-    /// what `B u` has of it.
+    /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:
+    /// `value` is what `B u` has of it.
     pub(crate) fn relative(
         &self,
         surface: usize,
@@ -176,7 +177,8 @@ impl StepProblem {
         (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(surface, &direction)
     }
 
-    /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its motion.
+    /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its
+    /// motion.
     pub(crate) fn rest(&self, body: usize) -> f64 {
         self.at_rest(body, |p| p.multipliers)
     }
@@ -227,7 +229,8 @@ impl StepProblem {
         Ok(())
     }
 
-    /// Writes the slip bounds into the set: those of Tresca friction, or the coefficients times the normal forces in `lambda`.
+    /// Writes the slip bounds into the set: those of Tresca friction, or the coefficients times the normal forces in
+    /// `lambda`.
     pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
         model.set_slip_bounds(set, |k, point| self.bound(k, point, lambda));
     }
