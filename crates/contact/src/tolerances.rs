@@ -145,3 +145,6 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 /// condition but continuity is left to them, and what copies differ by, over the largest displacement, is a thirtieth of that
 /// error and less. The certificate tells where it is not.
 pub(crate) const LINEAR_SLACK: f64 = 30.0;
+
+/// Part of all forces that a vanishing contact force is measured against.
+pub(crate) const SMALL_PART: f64 = 1e-4;

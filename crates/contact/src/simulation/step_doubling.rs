@@ -11,7 +11,7 @@ use super::result::StepResult;
 use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::report::{AccumulatedError, Counters, relative};
-use crate::result::{ContactState, PointState};
+use crate::result::PointState;
 use crate::scene::{Analysis, Scene};
 use crate::settings::Settings;
 use crate::tolerances::{ABOVE_SOLVER, ORDERS};
@@ -27,30 +27,28 @@ pub struct TimeError {
     /// Time, s.
     pub time: f64,
     /// Energy of the difference of the displacements, `1/2 |u - u'|²`, J.
-    pub energy: f64,
+    energy: f64,
     /// Elastic energy of the half steps' displacement, J.
-    pub elastic: f64,
+    elastic: f64,
     /// What energies are compared with, J: that, or more for a [body at rest](crate::AlgebraicError::scale).
-    pub scale: f64,
+    scale: f64,
     /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of the sum of
     /// the roots of their accumulated algebraic errors.
-    pub algebraic: f64,
+    algebraic: f64,
     /// Euclidean norm of the differences of the nodal contact forces, N.
-    pub contact_force: f64,
+    contact_force: f64,
     /// Euclidean norm of the nodal contact forces, N.
-    pub contact_force_size: f64,
+    contact_force_size: f64,
     /// Difference of the work of friction since the start, J.
     pub dissipated_work: f64,
     /// That work, J.
     pub dissipated_work_size: f64,
     /// Contact points whose state (open, sticking, sliding) is another one after the half steps.
     pub changed_points: usize,
-    /// Contact points that touch after the half steps.
-    pub touching_points: usize,
     /// Energy of the difference of the whole to the quarter steps, J.
-    pub quarter_energy: f64,
+    quarter_energy: f64,
     /// Energy of the difference of the half to the quarter steps, J.
-    pub finest_energy: f64,
+    finest_energy: f64,
     /// Order `p` measured on all steps so far in which more differs than the solver leaves; `None` as long as there is none.
     pub order: Option<f64>,
 }
@@ -90,12 +88,6 @@ impl TimeError {
     #[must_use]
     pub fn force(&self) -> f64 {
         ratio(self.contact_force, self.contact_force_size)
-    }
-
-    /// Relative difference of the work of friction.
-    #[must_use]
-    pub fn work(&self) -> f64 {
-        ratio(self.dissipated_work.abs(), self.dissipated_work_size.abs())
     }
 }
 
@@ -277,7 +269,6 @@ fn compare(whole: &StepResult, half: &StepResult, work: [f64; 2]) -> TimeError {
     };
     for (a, b) in whole.points().iter().zip(half.points()) {
         error.changed_points += usize::from(a.state != b.state);
-        error.touching_points += usize::from(b.state != ContactState::Open);
         let forces = |p: &PointState| [[p.normal_force, 0.0, 0.0], p.friction_force];
         for (a, b) in forces(a)
             .as_flattened()
