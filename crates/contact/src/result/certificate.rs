@@ -11,11 +11,12 @@
 //! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
 //! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force, or `r` if it is larger, times largest displacement |
 //!
-//! The gap is judged twice: at the contact points that have rows, and for each node of each contact against the obstacle of that
-//! contact alone. So it is the scene that is judged, not what was made of it.
+//! The gap is judged twice: at the contact points that have rows, and for each node of each contact against the
+//! obstacle of that contact alone. So it is the scene that is judged, not what was made of it.
 //!
-//! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest displacement is that of the body or, if it is larger, what the load of a node would do to it with all others
-//! held, so that a body that does not move has a scale too.
+//! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest
+//! displacement is that of the body or, if it is larger, what the load of a node would do to it with all others held,
+//! so that a body that does not move has a scale too.
 //!
 //! `r` is the slip bound of the step's own normal forces and `dU` the tangential difference `u_T - z`. The
 //! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.

@@ -85,8 +85,8 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     c
 }
 
-/// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each contact by itself,
-/// and mean displacements of its nodes.
+/// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each
+/// contact by itself, and mean displacements of its nodes.
 fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
     let (model, u) = (m.model, m.u);
     let (tfeti, scene) = (&model.tfeti, &model.scene);

@@ -1,11 +1,11 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
-//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If the
-//! error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps times
-//! `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where sliding begins,
-//! ends and turns, better where nothing changes, and without order where another step leads to another sequence of sticking
-//! and sliding. A difference that is not three times as large as what the solver has left in both runs
-//! ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
+//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If
+//! the error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps
+//! times `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where
+//! sliding begins, ends and turns, better where nothing changes, and without order where another step leads to another
+//! sequence of sticking and sliding. A difference that is not three times as large as what the solver has left in both
+//! runs ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
 
 use super::result::StepResult;
 use super::simulation::Simulation;
@@ -32,8 +32,8 @@ pub struct TimeError {
     elastic: f64,
     /// What energies are compared with, J: that, or more for a [body at rest](crate::AlgebraicError::scale).
     scale: f64,
-    /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of the sum of
-    /// the roots of their accumulated algebraic errors.
+    /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of
+    /// the sum of the roots of their accumulated algebraic errors.
     algebraic: f64,
     /// Euclidean norm of the differences of the nodal contact forces, N.
     contact_force: f64,
@@ -49,7 +49,8 @@ pub struct TimeError {
     quarter_energy: f64,
     /// Energy of the difference of the half to the quarter steps, J.
     finest_energy: f64,
-    /// Order `p` measured on all steps so far in which more differs than the solver leaves; `None` as long as there is none.
+    /// Order `p` measured on all steps so far in which more differs than the solver leaves; `None` as long as there is
+    /// none.
     pub order: Option<f64>,
 }
 
@@ -60,25 +61,26 @@ impl TimeError {
         relative(self.energy, self.scale)
     }
 
-    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the quarter
-    /// steps, extrapolated with the measured order (taken into its admissible range), or with order one if none was measured.
+    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the
+    /// quarter steps, extrapolated with the measured order (taken into its admissible range), or with order one if none
+    /// was measured.
     #[must_use]
     pub fn whole_error(&self) -> f64 {
         let order = self.order.unwrap_or(1.0).clamp(ORDERS[0], ORDERS[1]);
         relative(self.quarter_energy, self.scale) / (1.0 - 4.0_f64.powf(-order))
     }
 
-    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most three times
-    /// the algebraic error. The error of the time steps is then as small as that or smaller; how small only a smaller tolerance
-    /// can tell.
+    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most
+    /// three times the algebraic error. The error of the time steps is then as small as that or smaller; how small only
+    /// a smaller tolerance can tell.
     #[must_use]
     pub fn is_below_solver(&self) -> bool {
         self.finest_energy <= ABOVE_SOLVER * ABOVE_SOLVER * self.algebraic
     }
 
-    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to
-    /// another sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` where
-    /// the difference [is no more than the solver's error](Self::is_below_solver).
+    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead
+    /// to another sequence of sticking and sliding, and the estimate tells no more than that the results still differ.
+    /// `None` where the difference [is no more than the solver's error](Self::is_below_solver).
     #[must_use]
     pub fn is_reliable(&self) -> Option<bool> {
         (!self.is_below_solver()).then(|| self.order.is_some_and(|order| order >= ORDERS[0]))
