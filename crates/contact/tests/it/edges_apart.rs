@@ -112,7 +112,7 @@ fn the_smaller_the_angle_the_more_it_is_one_side() {
     for friction in [0.0, 0.3] {
         let (points, flat) = of(0.0, friction, Settings::default());
         assert_eq!(points, 27);
-        for settings in methods().map(|m| by(m)) {
+        for settings in methods().map(by) {
             for exponent in 1..9 {
                 let angle = 10.0_f64.powi(-exponent);
                 let (points, force) = of(angle, friction, settings.clone());

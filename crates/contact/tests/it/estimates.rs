@@ -14,14 +14,14 @@ pub(crate) fn estimated(
     while !simulation.is_finished() {
         let result = step(&mut simulation);
         let frame = simulation.result().expect("a step");
-        sum.add(&frame);
+        sum.add(frame);
         out.push((result, frame.algebraic_error(), sum));
     }
     out
 }
 
 /// A clamped brick on a rough floor; its other end is moved along one or two oblique directions.
-fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, results: usize) -> Scene {
+fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, steps: usize) -> Scene {
     let end = Support::partial(brick::X_MAX, Directions::Vectors(directions.to_vec()));
     Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), uniform(1e9, 0.3))
         .with_support(Support::fixed(brick::X_MIN))
@@ -29,7 +29,7 @@ fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, results: usi
         .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp()))
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(friction)))
         .with_boxes([2, 1, 2])
-        .with_analysis(Analysis::quasistatic(1.0, results))
+        .with_analysis(Analysis::quasistatic(1.0, steps))
 }
 
 #[test]
@@ -99,11 +99,11 @@ fn random_scene(seed: u64) -> Scene {
         1 + dice.random_range(0..2),
         1 + dice.random_range(0..2),
     ];
-    let results = 1 + dice.random_range(0..4);
+    let steps = 1 + dice.random_range(0..4);
     scene
         .with_contact(contact)
         .with_boxes(boxes)
-        .with_analysis(Analysis::quasistatic(1.0, results))
+        .with_analysis(Analysis::quasistatic(1.0, steps))
 }
 
 #[test]
