@@ -86,8 +86,10 @@ impl Simulation {
         };
         let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);
         let solver = solver?;
-        let mut state = State::default();
-        state.set_origin(origin);
+        let state = State {
+            origin: Some(origin),
+            ..State::default()
+        };
         Ok(Self {
             model: Arc::new(model),
             caches: Arc::default(),

@@ -11,29 +11,29 @@ use crate::error::ContactError;
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Steps solved.
-    pub(super) step: usize,
+    pub(crate) step: usize,
     /// Multipliers of the last step and the one before.
-    pub(super) lambda: [Vec<f64>; 2],
+    pub(crate) lambda: [Vec<f64>; 2],
     /// `F lambda` of the same.
-    pub(super) f_lambda: [Vec<f64>; 2],
+    pub(crate) f_lambda: [Vec<f64>; 2],
     /// Multiplier of the coarse equality, for the methods that carry one.
-    pub(super) multiplier: [Vec<f64>; 2],
+    pub(crate) multiplier: [Vec<f64>; 2],
     /// Tangential displacements of the last step and the one before, m, one a tangential row.
-    pub(super) trace: [Vec<f64>; 2],
+    pub(crate) trace: [Vec<f64>; 2],
     /// Slip rate at each contact point, m/s; only if the coefficient depends on it.
-    pub(super) rate: Vec<f64>,
+    pub(crate) rate: Vec<f64>,
     /// Points that slid at the last step.
-    pub(super) sliding: Vec<bool>,
+    pub(crate) sliding: Vec<bool>,
     /// What chooses the tolerance of the next step by estimates of the error.
-    pub(super) controller: Controller,
+    pub(crate) controller: Controller,
     /// Largest sizes of each body at the steps so far.
-    pub(super) peaks: Vec<Peak>,
+    pub(crate) peaks: Vec<Peak>,
     /// With history: the first step that did not converge.
-    pub(super) unconverged: Option<usize>,
+    pub(crate) unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
-    pub(super) origin: Option<Fingerprint>,
+    pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
-    pub(super) seals: [u64; 2],
+    pub(crate) seals: [u64; 2],
 }
 
 /// Largest sizes of a body at earlier steps: what a step where forces and displacements vanish is measured against.
@@ -62,6 +62,8 @@ impl Peak {
 /// What a step leaves; vectors that the scene does not need are empty.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
+    /// Time of the step, s.
+    pub(crate) time: f64,
     pub(crate) lambda: Vec<f64>,
     /// `F lambda`.
     pub(crate) f_lambda: Vec<f64>,
@@ -97,21 +99,6 @@ impl State {
         self
     }
 
-    /// What its numbers refer to.
-    pub(crate) fn origin(&self) -> Option<Fingerprint> {
-        self.origin
-    }
-
-    /// Notes what its numbers refer to.
-    pub(crate) fn set_origin(&mut self, origin: Fingerprint) {
-        self.origin = Some(origin);
-    }
-
-    /// Notes that the product of the last step is one with this F.
-    pub(crate) fn seal(&mut self, operator: u64) {
-        self.seals[0] = seal(operator, &self.lambda[0], &self.f_lambda[0]);
-    }
-
     /// Hands multipliers and their products to `renew` where they are not those that were stored with this F.
     pub(crate) fn renew_products(
         &mut self,
@@ -127,13 +114,6 @@ impl State {
         }
     }
 
-    /// Notes the time of the step that is being taken over.
-    pub(crate) fn pass(&mut self, time: f64) {
-        if let Some(origin) = &mut self.origin {
-            origin.pass(time);
-        }
-    }
-
     /// The first step that did not converge and on whose displacement later steps depend, from 0. `None` where all
     /// converged, and in scenes without history (no friction, or static), whose steps stand alone.
     #[must_use]
@@ -146,44 +126,14 @@ impl State {
         self.unconverged = self.unconverged.or(Some(self.step));
     }
 
-    /// What chooses tolerances by estimates.
-    pub(crate) fn controller(&self) -> Controller {
-        self.controller
-    }
-
-    /// Notes it.
-    pub(crate) fn set_controller(&mut self, controller: Controller) {
-        self.controller = controller;
-    }
-
-    pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
-        &self.lambda
-    }
-
-    pub(crate) fn f_lambda(&self) -> &[Vec<f64>; 2] {
-        &self.f_lambda
-    }
-
-    pub(crate) fn multiplier(&self) -> &[Vec<f64>; 2] {
-        &self.multiplier
-    }
-
     /// Last and older trace of a tangential row; zero before the start.
     pub(crate) fn traces(&self, k: usize) -> (f64, f64) {
         let get = |v: &Vec<f64>| v.get(k).copied().unwrap_or(0.0);
         (get(&self.trace[0]), get(&self.trace[1]))
     }
 
-    pub(crate) fn rates(&self) -> &[f64] {
-        &self.rate
-    }
-
-    pub(crate) fn sliding(&self) -> &[bool] {
-        &self.sliding
-    }
-
-    /// Takes over what a step leaves.
-    pub(crate) fn advance(&mut self, keep_before: bool, new: Kept) {
+    /// Takes over what a step leaves, whose products are those with this F.
+    pub(crate) fn advance(&mut self, keep_before: bool, operator: u64, new: Kept) {
         let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
             pair.swap(0, 1);
             pair[0] = new;
@@ -194,18 +144,19 @@ impl State {
         push(&mut self.lambda, new.lambda);
         push(&mut self.f_lambda, new.f_lambda);
         push(&mut self.multiplier, new.multiplier);
-        self.seals.swap(0, 1);
+        self.seals = [
+            seal(operator, &self.lambda[0], &self.f_lambda[0]),
+            self.seals[0],
+        ];
         // old tangential displacements are part of the model, not of the extrapolation
         self.trace.swap(0, 1);
         self.trace[0] = new.trace;
         self.rate = new.rate;
         self.sliding = new.sliding;
         self.step += 1;
-    }
-
-    /// Largest sizes of each body at the steps so far; empty before the first.
-    pub(crate) fn peaks(&self) -> &[Peak] {
-        &self.peaks
+        if let Some(origin) = &mut self.origin {
+            origin.pass(new.time);
+        }
     }
 
     /// Takes the sizes of a step into account, one a body.
@@ -299,7 +250,7 @@ pub(crate) mod tests {
             sliding: vec![true],
             ..Kept::default()
         };
-        state.advance(true, kept);
+        state.advance(true, 0, kept);
         state
     }
 
@@ -309,7 +260,7 @@ pub(crate) mod tests {
         assert_eq!(state.unconverged_history(), None);
         state.note_unconverged();
         for _ in 0..2 {
-            state.advance(true, Kept::default());
+            state.advance(true, 0, Kept::default());
             state.note_unconverged();
         }
         assert_eq!((state.step(), state.unconverged_history()), (3, Some(1)));
@@ -350,7 +301,7 @@ pub(crate) mod tests {
             sliding: vec![false],
             ..Kept::default()
         };
-        state.advance(true, kept);
+        state.advance(true, 0, kept);
         assert!(state.fits(2, 6, 1, 1).is_err());
     }
 }

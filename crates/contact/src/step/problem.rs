@@ -62,7 +62,7 @@ impl StepProblem {
         self.time = time;
         self.step = analysis.step_size(index);
         self.peaks.clear();
-        self.peaks.extend_from_slice(state.peaks());
+        self.peaks.extend_from_slice(&state.peaks);
         self.peaks
             .resize(model.bodies.count().max(1), Peak::default());
         self.factors.clear();
@@ -217,7 +217,7 @@ impl StepProblem {
         self.coefficients.clear();
         let value = |(k, point): (usize, &ConstrainedPoint)| -> Result<_, ContactError> {
             let (node, place) = (point.node(), point.position());
-            let rate = state.rates().get(k).copied().unwrap_or(0.0);
+            let rate = state.rate.get(k).copied().unwrap_or(0.0);
             Ok(match model.law(point) {
                 Friction::None => (0.0, 0.0),
                 Friction::Tresca(bound) => (0.0, bound.stress(node, place)? * point.area()),
