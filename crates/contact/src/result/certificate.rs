@@ -25,7 +25,6 @@ use crate::state::Peak;
 use crate::step::StepProblem;
 use crate::tolerances::{REST, ROUNDED};
 use signorini_qp::vector;
-use signorini_tfeti::TangentialRows;
 
 /// A violation and the quantity it is relative to, in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -265,9 +264,7 @@ pub(crate) fn certify(
         let Some((row, count, scale)) = point.tangential_rows() else {
             continue;
         };
-        let Some(bound) = slip_bound(model, problem, k, lambda) else {
-            continue;
-        };
+        let bound = problem.slip_bound(k, point, lambda);
         let mut slip = [0.0; 2];
         let mut friction = [0.0; 2];
         for j in 0..count {
@@ -328,20 +325,6 @@ fn judge(model: &Model, problem: &StepProblem, u: &[f64], sizes: &[Sizes], gap: 
     }
 }
 
-/// Slip bound of a point in newtons, from the step's own normal forces.
-pub(crate) fn slip_bound(
-    model: &Model,
-    problem: &StepProblem,
-    k: usize,
-    lambda: &[f64],
-) -> Option<f64> {
-    let point = &model.points[k];
-    if point.tangential == TangentialRows::None {
-        return None;
-    }
-    Some(problem.bound(k, point, lambda))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -351,6 +334,7 @@ mod tests {
     use crate::step::example::{block, first_step};
     use crate::{Analysis, Contact, Scene, Support};
     use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+    use signorini_tfeti::TangentialRows;
 
     /// The gap of a certificate where all nodes are displaced alike, and the points of the model say nothing.
     fn judged(scene: Scene, displacement: [f64; 3]) -> Violation {

@@ -1,6 +1,5 @@
 //! What each contact point does at the end of a step, and sums over them.
 
-use super::certificate::slip_bound;
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::{StepProblem, entry_or_zero};
 use signorini_tfeti::TangentialRows;
@@ -67,7 +66,7 @@ pub(crate) fn point_states(
     let states = model.points.iter().enumerate();
     states
         .map(|(k, point)| {
-            let bound = slip_bound(model, problem, k, lambda).unwrap_or(0.0);
+            let bound = problem.slip_bound(k, point, lambda);
             point_state(model, problem, point, (lambda, rows), bound)
         })
         .collect()
