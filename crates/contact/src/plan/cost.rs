@@ -1,9 +1,10 @@
-//! What a run is likely to cost. Memory follows from counts; only the sizes of sparse factors are estimated ([`Forecast`]).
+//! What a run is likely to cost. Memory follows from counts; only the sizes of sparse factors are estimated
+//! ([`Forecast`]).
 //!
-//! Products are likely to be `steps + sqrt(H/h / 5) d / 6 (first + (steps - 1) next)`: one a step for the recovery, and those
-//! of a solve, which grow like conjugate gradients with a condition number of `H/h` (cells along the edge of a subdomain)
-//! with the digits `d` asked for. `first` and `next` are the means of the benchmark, where `H/h` is 5 and `d` 6. Slender
-//! bodies and loads that jump take several times as many, loads that grow in proportion fewer.
+//! Products are likely to be `steps + sqrt(H/h / 5) d / 6 (first + (steps - 1) next)`: one a step for the recovery, and
+//! those of a solve, which grow like conjugate gradients with a condition number of `H/h` (cells along the edge of a
+//! subdomain) with the digits `d` asked for. `first` and `next` are the means of the benchmark, where `H/h` is 5 and
+//! `d` 6. Slender bodies and loads that jump take several times as many, loads that grow in proportion fewer.
 
 use super::plan::Plan;
 use crate::settings::{Accuracy, MethodKind, Settings};
@@ -49,7 +50,8 @@ pub struct Times {
     coarse: f64,
 }
 
-/// How often the coarse factor is made in a set-up, doubled: sparse factors are made at half the speed of dense products.
+/// How often the coarse factor is made in a set-up, doubled: sparse factors are made at half the speed of dense
+/// products.
 const COARSE_FACTORS: f64 = 4.0;
 /// How often a product with all that belongs to it reads the coarse factor.
 const COARSE_READS: f64 = 4.0;

@@ -25,8 +25,8 @@ pub struct Plan {
     pub subdomains: usize,
     /// Unknown displacements of all torn subdomains, n_p of the paper.
     pub primal: usize,
-    /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the partner. `None`
-    /// without points.
+    /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the
+    /// partner. `None` without points.
     pub gaps: Option<[f64; 2]>,
     /// Rows of `N`: contact points that can touch, nodes in edges and corners once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
@@ -50,8 +50,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Judges a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, but for loads that nothing can
-    /// hold: that takes a set-up.
+    /// Judges a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, but for loads that
+    /// nothing can hold: that takes a set-up.
     ///
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.

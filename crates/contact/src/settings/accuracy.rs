@@ -1,35 +1,34 @@
 //! When the solve of a step ends.
 //!
-//! `Relative` and `Balanced` solve loosely, estimate the algebraic error by the duality gap, tighten the solver's tolerance by
-//! what is missing, and go on from the present iterate. The error of the mesh is estimated again once the elastic energy has
-//! changed by a factor of four, and at every eighth step. Where steps inherit errors each has an equal share of the squared
-//! error that is left. An error in the energy norm is a mean: a few points may weigh little in it. So a step also needs a
-//! [`Certificate`](crate::Certificate) whose contact conditions are violated by at most five times the target
-//! ([`AccuracyReport::certificate_limit`](crate::AccuracyReport::certificate_limit)), and ends as
+//! `Relative` and `Balanced` solve loosely, estimate the algebraic error by the duality gap, tighten the solver's
+//! tolerance by what is missing, and go on from the present iterate. The error of the mesh is estimated again once the
+//! elastic energy has changed by a factor of four, and at every eighth step. Where steps inherit errors each has an
+//! equal share of the squared error that is left. An error in the energy norm is a mean: a few points may weigh little
+//! in it. So a step also needs a [`Certificate`](crate::Certificate) whose contact conditions are violated by at most
+//! five times the target ([`AccuracyReport::certificate_limit`](crate::AccuracyReport::certificate_limit)), and ends as
 //! [`NotCertified`](crate::StepStatus::NotCertified) where no tolerance reaches that.
 
 use crate::error::ContactError;
 
 /// When the solve of a step ends.
 ///
-/// Estimates are those of the energy of the whole body, beside a loose bound on the contact conditions: forces that carry little of
-/// it (a light touch after a long rigid motion, friction of a drag far below the elastic displacement) need `Tolerance`.
+/// Estimates are those of the energy of the whole body, beside a loose bound on the contact conditions: forces that
+/// carry little of it (a light touch after a long rigid motion, friction of a drag far below the elastic displacement)
+/// need `Tolerance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Accuracy {
     /// At the tolerance of the settings. No error is estimated.
     #[default]
     Tolerance,
-    /// Where the algebraic error is `fraction` of the discretisation error, both estimated, in the energy norm, with what
-    /// earlier steps have left in it.
-    /// The setting `tolerance` is not used.
+    /// Where the algebraic error is `fraction` of the discretisation error, both estimated, in the energy norm, with
+    /// what earlier steps have left in it. The setting `tolerance` is not used.
     Balanced {
         /// In (0, 1]; 0.1 adds half a per cent to the total error.
         fraction: f64,
     },
-    /// Where the estimated algebraic error, with what earlier steps have left in it, is at most this, relative, in the energy
-    /// norm; in [1e-11, 0.5].
-    /// The setting `tolerance` is not used.
+    /// Where the estimated algebraic error, with what earlier steps have left in it, is at most this, relative, in the
+    /// energy norm; in [1e-11, 0.5]. The setting `tolerance` is not used.
     Relative(f64),
 }
 

@@ -79,8 +79,8 @@ impl StepResult {
         })
     }
 
-    /// For those who want every step to converge: an error unless this one did, and the earlier ones on whose displacement
-    /// it depends.
+    /// For those who want every step to converge: an error unless this one did, and the earlier ones on whose
+    /// displacement it depends.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
@@ -161,8 +161,8 @@ impl StepResult {
         self.reactions_about([0.0; 3])
     }
 
-    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the obstacle and the
-    /// loads do. Computed from the multipliers when asked for.
+    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the
+    /// obstacle and the loads do. Computed from the multipliers when asked for.
     ///
     /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
     ///
@@ -198,8 +198,8 @@ impl StepResult {
         field
     }
 
-    /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together, so
-    /// that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
+    /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together,
+    /// so that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
     #[must_use]
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
@@ -241,8 +241,8 @@ pub(super) fn discretisation_error(
 }
 
 impl AccumulatedError {
-    /// Takes the next step: every step must be added, in order. Where steps stand alone (no friction, or a static scene)
-    /// only the last one counts.
+    /// Takes the next step: every step must be added, in order. Where steps stand alone (no friction, or a static
+    /// scene) only the last one counts.
     pub fn add(&mut self, result: &StepResult) {
         *self = self.with(&result.algebraic_error(), result.model.plan.effects.history);
     }

@@ -9,10 +9,11 @@ use std::sync::Arc;
 impl Simulation {
     /// Continues from a stored state of the same scene.
     ///
-    /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports, contact points with
-    /// their normals and areas, difference formula, and the times of the steps solved so far. Free to change are loads, motions of supports, materials,
-    /// gap, coefficients, times to come, settings and method: the state is then where the changed scene goes on from. A start from
-    /// a scene that is another one on purpose needs [`State::without_origin`]; sizes must fit in any case.
+    /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports,
+    /// contact points with their normals and areas, difference formula, and the times of the steps solved so far. Free
+    /// to change are loads, motions of supports, materials, gap, coefficients, times to come, settings and method: the
+    /// state is then where the changed scene goes on from. A start from a scene that is another one on purpose needs
+    /// [`State::without_origin`]; sizes must fit in any case.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
@@ -45,7 +46,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its word.
+    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its
+    /// word.
     fn check_products(&self, state: &mut State) {
         let dual = self.model.tfeti.dual();
         state.renew_products(self.operator, |lambda, f_lambda| {
@@ -75,8 +77,8 @@ mod tests {
         Simulation::new(scene, Settings::default()).expect("set-up")
     }
 
-    /// Products of another material, and such as are none, are made anew, by name of the scene or without it; those of the same
-    /// one keep every bit.
+    /// Products of another material, and such as are none, are made anew, by name of the scene or without it; those of
+    /// the same one keep every bit.
     #[test]
     fn products_of_another_operator_are_made_anew() {
         let mut stored = simulation(1e9);

@@ -1,7 +1,9 @@
-//! The default method: the active-set method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
+//! The default method: the active-set method of `signorini-qp` on the dual problem, slip bounds following the normal
+//! forces.
 //!
-//! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a limit was
-//! reached, from the start of the step where the active-set method stagnated. It is proved to solve every given-friction problem.
+//! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a
+//! limit was reached, from the start of the step where the active-set method stagnated. It is proved to solve every
+//! given-friction problem.
 
 use super::iterate::{Iterate, Task, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;
@@ -13,23 +15,12 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
+use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status,
     active_set, vector,
 };
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
-
-/// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
-/// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
-/// predicts faces from gradients alone.
-const LOOSE: f64 = 5.0;
-
-/// Part of the stiffness that the natural map takes at rows that may depend on others of their node: two rows along one
-/// direction move it twice.
-const SHARED: f64 = 0.5;
-
-/// What a release would change, over the error of a solved face, from which on it is worth it.
-const CONTRADICTION: f64 = 10.0;
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
@@ -60,7 +51,7 @@ impl ActiveSetSolver {
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
         for (scale, compliance) in scale.iter_mut().zip(compliance) {
-            *scale = scale.min(LOOSE / compliance);
+            *scale = scale.min(STIFF_ROWS / compliance);
         }
         let gluing = model.tfeti.gluing();
         let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
@@ -70,7 +61,7 @@ impl ActiveSetSolver {
             .take(contact)
             .filter(|s| shared(s.0))
         {
-            *scale *= SHARED;
+            *scale *= SHARED_ROWS;
         }
         Ok(Self {
             space: ActiveSetProjector::new(

@@ -14,8 +14,8 @@ pub(super) struct OrthonormalRows {
 
 impl OrthonormalRows {
     /// # Errors
-    /// [`ContactError::NotDetermined`] if no row stops some rigid motion. The check of equilibrium has found before that the
-    /// loads do not push along it.
+    /// [`ContactError::NotDetermined`] if no row stops some rigid motion. The check of equilibrium has found before
+    /// that the loads do not push along it.
     pub(super) fn new(model: &Model) -> Result<Self, ContactError> {
         let factor = model.tfeti.coarse_factor();
         let coarse = factor.orthonormal().ok_or_else(|| {

@@ -1,10 +1,10 @@
 //! Forces at a node that may replace one another, where the rows of the node contradict each other.
 //!
-//! At a node with more rows than displacements ([`Dependency`]) an active set may ask for what cannot be: a point sticks where a
-//! support or another obstacle moves it. The solution on such a set leaves a slip or a gap `r` in the null space of `Bᵀ`
-//! that no displacement can change. Then the dual cost falls without end along `-r`, and `B^T lambda` does not change on the
-//! way: multipliers are moved there until a point slides at its bound or lets go, which ends the contradiction. Slip bounds follow the normal
-//! forces on the way.
+//! At a node with more rows than displacements ([`Dependency`]) an active set may ask for what cannot be: a point
+//! sticks where a support or another obstacle moves it. The solution on such a set leaves a slip or a gap `r` in the
+//! null space of `Bᵀ` that no displacement can change. Then the dual cost falls without end along `-r`, and `B^T
+//! lambda` does not change on the way: multipliers are moved there until a point slides at its bound or lets go, which
+//! ends the contradiction. Slip bounds follow the normal forces on the way.
 //!
 //! | local | meaning |
 //! |---|---|
@@ -14,15 +14,10 @@
 
 use super::iterate::Task;
 use crate::model::{ConstrainedPoint, Model};
+use crate::tolerances::{AT_BOUND, NULL_RANK};
 use nalgebra::{DMatrix, DVector};
 use signorini_tfeti::Dependency;
 use signorini_tfeti::TangentialRows;
-
-/// A point within rounding of its bound.
-const AT_BOUND: f64 = 1.0 - 1e-9;
-
-/// Singular values below this part of one count as zero.
-const ZERO: f64 = 1e-9;
 
 /// The dependencies of a model, with the points whose rows they hold.
 #[derive(Debug)]
@@ -58,8 +53,8 @@ impl Exchanges {
         )
     }
 
-    /// Ends what the rows of a solved active set contradict; whether there was anything. `residual` is that of all rows, `scale`
-    /// the stiffness of contact rows; what would move a force by less than `limit` is left.
+    /// Ends what the rows of a solved active set contradict; whether there was anything. `residual` is that of all
+    /// rows, `scale` the stiffness of contact rows; what would move a force by less than `limit` is left.
     pub(crate) fn settle(
         &self,
         task: Task<'_>,
@@ -204,14 +199,15 @@ impl Contradiction<'_> {
         }
         let fixed = null.select_rows(&rows);
         let off = &fixed * &w;
-        let correction = fixed.svd(true, true).solve(&off, ZERO);
+        let correction = fixed.svd(true, true).solve(&off, NULL_RANK);
         let mut d = null * (w - correction.unwrap_or_else(|_| DVector::zeros(null.ncols())));
         // what is held does not move by rounding either
         rows.iter().for_each(|k| d[*k] = 0.0);
         d
     }
 
-    /// How far along `d` friction reaches its bound, which follows the normal force; 0 where it is there and would cross it.
+    /// How far along `d` friction reaches its bound, which follows the normal force; 0 where it is there and would
+    /// cross it.
     fn slides(&self, place: &Place, lambda: &[f64], d: &DVector<f64>, follow: bool) -> f64 {
         let Task { model, problem, .. } = self.task;
         let rows = &self.exchange.rows;

@@ -10,17 +10,12 @@ use crate::report::{FixedPointReport, StepReport, Verdict};
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::status::StepStatus;
+use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::{
     HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
     SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
-
-/// Safety factor between the tolerance of a step and those of SMALSE.
-const SAFETY: f64 = 0.05;
-
-/// Relative changes below this one that do not halve are put down to the inner solve.
-const STALL: f64 = 1e-4;
 
 /// How often a step may tighten the inner tolerance tenfold.
 const MAX_TIGHTENINGS: usize = 3;
@@ -120,7 +115,7 @@ impl SmalseSolver {
         task.problem
             .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
-        let tolerance = task.settings.tolerance * SAFETY;
+        let tolerance = task.settings.tolerance * SMALSE_SAFETY;
         let qp = self.given_friction(task, tolerance, &mut (), iterate)?;
         add(report, &qp);
         report.iterations = 1;
@@ -176,7 +171,7 @@ impl SmalseSolver {
             .map(|v| v.min(0.0))
             .collect();
         let mut inner = Status::Converged;
-        let mut target = settings.tolerance * SAFETY;
+        let mut target = settings.tolerance * SMALSE_SAFETY;
         let mut last = f64::INFINITY;
         let mut tightenings = 0;
         let mut exact = 0;
@@ -188,7 +183,7 @@ impl SmalseSolver {
             |x, change| {
                 // Small contact forces under large loads: changes that stall above the tolerance are
                 // errors of the inner solve.
-                let stalls = exact > 2 && change > 0.5 * last && change < STALL;
+                let stalls = exact > 2 && change > 0.5 * last && change < INNER_STALL;
                 if stalls && tightenings < MAX_TIGHTENINGS {
                     target *= 0.1;
                     tightenings += 1;
@@ -252,7 +247,7 @@ impl SmalseSolver {
     ) -> Result<(), ContactError> {
         let Task { model, problem, .. } = task;
         problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
-        let tolerance = task.settings.tolerance * SAFETY;
+        let tolerance = task.settings.tolerance * SMALSE_SAFETY;
         let mut contraction = Contraction::default();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;

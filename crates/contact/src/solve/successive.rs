@@ -1,10 +1,11 @@
 //! The method of successive approximations (3.17) and what can be said of its contraction.
 //!
-//! The map `Phi` of (3.15) takes the normal forces that define the slip bounds to the normal forces of the given-friction
-//! problem. Its fixed point solves the Coulomb problem (3.16). The discrete map is contractive for small coefficients only; a
-//! [`Contraction`] watches the ratio of successive changes and says so when it is not.
+//! The map `Phi` of (3.15) takes the normal forces that define the slip bounds to the normal forces of the
+//! given-friction problem. Its fixed point solves the Coulomb problem (3.16). The discrete map is contractive for small
+//! coefficients only; a [`Contraction`] watches the ratio of successive changes and says so when it is not.
 
 use crate::report::{FixedPointReport, Verdict};
+use crate::tolerances::GROWTH;
 
 /// A running estimate of the contraction rate: the geometric mean of the last ratios of changes.
 #[derive(Debug, Clone, Default)]
@@ -17,9 +18,6 @@ const WINDOW: usize = 5;
 
 /// Evaluations without a smaller change after which a map whose changes do not shrink is called not contractive.
 const PATIENCE: usize = 12;
-
-/// Mean ratio of changes from which they count as not shrinking.
-const GROWTH: f64 = 0.98;
 
 impl Contraction {
     /// Records the absolute change between two successive iterates.
@@ -50,8 +48,8 @@ impl Contraction {
     }
 }
 
-/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance` (0/0 counts as
-/// converged). `least` is the norm below which `x` is taken to vanish.
+/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance` (0/0
+/// counts as converged). `least` is the norm below which `x` is taken to vanish.
 ///
 /// `map(x, change)` overwrites `x` and returns whether it evaluated with full accuracy; `change` is the last relative
 /// change, 1 at first, and tells how accurate the evaluation needs to be. Only an evaluation with full accuracy can end

@@ -1,7 +1,8 @@
-//! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean something else.
+//! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean
+//! something else.
 //!
-//! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between two
-//! steps, and so may settings: the state is then where the changed scene goes on from.
+//! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between
+//! two steps, and so may settings: the state is then where the changed scene goes on from.
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Analysis, DifferenceFormula};
@@ -71,8 +72,8 @@ impl Fingerprint {
     }
 }
 
-/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in lanes: it is
-/// taken at every step.
+/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in
+/// lanes: it is taken at every step.
 pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
     let mut lanes = [operator; 8];
     for part in [lambda, f_lambda] {
@@ -115,9 +116,9 @@ fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
         .chain(numbers.chain([point.area()]).map(number))
 }
 
-/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the
-/// numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made, which changes F on forces
-/// that are not in balance.
+/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what
+/// gives the numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made,
+/// which changes F on forces that are not in balance.
 pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Settings) -> u64 {
     let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
     let body = [origin.points, origin.tets, origin.parts, origin.contact];

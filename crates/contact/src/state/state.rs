@@ -88,9 +88,9 @@ impl State {
         8 * self.numbers().map(Vec::len).sum::<usize>() + self.sliding.len()
     }
 
-    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume) then compares
-    /// sizes only. Multipliers are start values there; tangential displacements and slip rates are taken for those of the
-    /// points with the same numbers.
+    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume)
+    /// then compares sizes only. Multipliers are start values there; tangential displacements and slip rates are taken
+    /// for those of the points with the same numbers.
     #[must_use]
     pub fn without_origin(mut self) -> Self {
         self.origin = None;

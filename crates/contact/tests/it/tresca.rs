@@ -216,18 +216,18 @@ fn all_methods_agree_with_clarabel() {
             let what = format!("seed {seed}, {}", method.kind());
             let settings = at(1e-8).with_method(method);
             let mut simulation = Simulation::new(scene(&case), settings).expect("set-up");
-            let level = step(&mut simulation);
-            assert_certified(&level, &what);
+            let result = step(&mut simulation);
+            assert_certified(&result, &what);
             let expected = nodal_forces(&reference(&case, &simulation), &simulation);
-            let found = forces(&level.points);
+            let found = forces(&result.points);
             // no contact force at all: measured against the loads, which are of the order of one
             let size = norm(&expected).max(1.0);
             let difference: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
             let error = norm(&difference) / size;
             assert!(error <= 1e-6, "{what}: {error:e}");
-            open += usize::from(level.summary.active == 0);
-            sliding += level.summary.slip;
-            sticking += level.summary.stick;
+            open += usize::from(result.summary.active == 0);
+            sliding += result.summary.slip;
+            sticking += result.summary.stick;
         }
     }
     // the cases must reach everything that they are meant to reach
