@@ -83,7 +83,11 @@ fn point_state(
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
-    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let alpha = model
+        .scene
+        .analysis
+        .formula()
+        .map_or(1.0, |f| f.weights()[0]);
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),
