@@ -62,7 +62,7 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
         let Some((row, count, scale)) = point.tangential_rows() else {
             continue;
         };
-        let bound = problem.bound(k, point, lambda);
+        let bound = problem.slip_bound(k, point, lambda);
         let mut slip = [0.0; 2];
         let mut friction = [0.0; 2];
         for j in 0..count {

@@ -69,10 +69,7 @@ pub(crate) fn point_states(
     let states = model.points.iter().enumerate();
     states
         .map(|(k, point)| {
-            let bound = match point.tangential {
-                TangentialRows::None => 0.0,
-                _ => problem.bound(k, point, lambda),
-            };
+            let bound = problem.slip_bound(k, point, lambda);
             point_state(model, problem, point, (lambda, rows), bound)
         })
         .collect()
@@ -86,7 +83,11 @@ fn point_state(
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
-    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let alpha = model
+        .scene
+        .analysis
+        .formula()
+        .map_or(1.0, |f| f.weights()[0]);
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),

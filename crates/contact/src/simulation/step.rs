@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
-use crate::solve::{Task, restore_sliding};
+use crate::solve::Task;
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
@@ -90,9 +90,8 @@ impl Simulation {
         iterate.multiplier = start_vector(last, before, coarse, on);
         if state.sliding.iter().any(|s| *s) {
             let old = iterate.lambda.clone();
-            let mut set = model.set.clone();
-            self.problem.slip_bounds(model, &iterate.lambda, &mut set);
-            restore_sliding(model, &set, &state.sliding, &mut iterate.lambda);
+            self.problem
+                .restore_sliding(model, &state.sliding, &mut iterate.lambda);
             iterate.known &= old == iterate.lambda;
         }
     }

@@ -108,7 +108,7 @@ impl ActiveSetSolver {
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let Task { model, problem, .. } = task;
-        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
         let mut updates = usize::from(model.any_law(Friction::is_some));
         self.space.set_rhs(&problem.rhs);
         let dual = ActiveSetProblem {
@@ -126,12 +126,12 @@ impl ActiveSetSolver {
             .with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
-            let slopes = model.slip_slopes(|k| problem.coefficients[k]);
+            let slopes = problem.slip_slopes(model);
             self.work.set_slopes(&slopes);
         }
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             if coulomb {
-                problem.slip_bounds(model, x, set);
+                problem.write_slip_bounds(model, x, set);
                 updates += 1;
             }
         };

@@ -240,6 +240,6 @@ impl Contradiction<'_> {
     /// Slip bound of a point, as a multiplier.
     fn radius(&self, place: &Place, lambda: &[f64]) -> f64 {
         let Task { model, problem, .. } = self.task;
-        problem.bound(place.point, &model.points[place.point], lambda) / place.scale
+        problem.slip_bound(place.point, &model.points[place.point], lambda) / place.scale
     }
 }

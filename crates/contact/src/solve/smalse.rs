@@ -113,7 +113,7 @@ impl SmalseSolver {
         report: &mut StepReport,
     ) -> Result<(), ContactError> {
         task.problem
-            .slip_bounds(task.model, &iterate.lambda, &mut self.set);
+            .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
         let tolerance = task.settings.tolerance * SMALSE_SAFETY;
         let qp = self.given_friction(task, tolerance, &mut (), iterate)?;
@@ -201,7 +201,7 @@ impl SmalseSolver {
                     _ => target,
                 };
                 iterate.lambda[normal.clone()].copy_from_slice(x);
-                problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+                problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
                 let qp = self
                     .given_friction(task, tolerance, &mut (), iterate)
@@ -246,7 +246,7 @@ impl SmalseSolver {
         report: &mut StepReport,
     ) -> Result<(), ContactError> {
         let Task { model, problem, .. } = task;
-        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
         let tolerance = task.settings.tolerance * SMALSE_SAFETY;
         let mut contraction = Contraction::default();
         let mut updates = 1;
@@ -256,7 +256,7 @@ impl SmalseSolver {
         let least = coefficient * problem.least()[1];
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
-            problem.slip_bounds(model, step.x, set);
+            problem.write_slip_bounds(model, step.x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);

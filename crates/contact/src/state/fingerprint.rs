@@ -150,8 +150,7 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
 }
 
 fn formula(formula: DifferenceFormula) -> u64 {
-    let weights = [formula.alpha(), formula.beta(), formula.gamma()];
-    hash(weights.into_iter().map(number))
+    hash(formula.weights().into_iter().map(number))
 }
 
 /// The fixed directions of each node, as the projector on them, rounded: neither the order of supports nor the scale of
