@@ -48,65 +48,38 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod block_rows;
-mod boundary;
-mod class;
 mod coarse;
-mod coarse_factor;
-mod coarse_matrix;
-mod coarse_order;
-mod coarse_tree;
-mod contact;
-mod contact_fronts;
-mod copy_stiffness;
-mod cost;
-mod dense;
-mod dependencies;
 mod dual;
 mod error;
-mod face_space;
-mod forecast;
-mod gluing;
-mod inverse;
-mod joints;
-mod kernel;
-mod matrices;
-mod mobility;
-mod packed;
-mod panels;
+mod linalg;
 mod preconditioner;
-mod recovery;
-mod report;
-mod row_stiffness;
-mod row_weights;
+mod projector;
 mod rows;
-mod scaling;
-mod sparse;
-mod split_factor;
-mod split_solve;
-mod supernodes;
-mod supports;
+mod subdomain;
 mod system;
-mod torn;
 
-pub use class::{Class, Classes, Sharing};
-pub use coarse::{Coarse, CoarseScratch};
-pub use coarse_factor::{CoarseFactor, OrthonormalCoarse};
-pub use contact::{ContactConstraint, ContactConstraints, PrescribedPoint, prescribed_points};
-pub use copy_stiffness::CopyStiffness;
-pub use cost::{InverseKind, InverseSettings};
-pub use dependencies::Dependency;
-pub use dual::{DualOperator, DualScratch};
+pub use coarse::mobility::{BodyMotion, FreeMotion};
+pub use coarse::space::{Coarse, CoarseScratch};
+pub use coarse::weights::{LineWeight, RowWeights};
+pub use dual::operator::{DualOperator, DualScratch};
 pub use error::TfetiError;
-pub use face_space::{ActiveSetFactor, ActiveSetProjector};
-pub use forecast::{ClassForecast, Forecast, Rate};
-pub use gluing::{ContactRows, Gluing, TangentialRows};
-pub use kernel::Kernel;
-pub use mobility::{BodyMotion, FreeMotion};
-pub use preconditioner::{DualPreconditioner, DualPreconditionerScratch};
-pub use recovery::{Jump, LoadResponse};
-pub use report::{ClassReport, SetupReport};
-pub use row_weights::{LineWeight, RowWeights};
-pub use rows::{RemovalReason, RemovedRow, RowKind, RowRanges, RowScaling, count_removed};
-pub use supports::{Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions};
-pub use system::{Tfeti, TfetiBuilder};
+pub use preconditioner::operator::{DualPreconditioner, DualPreconditionerScratch};
+pub use projector::active_set::{ActiveSetFactor, ActiveSetProjector};
+pub use projector::factor::{CoarseFactor, OrthonormalCoarse};
+pub use rows::contact::{
+    ContactConstraint, ContactConstraints, PrescribedPoint, prescribed_points,
+};
+pub use rows::dependencies::Dependency;
+pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
+pub use rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges, RowScaling, count_removed};
+pub use rows::supports::{
+    Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions,
+};
+pub use subdomain::class::{Class, Classes, Sharing};
+pub use subdomain::copy_stiffness::CopyStiffness;
+pub use subdomain::cost::{InverseKind, InverseSettings};
+pub use subdomain::forecast::{ClassForecast, Forecast, Rate};
+pub use subdomain::kernel::Kernel;
+pub use system::builder::{Tfeti, TfetiBuilder};
+pub use system::recovery::{Jump, LoadResponse};
+pub use system::report::{ClassReport, SetupReport};

@@ -1,0 +1,6 @@
+mod globs;
+mod points;
+mod rigid;
+
+pub(crate) use globs::Wrench;
+pub(crate) use rigid::RigidTables;

@@ -1,0 +1,287 @@
+//! Gather tables between dual vectors and the boundary unknowns of all subdomains.
+//!
+//! A *boundary vector* holds the components at the boundary nodes of all members of all classes, in panels of up to
+//! [`PANEL`] members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at
+//! `(3 b + c) w + m` of the panel. With the members next to one another, products with a small matrix run at full speed and
+//! loops over nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather
+//! (each result is summed by one task in a fixed order), so results do not depend on the number of threads.
+
+#[cfg(doc)]
+use crate::subdomain::cost::PANEL;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Boundary of one class.
+#[derive(Debug, Clone)]
+pub(crate) struct BoundaryClass {
+    /// Local numbers of the nodes that `B` touches in some member, ascending.
+    pub(crate) nodes: Vec<u32>,
+    /// Subdomains, in the order of the columns.
+    pub(crate) members: Vec<u32>,
+}
+
+/// Some columns of one class, worked on together.
+#[derive(Debug, Clone)]
+pub(crate) struct Panel {
+    pub(crate) class: usize,
+    /// Columns, counted within the class.
+    pub(crate) columns: Range<usize>,
+    /// Node copies of these columns.
+    pub(crate) copies: Range<usize>,
+    /// Positions in the list of copies that carry contact or support rows.
+    pub(crate) specials: Range<usize>,
+}
+
+/// Consecutive panels that share one work memory.
+#[derive(Debug, Clone)]
+pub(crate) struct Lane {
+    pub(crate) panels: Range<usize>,
+    pub(super) copy: usize,
+}
+
+/// The tables.
+#[derive(Debug)]
+pub(crate) struct BoundaryMap {
+    pub(crate) classes: Vec<BoundaryClass>,
+    pub(crate) panels: Vec<Panel>,
+    pub(crate) lanes: Vec<Lane>,
+    pub(super) copies: usize,
+    pub(crate) interface: Range<usize>,
+    pub(super) rows: usize,
+    /// Interface blocks of each copy.
+    pub(super) spread_pointers: Vec<u32>,
+    pub(super) spread_blocks: Vec<u32>,
+    pub(super) spread_weights: Vec<f64>,
+    /// Other rows, for the copies that have some.
+    pub(crate) special_copies: Vec<u32>,
+    pub(crate) special_pointers: Vec<u32>,
+    pub(crate) special_rows: Vec<u32>,
+    pub(crate) special_vectors: Vec<[f64; 3]>,
+    /// Copies of each interface block.
+    pub(super) block_pointers: Vec<u32>,
+    pub(super) block_places: Vec<Place>,
+    pub(super) block_weights: Vec<f64>,
+    /// Copies of each other row.
+    pub(super) row_pointers: Vec<u32>,
+    pub(super) row_places: Vec<Place>,
+    pub(super) row_vectors: Vec<[f64; 3]>,
+}
+
+/// Where the three components of a copy stand in a boundary vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) first: u32,
+    pub(super) stride: u32,
+}
+
+impl Place {
+    #[inline]
+    fn read(self, y: &[f64]) -> [f64; 3] {
+        let (first, stride) = (self.first as usize, self.stride as usize);
+        [y[first], y[first + stride], y[first + 2 * stride]]
+    }
+}
+
+/// Largest number of lanes: bounds the work memory and the useful number of threads.
+pub(crate) const LANES: usize = 64;
+/// Interface blocks a task collects.
+const BLOCKS: usize = 2048;
+/// Below this number of copies a loop over them is not worth a second thread.
+const SMALL: usize = 8000;
+
+impl BoundaryMap {
+    /// Length of dual vectors.
+    pub(crate) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Length of boundary vectors.
+    pub(crate) fn len(&self) -> usize {
+        3 * self.copies
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        let words = self.spread_pointers.len()
+            + self.spread_blocks.len()
+            + self.block_pointers.len()
+            + 2 * self.block_places.len();
+        let numbers = self.spread_weights.len() + self.block_weights.len();
+        (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
+    }
+
+    /// Node copies of a panel.
+    pub(crate) fn copies_of(&self, panel: &Panel) -> Range<usize> {
+        panel.copies.clone()
+    }
+
+    /// A number for each boundary copy, from its subdomain and local node.
+    pub(crate) fn copy_values(&self, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.copies);
+        for panel in &self.panels {
+            let class = &self.classes[panel.class];
+            for &node in &class.nodes {
+                let members = &class.members[panel.columns.clone()];
+                out.extend(members.iter().map(|&s| value(s as usize, node as usize)));
+            }
+        }
+        out
+    }
+
+    /// Panels of a lane with the part of the lane's boundary vector that belongs to each.
+    pub(crate) fn panels_of<'a>(
+        &'a self,
+        lane: &Lane,
+        y: &'a mut [f64],
+    ) -> impl Iterator<Item = (&'a Panel, &'a mut [f64])> {
+        let mut rest = y;
+        self.panels[lane.panels.clone()].iter().map(move |panel| {
+            let (part, tail) = std::mem::take(&mut rest).split_at_mut(3 * panel.copies.len());
+            rest = tail;
+            (panel, part)
+        })
+    }
+
+    /// `B^T x` on the copies of a panel.
+    pub(crate) fn spread(&self, x: &[f64], panel: &Panel, out: &mut [f64]) {
+        let interface = &x[self.interface.clone()];
+        let width = panel.columns.len();
+        let pointers = &self.spread_pointers[panel.copies.start..=panel.copies.end];
+        for (target, node) in out.chunks_exact_mut(3 * width).zip(0..) {
+            let (first, rest) = target.split_at_mut(width);
+            let (second, third) = rest.split_at_mut(width);
+            let pointers = &pointers[node * width..=(node + 1) * width];
+            for m in 0..width {
+                let range = pointers[m] as usize..pointers[m + 1] as usize;
+                let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+                let blocks = self.spread_blocks[range.clone()].iter();
+                for (&block, &weight) in blocks.zip(&self.spread_weights[range]) {
+                    let value = &interface[3 * block as usize..][..3];
+                    a += weight * value[0];
+                    b += weight * value[1];
+                    c += weight * value[2];
+                }
+                first[m] = a;
+                second[m] = b;
+                third[m] = c;
+            }
+        }
+        for k in panel.specials.clone() {
+            let copy = self.special_copies[k] as usize - panel.copies.start;
+            let start = 2 * (copy / width) * width + copy;
+            for e in self.special_pointers[k] as usize..self.special_pointers[k + 1] as usize {
+                let value = x[self.special_rows[e] as usize];
+                for c in 0..3 {
+                    out[start + c * width] += self.special_vectors[e][c] * value;
+                }
+            }
+        }
+    }
+
+    /// `out = B y` for a boundary vector.
+    pub(crate) fn collect(&self, y: &[f64], out: &mut [f64]) {
+        let (contact, rest) = out.split_at_mut(self.interface.start);
+        let (interface, dirichlet) = rest.split_at_mut(self.interface.len());
+        let mut blocks = || {
+            if self.copies < SMALL {
+                self.collect_blocks(y, 0, interface);
+            } else {
+                interface
+                    .par_chunks_mut(3 * BLOCKS)
+                    .enumerate()
+                    .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part));
+            }
+        };
+        let mut others = || {
+            self.collect_rows(y, 0, contact);
+            self.collect_rows(y, self.interface.start, dirichlet);
+        };
+        if self.copies < SMALL {
+            blocks();
+            others();
+        } else {
+            rayon::join(blocks, others);
+        }
+    }
+
+    fn collect_blocks(&self, y: &[f64], first: usize, out: &mut [f64]) {
+        let pointers = &self.block_pointers[first..=first + out.len() / 3];
+        for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
+            let range = pair[0] as usize..pair[1] as usize;
+            let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+            for (place, &weight) in self.block_places[range.clone()]
+                .iter()
+                .zip(&self.block_weights[range])
+            {
+                let value = place.read(y);
+                a += weight * value[0];
+                b += weight * value[1];
+                c += weight * value[2];
+            }
+            target[0] = a;
+            target[1] = b;
+            target[2] = c;
+        }
+    }
+
+    fn collect_rows(&self, y: &[f64], first: usize, out: &mut [f64]) {
+        for (k, target) in out.iter_mut().enumerate() {
+            let range =
+                self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
+            let entry = |e: usize| {
+                let value = self.row_places[e].read(y);
+                let v = &self.row_vectors[e];
+                v[0] * value[0] + v[1] * value[1] + v[2] * value[2]
+            };
+            *target = range.map(entry).sum();
+        }
+    }
+
+    /// Runs `task` on every lane with its work memory and its part of a boundary vector.
+    pub(crate) fn for_lanes<W: Send>(
+        &self,
+        work: &mut [W],
+        y: &mut [f64],
+        parallel: bool,
+        task: &(impl Fn(&Lane, &mut W, &mut [f64]) + Sync),
+    ) {
+        over_lanes(&self.lanes, work, y, &|lane| 3 * lane.copy, parallel, task);
+    }
+
+    /// Whether loops over all copies are worth several threads.
+    pub(crate) fn is_large(&self) -> bool {
+        self.copies >= SMALL
+    }
+}
+
+pub(crate) fn over_lanes<L: Sync, W: Send, T: Send>(
+    lanes: &[L],
+    work: &mut [W],
+    y: &mut [T],
+    offset: &(impl Fn(&L) -> usize + Sync),
+    parallel: bool,
+    task: &(impl Fn(&L, &mut W, &mut [T]) + Sync),
+) {
+    match lanes {
+        [] => {}
+        [lane] => {
+            if let Some(work) = work.first_mut() {
+                task(lane, work, y);
+            }
+        }
+        _ => {
+            let middle = lanes.len() / 2;
+            let (left, right) = lanes.split_at(middle);
+            let (work_left, work_right) = work.split_at_mut(middle);
+            let (y_left, y_right) = y.split_at_mut(offset(&right[0]) - offset(&left[0]));
+            if parallel {
+                rayon::join(
+                    || over_lanes(left, work_left, y_left, offset, parallel, task),
+                    || over_lanes(right, work_right, y_right, offset, parallel, task),
+                );
+            } else {
+                over_lanes(left, work_left, y_left, offset, parallel, task);
+                over_lanes(right, work_right, y_right, offset, parallel, task);
+            }
+        }
+    }
+}

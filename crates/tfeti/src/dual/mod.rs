@@ -1,0 +1,3 @@
+pub(crate) mod boundary;
+pub(crate) mod build;
+pub(crate) mod operator;

@@ -1,0 +1,2 @@
+pub(crate) mod operator;
+pub(crate) mod scaling;

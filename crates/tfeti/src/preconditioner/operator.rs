@@ -1,0 +1,423 @@
+//! The lumped and the Dirichlet preconditioner.
+//!
+//! Both are `B_D S B_D^T` with a stiffness `S` on the boundary nodes: the block `K_bb` (lumped) or the Schur complement
+//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D` distributes
+//! forces by stiffness, see [`Scaling`].
+
+use crate::dual::boundary::BoundaryMap;
+use crate::dual::operator::multiply_members;
+use crate::error::TfetiError;
+use crate::linalg::block_rows::BlockRows;
+use crate::linalg::dense;
+use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
+use crate::preconditioner::scaling::Scaling;
+use crate::subdomain::cost::{PANEL, SHARED};
+use crate::subdomain::inverse::pattern_error;
+use crate::subdomain::matrices::ClassBase;
+use crate::system::builder::Tfeti;
+use rayon::prelude::*;
+use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator};
+use std::sync::Arc;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Lumped,
+    Dirichlet,
+}
+
+/// A preconditioner for `F`: symmetric, positive semidefinite, close to the inverse of `F` on the kernel of `G`.
+#[derive(Debug)]
+pub struct DualPreconditioner {
+    map: Arc<BoundaryMap>,
+    classes: Vec<BoundaryStiffness>,
+    scaling: Option<Scaling>,
+}
+
+/// Stiffness on the boundary nodes of a class.
+#[derive(Debug)]
+enum BoundaryStiffness {
+    Dense(Vec<f64>),
+    Lumped(BlockRows),
+    Schur {
+        boundary: BlockRows,
+        coupling: Coupling,
+        factor: SparseCholesky,
+    },
+}
+
+/// `K_ib` by columns.
+#[derive(Debug)]
+struct Coupling {
+    interior: usize,
+    columns: Columns,
+}
+
+/// Work memory of a preconditioner.
+#[derive(Debug)]
+pub struct DualPreconditionerScratch {
+    boundary: Vec<f64>,
+    lanes: Vec<LaneScratch>,
+    dual: Vec<f64>,
+    /// The matrices of [`Scaling`] on the face; empty for all rows.
+    groups: Vec<f64>,
+    masked: Vec<f64>,
+}
+
+#[derive(Debug)]
+struct LaneScratch {
+    gathered: Vec<f64>,
+    interior: Vec<f64>,
+    memory: Option<SolveMemory>,
+}
+
+impl Tfeti {
+    /// The lumped preconditioner `B_D K_bb B_D^T`: cheap, no further factorisation.
+    ///
+    /// # Errors
+    /// [`TfetiError::Memory`] never, [`TfetiError::Singular`] never; the signature leaves room for other choices.
+    pub fn lumped(&self) -> Result<DualPreconditioner, TfetiError> {
+        DualPreconditioner::new(self, Kind::Lumped)
+    }
+
+    /// The Dirichlet preconditioner `B_D S B_D^T` with the Schur complement on the boundary nodes: fewer iterations, as
+    /// costly as a product with `F`. Classes whose interior is not held by their boundary use the lumped block.
+    ///
+    /// # Errors
+    /// [`TfetiError::FactorPattern`] if a factor is too large.
+    pub fn dirichlet(&self) -> Result<DualPreconditioner, TfetiError> {
+        DualPreconditioner::new(self, Kind::Dirichlet)
+    }
+}
+
+impl DualPreconditioner {
+    fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
+        let map = system.parts.map.clone();
+        let classes = (0..map.classes.len())
+            .into_par_iter()
+            .map(|k| BoundaryStiffness::new(&system.parts.bases[k], &map, k, kind))
+            .collect::<Result<_, _>>()?;
+        // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
+        let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
+        let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
+        Ok(Self {
+            map,
+            classes,
+            scaling,
+        })
+    }
+
+    /// `y = W M W x` with `W` one on the free rows and zero on the others.
+    ///
+    /// # Panics
+    /// If `x` or `y` does not have the length of dual vectors.
+    pub fn apply_masked(
+        &self,
+        x: &[f64],
+        free: &[bool],
+        y: &mut [f64],
+        s: &mut DualPreconditionerScratch,
+    ) {
+        let mut masked = std::mem::take(&mut s.masked);
+        for ((m, x), free) in masked.iter_mut().zip(x).zip(free) {
+            *m = if *free { *x } else { 0.0 };
+        }
+        self.apply(&masked, y, s);
+        s.masked = masked;
+        for (y, free) in y.iter_mut().zip(free) {
+            if !free {
+                *y = 0.0;
+            }
+        }
+    }
+
+    fn stiffness_product(&self, x: &[f64], s: &mut DualPreconditionerScratch) {
+        let parallel = self.map.is_large();
+        let divide = self.scaling.as_ref().map(Scaling::weights);
+        self.map.for_lanes(
+            &mut s.lanes,
+            &mut s.boundary,
+            parallel,
+            &|lane, scratch, part| {
+                for (panel, out) in self.map.panels_of(lane, part) {
+                    let columns = panel.columns.len();
+                    let gathered = &mut scratch.gathered[..out.len()];
+                    self.map.spread(x, panel, gathered);
+                    let weights = divide.map(|w| &w[self.map.copies_of(panel)]);
+                    scale_nodes(weights, gathered, columns);
+                    let class = &self.classes[panel.class];
+                    class.apply(
+                        gathered,
+                        out,
+                        columns,
+                        &mut scratch.interior,
+                        &mut scratch.memory,
+                    );
+                    scale_nodes(weights, out, columns);
+                }
+            },
+        );
+    }
+}
+
+fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64], width: usize) {
+    let Some(weights) = weights else { return };
+    for (weights, value) in weights
+        .chunks_exact(width)
+        .zip(values.chunks_exact_mut(3 * width))
+    {
+        for component in value.chunks_exact_mut(width) {
+            component.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
+        }
+    }
+}
+
+impl SymmetricOperator for DualPreconditioner {
+    type Scratch = DualPreconditionerScratch;
+
+    fn dim(&self) -> usize {
+        self.map.rows()
+    }
+
+    fn scratch(&self) -> DualPreconditionerScratch {
+        let lane = |k: usize| {
+            let (mut gathered, mut interior, mut need) = (0, 0, None);
+            for panel in &self.map.panels[self.map.lanes[k].panels.clone()] {
+                let columns = panel.columns.len();
+                gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
+                if let BoundaryStiffness::Schur {
+                    coupling, factor, ..
+                } = &self.classes[panel.class]
+                {
+                    interior = interior.max(coupling.interior * columns);
+                    let own = factor.need(columns);
+                    need = Some(need.map_or(own, |n: crate::linalg::sparse::MemoryNeed| n.or(own)));
+                }
+            }
+            let memory = need.map(SolveMemory::new);
+            LaneScratch {
+                gathered: vec![0.0; gathered],
+                interior: vec![0.0; interior],
+                memory,
+            }
+        };
+        let rows = self.map.rows();
+        DualPreconditionerScratch {
+            boundary: vec![0.0; self.map.len()],
+            lanes: (0..self.map.lanes.len()).map(lane).collect(),
+            dual: vec![0.0; if self.scaling.is_some() { rows } else { 0 }],
+            groups: Vec::new(),
+            masked: vec![0.0; rows],
+        }
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
+        let Some(scaling) = &self.scaling else {
+            self.stiffness_product(x, s);
+            self.map.collect(&s.boundary, y);
+            return;
+        };
+        let mut dual = std::mem::take(&mut s.dual);
+        scaling.solve(&s.groups, x, &mut dual);
+        self.stiffness_product(&dual, s);
+        self.map.collect(&s.boundary, &mut dual);
+        scaling.solve(&s.groups, &dual, y);
+        s.dual = dual;
+    }
+}
+
+impl ActiveSetPreconditioner for DualPreconditioner {
+    fn enter(&self, face: &ActiveSetView<'_>, s: &mut DualPreconditionerScratch) {
+        if let Some(scaling) = &self.scaling {
+            scaling.on_face(face, &mut s.groups);
+        }
+    }
+}
+
+impl BoundaryStiffness {
+    fn new(
+        base: &ClassBase,
+        map: &BoundaryMap,
+        class: usize,
+        kind: Kind,
+    ) -> Result<Self, TfetiError> {
+        let layout = &map.classes[class];
+        let split = Split::new(&base.stiffness, &layout.nodes);
+        let shared = layout.members.len() >= SHARED;
+        if kind == Kind::Lumped || split.coupling.interior == 0 {
+            // Sparse also for shared classes: a tenth of the operations of a dense product.
+            return Ok(Self::Lumped(BlockRows::new(&split.boundary)));
+        }
+        let subdomain = layout.members.first().map_or(0, |&s| s as usize);
+        let factor = match Symbolic::new(&split.interior, 3)
+            .and_then(|s| SparseCholesky::new(&s, &split.interior))
+        {
+            Ok(factor) => factor,
+            Err(FactorError::Pivot(_)) => return Ok(Self::Lumped(BlockRows::new(&split.boundary))),
+            Err(error) => return Err(pattern_error(error, subdomain)),
+        };
+        let (smallest, _, largest) = factor.pivots();
+        if smallest <= 1e-13 * largest {
+            return Ok(Self::Lumped(BlockRows::new(&split.boundary)));
+        }
+        let sparse = Self::Schur {
+            boundary: BlockRows::new(&split.boundary),
+            coupling: split.coupling,
+            factor,
+        };
+        Ok(if shared {
+            Self::Dense(sparse.dense())
+        } else {
+            sparse
+        })
+    }
+
+    fn dim(&self) -> usize {
+        match self {
+            Self::Dense(values) => values.len().isqrt(),
+            Self::Lumped(matrix)
+            | Self::Schur {
+                boundary: matrix, ..
+            } => matrix.dim(),
+        }
+    }
+
+    /// The matrix in full, some columns at a time.
+    fn dense(&self) -> Vec<f64> {
+        let dim = self.dim();
+        let (mut out, mut x, mut y) = (
+            vec![0.0; dim * dim],
+            vec![0.0; dim * PANEL],
+            vec![0.0; dim * PANEL],
+        );
+        let (mut interior, mut memory) = match self {
+            Self::Schur {
+                coupling, factor, ..
+            } => (
+                vec![0.0; coupling.interior * PANEL],
+                Some(factor.memory(PANEL)),
+            ),
+            _ => (Vec::new(), None),
+        };
+        for start in (0..dim).step_by(PANEL) {
+            let columns = PANEL.min(dim - start);
+            let (x, y) = (&mut x[..dim * columns], &mut y[..dim * columns]);
+            x.fill(0.0);
+            (0..columns).for_each(|j| x[(start + j) * columns + j] = 1.0);
+            self.apply(x, y, columns, &mut interior, &mut memory);
+            for (i, row) in y.chunks_exact(columns).enumerate() {
+                row.iter()
+                    .enumerate()
+                    .for_each(|(j, v)| out[i + (start + j) * dim] = *v);
+            }
+        }
+        dense::mirror_lower(&mut out, dim);
+        out
+    }
+
+    /// `y = S x` for the members of a panel, which are next to one another.
+    fn apply(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        members: usize,
+        interior: &mut [f64],
+        memory: &mut Option<SolveMemory>,
+    ) {
+        match self {
+            Self::Dense(values) => multiply_members(y, x, values, members, y.len() / members),
+            Self::Lumped(matrix) => matrix.apply(x, y, members),
+            Self::Schur {
+                boundary,
+                coupling,
+                factor,
+            } => {
+                boundary.apply(x, y, members);
+                let dim = coupling.interior;
+                let interior = &mut interior[..dim * members];
+                interior.fill(0.0);
+                for (j, x) in x.chunks_exact(members).enumerate() {
+                    let (rows, values) = coupling.columns.column(j);
+                    for (&i, v) in rows.iter().zip(values) {
+                        x.iter()
+                            .enumerate()
+                            .for_each(|(m, x)| interior[m * dim + i] += v * x);
+                    }
+                }
+                if let Some(memory) = memory {
+                    factor.solve(interior, members, memory);
+                }
+                for (j, y) in y.chunks_exact_mut(members).enumerate() {
+                    let (rows, values) = coupling.columns.column(j);
+                    for (&i, v) in rows.iter().zip(values) {
+                        y.iter_mut()
+                            .enumerate()
+                            .for_each(|(m, y)| *y -= v * interior[m * dim + i]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The blocks of a stiffness matrix by boundary and interior.
+struct Split {
+    boundary: Columns,
+    interior: Columns,
+    coupling: Coupling,
+}
+
+impl Split {
+    fn new(stiffness: &Columns, nodes: &[u32]) -> Self {
+        let dim = stiffness.dim;
+        // Place of each unknown: boundary ones first, with the interior ones counted on their own.
+        let mut on_boundary = vec![false; dim];
+        for &node in nodes {
+            on_boundary[3 * node as usize..3 * node as usize + 3].fill(true);
+        }
+        let mut place = vec![0; dim];
+        let (mut boundary, mut interior) = (0, 0);
+        for i in 0..dim {
+            let counter = if on_boundary[i] {
+                &mut boundary
+            } else {
+                &mut interior
+            };
+            place[i] = *counter;
+            *counter += 1;
+        }
+        let empty = |dim| Columns {
+            dim,
+            pointers: vec![0],
+            rows: Vec::new(),
+            values: Vec::new(),
+        };
+        let (mut bb, mut ii, mut ib) = (empty(boundary), empty(interior), empty(boundary));
+        for j in 0..dim {
+            let (rows, values) = stiffness.column(j);
+            for (&i, &v) in rows.iter().zip(values) {
+                let target = match (on_boundary[i], on_boundary[j]) {
+                    (true, true) => &mut bb,
+                    (false, false) => &mut ii,
+                    (false, true) => &mut ib,
+                    (true, false) => continue,
+                };
+                target.rows.push(place[i]);
+                target.values.push(v);
+            }
+            if on_boundary[j] {
+                bb.pointers.push(bb.rows.len());
+                ib.pointers.push(ib.rows.len());
+            } else {
+                ii.pointers.push(ii.rows.len());
+            }
+        }
+        Self {
+            boundary: bb,
+            interior: ii,
+            coupling: Coupling {
+                interior,
+                columns: ib,
+            },
+        }
+    }
+}

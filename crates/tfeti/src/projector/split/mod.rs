@@ -1,0 +1,5 @@
+pub(crate) mod factor;
+pub(crate) mod fronts;
+pub(crate) mod order;
+pub(crate) mod solve;
+pub(crate) mod tree;

@@ -1,0 +1,340 @@
+//! Supports: which directions of which nodes are fixed, and by how much they are moved.
+
+use crate::error::TfetiError;
+use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+
+/// Directions fixed by a support.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Directions {
+    /// All three components.
+    All,
+    /// Single components x, y, z.
+    Components([bool; 3]),
+    /// Any directions; they are normalised, and dependent ones are removed and reported.
+    Vectors(Vec<[f64; 3]>),
+}
+
+impl Directions {
+    /// The directions as vectors, not normalised.
+    #[must_use]
+    pub fn vectors(&self) -> Vec<[f64; 3]> {
+        const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        match self {
+            Self::All => AXES.to_vec(),
+            Self::Components(on) => (0..3).filter(|&c| on[c]).map(|c| AXES[c]).collect(),
+            Self::Vectors(vectors) => vectors.clone(),
+        }
+    }
+}
+
+/// Prescribed displacement of a support.
+///
+/// The displacement of a node at time `t` is the sum over cases of `factor(case, t) * value`; only its part along the
+/// fixed directions counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Number of the displacement case. Cases are numbered from 0, below the number of supports; several supports may belong to
+    /// one case.
+    pub case: u32,
+    /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
+    pub values: Vec<[f64; 3]>,
+}
+
+/// Nodes with fixed directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodeSupport {
+    /// Mesh nodes.
+    pub nodes: Vec<u32>,
+    /// The directions in which they are fixed.
+    pub directions: Directions,
+    /// Prescribed displacement; `None` means zero.
+    pub motion: Option<Motion>,
+}
+
+impl NodeSupport {
+    /// Fixes all components of the nodes at zero.
+    #[must_use]
+    pub fn fixed(nodes: Vec<u32>) -> Self {
+        Self {
+            nodes,
+            directions: Directions::All,
+            motion: None,
+        }
+    }
+
+    /// Fixes some directions of the nodes at zero.
+    #[must_use]
+    pub fn partial(nodes: Vec<u32>, directions: Directions) -> Self {
+        Self {
+            nodes,
+            directions,
+            motion: None,
+        }
+    }
+
+    /// The same support, moved.
+    #[must_use]
+    pub fn with_motion(mut self, motion: Motion) -> Self {
+        self.motion = Some(motion);
+        self
+    }
+}
+
+/// One orthonormal fixed direction of a node.
+#[derive(Debug, Clone)]
+pub(crate) struct FixedDirection {
+    pub(crate) direction: [f64; 3],
+    /// `(case, value in metres)` along the direction, cases ascending, no zeros.
+    pub(crate) values: Vec<(u32, f64)>,
+    support: usize,
+}
+
+/// What all supports together fix at one node.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FixedNode {
+    pub(crate) node: u32,
+    pub(crate) directions: Vec<FixedDirection>,
+}
+
+impl FixedNode {
+    /// Prescribed displacement vector of each case: the sum of value times direction.
+    pub(crate) fn prescribed(&self) -> Vec<(u32, [f64; 3])> {
+        let mut out: Vec<(u32, [f64; 3])> = Vec::new();
+        for fixed in &self.directions {
+            for &(case, value) in &fixed.values {
+                let at = match out.binary_search_by_key(&case, |v| v.0) {
+                    Ok(at) => at,
+                    Err(at) => {
+                        out.insert(at, (case, [0.0; 3]));
+                        at
+                    }
+                };
+                for c in 0..3 {
+                    out[at].1[c] += value * fixed.direction[c];
+                }
+            }
+        }
+        out
+    }
+}
+
+/// All supports merged by node.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct MergedSupports {
+    /// Fixed nodes, ascending.
+    pub(crate) nodes: Vec<FixedNode>,
+    pub(crate) removed: Vec<RemovedRow>,
+    pub(crate) cases: usize,
+    /// Distinct nodes with at least one fixed direction (each counts three rows in the paper).
+    index: Vec<u32>,
+}
+
+/// A direction that supports fix at a node, and the first of them that does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PrescribedDirection {
+    /// Mesh node.
+    pub node: u32,
+    /// Unit direction, at right angles to the other ones of the node.
+    pub direction: [f64; 3],
+    /// Position of the support in the list.
+    pub support: usize,
+}
+
+/// The directions that supports fix, nodes ascending, each once.
+///
+/// # Errors
+/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
+pub fn prescribed_directions(
+    supports: &[NodeSupport],
+    nodes: usize,
+) -> Result<Vec<PrescribedDirection>, TfetiError> {
+    let merged = MergedSupports::new(supports, nodes)?;
+    let of_node = |fixed: &FixedNode| -> Vec<PrescribedDirection> {
+        let held = |d: &FixedDirection| PrescribedDirection {
+            node: fixed.node,
+            direction: d.direction,
+            support: d.support,
+        };
+        fixed.directions.iter().map(held).collect()
+    };
+    Ok(merged.nodes.iter().flat_map(of_node).collect())
+}
+
+/// Two unit directions closer than this to dependence are taken as dependent.
+const DEPENDENT: f64 = 1e-8;
+
+pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl MergedSupports {
+    pub(crate) fn at(&self, node: u32) -> Option<&FixedNode> {
+        match self.index.get(node as usize) {
+            Some(&k) if k != u32::MAX => Some(&self.nodes[k as usize]),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
+        let mut fixed: Vec<Option<FixedNode>> = vec![None; nodes];
+        let mut merged = Self::default();
+        for (s, support) in supports.iter().enumerate() {
+            let directions = unit_directions(s, support)?;
+            if let Some(motion) = &support.motion {
+                if motion.values.len() != 1 && motion.values.len() != support.nodes.len() {
+                    let (found, nodes) = (motion.values.len(), support.nodes.len());
+                    return Err(TfetiError::MotionLength {
+                        support: s,
+                        found,
+                        nodes,
+                    });
+                }
+                if motion.case as usize >= supports.len() {
+                    return Err(TfetiError::CaseNumber {
+                        support: s,
+                        case: motion.case,
+                        supports: supports.len(),
+                    });
+                }
+                merged.cases = merged.cases.max(motion.case as usize + 1);
+            }
+            for (k, &node) in support.nodes.iter().enumerate() {
+                if node as usize >= nodes {
+                    return Err(TfetiError::UnknownNode {
+                        place: format!("support {s}"),
+                        node,
+                        nodes,
+                    });
+                }
+                let motion = match &support.motion {
+                    None => None,
+                    Some(motion) => {
+                        let value = if motion.values.len() == 1 {
+                            motion.values[0]
+                        } else {
+                            motion.values[k]
+                        };
+                        if !value.iter().all(|v| v.is_finite()) {
+                            return Err(TfetiError::BadMotion { support: s, node });
+                        }
+                        Some((motion.case, value))
+                    }
+                };
+                let entry = fixed[node as usize].get_or_insert_with(|| FixedNode {
+                    node,
+                    directions: Vec::new(),
+                });
+                for direction in &directions {
+                    if let Some(row) = add_direction(entry, s, direction, motion)? {
+                        merged.removed.push(row);
+                    }
+                }
+            }
+        }
+        merged.index = vec![u32::MAX; nodes];
+        for node in fixed.into_iter().flatten() {
+            merged.index[node.node as usize] = merged.nodes.len() as u32;
+            merged.nodes.push(node);
+        }
+        Ok(merged)
+    }
+}
+
+fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, TfetiError> {
+    let mut directions = support.directions.vectors();
+    if support.nodes.is_empty() {
+        return Err(TfetiError::EmptySupport {
+            support: s,
+            what: "nodes",
+        });
+    }
+    if directions.is_empty() {
+        return Err(TfetiError::EmptySupport {
+            support: s,
+            what: "directions",
+        });
+    }
+    for (k, direction) in directions.iter_mut().enumerate() {
+        // Scaled first, so that neither tiny nor huge vectors lose their length.
+        let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let finite = direction.iter().all(|v| v.is_finite());
+        if !finite || largest == 0.0 {
+            return Err(TfetiError::BadDirection {
+                support: s,
+                direction: k,
+            });
+        }
+        let scaled = direction.map(|v| v / largest);
+        let length = dot(&scaled, &scaled).sqrt();
+        *direction = scaled.map(|v| v / length);
+    }
+    Ok(directions)
+}
+
+/// Orthonormalises a direction against those already fixed; `Some` if it adds nothing.
+fn add_direction(
+    entry: &mut FixedNode,
+    support: usize,
+    direction: &[f64; 3],
+    motion: Option<(u32, [f64; 3])>,
+) -> Result<Option<RemovedRow>, TfetiError> {
+    let mut rest = *direction;
+    let mut values: Vec<(u32, f64)> = Vec::new();
+    let mut size = 0.0_f64;
+    if let Some((case, vector)) = motion {
+        let value = dot(direction, &vector);
+        size = dot(&vector, &vector).sqrt();
+        values.push((case, value));
+    }
+    let mut first = support;
+    // Twice, so that rounding leaves the new direction orthogonal; the second pass changes no value noticeably.
+    for _ in 0..2 {
+        for fixed in &entry.directions {
+            let along = dot(&rest, &fixed.direction);
+            for c in 0..3 {
+                rest[c] -= along * fixed.direction[c];
+            }
+            if along.abs() > DEPENDENT {
+                first = fixed.support;
+            }
+            for &(case, value) in &fixed.values {
+                size = size.max(value.abs());
+                match values.iter_mut().find(|v| v.0 == case) {
+                    Some(v) => v.1 -= along * value,
+                    None => values.push((case, -along * value)),
+                }
+            }
+        }
+    }
+    let length = dot(&rest, &rest).sqrt();
+    if length > DEPENDENT {
+        values.sort_by_key(|v| v.0);
+        values.retain(|v| v.1.abs() > f64::EPSILON * size);
+        for value in &mut values {
+            value.1 /= length;
+        }
+        let direction = rest.map(|v| v / length);
+        entry.directions.push(FixedDirection {
+            direction,
+            values,
+            support,
+        });
+        return Ok(None);
+    }
+    if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > 1e-7 * size) {
+        return Err(TfetiError::ContradictorySupports {
+            node: entry.node,
+            first,
+            second: support,
+            case,
+            difference,
+        });
+    }
+    Ok(Some(RemovedRow {
+        node: entry.node,
+        kind: RowKind::Dirichlet,
+        reason: RemovalReason::DoubledSupport { support },
+    }))
+}

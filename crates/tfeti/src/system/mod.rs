@@ -1,0 +1,5 @@
+pub(crate) mod builder;
+pub(crate) mod recovery;
+pub(crate) mod report;
+pub(crate) mod row_stiffness;
+pub(crate) mod torn;

@@ -1,0 +1,294 @@
+//! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
+
+use crate::coarse::space::CoarseScratch;
+use crate::dual::operator::DualScratch;
+use crate::error::TfetiError;
+use crate::system::builder::Tfeti;
+use signorini_qp::SymmetricOperator;
+
+/// Response of the torn body to one load: what a time step needs to combine.
+///
+/// For loads `f = sum h_j f_j` the dual load is `d = c - sum h_j dual_j` and `e = sum h_j coarse_j`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadResponse {
+    /// `B K+ f`.
+    pub dual: Vec<f64>,
+    /// `e = -R^T f`.
+    pub coarse: Vec<f64>,
+    /// The load itself, a torn vector in newtons.
+    pub force: Vec<f64>,
+}
+
+/// How far a torn displacement is from a continuous one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// Largest difference between a copy and the mean of its node, in metres.
+    pub largest: f64,
+    /// Largest displacement component, in metres.
+    pub displacement: f64,
+}
+
+impl Tfeti {
+    /// Joins local vectors of all subdomains (length `3 local nodes` each) to one torn vector.
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn torn_from_local(&self, local: &[Vec<f64>]) -> Result<Vec<f64>, TfetiError> {
+        if local.len() != self.subdomains() {
+            return Err(TfetiError::Length {
+                what: "local vectors",
+                expected: self.subdomains(),
+                found: local.len(),
+            });
+        }
+        let mut out = Vec::with_capacity(self.torn_dim());
+        for (s, part) in local.iter().enumerate() {
+            let expected = self.torn_range(s).len();
+            if part.len() != expected {
+                return Err(TfetiError::Length {
+                    what: "local vector",
+                    expected,
+                    found: part.len(),
+                });
+            }
+            out.extend_from_slice(part);
+        }
+        self.check("load", &out, self.torn_dim())?;
+        Ok(out)
+    }
+
+    fn check(&self, what: &'static str, x: &[f64], expected: usize) -> Result<(), TfetiError> {
+        if x.len() != expected {
+            return Err(TfetiError::Length {
+                what,
+                expected,
+                found: x.len(),
+            });
+        }
+        match x.iter().position(|v| !v.is_finite()) {
+            Some(index) => Err(TfetiError::NotFinite { what, index }),
+            None => Ok(()),
+        }
+    }
+
+    /// Response to a load given by local vectors (as `signorini_fem_mesh::assemble_load` returns them).
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn load_response(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
+        let force = self.torn_from_local(local)?;
+        let mut displaced = vec![0.0; self.torn_dim()];
+        self.generalised_inverse(&force, &mut displaced);
+        let mut dual = vec![0.0; self.dual_dim()];
+        self.rows_times(&displaced, &mut dual);
+        let mut coarse = Vec::with_capacity(6 * self.subdomains());
+        for s in 0..self.subdomains() {
+            coarse.extend(
+                self.kernel(s)
+                    .transpose_times(&force[self.torn_range(s)])
+                    .map(|v| -v),
+            );
+        }
+        Ok(LoadResponse {
+            dual,
+            coarse,
+            force,
+        })
+    }
+
+    /// `out = B u` for a torn vector.
+    ///
+    /// # Panics
+    /// If a vector is too short.
+    pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
+        let gluing = self.gluing();
+        let start = |subdomain: u32, local: u32| {
+            self.torn_range(subdomain as usize).start + 3 * local as usize
+        };
+        let interface = gluing.ranges().interface.clone();
+        for (block, target) in out[interface].chunks_exact_mut(3).enumerate() {
+            target.fill(0.0);
+            for e in gluing.block(block) {
+                let value = &u[start(e.subdomain, e.local)..][..3];
+                for c in 0..3 {
+                    target[c] += e.coefficient * value[c];
+                }
+            }
+        }
+        for special in 0..gluing.specials() {
+            let entry = |e: &crate::rows::gluing::CopyEntry| {
+                let value = &u[start(e.subdomain, e.local)..][..3];
+                (0..3).map(|c| e.vector[c] * value[c]).sum::<f64>()
+            };
+            out[gluing.special_row(special)] = gluing.special(special).iter().map(entry).sum();
+        }
+    }
+
+    /// `f += B^T x` for a torn vector.
+    ///
+    /// # Panics
+    /// If a vector is too short.
+    pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
+        let gluing = self.gluing();
+        let start = |subdomain: u32, local: u32| {
+            self.torn_range(subdomain as usize).start + 3 * local as usize
+        };
+        for (block, value) in x[gluing.ranges().interface.clone()]
+            .chunks_exact(3)
+            .enumerate()
+        {
+            for e in gluing.block(block) {
+                let target = &mut f[start(e.subdomain, e.local)..][..3];
+                for c in 0..3 {
+                    target[c] += e.coefficient * value[c];
+                }
+            }
+        }
+        for special in 0..gluing.specials() {
+            let value = x[gluing.special_row(special)];
+            for e in gluing.special(special) {
+                let target = &mut f[start(e.subdomain, e.local)..][..3];
+                for c in 0..3 {
+                    target[c] += e.vector[c] * value;
+                }
+            }
+        }
+    }
+
+    /// Sum of loads: `sum factor * force`.
+    #[must_use]
+    pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+        let mut force = vec![0.0; self.torn_dim()];
+        for (factor, load) in loads {
+            signorini_qp::vector::axpy(*factor, &load.force, &mut force);
+        }
+        force
+    }
+
+    /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27).
+    ///
+    /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
+    /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn recover(
+        &self,
+        force: &[f64],
+        lambda: &[f64],
+        alpha: &[f64],
+    ) -> Result<Vec<f64>, TfetiError> {
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
+        self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
+        let mut total = force.to_vec();
+        self.add_rows_transposed(lambda, &mut total);
+        let mut u = vec![0.0; self.torn_dim()];
+        self.generalised_inverse(&total, &mut u);
+        for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
+            let range = self.torn_range(s);
+            self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
+        }
+        Ok(u)
+    }
+
+    /// `B u = F lambda + B K+ f + G^T alpha` without recovering `u`: one product with `F`.
+    ///
+    /// `load` is `B K+ f` (a combination of [`LoadResponse::dual`]). On contact rows subtract the prescribed offsets
+    /// ([`Gluing::prescribed`](crate::Gluing::prescribed)) and divide by the row's scale for displacements in metres.
+    ///
+    /// # Panics
+    /// If a vector does not have the length of dual vectors, or `alpha` that of the coarse space.
+    pub fn row_displacements(
+        &self,
+        lambda: &[f64],
+        load: &[f64],
+        alpha: &[f64],
+        out: &mut [f64],
+        dual: &mut DualScratch,
+        coarse: &mut CoarseScratch,
+    ) {
+        let mut rigid = vec![0.0; self.dual_dim()];
+        self.coarse().apply_transpose(alpha, &mut rigid, coarse);
+        self.dual().apply(lambda, out, dual);
+        for ((o, l), r) in out.iter_mut().zip(load).zip(&rigid) {
+            *o += l + r;
+        }
+    }
+
+    /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
+    /// their [stiffness](Self::copy_stiffness).
+    ///
+    /// # Panics
+    /// If `u` is shorter than a torn vector.
+    #[must_use]
+    pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; 3 * self.nodes];
+        let mut sums = vec![0.0; self.nodes];
+        for (k, &node) in self.node_of.iter().enumerate() {
+            let weight = self.copy_stiffness().weight(k);
+            sums[node as usize] += weight;
+            for c in 0..3 {
+                out[3 * node as usize + c] += weight * u[3 * k + c];
+            }
+        }
+        for (value, sum) in out.chunks_exact_mut(3).zip(&sums) {
+            value.iter_mut().for_each(|v| *v /= sum);
+        }
+        out
+    }
+
+    /// How far the copies of a node are from their mean.
+    ///
+    /// # Panics
+    /// If `u` is shorter than a torn vector.
+    #[must_use]
+    pub fn jump(&self, u: &[f64]) -> Jump {
+        let mean = self.nodal_mean(u);
+        let mut jump = Jump {
+            largest: 0.0,
+            displacement: 0.0,
+        };
+        for (k, &node) in self.node_of.iter().enumerate() {
+            for c in 0..3 {
+                let m = mean[3 * node as usize + c];
+                jump.largest = jump.largest.max((u[3 * k + c] - m).abs());
+                jump.displacement = jump.displacement.max(m.abs());
+            }
+        }
+        jump
+    }
+
+    /// Residual of equilibrium `K u - f - B^T lambda` in newtons, a torn vector.
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn equilibrium_residual(
+        &self,
+        u: &[f64],
+        force: &[f64],
+        lambda: &[f64],
+    ) -> Result<Vec<f64>, TfetiError> {
+        self.check("displacement", u, self.torn_dim())?;
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
+        let mut known = force.to_vec();
+        self.add_rows_transposed(lambda, &mut known);
+        let mut residual = vec![0.0; u.len()];
+        self.stiffness_times(u, &mut residual);
+        signorini_qp::vector::subtract(&known, &mut residual);
+        Ok(residual)
+    }
+
+    /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.
+    #[must_use]
+    pub fn prescribed_offsets(&self, factors: &[(usize, f64)]) -> Vec<f64> {
+        let mut c = vec![0.0; self.dual_dim()];
+        for &(case, factor) in factors {
+            for &(row, value) in self.gluing().prescribed(case) {
+                c[row as usize] += factor * value;
+            }
+        }
+        c
+    }
+}
