@@ -71,15 +71,16 @@ pub use rows::contact::{
 };
 pub use rows::dependencies::Dependency;
 pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
-pub use rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges, RowScaling, count_removed};
+pub use rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges};
 pub use rows::supports::{
     Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions,
 };
-pub use subdomain::class::{Class, Classes, Sharing};
+pub use subdomain::class::{Class, Classes};
 pub use subdomain::copy_stiffness::CopyStiffness;
 pub use subdomain::cost::{InverseKind, InverseSettings};
 pub use subdomain::forecast::{ClassForecast, Forecast, Rate};
 pub use subdomain::kernel::Kernel;
-pub use system::builder::{Tfeti, TfetiBuilder};
+pub use system::builder::TfetiBuilder;
 pub use system::recovery::{Jump, LoadResponse};
 pub use system::report::{ClassReport, SetupReport};
+pub use system::tfeti::Tfeti;

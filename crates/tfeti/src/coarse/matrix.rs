@@ -4,9 +4,8 @@ use crate::coarse::weights::RowWeights;
 use crate::linalg::sparse::Columns;
 use crate::projector::split::tree::CoarseTree;
 use crate::rows::gluing::Gluing;
-use crate::subdomain::class::Classes;
 use crate::subdomain::kernel::Kernel;
-use crate::subdomain::matrices::ClassBase;
+use crate::subdomain::matrices::{ClassBase, Subdomains};
 use rayon::prelude::*;
 use signorini_fem_mesh::buckets;
 
@@ -24,30 +23,25 @@ type Modes = [[f64; 6]; 3];
 /// Rows of `R` at all nodes of each class.
 pub(crate) struct ModeTable<'a> {
     tables: Vec<Vec<Modes>>,
-    bases: &'a [ClassBase],
-    classes: &'a Classes,
+    subdomains: &'a Subdomains,
 }
 
 impl<'a> ModeTable<'a> {
-    pub(crate) fn new(bases: &'a [ClassBase], classes: &'a Classes) -> Self {
+    pub(crate) fn new(subdomains: &'a Subdomains) -> Self {
         let table = |base: &ClassBase| {
-            (0..base.kernel.nodes())
-                .map(|n| base.kernel.node_modes(n))
-                .collect()
+            let nodes = 0..base.kernel.nodes();
+            nodes.map(|n| base.kernel.node_modes(n)).collect()
         };
-        Self {
-            tables: bases.iter().map(table).collect(),
-            bases,
-            classes,
-        }
+        let tables = subdomains.bases.iter().map(table).collect();
+        Self { tables, subdomains }
     }
 
     fn kernel(&self, subdomain: u32) -> &Kernel {
-        &self.bases[self.classes.place(subdomain as usize).0].kernel
+        self.subdomains.kernel(subdomain as usize)
     }
 
     fn at(&self, subdomain: u32, local: u32) -> &Modes {
-        &self.tables[self.classes.place(subdomain as usize).0][local as usize]
+        &self.tables[self.subdomains.class(subdomain as usize)][local as usize]
     }
 
     /// Row of `G^T`: `(subdomain, six coefficients)`, times `factor`, added to `out`.
@@ -111,7 +105,8 @@ impl Touching {
 }
 
 impl CoarseMatrix {
-    pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>, subdomains: usize) -> Self {
+    pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>) -> Self {
+        let subdomains = modes.subdomains.count();
         let touching = [
             Touching::blocks(gluing, subdomains),
             Touching::specials(gluing, subdomains),

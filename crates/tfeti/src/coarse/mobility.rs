@@ -7,9 +7,8 @@
 
 use crate::coarse::joints::{joint_rows, rigid_pairs};
 use crate::rows::gluing::{CopyEntry, Gluing};
-use crate::subdomain::class::Classes;
 use crate::subdomain::kernel::{Kernel, displacement};
-use crate::subdomain::matrices::ClassBase;
+use crate::subdomain::matrices::Subdomains;
 use nalgebra::{DMatrix, SymmetricEigen};
 use signorini_fem_mesh::DisjointSets;
 use std::fmt;
@@ -68,8 +67,7 @@ pub(crate) struct Mobility {
     body_of: Vec<u32>,
     bodies: Vec<Body>,
     centres: Vec<[f64; 3]>,
-    classes: Arc<Classes>,
-    bases: Arc<Vec<ClassBase>>,
+    subdomains: Arc<Subdomains>,
     /// Interface rows between bodies (hinges): what they do to their motions.
     joints: Vec<Vec<(usize, [f64; 6])>>,
 }
@@ -95,14 +93,13 @@ const FREE: f64 = 1e-11;
 impl Mobility {
     /// `centres` are the means of the nodes of the subdomains.
     pub(crate) fn new(
-        classes: Arc<Classes>,
-        bases: Arc<Vec<ClassBase>>,
+        subdomains: Arc<Subdomains>,
         gluing: &Gluing,
         centres: Vec<[f64; 3]>,
     ) -> Self {
         let mut sets = DisjointSets::new(centres.len());
         let position = |s: usize, local: usize| {
-            let kernel = &bases[classes.place(s).0].kernel;
+            let kernel = subdomains.kernel(s);
             let arm = kernel.arm(local);
             std::array::from_fn(|c| centres[s][c] + kernel.radius() * arm[c])
         };
@@ -132,7 +129,7 @@ impl Mobility {
             let square: f64 = members
                 .iter()
                 .map(|&s| {
-                    let own = bases[classes.place(s).0].kernel.radius();
+                    let own = subdomains.kernel(s).radius();
                     (0..3)
                         .map(|c| (centres[s][c] - body.centre[c]).powi(2))
                         .sum::<f64>()
@@ -152,8 +149,7 @@ impl Mobility {
             body_of: sets.numbers(),
             bodies,
             centres,
-            classes,
-            bases,
+            subdomains,
             joints: Vec::new(),
         };
         let acts = |row: &Vec<CopyEntry>| {
@@ -180,7 +176,7 @@ impl Mobility {
     }
 
     fn kernel(&self, subdomain: usize) -> &Kernel {
-        &self.bases[self.classes.place(subdomain).0].kernel
+        self.subdomains.kernel(subdomain)
     }
 
     /// Motion of a subdomain about its own centre when its body moves by `motion` about the body's.

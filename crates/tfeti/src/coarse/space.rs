@@ -10,9 +10,8 @@ use crate::linalg::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::split::factor::{SplitBase, cheapest_tree};
 use crate::rows::gluing::Gluing;
-use crate::subdomain::class::Classes;
 use crate::subdomain::kernel::Kernel;
-use crate::subdomain::matrices::ClassBase;
+use crate::subdomain::matrices::Subdomains;
 use signorini_qp::LooseMode;
 use std::sync::Arc;
 
@@ -24,8 +23,7 @@ pub struct Coarse(pub(crate) Arc<CoarseData>);
 pub(crate) struct CoarseData {
     map: Arc<BoundaryMap>,
     tables: RigidTables,
-    bases: Arc<Vec<ClassBase>>,
-    classes: Arc<Classes>,
+    pub(crate) subdomains: Arc<Subdomains>,
     pub(crate) gluing: Arc<Gluing>,
     matrix: CoarseMatrix,
     symbolic: Symbolic,
@@ -54,15 +52,14 @@ pub struct CoarseScratch {
 impl Coarse {
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
-        bases: Arc<Vec<ClassBase>>,
-        classes: Arc<Classes>,
+        subdomains: Arc<Subdomains>,
         gluing: Arc<Gluing>,
         centres: Vec<[f64; 3]>,
     ) -> Result<Self, TfetiError> {
-        let modes = ModeTable::new(&bases, &classes);
-        let matrix = CoarseMatrix::new(&gluing, &modes, classes.subdomains());
+        let modes = ModeTable::new(&subdomains);
+        let matrix = CoarseMatrix::new(&gluing, &modes);
         drop(modes);
-        let count = 6 * classes.subdomains();
+        let count = 6 * subdomains.count();
         let too_large = |_| TfetiError::TooLarge {
             what: "coarse unknowns",
             count,
@@ -70,16 +67,15 @@ impl Coarse {
         let (symbolic, (mobility, tables)) = rayon::join(
             || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
             || {
-                let mobility = Mobility::new(classes.clone(), bases.clone(), &gluing, centres);
-                (mobility, RigidTables::new(&map, &bases, &classes, &gluing))
+                let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
+                (mobility, RigidTables::new(&map, &subdomains, &gluing))
             },
         );
         let symbolic = symbolic?;
         let mut data = CoarseData {
             tables,
             map,
-            bases,
-            classes,
+            subdomains,
             gluing,
             matrix,
             symbolic,
@@ -95,7 +91,7 @@ impl Coarse {
     /// Number of rows of `G`: six per subdomain.
     #[must_use]
     pub fn rows(&self) -> usize {
-        6 * self.0.classes.subdomains()
+        6 * self.0.subdomains.count()
     }
 
     /// Length of dual vectors.
@@ -148,24 +144,6 @@ impl Coarse {
         self.0.product_transpose(y, out, &mut s.motions);
     }
 
-    /// Row `row` of `G^T`, for inspection: `(subdomain, six coefficients)`.
-    ///
-    /// # Panics
-    /// If there is no such row.
-    #[must_use]
-    pub fn column(&self, row: usize) -> Vec<(usize, [f64; 6])> {
-        let mut out: Vec<(usize, [f64; 6])> = Vec::new();
-        for (subdomain, dof, value) in self.0.gluing.row(row) {
-            let kernel = self.0.kernel(subdomain);
-            let modes = kernel.node_modes(dof / 3)[dof % 3].map(|m| value * m);
-            match out.iter_mut().find(|v| v.0 == subdomain) {
-                Some(v) => (0..6).for_each(|k| v.1[k] += modes[k]),
-                None => out.push((subdomain, modes)),
-            }
-        }
-        out
-    }
-
     /// A motion of bodies as a mode of the leading `contact` rows.
     pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
         let mut row = vec![0.0; self.dim()];
@@ -213,7 +191,7 @@ impl Coarse {
 
     fn factor_with(&self, weights: Option<RowWeights>) -> Result<CoarseFactor, TfetiError> {
         let data = &self.0;
-        let modes = ModeTable::new(&data.bases, &data.classes);
+        let modes = ModeTable::new(&data.subdomains);
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
         let free = data.free_motions(weights.as_ref());
         if !free.is_empty() {
@@ -250,13 +228,13 @@ impl Coarse {
         {
             return None;
         }
-        let mut changing = vec![false; data.classes.subdomains()];
+        let mut changing = vec![false; data.subdomains.count()];
         for e in (0..rows).flat_map(|row| gluing.special(row)) {
             changing[e.subdomain as usize] = true;
         }
         let graph = data.matrix.graph();
         let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
-        let modes = ModeTable::new(&data.bases, &data.classes);
+        let modes = ModeTable::new(&data.subdomains);
         let mut diagonal = match metric {
             Some(metric) => metric.to_vec(),
             None => vec![1.0; self.dim()],
@@ -279,7 +257,7 @@ impl Coarse {
 
 impl CoarseData {
     fn kernel(&self, subdomain: usize) -> &Kernel {
-        &self.bases[self.classes.place(subdomain).0].kernel
+        self.subdomains.kernel(subdomain)
     }
 
     /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.

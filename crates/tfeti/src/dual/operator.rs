@@ -1,9 +1,10 @@
 //! The dual operator `F = B K+ B^T`.
 
 use crate::dual::boundary::BoundaryMap;
+use crate::dual::inverses::ClassInverse;
 use crate::linalg::dense;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory};
-use crate::subdomain::matrices::{ClassBase, ClassInverse};
+use crate::subdomain::matrices::Subdomains;
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct DualOperator {
     pub(crate) map: Arc<BoundaryMap>,
-    pub(crate) bases: Arc<Vec<ClassBase>>,
+    pub(crate) subdomains: Arc<Subdomains>,
     pub(crate) inverses: Arc<Vec<ClassInverse>>,
     parallel: bool,
 }
@@ -39,13 +40,13 @@ const SMALL: u64 = 1_500_000;
 impl DualOperator {
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
-        bases: Arc<Vec<ClassBase>>,
+        subdomains: Arc<Subdomains>,
         inverses: Arc<Vec<ClassInverse>>,
     ) -> Self {
         let parallel = product_flops(&map, &inverses) > SMALL;
         Self {
             map,
-            bases,
+            subdomains,
             inverses,
             parallel,
         }
@@ -66,7 +67,7 @@ impl DualOperator {
             gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
             if self.inverses[panel.class].boundary.is_none() {
                 if !self.inverses[panel.class].full.is_packed() {
-                    full = full.max(self.bases[panel.class].stiffness.dim * columns);
+                    full = full.max(self.subdomains.bases[panel.class].stiffness.dim * columns);
                 }
                 let own = self.inverses[panel.class].full.need(columns);
                 need = Some(need.map_or(own, |n| n.or(own)));
@@ -96,7 +97,7 @@ impl DualOperator {
                     if let Some(matrix) = &inverse.boundary {
                         multiply_members(out, gathered, matrix, columns, size);
                     } else if let Some(memory) = &mut scratch.memory {
-                        let base = &self.bases[panel.class];
+                        let base = &self.subdomains.bases[panel.class];
                         let nodes = &self.map.classes[panel.class].nodes;
                         let dim = base.stiffness.dim;
                         let full_inverse = &inverse.full;

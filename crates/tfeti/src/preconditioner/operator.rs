@@ -14,7 +14,7 @@ use crate::preconditioner::scaling::Scaling;
 use crate::subdomain::cost::{PANEL, SHARED};
 use crate::subdomain::inverse::pattern_error;
 use crate::subdomain::matrices::ClassBase;
-use crate::system::builder::Tfeti;
+use crate::system::tfeti::Tfeti;
 use rayon::prelude::*;
 use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator};
 use std::sync::Arc;
@@ -60,7 +60,6 @@ pub struct DualPreconditionerScratch {
     dual: Vec<f64>,
     /// The matrices of [`Scaling`] on the face; empty for all rows.
     groups: Vec<f64>,
-    masked: Vec<f64>,
 }
 
 #[derive(Debug)]
@@ -94,7 +93,7 @@ impl DualPreconditioner {
         let map = system.parts.map.clone();
         let classes = (0..map.classes.len())
             .into_par_iter()
-            .map(|k| BoundaryStiffness::new(&system.parts.bases[k], &map, k, kind))
+            .map(|k| BoundaryStiffness::new(&system.parts.subdomains.bases[k], &map, k, kind))
             .collect::<Result<_, _>>()?;
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
         let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
@@ -104,30 +103,6 @@ impl DualPreconditioner {
             classes,
             scaling,
         })
-    }
-
-    /// `y = W M W x` with `W` one on the free rows and zero on the others.
-    ///
-    /// # Panics
-    /// If `x` or `y` does not have the length of dual vectors.
-    pub fn apply_masked(
-        &self,
-        x: &[f64],
-        free: &[bool],
-        y: &mut [f64],
-        s: &mut DualPreconditionerScratch,
-    ) {
-        let mut masked = std::mem::take(&mut s.masked);
-        for ((m, x), free) in masked.iter_mut().zip(x).zip(free) {
-            *m = if *free { *x } else { 0.0 };
-        }
-        self.apply(&masked, y, s);
-        s.masked = masked;
-        for (y, free) in y.iter_mut().zip(free) {
-            if !free {
-                *y = 0.0;
-            }
-        }
     }
 
     fn stiffness_product(&self, x: &[f64], s: &mut DualPreconditionerScratch) {
@@ -206,7 +181,6 @@ impl SymmetricOperator for DualPreconditioner {
             lanes: (0..self.map.lanes.len()).map(lane).collect(),
             dual: vec![0.0; if self.scaling.is_some() { rows } else { 0 }],
             groups: Vec::new(),
-            masked: vec![0.0; rows],
         }
     }
 

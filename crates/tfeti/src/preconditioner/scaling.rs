@@ -2,7 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::linalg::dense;
-use crate::system::builder::Tfeti;
+use crate::system::tfeti::Tfeti;
 use signorini_qp::{ActiveSetView, Freedom};
 
 /// What is added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come

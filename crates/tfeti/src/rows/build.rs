@@ -2,14 +2,12 @@
 
 use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, TangentialRows};
 use crate::rows::contact::{ContactConstraints, ContactRow, PointRows};
-use crate::rows::kinds::RowScaling;
 use crate::rows::supports::{MergedSupports, dot};
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 pub(super) struct Builder<'a> {
     pub(super) decomposition: &'a Decomposition,
-    pub(super) rule: RowScaling,
     pub(super) stiffness: &'a CopyStiffness,
     /// Shares of the copies of a node.
     pub(super) shares: Vec<f64>,
@@ -23,10 +21,7 @@ impl Builder<'_> {
             return;
         }
         let copies = self.decomposition.copies(node as usize);
-        match self.rule {
-            RowScaling::Orthonormal => self.stiffness.unit_shares(copies, &mut self.shares),
-            RowScaling::Chained => self.shares.splice(.., [1.0]).for_each(drop),
-        }
+        self.stiffness.unit_shares(copies, &mut self.shares);
         let entries = copies.iter().zip(&self.shares).map(|(c, share)| CopyEntry {
             subdomain: c.subdomain,
             local: c.local,
@@ -182,7 +177,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Row `j` of a node's Helmert matrix, or link `j` of its chain.
+    /// Row `j` of a node's Helmert matrix.
     fn interface_block(&mut self, node: u32, copies: &[NodeCopy], j: usize) {
         let entry = |k: usize, coefficient: f64| BlockEntry {
             subdomain: copies[k].subdomain,
@@ -190,27 +185,17 @@ impl Builder<'_> {
             coefficient,
         };
         let entries = &mut self.gluing.block_entries;
-        match self.rule {
-            RowScaling::Orthonormal => {
-                let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
-                entries.extend((0..j).map(|k| entry(k, scale)));
-                entries.push(entry(j, -(j as f64) * scale));
-            }
-            RowScaling::Chained => entries.extend([entry(j - 1, 1.0), entry(j, -1.0)]),
-        }
+        let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
+        entries.extend((0..j).map(|k| entry(k, scale)));
+        entries.push(entry(j, -(j as f64) * scale));
         self.gluing.block_pointers.push(entries.len() as u32);
         self.gluing.block_nodes.push(node);
     }
 
     pub(super) fn dirichlet(&mut self, merged: &MergedSupports) {
         for fixed in &merged.nodes {
-            let scale = match self.rule {
-                RowScaling::Orthonormal => {
-                    let copies = self.decomposition.copies(fixed.node as usize);
-                    self.stiffness.squares(copies).sqrt().recip()
-                }
-                RowScaling::Chained => 1.0,
-            };
+            let copies = self.decomposition.copies(fixed.node as usize);
+            let scale = self.stiffness.squares(copies).sqrt().recip();
             for direction in &fixed.directions {
                 self.spread(fixed.node, direction.direction);
                 let number = self.close(fixed.node);

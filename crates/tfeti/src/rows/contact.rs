@@ -1,7 +1,7 @@
 //! Contact points and the directions in which they can still move once supports are taken into account.
 
 use crate::error::TfetiError;
-use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind, RowScaling};
+use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport, dot};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::SurfaceFrame;
@@ -110,7 +110,7 @@ pub fn prescribed_points(
     nodes: usize,
 ) -> Result<Vec<PrescribedPoint>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
-    let all = contact_rows(contact, &merged, RowScaling::Chained, nodes, |_| 1.0)?;
+    let all = contact_rows(contact, &merged, nodes, |_| 1.0)?;
     Ok(all.held)
 }
 
@@ -161,7 +161,6 @@ const FIXED: f64 = 1e-8;
 pub(crate) fn contact_rows(
     contact: &ContactConstraints,
     supports: &MergedSupports,
-    rule: RowScaling,
     nodes: usize,
     squares: impl Fn(u32) -> f64,
 ) -> Result<ContactRows, TfetiError> {
@@ -173,16 +172,11 @@ pub(crate) fn contact_rows(
     for (index, point) in contact.points.iter().enumerate() {
         uses.add(index, contact)?;
         check_frame(index, point)?;
-        let (alpha, beta, scale) = match rule {
-            RowScaling::Chained => (1.0, f64::from(u8::from(point.partner.is_some())), 1.0),
-            RowScaling::Orthonormal => {
-                // Unit row on the means of k copies: weights c/sqrt(k) with c = (1/k_a + 1/k_b)^(-1/2).
-                let a = squares(point.node);
-                let b = point.partner.map_or(0.0, &squares);
-                let c = (a + b).sqrt().recip();
-                (c * a.sqrt(), c * b.sqrt(), c)
-            }
-        };
+        // Unit row on the means of k copies: weights c/sqrt(k) with c = (1/k_a + 1/k_b)^(-1/2).
+        let a = squares(point.node);
+        let b = point.partner.map_or(0.0, &squares);
+        let scale = (a + b).sqrt().recip();
+        let (alpha, beta) = (scale * a.sqrt(), scale * b.sqrt());
         let space = Space::new(
             supports.at(point.node),
             point.partner.and_then(|n| supports.at(n)),

@@ -9,7 +9,7 @@
 use super::build::Builder;
 use crate::error::TfetiError;
 use crate::rows::contact::{ContactConstraints, contact_rows};
-use crate::rows::kinds::{RemovedRow, RowRanges, RowScaling};
+use crate::rows::kinds::{RemovedRow, RowRanges};
 use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use signorini_fem_mesh::{Decomposition, DisjointSets, SurfaceFrame};
@@ -94,7 +94,6 @@ impl Glob {
 /// The rows of `B`, their names and their counts.
 #[derive(Debug, Clone)]
 pub struct Gluing {
-    pub(super) rule: RowScaling,
     pub(super) ranges: RowRanges,
     pub(super) block_pointers: Vec<u32>,
     pub(super) block_entries: Vec<BlockEntry>,
@@ -125,7 +124,6 @@ impl Gluing {
         nodes: usize,
         supports: &[NodeSupport],
         contact: Option<&ContactConstraints>,
-        rule: RowScaling,
         stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
         if decomposition.nodes() != nodes {
@@ -140,13 +138,12 @@ impl Gluing {
         let none = ContactConstraints::default();
         let contact_nodes = contact.unwrap_or(&none);
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
-        let found = contact_rows(contact_nodes, &merged, rule, nodes, squares)?;
+        let found = contact_rows(contact_nodes, &merged, nodes, squares)?;
         let mut builder = Builder {
             decomposition,
-            rule,
             stiffness,
             shares: Vec::new(),
-            gluing: Self::empty(rule, merged.cases, stiffness.is_plain()),
+            gluing: Self::empty(merged.cases, stiffness.is_plain()),
         };
         builder.gluing.removed = found
             .removed
@@ -190,9 +187,8 @@ impl Gluing {
         Ok(gluing)
     }
 
-    fn empty(rule: RowScaling, cases: usize, plain: bool) -> Self {
+    fn empty(cases: usize, plain: bool) -> Self {
         Self {
-            rule,
             ranges: RowRanges {
                 normal: 0..0,
                 discs: 0..0,
@@ -211,16 +207,10 @@ impl Gluing {
             removed: Vec::new(),
             prescribed: vec![Vec::new(); cases],
             paper_rows: 0,
-            orthonormal: rule == RowScaling::Orthonormal && plain,
-            aligned: rule == RowScaling::Orthonormal && plain,
+            orthonormal: plain,
+            aligned: plain,
             dependent: Vec::new(),
         }
-    }
-
-    /// How the rows were built.
-    #[must_use]
-    pub fn rule(&self) -> RowScaling {
-        self.rule
     }
 
     /// Where each kind of row stands.
@@ -294,12 +284,6 @@ impl Gluing {
     #[must_use]
     pub fn removed(&self) -> &[RemovedRow] {
         &self.removed
-    }
-
-    /// Number of displacement cases of the supports.
-    #[must_use]
-    pub fn prescribed_cases(&self) -> usize {
-        self.prescribed.len()
     }
 
     /// Row offsets `(row, value)` of displacement case `case` with factor one, rows ascending.

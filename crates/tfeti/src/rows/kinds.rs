@@ -1,19 +1,7 @@
 //! Names of the rows of `B` and of those that were left out.
 
-use std::collections::HashMap;
+use std::fmt;
 use std::ops::Range;
-
-/// How the rows of `B` are built.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum RowScaling {
-    /// Orthonormal rows: Helmert rows over the copies of a node for the interface, the mean of the copies times the
-    /// square root of their number for contact and supports.
-    #[default]
-    Orthonormal,
-    /// The paper's rows: differences of consecutive copies with +1 and -1, one copy for contact and supports.
-    Chained,
-}
 
 /// The four groups of rows, in the order in which they stand in `B`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -29,7 +17,7 @@ pub enum RowKind {
 }
 
 /// Why a row that the paper counts is not in `B`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum RemovalReason {
     /// The support (its number) repeats a direction that is fixed already, with the same prescribed value.
@@ -43,6 +31,19 @@ pub enum RemovalReason {
     TangentFixed,
     /// Friction cannot act where there is no contact row.
     NoNormalRow,
+}
+
+impl fmt::Display for RemovalReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DoubledSupport { support } => {
+                write!(f, "direction supported twice (support {support})")
+            }
+            Self::NormalFixed => f.write_str("normal direction supported"),
+            Self::TangentFixed => f.write_str("tangential direction supported"),
+            Self::NoNormalRow => f.write_str("no normal row"),
+        }
+    }
 }
 
 /// A row that would make `B` lose rank and was therefore left out.
@@ -67,7 +68,7 @@ pub struct RowRanges {
     pub intervals: Range<usize>,
     /// Interface rows: triples (x, y, z) of one node.
     pub interface: Range<usize>,
-    /// NodeSupport rows.
+    /// Support rows.
     pub dirichlet: Range<usize>,
 }
 
@@ -105,25 +106,4 @@ impl RowRanges {
             None
         }
     }
-}
-
-/// Number of removed rows by kind and reason, for reports.
-#[must_use]
-pub fn count_removed(removed: &[RemovedRow]) -> Vec<(RowKind, &'static str, usize)> {
-    let mut counts: HashMap<(RowKind, &'static str), usize> = HashMap::new();
-    for row in removed {
-        let reason = match row.reason {
-            RemovalReason::DoubledSupport { .. } => "direction supported twice",
-            RemovalReason::NormalFixed => "normal direction supported",
-            RemovalReason::TangentFixed => "tangential direction supported",
-            RemovalReason::NoNormalRow => "no normal row",
-        };
-        *counts.entry((row.kind, reason)).or_default() += 1;
-    }
-    let mut out: Vec<_> = counts
-        .into_iter()
-        .map(|((kind, reason), count)| (kind, reason, count))
-        .collect();
-    out.sort();
-    out
 }

@@ -9,17 +9,6 @@ use signorini_fem_mesh::{Decomposition, Hooke, Materials, Subdomain, TetMesh};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Whether translates share their matrices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum Sharing {
-    /// Subdomains that are translations of one another share one stiffness matrix, kernel and inverse.
-    #[default]
-    Translates,
-    /// Every subdomain has its own; for measuring what generality costs.
-    Never,
-}
-
 /// Subdomains that share one set of matrices.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Class {
@@ -62,7 +51,7 @@ impl Classes {
         self.place.len()
     }
 
-    /// Finds the classes. Two subdomains share one if their local connectivity is identical, their elements have equal
+    /// Finds the classes: each subdomain its own, or those of translates. Two subdomains share one if their local connectivity is identical, their elements have equal
     /// Hooke tensors, and their node positions agree up to a translation within `1e-12` of their size (plus the
     /// rounding of the coordinates themselves).
     ///
@@ -72,7 +61,7 @@ impl Classes {
         mesh: &TetMesh,
         decomposition: &Decomposition,
         materials: &Materials,
-        sharing: Sharing,
+        share_translates: bool,
     ) -> Result<Self, TfetiError> {
         let subdomains = decomposition.subdomains();
         let candidates: Vec<Candidate<'_>> = subdomains
@@ -85,7 +74,7 @@ impl Classes {
         let mut buckets: HashMap<u64, Vec<(f64, usize)>> = HashMap::new();
         for (s, candidate) in candidates.iter().enumerate() {
             let mut home = None;
-            if sharing == Sharing::Translates {
+            if share_translates {
                 let bucket = buckets.entry(candidate.key).or_default();
                 let slack = candidate.tolerance * SIGNATURE_SLACK;
                 let from = bucket.partition_point(|&(v, _)| v < candidate.signature - slack);

@@ -1,8 +1,7 @@
 //! Stiffness of the copies of a node, where they differ: in a body of several materials, and in ragged cuts.
 
 use crate::error::TfetiError;
-use crate::subdomain::class::Classes;
-use crate::subdomain::matrices::ClassBase;
+use crate::subdomain::matrices::{ClassBase, Subdomains};
 use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 /// Stiffness of a copy over that of another one of its node up to which all copies count alike. It is 1 where boxes cut a regular
@@ -23,7 +22,7 @@ pub struct CopyStiffness {
 }
 
 impl CopyStiffness {
-    pub(crate) fn new(classes: &Classes, bases: &[ClassBase]) -> Self {
+    pub(crate) fn new(subdomains: &Subdomains) -> Self {
         let by_class = |base: &ClassBase| -> Vec<f64> {
             let mean = |node: usize| {
                 let diagonal = (3 * node..3 * node + 3).map(|i| base.stiffness.diagonal(i));
@@ -31,11 +30,11 @@ impl CopyStiffness {
             };
             (0..base.stiffness.dim / 3).map(mean).collect()
         };
-        let by_class: Vec<Vec<f64>> = bases.iter().map(by_class).collect();
+        let by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
         let (mut first, mut values) = (Vec::new(), Vec::new());
-        for s in 0..classes.subdomains() {
+        for s in 0..subdomains.count() {
             first.push(values.len());
-            values.extend(&by_class[classes.place(s).0]);
+            values.extend(&by_class[subdomains.class(s)]);
         }
         Self { first, values }
     }

@@ -21,10 +21,6 @@ pub enum InverseKind {
 pub struct InverseSettings {
     /// Dense, sparse, or chosen by cost. Default: by cost.
     pub kind: InverseKind,
-    /// Whether sparse inverses are projected to the Moore-Penrose inverse. Without the projection a product is a few
-    /// per cent cheaper; `F` then differs outside of the kernel of `G` only, so `P F P` and all solutions are the same.
-    /// Dense inverses are always Moore-Penrose. Default: true.
-    pub moore_penrose: bool,
     /// Upper bound in bytes for all inverses and factors. Default: 8 GiB.
     pub memory_limit: u64,
     /// Number of products with `F` expected, for the cost model. Default: 2000, at least 1.
@@ -35,7 +31,6 @@ impl Default for InverseSettings {
     fn default() -> Self {
         Self {
             kind: InverseKind::Auto,
-            moore_penrose: true,
             memory_limit: 8 << 30,
             expected_products: 2000,
         }
@@ -47,13 +42,6 @@ impl InverseSettings {
     #[must_use]
     pub fn with_kind(mut self, kind: InverseKind) -> Self {
         self.kind = kind;
-        self
-    }
-
-    /// Sets [`InverseSettings::moore_penrose`].
-    #[must_use]
-    pub fn with_moore_penrose(mut self, moore_penrose: bool) -> Self {
-        self.moore_penrose = moore_penrose;
         self
     }
 

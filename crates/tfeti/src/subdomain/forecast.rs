@@ -4,7 +4,7 @@ use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::linalg::sparse::minimum_degree;
 use crate::projector::split::tree::patterns;
-use crate::subdomain::class::{Classes, Sharing};
+use crate::subdomain::class::Classes;
 use crate::subdomain::cost::{InverseSettings, Size, choose};
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::time::Instant;
@@ -61,11 +61,11 @@ impl Forecast {
         mesh: &TetMesh,
         decomposition: &Decomposition,
         materials: &Materials,
-        sharing: Sharing,
+        share_translates: bool,
         settings: &InverseSettings,
         touched: impl Fn(u32) -> bool,
     ) -> Result<Self, TfetiError> {
-        let classes = Classes::find(mesh, decomposition, materials, sharing)?;
+        let classes = Classes::find(mesh, decomposition, materials, share_translates)?;
         let subdomains = decomposition.subdomains();
         let mut sizes = Vec::with_capacity(classes.classes().len());
         let mut entries = 0;
@@ -238,7 +238,7 @@ mod tests {
                 &mesh,
                 &decomposition,
                 &materials,
-                Sharing::default(),
+                true,
                 &InverseSettings::default(),
                 |node| held.contains(&node),
             )

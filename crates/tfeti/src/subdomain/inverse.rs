@@ -11,23 +11,14 @@ use crate::linalg::sparse::{
 };
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::packed::PackedFactor;
-use std::sync::Arc;
 
 /// A generalised inverse of the whole matrix of one subdomain.
-#[derive(Debug, Clone)]
-pub(crate) struct Inverse {
-    /// Factor of the regularised matrix.
-    factor: Factor,
-    /// Whether products are projected to the Moore-Penrose inverse.
-    project: bool,
-}
-
-#[derive(Debug, Clone)]
-enum Factor {
-    /// For many columns at once.
-    Sparse(Arc<SparseCholesky>),
+#[derive(Debug)]
+pub(crate) enum Inverse {
+    /// A factor of the regularised matrix for many columns at once.
+    Sparse(SparseCholesky),
     /// For one column.
-    Packed(Arc<PackedFactor>),
+    Packed(PackedFactor),
 }
 
 impl Inverse {
@@ -36,7 +27,6 @@ impl Inverse {
         stiffness: &Columns,
         kernel: &Kernel,
         symbolic: &Symbolic,
-        project: bool,
         subdomain: usize,
     ) -> Result<Self, TfetiError> {
         let matrix = regularised(stiffness, kernel);
@@ -46,23 +36,12 @@ impl Inverse {
         if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
             return Err(TfetiError::Singular { subdomain, pivot });
         }
-        Ok(Self {
-            factor: Factor::Sparse(Arc::new(factor)),
-            project,
-        })
-    }
-
-    /// The same factor, projected or not.
-    pub(crate) fn with_projection(&self, project: bool) -> Self {
-        Self {
-            factor: self.factor.clone(),
-            project,
-        }
+        Ok(Self::Sparse(factor))
     }
 
     /// Whether it is stored for products with one column.
     pub(crate) fn is_packed(&self) -> bool {
-        matches!(self.factor, Factor::Packed(_))
+        matches!(self, Self::Packed(_))
     }
 
     /// `u = K+ f` for forces and displacements at some `nodes`, if it is stored for products with one column.
@@ -74,8 +53,7 @@ impl Inverse {
         u: &mut [f64],
         memory: &mut SolveMemory,
     ) -> bool {
-        if let Factor::Packed(factor) = &self.factor {
-            let kernel = self.project.then_some(kernel);
+        if let Self::Packed(factor) = self {
             factor.product(kernel, nodes, f, u, &mut memory.numbers);
         }
         self.is_packed()
@@ -83,36 +61,32 @@ impl Inverse {
 
     /// The same, stored for products with one column.
     pub(crate) fn packed(self, stiffness: &Columns) -> Self {
-        let factor = match self.factor {
-            Factor::Sparse(factor) => Arc::new(PackedFactor::new(&factor, stiffness, 3)),
-            Factor::Packed(factor) => factor,
-        };
-        Self {
-            factor: Factor::Packed(factor),
-            project: self.project,
+        match self {
+            Self::Sparse(factor) => Self::Packed(PackedFactor::new(&factor, stiffness, 3)),
+            packed => packed,
         }
     }
 
     /// Work memory that products with so many columns need.
     pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
-        match &self.factor {
-            Factor::Sparse(factor) => factor.need(columns),
-            Factor::Packed(factor) => factor.need(),
+        match self {
+            Self::Sparse(factor) => factor.need(columns),
+            Self::Packed(factor) => factor.need(),
         }
     }
 
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
-        match &self.factor {
-            Factor::Sparse(factor) => factor.stored(),
-            Factor::Packed(factor) => factor.stored(),
+        match self {
+            Self::Sparse(factor) => factor.stored(),
+            Self::Packed(factor) => factor.stored(),
         }
     }
 
     fn solve(&self, x: &mut [f64], columns: usize, memory: &mut SolveMemory) {
-        match &self.factor {
-            Factor::Sparse(factor) => factor.solve(x, columns, memory),
-            Factor::Packed(factor) => factor.solve(x, &mut memory.numbers),
+        match self {
+            Self::Sparse(factor) => factor.solve(x, columns, memory),
+            Self::Packed(factor) => factor.solve(x, &mut memory.numbers),
         }
     }
 
@@ -124,13 +98,9 @@ impl Inverse {
         columns: usize,
         memory: &mut SolveMemory,
     ) {
-        if self.project {
-            remove_rigid(kernel, x);
-        }
+        remove_rigid(kernel, x);
         self.solve(x, columns, memory);
-        if self.project {
-            remove_rigid(kernel, x);
-        }
+        remove_rigid(kernel, x);
     }
 
     /// Rows and columns of the Moore-Penrose inverse that belong to the boundary nodes, column-major.
@@ -299,7 +269,7 @@ mod tests {
             Columns::from_symmetric(&assemble_stiffness(points, tets, |_| &hooke).unwrap());
         let kernel = Kernel::new(points, 4).unwrap();
         let symbolic = Symbolic::new(&regularised(&stiffness, &kernel), 3).unwrap();
-        let inverse = Inverse::new(&stiffness, &kernel, &symbolic, true, 4)?;
+        let inverse = Inverse::new(&stiffness, &kernel, &symbolic, 4)?;
         Ok((stiffness, kernel, inverse))
     }
 

@@ -190,10 +190,10 @@ impl PackedFactor {
     }
 
     /// Rows `nodes` of `A^-1 f` for forces on these nodes, in a matrix of nodes of three unknowns; `memory` as in
-    /// [`PackedFactor::solve`]. With a kernel the rigid part of forces and displacements, taken at all nodes, is removed.
+    /// [`PackedFactor::solve`]. The rigid part of forces and displacements, taken at all nodes, is removed.
     pub(crate) fn product(
         &self,
-        kernel: Option<&Kernel>,
+        kernel: &Kernel,
         nodes: &[u32],
         f: &[f64],
         u: &mut [f64],
@@ -202,15 +202,11 @@ impl PackedFactor {
         let (x, buffer) = memory.split_at_mut(self.order.len());
         let at = |node: usize| 3 * self.place[node] as usize;
         let three = |v: &[f64]| [v[0], v[1], v[2]];
-        if let Some(kernel) = kernel {
-            let forces = nodes.iter().zip(f.chunks_exact(3));
-            let motion = rigid(kernel, forces.map(|(&node, f)| (node as usize, three(f))));
-            for node in 0..kernel.nodes() {
-                let v = displacement(&motion, kernel.arm(node));
-                x[at(node)..][..3].copy_from_slice(&v.map(|v| -v));
-            }
-        } else {
-            x.fill(0.0);
+        let forces = nodes.iter().zip(f.chunks_exact(3));
+        let motion = rigid(kernel, forces.map(|(&node, f)| (node as usize, three(f))));
+        for node in 0..kernel.nodes() {
+            let v = displacement(&motion, kernel.arm(node));
+            x[at(node)..][..3].copy_from_slice(&v.map(|v| -v));
         }
         for (&node, f) in nodes.iter().zip(f.chunks_exact(3)) {
             let target = &mut x[at(node as usize)..][..3];
@@ -220,19 +216,12 @@ impl PackedFactor {
         }
         self.groups.forward(&self.tiles, x, &mut [], buffer);
         self.groups.backward(&self.tiles, x, &[], buffer);
-        let motion = kernel.map(|kernel| {
-            let all = (0..kernel.nodes()).map(|node| (node, three(&x[at(node)..][..3])));
-            (rigid(kernel, all), kernel)
-        });
+        let all = (0..kernel.nodes()).map(|node| (node, three(&x[at(node)..][..3])));
+        let motion = rigid(kernel, all);
         for (&node, u) in nodes.iter().zip(u.chunks_exact_mut(3)) {
             let node = node as usize;
-            u.copy_from_slice(&x[at(node)..][..3]);
-            if let Some((motion, kernel)) = &motion {
-                let v = displacement(motion, kernel.arm(node));
-                for c in 0..3 {
-                    u[c] -= v[c];
-                }
-            }
+            let (x, v) = (&x[at(node)..][..3], displacement(&motion, kernel.arm(node)));
+            (0..3).for_each(|c| u[c] = x[c] - v[c]);
         }
     }
 }
@@ -297,13 +286,21 @@ mod tests {
             }
             if unit == 3 {
                 // Some nodes only: the same numbers as with zero forces elsewhere.
+                let place = |k: usize| [k as f64, (k * k % 7) as f64, (k * k % 5) as f64];
+                let points: Vec<[f64; 3]> = (0..matrix.dim / 3).map(place).collect();
+                let Ok(kernel) = Kernel::new(&points, 0) else {
+                    continue;
+                };
                 let dofs = [3, 4, 5, 9, 10, 11];
                 let mut z = vec![0.0; matrix.dim];
                 dofs.iter().for_each(|&d| z[d] = d as f64);
                 let (f, mut u) = (dofs.map(|d| z[d]), [f64::NAN; 6]);
-                packed.product(None, &[1, 3], &f, &mut u, &mut memory);
+                packed.product(&kernel, &[1, 3], &f, &mut u, &mut memory);
+                let remove = |z: &mut [f64]| kernel.add_motion(-1.0, &kernel.transpose_times(z), z);
+                remove(&mut z);
                 packed.solve(&mut z, &mut memory);
-                assert_eq!(u, dofs.map(|d| z[d]));
+                remove(&mut z);
+                assert!(dofs.iter().zip(u).all(|(&d, u)| (u - z[d]).abs() < 1e-13));
             }
         }
     }

@@ -1,10 +1,7 @@
 //! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
 
-use crate::coarse::space::CoarseScratch;
-use crate::dual::operator::DualScratch;
 use crate::error::TfetiError;
-use crate::system::builder::Tfeti;
-use signorini_qp::SymmetricOperator;
+use crate::system::tfeti::Tfeti;
 
 /// Response of the torn body to one load: what a time step needs to combine.
 ///
@@ -190,30 +187,6 @@ impl Tfeti {
             self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
         }
         Ok(u)
-    }
-
-    /// `B u = F lambda + B K+ f + G^T alpha` without recovering `u`: one product with `F`.
-    ///
-    /// `load` is `B K+ f` (a combination of [`LoadResponse::dual`]). On contact rows subtract the prescribed offsets
-    /// ([`Gluing::prescribed`](crate::Gluing::prescribed)) and divide by the row's scale for displacements in metres.
-    ///
-    /// # Panics
-    /// If a vector does not have the length of dual vectors, or `alpha` that of the coarse space.
-    pub fn row_displacements(
-        &self,
-        lambda: &[f64],
-        load: &[f64],
-        alpha: &[f64],
-        out: &mut [f64],
-        dual: &mut DualScratch,
-        coarse: &mut CoarseScratch,
-    ) {
-        let mut rigid = vec![0.0; self.dual_dim()];
-        self.coarse().apply_transpose(alpha, &mut rigid, coarse);
-        self.dual().apply(lambda, out, dual);
-        for ((o, l), r) in out.iter_mut().zip(load).zip(&rigid) {
-            *o += l + r;
-        }
     }
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by

@@ -1,9 +1,9 @@
 //! What the set-up did.
 
 use crate::dual::boundary::BoundaryMap;
-use crate::rows::kinds::{RowKind, RowRanges};
+use crate::dual::inverses::ClassInverse;
+use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges};
 use crate::subdomain::class::Classes;
-use crate::subdomain::matrices::ClassInverse;
 use std::fmt;
 
 /// Sizes, choices and times of the set-up.
@@ -21,7 +21,7 @@ pub struct SetupReport {
     /// Rows as the paper counts them: its `n_d`.
     pub rows_as_paper: usize,
     /// Removed rows by kind and reason.
-    pub removed: Vec<(RowKind, &'static str, usize)>,
+    pub removed: Vec<(RowKind, RemovalReason, usize)>,
     /// Bytes of all inverses and factors of subdomains.
     pub inverse_bytes: u64,
     /// Bytes of the coarse factor.
@@ -72,7 +72,14 @@ impl SetupReport {
     }
 }
 
-pub(crate) fn class_reports(
+pub(super) fn count(removed: &[RemovedRow]) -> Vec<(RowKind, RemovalReason, usize)> {
+    let mut sorted: Vec<_> = removed.iter().map(|r| (r.kind, r.reason)).collect();
+    sorted.sort();
+    let alike = sorted.chunk_by(|a, b| a == b);
+    alike.map(|all| (all[0].0, all[0].1, all.len())).collect()
+}
+
+pub(super) fn class_reports(
     classes: &Classes,
     map: &BoundaryMap,
     inverses: &[ClassInverse],

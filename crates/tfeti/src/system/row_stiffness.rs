@@ -1,7 +1,7 @@
 //! The stiffness that a single row of `B` feels, with all other unknowns held or with its subdomains free.
 
 use crate::linalg::sparse::SolveMemory;
-use crate::system::builder::Tfeti;
+use crate::system::tfeti::Tfeti;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -35,9 +35,9 @@ impl Tfeti {
                 }
             })
             .collect();
-        let mut nodes = vec![Vec::new(); parts.bases.len()];
+        let mut nodes = vec![Vec::new(); parts.subdomains.bases.len()];
         for &(subdomain, dof, _) in entries.iter().flatten() {
-            nodes[parts.classes.place(subdomain).0].push(dof / 3);
+            nodes[parts.subdomains.class(subdomain)].push(dof / 3);
         }
         let compliance: Vec<Compliance<'_>> = (0..nodes.len())
             .into_par_iter()
@@ -54,7 +54,7 @@ impl Tfeti {
         for (entries, target) in entries.iter().zip(out) {
             *target = 0.0;
             for &(subdomain, dof, value) in entries {
-                let class = parts.classes.place(subdomain).0;
+                let class = parts.subdomains.class(subdomain);
                 match &compliance[class] {
                     Compliance::Block(block) => {
                         let nodes = &parts.map.classes[class].nodes;
@@ -69,7 +69,7 @@ impl Tfeti {
                         }
                     }
                     Compliance::Sample(ratios) => {
-                        let diagonal = parts.bases[class].stiffness.diagonal(dof);
+                        let diagonal = parts.subdomains.bases[class].stiffness.diagonal(dof);
                         if diagonal > 0.0 {
                             *target += value * value * ratios[dof % 3] / diagonal;
                         }
@@ -81,8 +81,8 @@ impl Tfeti {
 
     /// Smallest diagonal entry of `K+` times that of `K` at some of these nodes, by direction.
     fn sample_compliance(&self, class: usize, nodes: &[usize]) -> [f64; 3] {
-        let base = &self.parts.bases[class];
-        let inverse = self.parts.inverses[class].full.with_projection(true);
+        let base = &self.parts.subdomains.bases[class];
+        let inverse = &self.parts.inverses[class].full;
         let mut memory = SolveMemory::new(inverse.need(1));
         let mut out = [f64::INFINITY; 3];
         let count = nodes.len().min(SAMPLE);
@@ -114,7 +114,7 @@ impl Tfeti {
             };
             *target = 0.0;
             for &(subdomain, dof, value) in &entries {
-                let stiffness = &parts.bases[parts.classes.place(subdomain).0].stiffness;
+                let stiffness = &parts.subdomains.of(subdomain).stiffness;
                 let (indices, values) = stiffness.column(dof);
                 for &(other, other_dof, other_value) in entries.iter().filter(|e| e.0 == subdomain)
                 {
@@ -137,7 +137,7 @@ impl Tfeti {
         }
         let parts = &self.parts;
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
-            let stiffness = &parts.bases[parts.classes.place(subdomain).0].stiffness;
+            let stiffness = &parts.subdomains.of(subdomain).stiffness;
             let diagonal = stiffness.diagonal(dof);
             if diagonal > 0.0 {
                 value * value / diagonal

@@ -3,7 +3,7 @@
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::sparse::SolveMemory;
 use crate::subdomain::cost::PANEL;
-use crate::system::builder::Tfeti;
+use crate::system::tfeti::Tfeti;
 use rayon::prelude::*;
 
 /// Members of a class with which a product by blocks is worth its table.
@@ -17,8 +17,8 @@ impl Tfeti {
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(y, |class, members, columns| {
-            let base = &parts.bases[class];
-            if parts.classes.classes()[class].members.len() < PANELS {
+            let base = &parts.subdomains.bases[class];
+            if parts.subdomains.classes.classes()[class].members.len() < PANELS {
                 for (&s, y) in members.iter().zip(columns) {
                     let x = &x[self.torn_range(s as usize)];
                     for (j, target) in y.iter_mut().enumerate() {
@@ -54,7 +54,7 @@ impl Tfeti {
     pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(u, |class, members, columns| {
-            let (base, inverse) = (&parts.bases[class], &parts.inverses[class].full);
+            let (base, inverse) = (&parts.subdomains.bases[class], &parts.inverses[class].full);
             let (dim, count) = (base.stiffness.dim, members.len());
             let mut memory = SolveMemory::new(inverse.need(count));
             let mut x = vec![0.0; dim * count];

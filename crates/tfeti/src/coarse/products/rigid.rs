@@ -6,9 +6,8 @@ use super::globs::{GlobTables, Wrench};
 use super::points::PointTables;
 use crate::dual::boundary::{BoundaryMap, LANES, over_lanes};
 use crate::rows::gluing::Gluing;
-use crate::subdomain::class::Classes;
 use crate::subdomain::kernel::{Kernel, add_wrench};
-use crate::subdomain::matrices::ClassBase;
+use crate::subdomain::matrices::Subdomains;
 use signorini_fem_mesh::buckets;
 use std::ops::Range;
 
@@ -30,14 +29,9 @@ pub(crate) struct RigidTables {
 const TASK: usize = 512;
 
 impl RigidTables {
-    pub(crate) fn new(
-        map: &BoundaryMap,
-        bases: &[ClassBase],
-        classes: &Classes,
-        gluing: &Gluing,
-    ) -> Self {
+    pub(crate) fn new(map: &BoundaryMap, subdomains: &Subdomains, gluing: &Gluing) -> Self {
         let (mut arms, mut first, mut places) = (Vec::new(), Vec::new(), Vec::new());
-        for (class, base) in map.classes.iter().zip(bases) {
+        for (class, base) in map.classes.iter().zip(&subdomains.bases) {
             first.push(arms.len());
             let mut place = vec![u32::MAX; base.kernel.nodes()];
             for &node in &class.nodes {
@@ -48,20 +42,20 @@ impl RigidTables {
             places.push(place);
         }
         let copy = |subdomain: u32, local: u32| {
-            let (class, _) = classes.place(subdomain as usize);
+            let class = subdomains.class(subdomain as usize);
             [subdomain, places[class][local as usize]]
         };
         let contact = gluing.ranges().interface.start;
         let kernel = |subdomain: u32| {
-            let (class, _) = classes.place(subdomain as usize);
-            (class, &bases[class].kernel)
+            let class = subdomains.class(subdomain as usize);
+            (class, &subdomains.bases[class].kernel)
         };
         let points = |specials| PointTables::new(gluing, specials, copy);
         let (globs, (contact, supports)) = rayon::join(
-            || GlobTables::new(gluing, classes.subdomains(), kernel),
+            || GlobTables::new(gluing, subdomains.count(), kernel),
             || (points(0..contact), points(contact..gluing.specials())),
         );
-        let (special_pointers, specials) = special_copies(map, &first, classes.subdomains());
+        let (special_pointers, specials) = special_copies(map, &first, subdomains.count());
         let mut out = Self {
             arms,
             contact,
@@ -71,7 +65,7 @@ impl RigidTables {
             specials,
             tasks: Vec::new(),
         };
-        out.cut(classes.subdomains());
+        out.cut(subdomains.count());
         out
     }
 

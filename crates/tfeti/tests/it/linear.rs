@@ -1,11 +1,9 @@
 //! Linear problems: agreement with a direct solve.
 
-mod common;
-
-use common::{Brick, distance, dot, norm};
+use crate::common::{Brick, distance, dot, norm};
 use signorini_fem_mesh::{Decomposition, LoadDensity, assemble_load, brick};
 use signorini_qp::SymmetricOperator;
-use signorini_tfeti::{Motion, NodeSupport, RowScaling, Tfeti, TfetiBuilder};
+use signorini_tfeti::{Motion, NodeSupport, Tfeti, TfetiBuilder};
 
 /// Solves the linear problem (no contact) by projected conjugate gradients and returns the nodal displacement.
 fn solve(system: &Tfeti, loads: &[Vec<f64>], offsets: &[f64]) -> (Vec<f64>, usize) {
@@ -58,20 +56,6 @@ fn solve(system: &Tfeti, loads: &[Vec<f64>], offsets: &[f64]) -> (Vec<f64>, usiz
     let u = system.recover(&response.force, &lambda, &alpha).unwrap();
     let mut rows = vec![0.0; dim];
     system.rows_times(&u, &mut rows);
-    let mut direct = vec![0.0; dim];
-    system.row_displacements(
-        &lambda,
-        &response.dual,
-        &alpha,
-        &mut direct,
-        &mut fs,
-        &mut cs,
-    );
-    assert!(
-        distance(&rows, &direct) < 1e-9 * norm(&u),
-        "B u without recovery: {:e} after {iterations}",
-        distance(&rows, &direct) / norm(&u)
-    );
     assert!(
         distance(&rows, offsets) < 1e-9 * norm(&u),
         "rows hold: {:e} after {iterations}",
@@ -163,19 +147,15 @@ fn tfeti_equals_a_direct_solve() {
             &|node| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]),
             &load,
         );
-        for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
+        {
             let supports = b.supports();
             let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
                 .with_supports(&supports)
-                .with_row_scaling(rule)
                 .build()
                 .unwrap();
             let (u, iterations) = solve(&system, &loads, &vec![0.0; system.dual_dim()]);
             let error = distance(&u, &reference) / norm(&reference);
-            assert!(
-                error < 1e-9,
-                "n = {n}, {rule:?}: {error:e} after {iterations}"
-            );
+            assert!(error < 1e-9, "n = {n}: {error:e} after {iterations}");
         }
     }
 }

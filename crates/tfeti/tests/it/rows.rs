@@ -1,12 +1,10 @@
 //! Counts, independence and coefficients of the rows of `B`.
 
-mod common;
-
-use common::{Brick, gluing, gram, smallest_eigenvalue};
+use crate::common::{Brick, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
 use signorini_tfeti::{
     ContactConstraint, ContactConstraints, CopyStiffness, Directions, Gluing, Motion, NodeSupport,
-    RowScaling, TangentialRows, TfetiBuilder, TfetiError,
+    TangentialRows, TfetiBuilder, TfetiError,
 };
 
 #[test]
@@ -17,8 +15,8 @@ fn counts_of_the_papers_table() {
             b.decomposition.torn_dofs(),
             [1944, 15552, 52488, 124416, 243000][n - 1]
         );
-        for rule in [RowScaling::Orthonormal, RowScaling::Chained] {
-            let g = gluing(&b, &b.supports(), Some(&b.contact(true)), rule).unwrap();
+        {
+            let g = gluing(&b, &b.supports(), Some(&b.contact(true))).unwrap();
             assert_eq!(g.rows_as_paper(), rows);
             assert_eq!(g.rows_full_rank(), rows - 3 * (5 * n + 1));
             assert_eq!(g.removed().len(), 3 * (5 * n + 1));
@@ -32,7 +30,7 @@ fn counts_of_the_papers_table() {
 }
 
 #[test]
-fn orthonormal_rows_are_orthonormal_and_chained_ones_independent() {
+fn rows_are_orthonormal() {
     let b = Brick::new(1, 2);
     let supports = [
         NodeSupport::fixed(b.fixed.clone()),
@@ -45,13 +43,7 @@ fn orthonormal_rows_are_orthonormal_and_chained_ones_independent() {
             Directions::Vectors(vec![[1.0, 2.0, 0.0]]),
         ),
     ];
-    let g = gluing(
-        &b,
-        &supports,
-        Some(&b.contact(true)),
-        RowScaling::Orthonormal,
-    )
-    .unwrap();
+    let g = gluing(&b, &supports, Some(&b.contact(true))).unwrap();
     assert!(g.is_orthonormal());
     for (i, row) in gram(&g).iter().enumerate() {
         for (j, v) in row.iter().enumerate() {
@@ -61,21 +53,12 @@ fn orthonormal_rows_are_orthonormal_and_chained_ones_independent() {
             );
         }
     }
-    let g = gluing(&b, &supports, Some(&b.contact(true)), RowScaling::Chained).unwrap();
-    assert!(!g.is_orthonormal());
-    assert!(smallest_eigenvalue(&gram(&g)) > 1e-3);
 }
 
 #[test]
 fn without_friction_there_are_no_tangential_rows() {
     let b = Brick::new(1, 2);
-    let g = gluing(
-        &b,
-        &b.supports(),
-        Some(&b.contact(false)),
-        RowScaling::Orthonormal,
-    )
-    .unwrap();
+    let g = gluing(&b, &b.supports(), Some(&b.contact(false))).unwrap();
     assert!(g.ranges().tangential().is_empty());
     assert_eq!(g.ranges().normal.len(), b.bottom.len() - 3);
     assert!(
@@ -97,7 +80,7 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
         .with_partner(Some(o))
         .with_friction(true);
     let contact: ContactConstraints = std::iter::once(point).collect();
-    let g = gluing(&b, &[], Some(&contact), RowScaling::Orthonormal).unwrap();
+    let g = gluing(&b, &[], Some(&contact)).unwrap();
     assert!(g.is_orthonormal());
     let (ka, ko) = (
         b.decomposition.copies(a as usize).len() as f64,
@@ -121,7 +104,7 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
     assert!((action / info.scale - -(3.0 - 1.0)).abs() < 1e-13);
     // With the partner fixed the pair is a point against an obstacle.
     let supports = [NodeSupport::fixed(vec![o])];
-    let g = gluing(&b, &supports, Some(&contact), RowScaling::Orthonormal).unwrap();
+    let g = gluing(&b, &supports, Some(&contact)).unwrap();
     assert!(smallest_eigenvalue(&gram(&g)) > 1e-3);
     let info = &g.contact()[0];
     assert!(matches!(info.tangential, TangentialRows::Disc { .. }));
@@ -145,7 +128,7 @@ fn nodes_of_pairs_may_have_other_points() {
     let pair = |node, frame, partner| ContactConstraint::new(node, frame).with_partner(partner);
     let make = |points: Vec<ContactConstraint>| {
         let contact: ContactConstraints = points.into_iter().collect();
-        gluing(&b, &[], Some(&contact), RowScaling::Orthonormal)
+        gluing(&b, &[], Some(&contact))
     };
     let first = || pair(a, frame, Some(o));
     for second in [
@@ -179,7 +162,7 @@ fn bad_input_is_named() {
     let b = Brick::new(1, 2);
     let many = b.mesh.points().len() as u32;
     let err = |supports: &[NodeSupport], contact: Option<&ContactConstraints>| {
-        gluing(&b, supports, contact, RowScaling::Orthonormal).unwrap_err()
+        gluing(&b, supports, contact).unwrap_err()
     };
     assert!(
         matches!(err(&[NodeSupport::fixed(vec![many])], None), TfetiError::UnknownNode { node, .. } if node == many)
@@ -252,7 +235,6 @@ fn a_whole_body_has_no_interface_rows() {
         b.mesh.points().len(),
         &b.supports(),
         Some(&contact),
-        RowScaling::Orthonormal,
         &CopyStiffness::default(),
     )
     .unwrap();

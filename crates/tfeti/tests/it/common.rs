@@ -1,13 +1,12 @@
 //! The brick of the benchmark, for the tests.
-#![allow(dead_code)]
 
 use signorini_fem_mesh::{
     Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick,
 };
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::{
-    ContactConstraints, CopyStiffness, Gluing, InverseKind, InverseSettings, NodeSupport,
-    RowScaling, Sharing, Tfeti, TfetiBuilder, TfetiError,
+    ContactConstraints, CopyStiffness, Gluing, InverseKind, InverseSettings, NodeSupport, Tfeti,
+    TfetiBuilder, TfetiError,
 };
 
 pub(crate) struct Brick {
@@ -51,6 +50,16 @@ impl Brick {
             bottom,
             frames,
         }
+    }
+
+    /// A system of this body, still without contact.
+    pub(crate) fn builder<'a>(&'a self, supports: &'a [NodeSupport]) -> TfetiBuilder<'a> {
+        TfetiBuilder::new(&self.mesh, &self.decomposition, &self.materials).with_supports(supports)
+    }
+
+    /// The body with its supports and frictional contact.
+    pub(crate) fn system(&self) -> Tfeti {
+        build(self, InverseKind::Auto, true)
     }
 
     pub(crate) fn supports(&self) -> Vec<NodeSupport> {
@@ -103,13 +112,11 @@ pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The brick with its supports and frictional contact.
-pub(crate) fn build(b: &Brick, kind: InverseKind, sharing: Sharing, rule: RowScaling) -> Tfeti {
+pub(crate) fn build(b: &Brick, kind: InverseKind, share_translates: bool) -> Tfeti {
     let (supports, contact) = (b.supports(), b.contact(true));
-    TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
-        .with_supports(&supports)
+    b.builder(&supports)
         .with_contact(&contact)
-        .with_row_scaling(rule)
-        .with_sharing(sharing)
+        .with_share_translates(share_translates)
         .with_inverse(InverseSettings::default().with_kind(kind))
         .build()
         .unwrap()
@@ -120,16 +127,18 @@ pub(crate) fn gluing(
     b: &Brick,
     supports: &[NodeSupport],
     contact: Option<&ContactConstraints>,
-    rule: RowScaling,
 ) -> Result<Gluing, TfetiError> {
-    Gluing::new(
-        &b.decomposition,
-        b.mesh.points().len(),
-        supports,
-        contact,
-        rule,
-        &CopyStiffness::default(),
-    )
+    let (nodes, alike) = (b.mesh.points().len(), CopyStiffness::default());
+    Gluing::new(&b.decomposition, nodes, supports, contact, &alike)
+}
+
+/// Row `row` of `G^T`: what the rigid motions of each subdomain do to it.
+pub(crate) fn column(system: &Tfeti, row: usize) -> Vec<(usize, [f64; 6])> {
+    let of_entry = |(s, dof, value): (usize, usize, f64)| {
+        let modes = system.kernel(s).node_modes(dof / 3)[dof % 3];
+        (s, modes.map(|m| value * m))
+    };
+    system.gluing().row(row).into_iter().map(of_entry).collect()
 }
 
 /// Dense `B B^T` of all rows.

@@ -1,22 +1,17 @@
 //! Classes of translates, the report, and systems with few rows.
 
-mod common;
-
-use common::{Brick, build, noise, product};
+use crate::common::Brick;
 use signorini_fem_mesh::{Decomposition, Hooke, Materials};
-use signorini_tfeti::{
-    Classes, InverseKind, InverseSettings, NodeSupport, RowScaling, Sharing, TfetiBuilder,
-    TfetiError,
-};
+use signorini_tfeti::{Classes, NodeSupport, TfetiBuilder, TfetiError};
 
-fn classes(b: &Brick, sharing: Sharing) -> Classes {
-    Classes::find(&b.mesh, &b.decomposition, &b.materials, sharing).unwrap()
+fn classes(b: &Brick, share: bool) -> Classes {
+    Classes::find(&b.mesh, &b.decomposition, &b.materials, share).unwrap()
 }
 
 #[test]
 fn two_parities_make_two_classes() {
     let b = Brick::new(2, 5);
-    let found = classes(&b, Sharing::Translates);
+    let found = classes(&b, true);
     assert_eq!(
         found
             .classes()
@@ -25,14 +20,9 @@ fn two_parities_make_two_classes() {
             .collect::<Vec<_>>(),
         [12, 12]
     );
-    assert_eq!(classes(&b, Sharing::Never).classes().len(), 24);
+    assert_eq!(classes(&b, false).classes().len(), 24);
     // An even number of cells has one parity only.
-    assert_eq!(
-        classes(&Brick::new(2, 4), Sharing::Translates)
-            .classes()
-            .len(),
-        1
-    );
+    assert_eq!(classes(&Brick::new(2, 4), true).classes().len(), 1);
     for (k, class) in found.classes().iter().enumerate() {
         for (m, &s) in class.members.iter().enumerate() {
             assert_eq!(found.place(s as usize), (k, m));
@@ -42,12 +32,7 @@ fn two_parities_make_two_classes() {
 
 #[test]
 fn perturbed_subdomains_share_nothing() {
-    assert_eq!(
-        classes(&Brick::of(2, 4, 0.05), Sharing::Translates)
-            .classes()
-            .len(),
-        24
-    );
+    assert_eq!(classes(&Brick::of(2, 4, 0.05), true).classes().len(), 24);
 }
 
 #[test]
@@ -59,7 +44,7 @@ fn a_far_away_body_shares_as_much_as_a_near_one() {
         .map_points(|p| [p[0] + 1e4, p[1] - 3e4, p[2]])
         .unwrap();
     b.decomposition = Decomposition::boxes(&b.mesh, [3, 1, 1]).unwrap();
-    assert_eq!(classes(&b, Sharing::Translates).classes().len(), 1);
+    assert_eq!(classes(&b, true).classes().len(), 1);
 }
 
 #[test]
@@ -70,7 +55,7 @@ fn materials_tell_translates_apart() {
     let law = |e| Hooke::isotropic(e, 0.3).unwrap();
     // Regions 0 and 2 are different regions of equal material.
     b.materials = Materials::new(vec![(0, law(1e9)), (1, law(2e9)), (2, law(1e9))]).unwrap();
-    let found = classes(&b, Sharing::Translates);
+    let found = classes(&b, true);
     assert_eq!(
         found
             .classes()
@@ -80,20 +65,14 @@ fn materials_tell_translates_apart() {
         [vec![0, 2], vec![1]]
     );
     b.materials = Materials::new(vec![(0, law(1e9))]).unwrap();
-    let error =
-        Classes::find(&b.mesh, &b.decomposition, &b.materials, Sharing::Translates).unwrap_err();
+    let error = Classes::find(&b.mesh, &b.decomposition, &b.materials, true).unwrap_err();
     assert!(matches!(error, TfetiError::Material { .. }));
 }
 
 #[test]
 fn report_tells_what_was_built() {
     let b = Brick::new(1, 5);
-    let system = build(
-        &b,
-        InverseKind::Auto,
-        Sharing::Translates,
-        RowScaling::Orthonormal,
-    );
+    let system = b.system();
     let report = system.report();
     assert_eq!(
         (
@@ -140,37 +119,4 @@ fn bodies_without_rows_and_single_supported_bodies_build() {
         .unwrap();
     assert!(held.coarse_factor().free_motions().is_empty());
     assert!(held.lumped().is_ok() && held.dirichlet().is_ok());
-}
-
-#[test]
-fn a_system_with_other_rows_reuses_the_factors() {
-    let b = Brick::new(2, 5);
-    let supports = [NodeSupport::fixed(b.fixed.clone())];
-    let contact = b.contact(true);
-    let bare = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).with_supports(&supports);
-    for kind in [InverseKind::Auto, InverseKind::Sparse, InverseKind::Dense] {
-        let settings = InverseSettings::default()
-            .with_kind(kind)
-            .with_moore_penrose(false);
-        let bare = bare.with_inverse(settings);
-        let first = bare.build().unwrap();
-        let fresh = bare.with_contact(&contact).build().unwrap();
-        let again = bare
-            .with_contact(&contact)
-            .with_reuse(&first)
-            .build()
-            .unwrap();
-        assert_eq!(fresh.report().factorisations, 3);
-        assert_eq!(again.report().factorisations, 1);
-        assert_eq!(again.report().rows, fresh.report().rows);
-        let x = noise(fresh.dual_dim(), 1);
-        assert_eq!(product(&again, &x), product(&fresh, &x), "{kind:?}");
-    }
-    let first = bare.build().unwrap();
-    let whole = Decomposition::whole(&b.mesh);
-    let error = TfetiBuilder::new(&b.mesh, &whole, &b.materials)
-        .with_reuse(&first)
-        .build()
-        .unwrap_err();
-    assert!(matches!(error, TfetiError::DecompositionMismatch { .. }));
 }

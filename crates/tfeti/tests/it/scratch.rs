@@ -1,16 +1,14 @@
 //! Work memory carries nothing from one product to the next.
 
-mod common;
-
-use common::{Brick, build, noise};
+use crate::common::{Brick, build, noise};
 use signorini_qp::{Equality, SymmetricOperator};
-use signorini_tfeti::{InverseKind, LineWeight, RowScaling, RowWeights, Sharing};
+use signorini_tfeti::{InverseKind, LineWeight, RowWeights};
 
 #[test]
 fn scratch_is_reused() {
     let b = Brick::new(1, 3);
     for kind in [InverseKind::Dense, InverseKind::Sparse] {
-        let system = build(&b, kind, Sharing::Translates, RowScaling::Orthonormal);
+        let system = build(&b, kind, true);
         let f = system.dual();
         let (x, mut s) = (noise(f.dim(), 1), f.scratch());
         let (mut y, mut z) = (vec![0.0; f.dim()], vec![0.0; f.dim()]);
@@ -30,12 +28,7 @@ fn scratch_is_reused() {
 #[test]
 fn line_weights_act_like_a_rotated_diagonal() {
     let b = Brick::new(1, 3);
-    let system = build(
-        &b,
-        InverseKind::Auto,
-        Sharing::Translates,
-        RowScaling::Orthonormal,
-    );
+    let system = b.system();
     let (coarse, ranges) = (system.coarse(), system.gluing().ranges().clone());
     let diagonal: Vec<f64> = (0..coarse.dim())
         .map(|r| f64::from(u8::from(!ranges.contact().contains(&r))))
@@ -64,7 +57,10 @@ fn line_weights_act_like_a_rotated_diagonal() {
         factor.project(&mut x, None, &mut s);
         x
     });
-    assert!(common::distance(&results[0], &results[1]) < 1e-11 * common::norm(&results[0]));
+    assert!(
+        crate::common::distance(&results[0], &results[1])
+            < 1e-11 * crate::common::norm(&results[0])
+    );
     let mut crossed = RowWeights::diagonal(vec![1.0; coarse.dim()]);
     crossed.lines = vec![LineWeight {
         row: ranges.normal.start,

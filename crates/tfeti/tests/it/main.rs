@@ -1,0 +1,14 @@
+//! The promises of the crate, one module each.
+
+mod active_set;
+mod classes;
+mod coarse;
+mod common;
+mod linear;
+mod operators;
+mod preconditioners;
+mod refusals;
+mod rows;
+mod scratch;
+mod single_precision;
+mod supports;
