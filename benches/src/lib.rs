@@ -5,7 +5,7 @@ use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 use signorini::fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::{
-    ContactConstraints, InverseKind, InverseSettings, NodeSupport, Sharing, Tfeti, TfetiBuilder,
+    ContactConstraints, InverseKind, InverseSettings, NodeSupport, Tfeti, TfetiBuilder,
     TfetiError,
 };
 use std::time::Instant;
@@ -52,11 +52,11 @@ impl Body {
     ///
     /// # Errors
     /// Those of the set-up.
-    pub fn system(&self, sharing: Sharing, kind: InverseKind) -> Result<Tfeti, TfetiError> {
+    pub fn system(&self, share_translates: bool, kind: InverseKind) -> Result<Tfeti, TfetiError> {
         TfetiBuilder::new(&self.mesh, &self.decomposition, &self.materials)
             .with_supports(&self.supports)
             .with_contact(&self.contact)
-            .with_sharing(sharing)
+            .with_share_translates(share_translates)
             .with_inverse(InverseSettings::default().with_kind(kind))
             .build()
     }

@@ -150,7 +150,7 @@ pub(crate) fn operator(
     });
     let how = format!(
         "{:?}",
-        (settings.row_scaling, settings.sharing, settings.inverse)
+        (settings.share_translates, settings.inverse)
     );
     let words = body.into_iter().chain(laws.map(|x| number(*x)));
     let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));

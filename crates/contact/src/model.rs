@@ -208,14 +208,10 @@ impl Model {
             .then(|| contact_nodes(&scene, places.iter().map(|&k| &candidates[k])));
         let mut builder = TfetiBuilder::new(&scene.mesh, &decomposition, &scene.materials)
             .with_supports(&supports)
-            .with_row_scaling(settings.row_scaling)
-            .with_sharing(settings.sharing)
+            .with_share_translates(settings.share_translates)
             .with_inverse(settings.inverse);
         if let Some(nodes) = &nodes {
             builder = builder.with_contact(nodes);
-        }
-        if let Some(model) = earlier {
-            builder = builder.with_reuse(&model.tfeti);
         }
         let tfeti = builder.build()?;
         let mut loads = Vec::with_capacity(scene.loads.len());

@@ -188,7 +188,7 @@ impl Plan {
             &scene.mesh,
             decomposition,
             &scene.materials,
-            settings.sharing,
+            settings.share_translates,
             &settings.inverse,
             touched,
         )?;

@@ -101,7 +101,6 @@ impl Screen {
             mesh_nodes,
             &supports,
             Some(&nodes),
-            settings.row_scaling,
             model.tfeti.copy_stiffness(),
         )?;
         let places: Vec<usize> = (0..model.found.points.len()).collect();

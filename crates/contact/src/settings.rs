@@ -4,7 +4,7 @@ use crate::accuracy::Accuracy;
 use crate::error::ContactError;
 use crate::screening::Screening;
 use signorini_qp::{ActiveSetSettings, SmalseSettings};
-use signorini_tfeti::{InverseSettings, RowScaling, Sharing};
+use signorini_tfeti::InverseSettings;
 
 /// How the inequality-constrained problem of a time level is solved.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,8 +115,7 @@ pub enum Preconditioner {
 /// | `accuracy` | whether a level ends at that tolerance or by an estimate of its error | [`Accuracy`] | `Tolerance` | |
 /// | `max_fixed_point` | most evaluations of the Coulomb map a level | >= 1 | 200 | |
 /// | `extrapolate` | start a level from the line through the last two | | true | |
-/// | `row_scaling` | scaling of the rows of B | | orthonormal | |
-/// | `sharing` | whether equal subdomains share factors | | translates | |
+/// | `share_translates` | whether equal subdomains share factors | | true | |
 /// | `inverse` | how K+ is held | | by cost | |
 /// | `preconditioner` | of the default method | | lumped | |
 /// | `max_fallback_products` | most products with F of one call of the face method's fall-back (SMALSE), after which a level ends as `IterationLimit` | >= 1 | 20,000 | |
@@ -135,10 +134,8 @@ pub struct Settings {
     pub max_fixed_point: usize,
     /// Start from the line through the last two levels.
     pub extrapolate: bool,
-    /// Scaling of the rows of B.
-    pub row_scaling: RowScaling,
     /// Whether equal subdomains share factors.
-    pub sharing: Sharing,
+    pub share_translates: bool,
     /// How the generalised inverse is held.
     pub inverse: InverseSettings,
     /// Preconditioner of the default method.
@@ -159,8 +156,7 @@ impl Default for Settings {
             accuracy: Accuracy::default(),
             max_fixed_point: 200,
             extrapolate: true,
-            row_scaling: RowScaling::default(),
-            sharing: Sharing::default(),
+            share_translates: true,
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
             max_fallback_products: 20_000,
@@ -206,17 +202,10 @@ impl Settings {
         self
     }
 
-    /// Sets the scaling of the rows of B.
-    #[must_use]
-    pub fn with_row_scaling(mut self, rule: RowScaling) -> Self {
-        self.row_scaling = rule;
-        self
-    }
-
     /// Sets whether equal subdomains share factors.
     #[must_use]
-    pub fn with_sharing(mut self, sharing: Sharing) -> Self {
-        self.sharing = sharing;
+    pub fn with_share_translates(mut self, share: bool) -> Self {
+        self.share_translates = share;
         self
     }
 

@@ -10,7 +10,6 @@ use signorini_contact::{
     Contact, Directions, Friction, Load, Reactions, Scene, Screening, Settings, Simulation, Support,
 };
 use signorini_fem_mesh::{FacetTag, Hooke, Materials, Surface, brick};
-use signorini_tfeti::RowScaling;
 
 fn reactions(simulation: &Simulation, point: [f64; 3]) -> Reactions {
     let frame = simulation.frame().expect("frame");
@@ -173,7 +172,6 @@ fn cuts_rows_screening_and_materials_change_no_reaction() {
                 assert_close(&field(cut(), settings), &whole, 1e-6, what);
             };
             same(tight(), "cut");
-            same(tight().with_row_scaling(RowScaling::Chained), "chained");
             same(tight().with_screening(Screening::on()), "screened");
         }
     }

@@ -8,7 +8,6 @@ use signorini_contact::{
     Method, Scene, Screening, Settings, Simulation, State, Support,
 };
 use signorini_fem_mesh::{Facet, History, Hooke, Materials, SurfaceFrame, TetMesh, brick};
-use signorini_tfeti::RowScaling;
 
 /// What the variants of the scene change.
 #[derive(Clone)]
@@ -223,7 +222,6 @@ fn what_may_change_between_levels_is_accepted() {
     for settings in [
         Settings::default().with_tolerance(1e-8),
         Settings::default().with_method(Method::paper()),
-        Settings::default().with_row_scaling(RowScaling::Chained),
     ] {
         let mut simulation = base.clone().simulation_with(settings);
         simulation.resume(state.clone()).expect("resume");

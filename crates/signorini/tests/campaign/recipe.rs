@@ -264,7 +264,6 @@ pub(crate) struct How {
     pub(crate) screening: Option<f64>,
     /// 0 lumped, 1 Dirichlet, 2 none.
     pub(crate) preconditioner: usize,
-    pub(crate) chained: bool,
     pub(crate) extrapolate: bool,
     pub(crate) share: bool,
     /// After so many levels the run goes on in another simulation.
@@ -277,7 +276,6 @@ impl How {
             && self.ending == Ending::Tolerance(1e-6)
             && self.screening.is_none()
             && self.preconditioner == 0
-            && !self.chained
             && self.extrapolate
             && self.share
             && self.resume.is_none()

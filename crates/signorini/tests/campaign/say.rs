@@ -6,7 +6,6 @@ use crate::recipe::{
 };
 use crate::vec3::{Vec3, add, scale};
 use signorini::prelude::*;
-use signorini::tfeti::{RowScaling, Sharing};
 
 fn history(course: &Course) -> Result<History, Error> {
     Ok(match course {
@@ -173,11 +172,8 @@ pub(crate) fn settings(recipe: &Recipe) -> Settings {
     if let Some(margin) = how.screening {
         settings = settings.with_screening(Screening::On { margin });
     }
-    if how.chained {
-        settings = settings.with_row_scaling(RowScaling::Chained);
-    }
     if !how.share {
-        settings = settings.with_sharing(Sharing::Never);
+        settings = settings.with_share_translates(false);
     }
     settings
 }
