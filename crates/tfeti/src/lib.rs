@@ -57,15 +57,17 @@ mod projector;
 mod rows;
 mod subdomain;
 mod system;
+mod tolerances;
 
 pub use coarse::mobility::{BodyMotion, FreeMotion};
 pub use coarse::space::{Coarse, CoarseScratch};
-pub use coarse::weights::{LineWeight, RowWeights};
+pub use coarse::weights::RowWeights;
 pub use dual::operator::{DualOperator, DualScratch};
 pub use error::TfetiError;
 pub use preconditioner::operator::{DualPreconditioner, DualPreconditionerScratch};
 pub use projector::active_set::{ActiveSetFactor, ActiveSetProjector};
-pub use projector::factor::{CoarseFactor, OrthonormalCoarse};
+pub use projector::factor::CoarseFactor;
+pub use projector::orthonormal::OrthonormalCoarse;
 pub use rows::contact::{
     ContactConstraint, ContactConstraints, PrescribedPoint, prescribed_points,
 };

@@ -3,11 +3,10 @@
 //! Two subdomains that share three nodes not on one line move as one body. Those that share less are bodies of their own,
 //! held together by the interface rows of the nodes that they share: a hinge or a ball joint.
 
+use crate::linalg::vec3::{cross, norm, sub};
 use crate::rows::gluing::{CopyEntry, Gluing};
+use crate::tolerances::ANGLE;
 use std::collections::HashMap;
-
-/// Sine of the angle between three nodes below which they are on one line.
-const LINE: f64 = 1e-6;
 
 /// Nodes that two subdomains share, as far as it is known.
 #[derive(Debug, Clone, Copy)]
@@ -22,14 +21,8 @@ impl Shared {
         match self {
             Self::One(a) => Self::Line([a, p]),
             Self::Line([a, b]) => {
-                let [u, v] = [b, p].map(|q| [q[0] - a[0], q[1] - a[1], q[2] - a[2]]);
-                let cross = [
-                    u[1] * v[2] - u[2] * v[1],
-                    u[2] * v[0] - u[0] * v[2],
-                    u[0] * v[1] - u[1] * v[0],
-                ];
-                let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-                if length(cross) > LINE * length(u) * length(v) {
+                let [u, v] = [b, p].map(|q| sub(q, a));
+                if norm(cross(u, v)) > ANGLE * norm(u) * norm(v) {
                     Self::Rigid
                 } else {
                     self

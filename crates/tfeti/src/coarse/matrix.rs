@@ -2,7 +2,6 @@
 
 use crate::coarse::weights::RowWeights;
 use crate::linalg::sparse::Columns;
-use crate::projector::split::tree::CoarseTree;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::matrices::{ClassBase, Subdomains};
@@ -48,11 +47,11 @@ impl<'a> ModeTable<'a> {
     pub(crate) fn row(
         &self,
         gluing: &Gluing,
-        special: usize,
+        nodal: usize,
         factor: f64,
         out: &mut Vec<(u32, [f64; 6])>,
     ) {
-        for e in gluing.special(special) {
+        for e in gluing.nodal(nodal) {
             let modes = self.at(e.subdomain, e.local);
             let at = match out.iter().position(|v| v.0 == e.subdomain) {
                 Some(at) => at,
@@ -91,9 +90,9 @@ impl Touching {
         Self::new(subdomains, pairs)
     }
 
-    fn specials(gluing: &Gluing, subdomains: usize) -> Self {
-        let pairs = (0..gluing.specials()).flat_map(|k| {
-            let entries = gluing.special(k).iter();
+    fn nodal(gluing: &Gluing, subdomains: usize) -> Self {
+        let pairs = (0..gluing.nodal_rows()).flat_map(|k| {
+            let entries = gluing.nodal(k).iter();
             entries.map(move |e| (e.subdomain, k as u32))
         });
         Self::new(subdomains, pairs)
@@ -109,7 +108,7 @@ impl CoarseMatrix {
         let subdomains = modes.subdomains.count();
         let touching = [
             Touching::blocks(gluing, subdomains),
-            Touching::specials(gluing, subdomains),
+            Touching::nodal(gluing, subdomains),
         ];
         let columns: Vec<(Vec<u32>, Vec<f64>)> = (0..subdomains)
             .into_par_iter()
@@ -161,42 +160,12 @@ impl CoarseMatrix {
         columns.map(|(column, &start)| values[start + column % 6])
     }
 
-    /// Adds the entries of the columns of node `k` of a tree of this `graph`.
-    pub(crate) fn load(
-        &self,
-        tree: &CoarseTree,
-        graph: &[Vec<u32>],
-        k: usize,
-        values: &[f64],
-        columns: &mut [f64],
-    ) {
-        let node = &tree.nodes[k];
-        let height = node.height();
-        for q in node.columns.clone() {
-            let a = tree.blocks[q];
-            for &b in graph[a as usize].iter().chain([&a]) {
-                let p = tree.place[b as usize];
-                if (p as usize) < q {
-                    continue;
-                }
-                let target = &mut columns[tree.place_in(k, p, q as u32)..];
-                let (start, stride) = self.place(a.max(b), a.min(b));
-                for c in 0..6 {
-                    for r in 0..6 {
-                        let (row, column) = if a <= b { (r, c) } else { (c, r) };
-                        target[c * height + r] += values[start + column * stride + row];
-                    }
-                }
-            }
-        }
-    }
-
     pub(crate) fn pattern(&self) -> &Columns {
         &self.interface
     }
 
     /// Position of entry (0, 0) of a block and the distance between its columns.
-    fn place(&self, i: u32, j: u32) -> (usize, usize) {
+    pub(crate) fn place(&self, i: u32, j: u32) -> (usize, usize) {
         let list = &self.neighbours[self.pointers[j as usize]..self.pointers[j as usize + 1]];
         let k = list.partition_point(|&n| n < i);
         (36 * self.pointers[j as usize] + 6 * k, 6 * list.len())
@@ -237,21 +206,21 @@ impl CoarseMatrix {
             }
         }
         let mut row = Vec::new();
-        for special in 0..gluing.specials() {
-            let number = gluing.special_row(special);
+        for nodal in 0..gluing.nodal_rows() {
+            let number = gluing.nodal_row(nodal);
             let weight = weights.map_or(1.0, |w| w.diagonal[number]);
             let in_line = weights.is_some_and(|w| w.in_line(number));
             if weight != 0.0 && !in_line {
                 row.clear();
-                modes.row(gluing, special, 1.0, &mut row);
+                modes.row(gluing, nodal, 1.0, &mut row);
                 self.add_row(&row, weight, values);
             }
         }
         for line in weights.iter().flat_map(|w| &w.lines) {
             row.clear();
-            // Pairs of tangential rows stand before the interface, where row and special number agree.
-            modes.row(gluing, line.row, line.direction[0], &mut row);
-            modes.row(gluing, line.row + 1, line.direction[1], &mut row);
+            // Pairs of tangential rows stand before the interface, where row and number among nodal rows agree.
+            modes.row(gluing, line.first, line.direction[0], &mut row);
+            modes.row(gluing, line.first + 1, line.direction[1], &mut row);
             self.add_row(&row, line.weight, values);
         }
         matrix
@@ -331,7 +300,7 @@ impl Moments {
 fn block_column(
     gluing: &Gluing,
     modes: &ModeTable<'_>,
-    [blocks, specials]: &[Touching; 2],
+    [blocks, nodal]: &[Touching; 2],
     subdomain: usize,
 ) -> (Vec<u32>, Vec<f64>) {
     let own = subdomain as u32;
@@ -356,8 +325,8 @@ fn block_column(
             }
         }
     }
-    for &special in specials.of(subdomain) {
-        for e in gluing.special(special as usize) {
+    for &nodal in nodal.of(subdomain) {
+        for e in gluing.nodal(nodal as usize) {
             if e.subdomain > own && moments.iter().all(|m| m.0 != e.subdomain) {
                 moments.push((e.subdomain, Moments::default()));
             }

@@ -9,6 +9,7 @@ use crate::coarse::joints::{joint_rows, rigid_pairs};
 use crate::rows::gluing::{CopyEntry, Gluing};
 use crate::subdomain::kernel::{Kernel, displacement};
 use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::{FREE, MOVING};
 use nalgebra::{DMatrix, SymmetricEigen};
 use signorini_fem_mesh::DisjointSets;
 use std::fmt;
@@ -85,10 +86,6 @@ struct Body {
     radius: f64,
     first: usize,
 }
-
-/// Eigenvalues below this share of the largest belong to free motions. A support of extent `h` on a body of length `L`
-/// gives about `(h/L)^2`.
-const FREE: f64 = 1e-11;
 
 impl Mobility {
     /// `centres` are the means of the nodes of the subdomains.
@@ -281,7 +278,7 @@ impl Mobility {
 
     fn describe(&self, vector: &[f64]) -> FreeMotion {
         let part = |body: usize| -> [f64; 6] { std::array::from_fn(|k| vector[6 * body + k]) };
-        let moving = |body: &usize| part(*body).iter().any(|v| v.abs() > 1e-9);
+        let moving = |body: &usize| part(*body).iter().any(|v| v.abs() > MOVING);
         let bodies = (0..self.bodies.len()).filter(moving).map(|body| {
             let [a, b, c, d, e, f] = part(body);
             let subdomain = self.bodies[body].first;

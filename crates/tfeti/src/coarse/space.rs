@@ -6,12 +6,12 @@ use crate::coarse::products::{RigidTables, Wrench};
 use crate::coarse::weights::RowWeights;
 use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
-use crate::linalg::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
-use crate::projector::factor::{CoarseFactor, Factor};
-use crate::projector::split::factor::{SplitBase, cheapest_tree};
+use crate::linalg::sparse::{SolveMemory, SparseCholesky, Symbolic};
+use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::SUPPORTED;
 use signorini_qp::LooseMode;
 use std::sync::Arc;
 
@@ -25,9 +25,9 @@ pub(crate) struct CoarseData {
     tables: RigidTables,
     pub(crate) subdomains: Arc<Subdomains>,
     pub(crate) gluing: Arc<Gluing>,
-    matrix: CoarseMatrix,
-    symbolic: Symbolic,
-    mobility: Mobility,
+    pub(crate) matrix: CoarseMatrix,
+    pub(crate) symbolic: Symbolic,
+    pub(crate) mobility: Mobility,
     /// Whether the support rows alone hold all bodies.
     held: bool,
 }
@@ -43,6 +43,8 @@ pub struct CoarseScratch {
     pub(crate) second: Vec<f64>,
     pub(crate) dual: Vec<f64>,
     pub(crate) memory: SolveMemory,
+    /// What split factors are read with.
+    pub(crate) digits: Digits,
     /// For split factors.
     pub(crate) split: Vec<f64>,
     /// Entries of the rows that stand in lines.
@@ -129,6 +131,7 @@ impl Coarse {
             second: vec![0.0; rows],
             dual: vec![0.0; self.dim()],
             memory: SolveMemory::new(SparseCholesky::need_of(&self.0.symbolic, 1)),
+            digits: Digits::Double,
             split: Vec::new(),
             pairs: Vec::with_capacity(self.0.gluing.ranges().discs.len() / 2),
         }
@@ -166,92 +169,6 @@ impl Coarse {
             weights.validate(self.0.gluing.ranges())?;
         }
         Ok(self.0.free_motions(weights))
-    }
-
-    /// Factor of `G G^T`.
-    ///
-    /// # Errors
-    /// [`TfetiError::CoarseSingular`] if a pivot is not positive, [`TfetiError::TooLarge`].
-    pub fn factor(&self) -> Result<CoarseFactor, TfetiError> {
-        self.factor_with(None)
-    }
-
-    /// Factor of `G W G^T`.
-    ///
-    /// If some rigid motions of bodies escape all rows of positive weight (see [`CoarseFactor::free_motions`]), the matrix
-    /// is singular; it is then regularised such that solves apply a generalised inverse, exact for right-hand sides that
-    /// do no work on the free motions.
-    ///
-    /// # Errors
-    /// As [`free_motions`](Self::free_motions) and [`factor`](Self::factor).
-    pub fn factor_weighted(&self, weights: RowWeights) -> Result<CoarseFactor, TfetiError> {
-        weights.validate(self.0.gluing.ranges())?;
-        self.factor_with(Some(weights))
-    }
-
-    fn factor_with(&self, weights: Option<RowWeights>) -> Result<CoarseFactor, TfetiError> {
-        let data = &self.0;
-        let modes = ModeTable::new(&data.subdomains);
-        let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
-        let free = data.free_motions(weights.as_ref());
-        if !free.is_empty() {
-            let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
-            let strength = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
-            let strength = if strength > 0.0 { strength } else { 1.0 };
-            for (subdomain, spring) in data.mobility.springs(&free) {
-                data.matrix
-                    .add_row(&[(subdomain as u32, spring)], strength, &mut matrix.values);
-            }
-        }
-        let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
-            FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },
-            FactorError::Pattern => TfetiError::TooLarge {
-                what: "coarse unknowns",
-                count: matrix.dim,
-            },
-        })?;
-        Ok(CoarseFactor::new(
-            self.clone(),
-            Factor::Sparse(factor),
-            weights,
-            free,
-        ))
-    }
-
-    /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
-    /// factor can be split. `metric` is the weight of each row where it counts, one if `None`.
-    pub(crate) fn split(&self, rows: usize, metric: Option<&[f64]>) -> Option<SplitBase> {
-        let data = &self.0;
-        let gluing = &data.gluing;
-        let weights = metric.map(|m| RowWeights::diagonal(m.to_vec()));
-        if rows > gluing.ranges().interface.start || !data.free_motions(weights.as_ref()).is_empty()
-        {
-            return None;
-        }
-        let mut changing = vec![false; data.subdomains.count()];
-        for e in (0..rows).flat_map(|row| gluing.special(row)) {
-            changing[e.subdomain as usize] = true;
-        }
-        let graph = data.matrix.graph();
-        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
-        let modes = ModeTable::new(&data.subdomains);
-        let mut diagonal = match metric {
-            Some(metric) => metric.to_vec(),
-            None => vec![1.0; self.dim()],
-        };
-        diagonal[..rows].fill(0.0);
-        let weights = RowWeights::diagonal(diagonal);
-        let matrix = data.matrix.assemble(gluing, &modes, Some(&weights));
-        SplitBase::new(
-            tree,
-            &data.matrix,
-            &graph,
-            &matrix.values,
-            gluing,
-            &modes,
-            rows,
-        )
-        .ok()
     }
 }
 
@@ -320,28 +237,28 @@ impl CoarseData {
         let supported = |w: &RowWeights| {
             w.diagonal[gluing.ranges().dirichlet.clone()]
                 .iter()
-                .all(|w| *w >= 0.01)
+                .all(|w| *w >= SUPPORTED)
         };
         if self.held && weights.is_none_or(supported) {
             return Vec::new();
         }
         let weight = |row: usize| weights.map_or(1.0, |w| w.diagonal[row]);
         let lines = weights.map_or(&[][..], |w| &w.lines);
-        let plain = (0..gluing.specials()).filter_map(|special| {
-            let row = gluing.special_row(special);
+        let plain = (0..gluing.nodal_rows()).filter_map(|nodal| {
+            let row = gluing.nodal_row(nodal);
             if weight(row) == 0.0 || weights.is_some_and(|w| w.in_line(row)) {
                 return None;
             }
             let mut out = Vec::new();
             self.mobility
-                .act(gluing.special(special), weight(row).sqrt(), &mut out);
+                .act(gluing.nodal(nodal), weight(row).sqrt(), &mut out);
             Some(out)
         });
         let combined = lines.iter().filter(|l| l.weight > 0.0).map(|line| {
             let mut out = Vec::new();
             for k in 0..2 {
                 self.mobility.act(
-                    gluing.special(line.row + k),
+                    gluing.nodal(line.first + k),
                     line.weight.sqrt() * line.direction[k],
                     &mut out,
                 );

@@ -2,6 +2,8 @@
 
 use crate::error::TfetiError;
 use crate::rows::kinds::RowRanges;
+use crate::tolerances::UNIT;
+use signorini_qp::Line;
 
 /// Weights `W` of the rows of `B` in `G W G^T`: a diagonal, and for chosen pairs of tangential rows a single direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,127 +11,68 @@ pub struct RowWeights {
     /// One non-negative weight per row.
     pub diagonal: Vec<f64>,
     /// Pairs of tangential rows of which one combination counts; they replace the diagonal there. Ascending by row.
-    pub lines: Vec<LineWeight>,
+    pub lines: Vec<Line>,
 }
 
-/// Largest error of the length of a direction.
-const UNIT: f64 = 1e-10;
-
-/// Weight `weight * c c^T` on the rows `row, row + 1`, `c` the unit `direction`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LineWeight {
-    /// First of the two rows.
-    pub row: usize,
-    /// Unit vector, of length 1 within `1e-10`.
-    pub direction: [f64; 2],
-    /// Non-negative weight.
-    pub weight: f64,
-}
-
-impl LineWeight {
-    /// `weight * c c^T` times a pair.
-    pub(crate) fn along(&self, pair: [f64; 2]) -> [f64; 2] {
-        let [c, d] = self.direction;
-        let value = self.weight * (c * pair[0] + d * pair[1]);
-        [value * c, value * d]
-    }
+/// `weight * c c^T` of a line times a pair.
+pub(crate) fn along(line: &Line, pair: [f64; 2]) -> [f64; 2] {
+    let [c, d] = line.direction;
+    let value = line.weight * (c * pair[0] + d * pair[1]);
+    [value * c, value * d]
 }
 
 impl RowWeights {
     /// A diagonal only.
     #[must_use]
     pub fn diagonal(diagonal: Vec<f64>) -> Self {
-        Self {
-            diagonal,
-            lines: Vec::new(),
-        }
-    }
-
-    /// Whether all interface rows have weight one.
-    pub(crate) fn is_plain(&self, ranges: &RowRanges) -> bool {
-        let interface = &self.diagonal[ranges.interface.clone()];
-        interface.iter().all(|w| *w == 1.0)
+        let lines = Vec::new();
+        Self { diagonal, lines }
     }
 
     pub(crate) fn in_line(&self, row: usize) -> bool {
-        let next = self.lines.partition_point(|l| l.row <= row);
-        next > 0 && row - self.lines[next - 1].row < 2
+        let next = self.lines.partition_point(|l| l.first <= row);
+        next > 0 && row - self.lines[next - 1].first < 2
     }
 
     /// Checks lengths, signs, and order and directions of the lines against the rows of `B`.
     pub(crate) fn validate(&self, ranges: &RowRanges) -> Result<(), TfetiError> {
         let (expected, found) = (ranges.total(), self.diagonal.len());
         if found != expected {
+            let what = "row weights";
             return Err(TfetiError::Length {
-                what: "row weights",
+                what,
                 expected,
                 found,
             });
         }
-        let bad = |w: &f64| !(w.is_finite() && *w >= 0.0);
-        let range = "finite and not negative";
-        if let Some(&value) = self
+        let refuse = |name, value, range| Err(TfetiError::Setting { name, value, range });
+        let mut all = self
             .diagonal
             .iter()
-            .chain(self.lines.iter().map(|l| &l.weight))
-            .find(|w| bad(w))
-        {
-            return Err(TfetiError::Setting {
-                name: "row weight",
-                value,
-                range,
-            });
+            .chain(self.lines.iter().map(|l| &l.weight));
+        if let Some(&value) = all.find(|w| !(w.is_finite() && **w >= 0.0)) {
+            return refuse("row weight", value, "finite and not negative");
         }
         for (k, line) in self.lines.iter().enumerate() {
-            let inside = ranges.discs.contains(&line.row) && line.row < ranges.discs.end - 1;
-            let ordered = k == 0 || self.lines[k - 1].row + 1 < line.row;
-            if !(inside && ordered) {
+            let inside = ranges.discs.contains(&line.first) && line.first < ranges.discs.end - 1;
+            if !inside || k > 0 && self.lines[k - 1].first + 1 >= line.first {
                 let range = "a pair of tangential rows, each pair once, ascending";
-                return Err(TfetiError::Setting {
-                    name: "line row",
-                    value: line.row as f64,
-                    range,
-                });
+                return refuse("line row", line.first as f64, range);
             }
-            let [c, d] = line.direction;
-            let length = c.hypot(d);
-            // False for NaN.
-            let unit = (length - 1.0).abs() <= UNIT;
-            if !unit {
-                return Err(TfetiError::Setting {
-                    name: "length of a line direction",
-                    value: length,
-                    range: "1 within 1e-10",
-                });
+            let length = line.direction[0].hypot(line.direction[1]);
+            if length.is_nan() || (length - 1.0).abs() > UNIT {
+                return refuse("length of a line direction", length, "1 within 1e-10");
             }
         }
         Ok(())
     }
 
-    /// `x = W x`.
-    ///
-    /// # Panics
-    /// If `x` is longer than the weights and there are lines, or too short for a line.
-    pub fn apply(&self, x: &mut [f64]) {
-        if self.lines.is_empty() {
-            x.iter_mut().zip(&self.diagonal).for_each(|(x, w)| *x *= w);
-            return;
-        }
-        // Lines first: the diagonal pass would overwrite what they need.
+    /// `x = W x`, if the diagonal is one where there are lines.
+    pub(crate) fn apply(&self, x: &mut [f64]) {
+        x.iter_mut().zip(&self.diagonal).for_each(|(x, w)| *x *= w);
         for line in &self.lines {
-            let pair = line.along([x[line.row], x[line.row + 1]]);
-            x[line.row..line.row + 2].copy_from_slice(&pair);
-        }
-        let mut lines = self.lines.iter().map(|l| l.row).peekable();
-        let mut k = 0;
-        while k < x.len() {
-            if lines.peek() == Some(&k) {
-                lines.next();
-                k += 2;
-            } else {
-                x[k] *= self.diagonal[k];
-                k += 1;
-            }
+            let pair = along(line, [x[line.first], x[line.first + 1]]);
+            x[line.first..line.first + 2].copy_from_slice(&pair);
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Gather tables between dual vectors and the boundary unknowns of all subdomains.
 //!
 //! A *boundary vector* holds the components at the boundary nodes of all members of all classes, in panels of up to
-//! [`PANEL`] members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at
+//! `PANEL` members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at
 //! `(3 b + c) w + m` of the panel. With the members next to one another, products with a small matrix run at full speed and
 //! loops over nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather
 //! (each result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
-#[cfg(doc)]
-use crate::subdomain::cost::PANEL;
+use crate::linalg::both;
+use crate::tolerances::{BLOCKS, LARGE};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub(crate) struct Panel {
     /// Node copies of these columns.
     pub(crate) copies: Range<usize>,
     /// Positions in the list of copies that carry contact or support rows.
-    pub(crate) specials: Range<usize>,
+    pub(crate) nodal: Range<usize>,
 }
 
 /// Consecutive panels that share one work memory.
@@ -53,10 +53,10 @@ pub(crate) struct BoundaryMap {
     pub(super) spread_blocks: Vec<u32>,
     pub(super) spread_weights: Vec<f64>,
     /// Other rows, for the copies that have some.
-    pub(crate) special_copies: Vec<u32>,
-    pub(crate) special_pointers: Vec<u32>,
-    pub(crate) special_rows: Vec<u32>,
-    pub(crate) special_vectors: Vec<[f64; 3]>,
+    pub(crate) nodal_copies: Vec<u32>,
+    pub(crate) nodal_pointers: Vec<u32>,
+    pub(crate) nodal_rows: Vec<u32>,
+    pub(crate) nodal_vectors: Vec<[f64; 3]>,
     /// Copies of each interface block.
     pub(super) block_pointers: Vec<u32>,
     pub(super) block_places: Vec<Place>,
@@ -81,13 +81,6 @@ impl Place {
         [y[first], y[first + stride], y[first + 2 * stride]]
     }
 }
-
-/// Largest number of lanes: bounds the work memory and the useful number of threads.
-pub(crate) const LANES: usize = 64;
-/// Interface blocks a task collects.
-const BLOCKS: usize = 2048;
-/// Below this number of copies a loop over them is not worth a second thread.
-const SMALL: usize = 8000;
 
 impl BoundaryMap {
     /// Length of dual vectors.
@@ -165,13 +158,13 @@ impl BoundaryMap {
                 third[m] = c;
             }
         }
-        for k in panel.specials.clone() {
-            let copy = self.special_copies[k] as usize - panel.copies.start;
+        for k in panel.nodal.clone() {
+            let copy = self.nodal_copies[k] as usize - panel.copies.start;
             let start = 2 * (copy / width) * width + copy;
-            for e in self.special_pointers[k] as usize..self.special_pointers[k + 1] as usize {
-                let value = x[self.special_rows[e] as usize];
+            for e in self.nodal_pointers[k] as usize..self.nodal_pointers[k + 1] as usize {
+                let value = x[self.nodal_rows[e] as usize];
                 for c in 0..3 {
-                    out[start + c * width] += self.special_vectors[e][c] * value;
+                    out[start + c * width] += self.nodal_vectors[e][c] * value;
                 }
             }
         }
@@ -181,26 +174,18 @@ impl BoundaryMap {
     pub(crate) fn collect(&self, y: &[f64], out: &mut [f64]) {
         let (contact, rest) = out.split_at_mut(self.interface.start);
         let (interface, dirichlet) = rest.split_at_mut(self.interface.len());
-        let mut blocks = || {
-            if self.copies < SMALL {
-                self.collect_blocks(y, 0, interface);
-            } else {
-                interface
-                    .par_chunks_mut(3 * BLOCKS)
-                    .enumerate()
-                    .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part));
-            }
+        let blocks = || match self.is_large() {
+            false => self.collect_blocks(y, 0, interface),
+            true => interface
+                .par_chunks_mut(3 * BLOCKS)
+                .enumerate()
+                .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part)),
         };
-        let mut others = || {
+        let others = || {
             self.collect_rows(y, 0, contact);
             self.collect_rows(y, self.interface.start, dirichlet);
         };
-        if self.copies < SMALL {
-            blocks();
-            others();
-        } else {
-            rayon::join(blocks, others);
-        }
+        both(self.is_large(), blocks, others);
     }
 
     fn collect_blocks(&self, y: &[f64], first: usize, out: &mut [f64]) {
@@ -249,7 +234,7 @@ impl BoundaryMap {
 
     /// Whether loops over all copies are worth several threads.
     pub(crate) fn is_large(&self) -> bool {
-        self.copies >= SMALL
+        self.copies >= LARGE
     }
 }
 
@@ -273,15 +258,11 @@ pub(crate) fn over_lanes<L: Sync, W: Send, T: Send>(
             let (left, right) = lanes.split_at(middle);
             let (work_left, work_right) = work.split_at_mut(middle);
             let (y_left, y_right) = y.split_at_mut(offset(&right[0]) - offset(&left[0]));
-            if parallel {
-                rayon::join(
-                    || over_lanes(left, work_left, y_left, offset, parallel, task),
-                    || over_lanes(right, work_right, y_right, offset, parallel, task),
-                );
-            } else {
-                over_lanes(left, work_left, y_left, offset, parallel, task);
-                over_lanes(right, work_right, y_right, offset, parallel, task);
-            }
+            both(
+                parallel,
+                || over_lanes(left, work_left, y_left, offset, parallel, task),
+                || over_lanes(right, work_right, y_right, offset, parallel, task),
+            );
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Building the gather tables.
 
-use super::boundary::{BoundaryClass, BoundaryMap, LANES, Lane, Panel, Place};
+use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place};
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::Classes;
-use crate::subdomain::cost::PANEL;
+use crate::tolerances::{PANEL, PARTS};
 use signorini_fem_mesh::buckets;
 
 /// For each class: place of each node on the boundary, first panel, and first member of each panel.
@@ -36,7 +36,7 @@ impl BoundaryMap {
         map.fill_panels();
         let copies = map.fill_collect(gluing, &map.numbering(classes));
         map.fill_spread(gluing, &copies);
-        map.fill_specials();
+        map.fill_nodal();
         map
     }
 
@@ -56,9 +56,9 @@ impl BoundaryMap {
                 .iter()
                 .for_each(|e| touch(e.subdomain, e.local));
         }
-        for special in 0..gluing.specials() {
+        for nodal in 0..gluing.nodal_rows() {
             gluing
-                .special(special)
+                .nodal(nodal)
                 .iter()
                 .for_each(|e| touch(e.subdomain, e.local));
         }
@@ -86,10 +86,10 @@ impl BoundaryMap {
             spread_pointers: Vec::new(),
             spread_blocks: Vec::new(),
             spread_weights: Vec::new(),
-            special_copies: Vec::new(),
-            special_pointers: vec![0],
-            special_rows: Vec::new(),
-            special_vectors: Vec::new(),
+            nodal_copies: Vec::new(),
+            nodal_pointers: vec![0],
+            nodal_rows: Vec::new(),
+            nodal_vectors: Vec::new(),
             block_pointers: vec![0],
             block_places: Vec::new(),
             block_weights: Vec::new(),
@@ -120,12 +120,12 @@ impl BoundaryMap {
                     class,
                     columns,
                     copies,
-                    specials: 0..0,
+                    nodal: 0..0,
                 });
             }
         }
         let total: u64 = work.iter().sum();
-        let lanes = LANES.min(self.panels.len()).max(1) as u64;
+        let lanes = PARTS.min(self.panels.len()).max(1) as u64;
         let (mut done, mut start) = (0, 0);
         for k in 0..self.panels.len() {
             done += work[k];
@@ -178,8 +178,8 @@ impl BoundaryMap {
             }
             self.block_pointers.push(self.block_places.len() as u32);
         }
-        for special in 0..gluing.specials() {
-            for e in gluing.special(special) {
+        for nodal in 0..gluing.nodal_rows() {
+            for e in gluing.nodal(nodal) {
                 let (copy, place) = numbering.copy(e.subdomain, e.local);
                 copies[1].push(copy);
                 self.row_places.push(place);
@@ -205,21 +205,21 @@ impl BoundaryMap {
             if range.is_empty() {
                 continue;
             }
-            self.special_copies.push(copy as u32);
-            for &(special, entry) in &order[range] {
-                self.special_rows
-                    .push(gluing.special_row(special as usize) as u32);
-                self.special_vectors.push(self.row_vectors[entry as usize]);
+            self.nodal_copies.push(copy as u32);
+            for &(nodal, entry) in &order[range] {
+                self.nodal_rows
+                    .push(gluing.nodal_row(nodal as usize) as u32);
+                self.nodal_vectors.push(self.row_vectors[entry as usize]);
             }
-            self.special_pointers.push(self.special_rows.len() as u32);
+            self.nodal_pointers.push(self.nodal_rows.len() as u32);
         }
     }
 
-    fn fill_specials(&mut self) {
-        let copies = &self.special_copies;
+    fn fill_nodal(&mut self) {
+        let copies = &self.nodal_copies;
         let place = |copy: usize| copies.partition_point(|&c| (c as usize) < copy);
         for panel in &mut self.panels {
-            panel.specials = place(panel.copies.start)..place(panel.copies.end);
+            panel.nodal = place(panel.copies.start)..place(panel.copies.end);
         }
     }
 }

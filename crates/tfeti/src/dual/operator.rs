@@ -5,6 +5,7 @@ use crate::dual::inverses::ClassInverse;
 use crate::linalg::dense;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory};
 use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::PRODUCT;
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
@@ -34,16 +35,13 @@ struct LaneScratch {
     memory: Option<SolveMemory>,
 }
 
-/// Below this number of floating-point operations a product stays on one thread.
-const SMALL: u64 = 1_500_000;
-
 impl DualOperator {
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
         subdomains: Arc<Subdomains>,
         inverses: Arc<Vec<ClassInverse>>,
     ) -> Self {
-        let parallel = product_flops(&map, &inverses) > SMALL;
+        let parallel = product_flops(&map, &inverses) > PRODUCT;
         Self {
             map,
             subdomains,

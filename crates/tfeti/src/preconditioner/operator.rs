@@ -11,10 +11,10 @@ use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::preconditioner::scaling::Scaling;
-use crate::subdomain::cost::{PANEL, SHARED};
 use crate::subdomain::inverse::pattern_error;
 use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
+use crate::tolerances::{PANEL, PIVOT, SHARED};
 use rayon::prelude::*;
 use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator};
 use std::sync::Arc;
@@ -230,7 +230,7 @@ impl BoundaryStiffness {
             Err(error) => return Err(pattern_error(error, subdomain)),
         };
         let (smallest, _, largest) = factor.pivots();
-        if smallest <= 1e-13 * largest {
+        if smallest <= PIVOT * largest {
             return Ok(Self::Lumped(BlockRows::new(&split.boundary)));
         }
         let sparse = Self::Schur {

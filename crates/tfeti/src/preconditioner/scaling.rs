@@ -3,11 +3,8 @@
 use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
+use crate::tolerances::{DEPENDENT, SINGULAR};
 use signorini_qp::{ActiveSetView, Freedom};
-
-/// What is added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come
-/// out large, but `B^T` takes them to zero.
-const DEPENDENT: f64 = 0.3;
 
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or to
 /// a contact pair) are coupled by a small matrix, which is inverted once.
@@ -196,7 +193,7 @@ impl Scaling {
         let size = (0..count)
             .map(|k| matrix[k * (count + 1)])
             .fold(0.0, f64::max);
-        if own <= 1e-14 * size {
+        if own <= SINGULAR * size {
             return;
         }
         for (j, &b) in image.iter().enumerate() {

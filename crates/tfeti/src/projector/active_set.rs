@@ -1,16 +1,19 @@
-//! The coarse space as the face method of `signorini-qp` sees it.
+//! The projector of the active set method of `signorini-qp`: `G` weighted by the rows that are free.
 
 use crate::coarse::space::{Coarse, CoarseScratch};
-use crate::coarse::weights::{LineWeight, RowWeights};
+use crate::coarse::weights::RowWeights;
 use crate::error::TfetiError;
+use crate::linalg::tiles::Digits;
 use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
-use crate::projector::split::solve::Digits;
+use crate::tolerances::{ROUNDED_STEP, WORK};
+use signorini_qp::vector::{dot, norm};
 use signorini_qp::{EqualityProjector, Line, LooseMode, QpError};
 use std::sync::Arc;
 
-/// How `G W G^T` is factored when the face changes.
+/// How `G W G^T` is factored when the active set changes.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum ActiveSetFactor {
@@ -23,7 +26,7 @@ pub enum ActiveSetFactor {
     Split,
 }
 
-/// `G x = e` with projectors weighted by the free rows of the current face, see [`EqualityProjector`].
+/// `G x = e` with projectors weighted by the free rows of the current active set, see [`EqualityProjector`].
 ///
 /// Repairs use the interface and support rows only, so they never touch a contact row. Motions of bodies that these rows do
 /// not stop are [loose](EqualityProjector::loose).
@@ -34,30 +37,32 @@ pub struct ActiveSetProjector {
     always: CoarseFactor,
     /// What these do not hold.
     loose: Vec<LooseMode>,
-    face: CoarseFactor,
+    /// Factor of the last active set.
+    active: CoarseFactor,
     weights: Vec<f64>,
-    /// Directions of the last face besides its weights.
+    /// Directions of the last active set besides its weights.
     lines: Vec<Line>,
-    contact_rows: usize,
-    split: Option<Arc<SplitBase>>,
+    parts: SplitParts,
     /// Memory of the last but one factor.
     spare: Option<SplitFactor>,
-    fronts: Fronts,
-    contact: ContactWeights,
     /// Weight of each row where it is free; `None` means 1.
     metric: Option<Vec<f64>>,
-    rhs: Vec<f64>,
+    coarse_rhs: Vec<f64>,
     alpha: Vec<f64>,
     scratch: CoarseScratch,
     /// What the steps of an iteration read.
     digits: Digits,
 }
 
-/// Largest relative error in the equality of a solve with a factor in single precision with which steps are projected.
-const ROUNDED: f64 = 1e-4;
-
-/// Work on a free motion above this fraction of the norm of `e` makes a face deficient.
-const WORK: f64 = 1e-9;
+/// What split factors are made from.
+#[derive(Debug)]
+struct SplitParts {
+    base: Option<Arc<SplitBase>>,
+    /// Leading rows with constraints.
+    contact_rows: usize,
+    fronts: Fronts,
+    contact: ContactWeights,
+}
 
 impl ActiveSetProjector {
     /// For the coarse space of a system; `contact_rows` is the number of leading rows with constraints.
@@ -75,52 +80,54 @@ impl ActiveSetProjector {
         Self::with_factor(coarse, contact_rows, metric, ActiveSetFactor::Auto)
     }
 
-    /// The same with a given kind of factor.
+    /// The same with a given kind of factor: for benches, and for tests of one kind against the other.
     ///
     /// # Errors
-    /// [`TfetiError::Setting`] if there are fewer contact rows or a weight is not usable, [`TfetiError::Length`] if
-    /// `metric` is not as long as dual vectors, others if a factorisation fails.
+    /// As [`new`](Self::new).
+    #[doc(hidden)]
     pub fn with_factor(
         coarse: &Coarse,
         contact_rows: usize,
         metric: Option<Vec<f64>>,
         kind: ActiveSetFactor,
     ) -> Result<Self, TfetiError> {
-        let most = coarse.0.gluing.ranges().contact().end;
-        if contact_rows > most {
+        let ranges = coarse.0.gluing.ranges();
+        if contact_rows > ranges.contact().end {
             return Err(TfetiError::Setting {
-                name: "contact rows of a face space",
+                name: "contact rows of a projector",
                 value: contact_rows as f64,
                 range: "at most the contact rows of the system",
             });
         }
         if let Some(metric) = &metric {
-            RowWeights::diagonal(metric.clone()).validate(coarse.0.gluing.ranges())?;
+            RowWeights::diagonal(metric.clone()).validate(ranges)?;
         }
         let mut weights = vec![1.0; coarse.dim()];
         weights[..contact_rows].fill(0.0);
-        let split = match kind {
+        let base = match kind {
             ActiveSetFactor::Sparse => None,
-            ActiveSetFactor::Split => coarse.split(contact_rows, metric.as_deref()),
-            ActiveSetFactor::Auto => coarse
-                .split(contact_rows, metric.as_deref())
-                .filter(|split| split.pays(coarse.rows(), coarse.factor_size())),
+            _ => coarse.split(contact_rows, metric.as_deref()),
         };
-        let split = split.map(Arc::new);
-        let row_weights = RowWeights::diagonal(weighted(&weights, metric.as_deref()));
-        let (mut fronts, mut contact) = (Fronts::default(), ContactWeights::default());
-        let (own, rows) = (split.as_ref(), contact_rows);
-        let work = (&mut fronts, &mut contact);
-        let factor = factor(coarse, own, row_weights, rows, None, work.0, work.1)?;
+        let pays = |base: &SplitBase| {
+            kind == ActiveSetFactor::Split || base.pays(coarse.rows(), coarse.factor_size())
+        };
+        let mut parts = SplitParts {
+            base: base.filter(pays).map(Arc::new),
+            contact_rows,
+            fronts: Fronts::default(),
+            contact: ContactWeights::default(),
+        };
+        let diagonal = weighted(&weights, metric.as_deref());
+        let factor = parts.factor(coarse, RowWeights::diagonal(diagonal), None)?;
         let mut scratch = factor.scratch();
-        let loose: Vec<_> = factor
-            .free_motions()
-            .iter()
+        let motions = factor.free_motions().iter();
+        let loose: Vec<_> = motions
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
         // weights that are added to those that hold every body leave the matrix better conditioned
-        let single =
-            loose.is_empty() && factor.has_short() && factor.single_error(&mut scratch) <= ROUNDED;
+        let single = loose.is_empty()
+            && factor.has_short()
+            && factor.single_error(&mut scratch) <= ROUNDED_STEP;
         Ok(Self {
             digits: if single {
                 Digits::Single
@@ -131,31 +138,21 @@ impl ActiveSetProjector {
             coarse: coarse.clone(),
             always: factor.clone(),
             loose,
-            face: factor,
+            active: factor,
             weights,
             lines: Vec::new(),
-            contact_rows,
-            split,
+            parts,
             spare: None,
-            fronts,
-            contact,
             metric,
-            rhs: vec![0.0; coarse.rows()],
+            coarse_rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
         })
     }
 
-    /// The factor of the last face.
+    /// The factor of the last active set.
     #[must_use]
     pub fn factor(&self) -> &CoarseFactor {
-        &self.face
-    }
-
-    /// Projects the steps of iterations in double precision even where single precision is good enough.
-    #[must_use]
-    pub fn exact_steps(mut self) -> Self {
-        self.digits = Digits::Double;
-        self
+        &self.active
     }
 
     /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e` does
@@ -163,70 +160,73 @@ impl ActiveSetProjector {
     ///
     /// # Panics
     /// If `e` does not have one entry for each row of `G`.
-    pub fn set_rhs(&mut self, e: &[f64]) {
-        self.rhs.copy_from_slice(e);
+    pub fn set_coarse_rhs(&mut self, e: &[f64]) {
+        self.coarse_rhs.copy_from_slice(e);
     }
 
-    /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last face.
+    /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
     pub fn amplitudes(&mut self, residual: &[f64], alpha: &mut [f64]) {
-        self.face.amplitudes(residual, alpha, &mut self.scratch);
+        self.active.amplitudes(residual, alpha, &mut self.scratch);
     }
 
-    fn deficiency(&self, factor: &CoarseFactor) -> Option<String> {
-        let size = self.rhs.iter().map(|v| v * v).sum::<f64>().sqrt();
-        factor.free_motions().iter().find_map(|motion| {
-            let work: f64 = motion
-                .amplitudes
-                .iter()
-                .zip(&self.rhs)
-                .map(|(a, e)| a * e)
-                .sum();
-            let length = motion.amplitudes.iter().map(|v| v * v).sum::<f64>().sqrt();
-            (work.abs() > WORK * size * length).then(|| motion.to_string())
-        })
+    /// An error if the right side does work on a free motion of a factor.
+    fn check(&self, factor: &CoarseFactor) -> Result<(), QpError> {
+        let size = norm(&self.coarse_rhs);
+        let works = |a: &[f64]| dot(a, &self.coarse_rhs).abs() > WORK * size * norm(a);
+        match factor
+            .free_motions()
+            .iter()
+            .find(|motion| works(&motion.amplitudes))
+        {
+            Some(motion) => Err(QpError::CoarseDeficient {
+                motion: motion.to_string(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Work of a step on the factor of the last active set, with its digits.
+    fn step(&mut self, work: impl FnOnce(&CoarseFactor, &mut [f64], &mut CoarseScratch)) {
+        self.scratch.digits = self.digits;
+        work(&self.active, &mut self.alpha, &mut self.scratch);
+        self.scratch.digits = Digits::Double;
     }
 }
 
-/// The factor for `weights` on the basis of `split`; of the whole matrix if there is no such basis, if free motions ask for
-/// a generalised inverse, or if the matrix is singular to working precision.
-fn factor(
-    coarse: &Coarse,
-    split: Option<&Arc<SplitBase>>,
-    weights: RowWeights,
-    contact_rows: usize,
-    spare: Option<SplitFactor>,
-    fronts: &mut Fronts,
-    contact: &mut ContactWeights,
-) -> Result<CoarseFactor, TfetiError> {
-    weights.validate(coarse.0.gluing.ranges())?;
-    let usable = |base: &&Arc<SplitBase>| {
-        base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty()
-    };
-    if let Some(base) = split.filter(usable) {
-        contact.set(&weights.diagonal[..contact_rows], &weights.lines);
-        if let Ok(factor) = base.factor(contact, spare, fronts) {
-            let factor = Factor::Split(base.clone(), factor);
-            return Ok(CoarseFactor::new(
-                coarse.clone(),
-                factor,
-                Some(weights),
-                Vec::new(),
-            ));
+impl SplitParts {
+    /// The factor for `weights` on this basis; of the whole matrix if there is no basis, if free motions ask for a
+    /// generalised inverse, or if the matrix is singular to working precision.
+    fn factor(
+        &mut self,
+        coarse: &Coarse,
+        weights: RowWeights,
+        spare: Option<SplitFactor>,
+    ) -> Result<CoarseFactor, TfetiError> {
+        weights.validate(coarse.0.gluing.ranges())?;
+        let usable = |base: &&Arc<SplitBase>| {
+            base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty()
+        };
+        if let Some(base) = self.base.as_ref().filter(usable) {
+            self.contact
+                .set(&weights.diagonal[..self.contact_rows], &weights.lines);
+            if let Ok(factor) = base.factor(&self.contact, spare, &mut self.fronts) {
+                let factor = Factor::Split(base.clone(), factor);
+                return Ok(CoarseFactor::new(
+                    coarse.clone(),
+                    factor,
+                    Some(weights),
+                    Vec::new(),
+                ));
+            }
         }
+        coarse.factor_weighted(weights)
     }
-    coarse.factor_weighted(weights)
 }
 
 fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
     match metric {
         Some(metric) => free.iter().zip(metric).map(|(w, m)| w * m).collect(),
         None => free.to_vec(),
-    }
-}
-
-fn deficient(error: TfetiError) -> QpError {
-    QpError::CoarseDeficient {
-        motion: error.to_string(),
     }
 }
 
@@ -245,15 +245,13 @@ impl EqualityProjector for ActiveSetProjector {
 
     fn set_weights_and_lines(&mut self, w: &[f64], lines: &[Line]) -> Result<bool, QpError> {
         if w == self.weights && lines == self.lines {
-            return match self.deficiency(&self.face) {
-                Some(motion) => Err(QpError::CoarseDeficient { motion }),
-                None => Ok(false),
-            };
+            return self.check(&self.active).map(|()| false);
         }
         let (expected, found) = (self.coarse.dim(), w.len());
         if found != expected {
+            let what = "the weights of an active set";
             return Err(QpError::Length {
-                what: "the weights of a face",
+                what,
                 found,
                 expected,
             });
@@ -263,51 +261,48 @@ impl EqualityProjector for ActiveSetProjector {
             let metric = self.metric.as_ref();
             metric.and_then(|m| m.get(row)).copied().unwrap_or(1.0)
         };
-        weights.lines.extend(lines.iter().map(|line| LineWeight {
-            row: line.first,
-            direction: line.direction,
-            weight: line.weight * metric(line.first),
-        }));
-        let fixed = w[self.contact_rows..].iter().all(|w| *w == 1.0);
-        let split = self.split.as_ref().filter(|_| fixed);
-        let spare = self.spare.take();
-        let (rows, fronts, contact) = (self.contact_rows, &mut self.fronts, &mut self.contact);
-        let base = &self.coarse;
-        let factor =
-            factor(base, split, weights, rows, spare, fronts, contact).map_err(deficient)?;
-        if let Some(motion) = self.deficiency(&factor) {
-            return Err(QpError::CoarseDeficient { motion });
+        weights.lines.extend_from_slice(lines);
+        for line in &mut weights.lines {
+            line.weight *= metric(line.first);
         }
+        let fixed = w[self.parts.contact_rows..].iter().all(|w| *w == 1.0);
+        let factor = match fixed {
+            true => self.parts.factor(&self.coarse, weights, self.spare.take()),
+            false => self.coarse.factor_weighted(weights),
+        };
+        let motion = |error: TfetiError| QpError::CoarseDeficient {
+            motion: error.to_string(),
+        };
+        let factor = factor.map_err(motion)?;
+        self.check(&factor)?;
         self.weights.copy_from_slice(w);
         self.lines.clear();
         self.lines.extend_from_slice(lines);
-        self.spare = std::mem::replace(&mut self.face, factor).into_split();
+        let last = std::mem::replace(&mut self.active, factor);
+        self.spare = last.into_split();
         Ok(true)
     }
 
     fn balances(&mut self, x: &[f64], e: &[f64]) -> bool {
-        if self.face.free_motions().is_empty() {
+        if self.active.free_motions().is_empty() {
             return true;
         }
         self.coarse.apply(x, &mut self.alpha, &mut self.scratch);
-        let norm = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
         let size = norm(e).max(norm(x));
         let off = |a: &[f64]| -> f64 {
             let both = self.alpha.iter().zip(e);
             a.iter().zip(both).map(|(a, (g, e))| a * (g - e)).sum()
         };
-        let motions = self.face.free_motions().iter();
-        motions
-            .map(|m| (off(&m.amplitudes), norm(&m.amplitudes)))
-            .all(|(work, length)| work.abs() <= WORK * size * length)
+        let mut motions = self.active.free_motions().iter().map(|m| &m.amplitudes);
+        motions.all(|a| off(a).abs() <= WORK * size * norm(a))
     }
 
     fn project(&mut self, x: &mut [f64]) {
-        self.face.project(x, None, &mut self.scratch);
+        self.active.project(x, None, &mut self.scratch);
     }
 
     fn project_transpose(&mut self, g: &mut [f64]) {
-        self.face
+        self.active
             .project_transpose(g, &mut self.alpha, &mut self.scratch);
     }
 
@@ -316,17 +311,15 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn project_step(&mut self, x: &mut [f64]) {
-        self.face
-            .project_to(self.digits, x, None, &mut self.scratch);
+        self.step(|factor, _, scratch| factor.project(x, None, scratch));
     }
 
     fn project_step_transpose(&mut self, g: &mut [f64]) {
-        self.face
-            .project_transpose_to(self.digits, g, &mut self.alpha, &mut self.scratch);
+        self.step(|factor, alpha, scratch| factor.project_transpose(g, alpha, scratch));
     }
 
     fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
-        self.face.amplitudes(g, out, &mut self.scratch);
+        self.active.amplitudes(g, out, &mut self.scratch);
     }
 
     fn loose(&self) -> &[LooseMode] {
@@ -334,12 +327,13 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn balance(&mut self, x: &mut [f64], e: &[f64]) {
-        self.face.project(x, Some(e), &mut self.scratch);
+        self.active.project(x, Some(e), &mut self.scratch);
     }
 
     fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
-        self.always
-            .compensate_to(self.digits, from, change, to, &mut self.scratch);
+        self.scratch.digits = self.digits;
+        self.always.compensate(from, change, to, &mut self.scratch);
+        self.scratch.digits = Digits::Double;
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {

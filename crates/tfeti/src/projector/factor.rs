@@ -1,18 +1,25 @@
-//! Factors of `G W G^T`, projectors and orthonormal rows.
+//! Factors of `G W G^T` and their projectors.
 
+use crate::coarse::matrix::ModeTable;
 use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
-use crate::coarse::weights::{LineWeight, RowWeights};
-use crate::linalg::sparse::{SolveMemory, SparseCholesky};
+use crate::coarse::weights::{RowWeights, along};
+use crate::error::TfetiError;
+use crate::linalg::both;
+use crate::linalg::sparse::{FactorError, SparseCholesky};
+use crate::linalg::tiles::Digits;
 use crate::projector::split::factor::{SplitBase, SplitFactor};
-use crate::projector::split::solve::Digits;
-use signorini_qp::Equality;
+use crate::projector::split::tree::cheapest_tree;
+use signorini_qp::Line;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A Cholesky factor of `G W G^T` and the projectors that belong to it.
 ///
 /// With `W = I` (no weights): `P = I - G^T (G G^T)^-1 G` and `Q = I - P` are the paper's orthogonal projectors. With
 /// weights the projector `I - W G^T (G W G^T)^-1 G` maps to the kernel of `G` by changing only rows of positive weight.
+///
+/// All methods panic if a vector does not have the length that belongs to it.
 #[derive(Debug, Clone)]
 pub struct CoarseFactor(Arc<FactorData>);
 
@@ -29,29 +36,101 @@ struct FactorData {
 }
 
 #[derive(Debug)]
-pub(crate) enum Factor {
-    Sparse(SparseCholesky),
+pub(super) enum Factor {
+    Sparse(Arc<SparseCholesky>),
     Split(Arc<SplitBase>, SplitFactor),
 }
 
+impl Coarse {
+    /// Factor of `G G^T`.
+    ///
+    /// # Errors
+    /// [`TfetiError::CoarseSingular`] if a pivot is not positive, [`TfetiError::TooLarge`].
+    pub fn factor(&self) -> Result<CoarseFactor, TfetiError> {
+        self.factor_with(None)
+    }
+
+    /// Factor of `G W G^T`.
+    ///
+    /// If some rigid motions of bodies escape all rows of positive weight (see [`CoarseFactor::free_motions`]), the matrix
+    /// is singular; it is then regularised such that solves apply a generalised inverse, exact for right-hand sides that
+    /// do no work on the free motions.
+    ///
+    /// # Errors
+    /// [`TfetiError::Setting`] and [`TfetiError::Length`] for unusable weights, and those of [`factor`](Self::factor).
+    pub fn factor_weighted(&self, weights: RowWeights) -> Result<CoarseFactor, TfetiError> {
+        weights.validate(self.0.gluing.ranges())?;
+        self.factor_with(Some(weights))
+    }
+
+    fn factor_with(&self, weights: Option<RowWeights>) -> Result<CoarseFactor, TfetiError> {
+        let data = &self.0;
+        let modes = ModeTable::new(&data.subdomains);
+        let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
+        let free = data.free_motions(weights.as_ref());
+        if !free.is_empty() {
+            let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
+            let mean = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
+            let strength = if mean > 0.0 { mean } else { 1.0 };
+            for (subdomain, spring) in data.mobility.springs(&free) {
+                let row = [(subdomain as u32, spring)];
+                data.matrix.add_row(&row, strength, &mut matrix.values);
+            }
+        }
+        let (what, count) = ("coarse unknowns", matrix.dim);
+        let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
+            FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },
+            FactorError::Pattern => TfetiError::TooLarge { what, count },
+        })?;
+        let factor = Factor::Sparse(Arc::new(factor));
+        Ok(CoarseFactor::new(self.clone(), factor, weights, free))
+    }
+
+    /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
+    /// factor can be split. `metric` is the weight of each row where it counts, one if `None`.
+    pub(super) fn split(&self, rows: usize, metric: Option<&[f64]>) -> Option<SplitBase> {
+        let data = &self.0;
+        let gluing = &data.gluing;
+        let ones = || vec![1.0; self.dim()];
+        let mut weights = RowWeights::diagonal(metric.map_or_else(ones, <[f64]>::to_vec));
+        let all = metric.is_some().then_some(&weights);
+        if rows > gluing.ranges().interface.start || !data.free_motions(all).is_empty() {
+            return None;
+        }
+        let mut changing = vec![false; data.subdomains.count()];
+        for e in (0..rows).flat_map(|row| gluing.nodal(row)) {
+            changing[e.subdomain as usize] = true;
+        }
+        let graph = data.matrix.graph();
+        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
+        let modes = ModeTable::new(&data.subdomains);
+        weights.diagonal[..rows].fill(0.0);
+        let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
+        SplitBase::new(tree, &data.matrix, &graph, &values, gluing, &modes, rows).ok()
+    }
+}
+
 impl CoarseFactor {
-    pub(crate) fn new(
+    pub(super) fn new(
         coarse: Coarse,
         factor: Factor,
-        weights: Option<RowWeights>,
+        mut weights: Option<RowWeights>,
         free: Vec<FreeMotion>,
     ) -> Self {
         let ranges = coarse.0.gluing.ranges();
-        let mut weights = weights;
         if let Some(RowWeights { diagonal, lines }) = &mut weights {
             // products count these rows in full and are corrected by what the lines leave out
             lines
                 .iter()
-                .for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
+                .for_each(|l| diagonal[l.first..l.first + 2].fill(1.0));
         }
-        let plain = weights.as_ref().is_none_or(|w| w.is_plain(ranges));
-        let contact = |w: &RowWeights| w.diagonal[ranges.contact()].iter().any(|w| *w != 0.0);
-        let contact = weights.as_ref().is_none_or(contact);
+        let all = |range: Range<usize>, of: fn(&f64) -> bool| {
+            weights
+                .as_ref()
+                .is_none_or(|w: &RowWeights| w.diagonal[range].iter().all(of))
+        };
+        let plain = all(ranges.interface.clone(), |w| *w == 1.0);
+        let contact = weights.is_none() || !all(ranges.contact(), |w| *w == 0.0);
         Self(Arc::new(FactorData {
             coarse,
             factor,
@@ -63,7 +142,7 @@ impl CoarseFactor {
     }
 
     /// The memory of a split factor that nobody else uses.
-    pub(crate) fn into_split(self) -> Option<SplitFactor> {
+    pub(super) fn into_split(self) -> Option<SplitFactor> {
         match Arc::into_inner(self.0)?.factor {
             Factor::Split(_, factor) => Some(factor),
             Factor::Sparse(_) => None,
@@ -109,50 +188,49 @@ impl CoarseFactor {
 
     /// `y = (G W G^T)^-1 y`.
     pub fn solve(&self, y: &mut [f64], s: &mut CoarseScratch) {
-        self.solve_with(Digits::Double, y, &mut s.memory, &mut s.split);
+        self.solve_some(y, s, false);
     }
 
-    fn solve_with(
-        &self,
-        digits: Digits,
-        y: &mut [f64],
-        memory: &mut SolveMemory,
-        split: &mut Vec<f64>,
-    ) {
+    /// The same; `y` may be told to be zero but for blocks that a change of contact rows reaches.
+    fn solve_some(&self, y: &mut [f64], s: &mut CoarseScratch, changing: bool) {
         match &self.0.factor {
-            Factor::Sparse(factor) => factor.solve(y, 1, memory),
+            Factor::Sparse(factor) => factor.solve(y, 1, &mut s.memory),
             Factor::Split(base, factor) => {
-                base.solve(factor, y, reserved(base, split), false, digits);
+                if s.split.len() < base.work() {
+                    s.split.resize(base.work(), 0.0);
+                }
+                base.solve(factor, y, &mut s.split, changing, s.digits);
             }
         }
     }
 
+    /// Replaces the first vector of the memory by the solution for it.
+    fn solve_first(&self, s: &mut CoarseScratch, changing: bool) {
+        let mut first = std::mem::take(&mut s.first);
+        self.solve_some(&mut first, s, changing);
+        s.first = first;
+    }
+
     /// Whether the factor is stored in single precision, too.
-    pub(crate) fn has_short(&self) -> bool {
+    pub(super) fn has_short(&self) -> bool {
         matches!(self.0.factor, Factor::Split(..))
     }
 
     /// How far `G W G^T` times a solve in single precision is from the right side, relative, for one in which all motions
     /// are: what steps do to the equality.
-    pub(crate) fn single_error(&self, s: &mut CoarseScratch) -> f64 {
+    pub(super) fn single_error(&self, s: &mut CoarseScratch) -> f64 {
         let data = &self.0.coarse.0;
         let rows = 0..self.0.coarse.rows();
         let side: Vec<f64> = rows.map(|k| ((k * k + 1) as f64).sin()).collect();
-        s.first.copy_from_slice(&side);
-        self.solve_with(Digits::Single, &mut s.first, &mut s.memory, &mut s.split);
         let (mut x, mut found) = (vec![0.0; self.0.coarse.dim()], side.clone());
-        data.product_transpose(&s.first, &mut x, &mut s.motions);
-        self.weigh(&mut x);
+        s.digits = Digits::Single;
+        self.particular(&side, &mut x, s);
+        s.digits = Digits::Double;
         data.product(&x, None, &mut found, &mut s.sides);
         signorini_qp::vector::distance(&found, &side) / signorini_qp::vector::norm(&side)
     }
 
-    /// Weights of the rows that are no interface rows, if the interface rows have weight one.
-    fn diagonal(&self) -> Option<&[f64]> {
-        self.0.weights.as_ref().map(|w| &w.diagonal[..])
-    }
-
-    fn lines(&self) -> &[LineWeight] {
+    fn lines(&self) -> &[Line] {
         self.0.weights.as_ref().map_or(&[], |w| &w.lines)
     }
 
@@ -163,46 +241,18 @@ impl CoarseFactor {
     }
 
     /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
-    ///
-    /// # Panics
-    /// If a vector does not have the length that belongs to it.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
-        self.project_to(Digits::Double, x, e, s);
-    }
-
-    pub(crate) fn project_to(
-        &self,
-        digits: Digits,
-        x: &mut [f64],
-        e: Option<&[f64]>,
-        s: &mut CoarseScratch,
-    ) {
-        let data = &self.0.coarse.0;
-        data.product(x, None, &mut s.first, &mut s.sides);
+        self.0.coarse.0.product(x, None, &mut s.first, &mut s.sides);
         if let Some(e) = e {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
-        self.solve_with(digits, &mut s.first, &mut s.memory, &mut s.split);
+        self.solve_first(s, false);
         self.subtract_weighted(x, s);
     }
 
     /// `to = from + c - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
     /// [`project`](Self::project) where these are the contact rows.
-    ///
-    /// # Panics
-    /// If `change` is too long, or another vector does not have the length of dual vectors.
     pub fn compensate(&self, from: &[f64], change: &[f64], to: &mut [f64], s: &mut CoarseScratch) {
-        self.compensate_to(Digits::Double, from, change, to, s);
-    }
-
-    pub(crate) fn compensate_to(
-        &self,
-        digits: Digits,
-        from: &[f64],
-        change: &[f64],
-        to: &mut [f64],
-        s: &mut CoarseScratch,
-    ) {
         let data = &self.0.coarse.0;
         let contact = change.len() == data.gluing.ranges().contact().end;
         if contact {
@@ -219,234 +269,105 @@ impl CoarseFactor {
             signorini_qp::vector::copy(from, to);
         }
         to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
-        match &self.0.factor {
-            Factor::Split(base, factor) if contact && base.rows() >= change.len() => {
-                let work = reserved(base, &mut s.split);
-                base.solve(factor, &mut s.first, work, true, digits);
-            }
-            _ => self.solve_with(digits, &mut s.first, &mut s.memory, &mut s.split),
-        }
+        let reaches = |base: &SplitBase| contact && base.rows() >= change.len();
+        let changing = matches!(&self.0.factor, Factor::Split(base, _) if reaches(base));
+        self.solve_first(s, changing);
         self.subtract_weighted(to, s);
     }
 
     /// `x = x - W G^T y`, `y` the first vector of the memory.
     fn subtract_weighted(&self, x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
-        if self.0.plain {
-            keep(self.lines(), x, &mut s.pairs);
-            let weight = |row: usize| self.diagonal().map_or(1.0, |w| w[row]);
-            data.with_transpose(
-                &s.first,
-                x,
-                self.0.contact,
-                &mut s.motions,
-                |x, v| *x -= v,
-                |row, x, v| *x -= weight(row) * v,
-            );
-            for (line, old) in self.lines().iter().zip(&s.pairs) {
-                let along = line.along([old[0] - x[line.row], old[1] - x[line.row + 1]]);
-                x[line.row] = old[0] - along[0];
-                x[line.row + 1] = old[1] - along[1];
-            }
-        } else {
+        if !self.0.plain {
             data.product_transpose(&s.first, &mut s.dual, &mut s.motions);
             self.weigh(&mut s.dual);
             signorini_qp::vector::subtract(&s.dual, x);
+            return;
+        }
+        keep(self.lines(), x, &mut s.pairs);
+        let weight = |row: usize| self.0.weights.as_ref().map_or(1.0, |w| w.diagonal[row]);
+        data.with_transpose(
+            &s.first,
+            x,
+            self.0.contact,
+            &mut s.motions,
+            |x, v| *x -= v,
+            |row, x, v| *x -= weight(row) * v,
+        );
+        for (line, old) in self.lines().iter().zip(&s.pairs) {
+            let (k, l) = (line.first, line.first + 1);
+            let change = along(line, [old[0] - x[k], old[1] - x[l]]);
+            (x[k], x[l]) = (old[0] - change[0], old[1] - change[1]);
         }
     }
 
     /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
     /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
-    ///
-    /// # Panics
-    /// If a vector does not have the length that belongs to it.
     pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        self.project_transpose_to(Digits::Double, r, alpha, s);
-    }
-
-    pub(crate) fn project_transpose_to(
-        &self,
-        digits: Digits,
-        r: &mut [f64],
-        alpha: &mut [f64],
-        s: &mut CoarseScratch,
-    ) {
         if self.0.plain {
             keep(self.lines(), r, &mut s.pairs);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
-                r[line.row..line.row + 2].copy_from_slice(&line.along(*old));
+                r[line.first..line.first + 2].copy_from_slice(&along(line, *old));
             }
-            self.plain_amplitudes(digits, r, alpha, s);
+            self.plain_amplitudes(r, alpha, s);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
-                r[line.row..line.row + 2].copy_from_slice(old);
+                r[line.first..line.first + 2].copy_from_slice(old);
             }
         } else {
-            self.amplitudes_to(digits, r, alpha, s);
+            self.amplitudes(r, alpha, s);
         }
+        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
         let data = &self.0.coarse.0;
-        data.with_transpose(
-            alpha,
-            r,
-            true,
-            &mut s.motions,
-            |r, v| *r += v,
-            |_, r, v| *r += v,
-        );
+        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
     }
 
-    /// Rigid amplitudes that make the rows residual `r + G^T alpha` smallest in the metric of `W`:
+    /// Rigid amplitudes that make the residual of the rows `r + G^T alpha` smallest in the metric of `W`:
     /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
     /// equality (open contact, sliding).
-    ///
-    /// # Panics
-    /// If a vector does not have the length that belongs to it.
     pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        self.amplitudes_to(Digits::Double, r, alpha, s);
-    }
-
-    fn amplitudes_to(&self, digits: Digits, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         if self.0.plain && self.lines().is_empty() {
-            self.plain_amplitudes(digits, r, alpha, s);
+            self.plain_amplitudes(r, alpha, s);
             return;
         }
         s.dual.copy_from_slice(r);
         self.weigh(&mut s.dual);
-        let data = &self.0.coarse.0;
-        data.product(&s.dual, None, alpha, &mut s.sides);
-        self.solve_with(digits, alpha, &mut s.memory, &mut s.split);
+        self.0.coarse.0.product(&s.dual, None, alpha, &mut s.sides);
+        self.solve(alpha, s);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
 
     /// The same for interface rows of weight one and rows in lines that are weighted already.
-    fn plain_amplitudes(
-        &self,
-        digits: Digits,
-        r: &[f64],
-        alpha: &mut [f64],
-        s: &mut CoarseScratch,
-    ) {
-        let data = &self.0.coarse.0;
-        data.product(r, self.diagonal(), alpha, &mut s.sides);
-        self.solve_with(digits, alpha, &mut s.memory, &mut s.split);
+    fn plain_amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let weights = self.0.weights.as_ref().map(|w| &w.diagonal[..]);
+        self.0.coarse.0.product(r, weights, alpha, &mut s.sides);
+        self.solve(alpha, s);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
 
     /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
-    ///
-    /// # Panics
-    /// If a vector does not have the length that belongs to it.
     pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse.0;
         s.first.copy_from_slice(e);
-        self.solve_with(Digits::Double, &mut s.first, &mut s.memory, &mut s.split);
-        data.product_transpose(&s.first, x, &mut s.motions);
+        self.solve_first(s, false);
+        self.0
+            .coarse
+            .0
+            .product_transpose(&s.first, x, &mut s.motions);
         self.weigh(x);
     }
 
-    fn sparse(&self) -> Option<&SparseCholesky> {
+    /// The sparse factor of a regular `G G^T`.
+    pub(super) fn unweighted(&self) -> Option<&Arc<SparseCholesky>> {
         match &self.0.factor {
-            Factor::Sparse(factor) => Some(factor),
-            Factor::Split(..) => None,
+            Factor::Sparse(factor) if self.0.weights.is_none() && self.0.free.is_empty() => {
+                Some(factor)
+            }
+            _ => None,
         }
-    }
-
-    /// The orthonormal basis `C = L^-1 P G` of the row space of `G`, where `P G G^T P^T = L L^T`. `None` if there are
-    /// weights or free motions.
-    #[must_use]
-    pub fn orthonormal(&self) -> Option<OrthonormalCoarse> {
-        (self.0.weights.is_none() && self.0.free.is_empty() && self.sparse().is_some())
-            .then(|| OrthonormalCoarse(self.clone()))
-    }
-}
-
-/// The work memory, long enough.
-fn reserved<'m>(base: &SplitBase, memory: &'m mut Vec<f64>) -> &'m mut [f64] {
-    if memory.len() < base.work() {
-        memory.resize(base.work(), 0.0);
-    }
-    memory
-}
-
-/// Both, at the same time if that is `worth` it.
-fn both(worth: bool, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
-    if worth {
-        rayon::join(a, b);
-    } else {
-        a();
-        b();
     }
 }
 
 /// Remembers the entries of the rows in lines.
-fn keep(lines: &[LineWeight], x: &[f64], pairs: &mut Vec<[f64; 2]>) {
+fn keep(lines: &[Line], x: &[f64], pairs: &mut Vec<[f64; 2]>) {
     pairs.clear();
-    pairs.extend(lines.iter().map(|l| [x[l.row], x[l.row + 1]]));
-}
-
-/// The constraint `G x = e` with orthonormal rows: `C x = L^-1 P e` with `C = L^-1 P G`, `C C^T = I`.
-#[derive(Debug, Clone)]
-pub struct OrthonormalCoarse(CoarseFactor);
-
-impl OrthonormalCoarse {
-    fn half_solve(&self, x: &[f64], out: &mut [f64], memory: &mut SolveMemory) {
-        if let Some(factor) = self.0.sparse() {
-            factor.half_solve(x, out, memory);
-        }
-    }
-
-    fn half_solve_transpose(&self, y: &mut [f64], out: &mut [f64], memory: &mut SolveMemory) {
-        if let Some(factor) = self.0.sparse() {
-            factor.half_solve_transpose(y, out, memory);
-        }
-    }
-
-    /// Right-hand side of the orthonormal rows: `out = L^-1 P e`.
-    pub fn rhs(&self, e: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.half_solve(e, out, &mut s.memory);
-    }
-
-    /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
-    /// `G^T alpha = C^T beta`.
-    ///
-    /// # Panics
-    /// If `beta` or `alpha` does not have one entry for each row.
-    pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        s.first.copy_from_slice(beta);
-        self.half_solve_transpose(&mut s.first, alpha, &mut s.memory);
-    }
-
-    /// The factor.
-    #[must_use]
-    pub fn factor(&self) -> &CoarseFactor {
-        &self.0
-    }
-}
-
-impl Equality for OrthonormalCoarse {
-    type Scratch = CoarseScratch;
-
-    fn dim(&self) -> usize {
-        self.0.coarse().dim()
-    }
-
-    fn rows(&self) -> usize {
-        self.0.coarse().rows()
-    }
-
-    fn scratch(&self) -> CoarseScratch {
-        self.0.scratch()
-    }
-
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse().0;
-        data.product(x, None, &mut s.first, &mut s.sides);
-        self.half_solve(&s.first, y, &mut s.memory);
-    }
-
-    fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.0.coarse().0;
-        s.first.copy_from_slice(y);
-        self.half_solve_transpose(&mut s.first, &mut s.second, &mut s.memory);
-        data.product_transpose(&s.second, x, &mut s.motions);
-    }
+    pairs.extend(lines.iter().map(|l| [x[l.first], x[l.first + 1]]));
 }

@@ -1,3 +1,4 @@
 pub(crate) mod active_set;
 pub(crate) mod factor;
+pub(crate) mod orthonormal;
 pub(crate) mod split;

@@ -89,7 +89,7 @@ impl Builder<'_> {
             }
         }
         self.dependent(contact, points);
-        let normal = self.gluing.specials();
+        let normal = self.gluing.nodal_rows();
         for (k, p) in points
             .iter()
             .enumerate()
@@ -103,7 +103,7 @@ impl Builder<'_> {
                 scale: p.tangential[0].scale,
             };
         }
-        let discs = self.gluing.specials();
+        let discs = self.gluing.nodal_rows();
         for (k, p) in points
             .iter()
             .enumerate()
@@ -119,7 +119,7 @@ impl Builder<'_> {
                 scale,
             };
         }
-        let end = self.gluing.specials();
+        let end = self.gluing.nodal_rows();
         let ranges = &mut self.gluing.ranges;
         (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
         ranges.interface = end..end;

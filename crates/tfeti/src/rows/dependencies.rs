@@ -1,11 +1,9 @@
 //! Rows of `B` that depend on one another: forces at a node that may replace one another.
 
 use crate::rows::gluing::Gluing;
+use crate::tolerances::PIVOT;
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::collections::BTreeMap;
-
-/// Part of the largest eigenvalue of `B Bᵀ` up to which one is zero: directions that differ by less are one.
-const ZERO: f64 = 1e-13;
 
 /// The contact and support rows of a node, or of nodes that contact points join, with the null space of their `Bᵀ`.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +48,7 @@ impl Gluing {
             sum
         });
         let eigen = SymmetricEigen::new(gram);
-        let limit = ZERO * eigen.eigenvalues.max();
+        let limit = PIVOT * eigen.eigenvalues.max();
         let vectors: Vec<Vec<f64>> = (0..rows.len())
             .filter(|&k| eigen.eigenvalues[k] <= limit)
             .map(|k| eigen.eigenvectors.column(k).iter().copied().collect())

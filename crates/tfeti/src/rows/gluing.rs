@@ -303,7 +303,7 @@ impl Gluing {
         if range.contains(&row) {
             self.block_nodes.get((row - range.start) / 3).copied()
         } else {
-            self.row_nodes.get(self.special_of(row)).copied()
+            self.row_nodes.get(self.nodal_of(row)).copied()
         }
     }
 
@@ -325,7 +325,7 @@ impl Gluing {
                 )
             }));
         } else {
-            for e in self.special(self.special_of(row)) {
+            for e in self.nodal(self.nodal_of(row)) {
                 for (c, &v) in e.vector.iter().enumerate() {
                     if v != 0.0 {
                         out.push((e.subdomain as usize, 3 * e.local as usize + c, v));
@@ -352,25 +352,24 @@ impl Gluing {
     }
 
     /// Number of rows that are not interface rows: contact rows, then support rows.
-    pub(crate) fn specials(&self) -> usize {
+    pub(crate) fn nodal_rows(&self) -> usize {
         self.row_pointers.len() - 1
     }
 
-    pub(crate) fn special(&self, special: usize) -> &[CopyEntry] {
-        &self.row_entries
-            [self.row_pointers[special] as usize..self.row_pointers[special + 1] as usize]
+    pub(crate) fn nodal(&self, nodal: usize) -> &[CopyEntry] {
+        &self.row_entries[self.row_pointers[nodal] as usize..self.row_pointers[nodal + 1] as usize]
     }
 
-    /// Row number of a special row.
-    pub(crate) fn special_row(&self, special: usize) -> usize {
-        if special < self.ranges.interface.start {
-            special
+    /// Row number of a nodal row.
+    pub(crate) fn nodal_row(&self, nodal: usize) -> usize {
+        if nodal < self.ranges.interface.start {
+            nodal
         } else {
-            special + self.ranges.interface.len()
+            nodal + self.ranges.interface.len()
         }
     }
 
-    fn special_of(&self, row: usize) -> usize {
+    fn nodal_of(&self, row: usize) -> usize {
         if row < self.ranges.interface.start {
             row
         } else {

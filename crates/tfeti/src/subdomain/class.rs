@@ -4,6 +4,7 @@
 //! by a cheap key and then compared entry by entry: a class is never formed because two hashes agree.
 
 use crate::error::TfetiError;
+use crate::tolerances::TRANSLATE;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, Subdomain, TetMesh};
 use std::collections::HashMap;
@@ -170,7 +171,7 @@ impl<'a> Candidate<'a> {
                 signature += weight * relative;
             }
         }
-        let tolerance = 1e-12 * size + 4.0 * f64::EPSILON * largest;
+        let tolerance = TRANSLATE * size + 4.0 * f64::EPSILON * largest;
         let signature = signature / (3 * subdomain.nodes.len().max(1)) as f64;
         let mut hasher = DefaultHasher::new();
         subdomain.nodes.len().hash(&mut hasher);

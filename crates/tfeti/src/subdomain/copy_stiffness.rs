@@ -2,11 +2,8 @@
 
 use crate::error::TfetiError;
 use crate::subdomain::matrices::{ClassBase, Subdomains};
+use crate::tolerances::ALIKE;
 use signorini_fem_mesh::{Decomposition, NodeCopy};
-
-/// Stiffness of a copy over that of another one of its node up to which all copies count alike. It is 1 where boxes cut a regular
-/// mesh, 2.5 where the nodes of that are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
-const ALIKE: f64 = 4.0;
 
 /// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
 ///

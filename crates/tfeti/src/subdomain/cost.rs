@@ -1,6 +1,7 @@
 //! Which generalised inverse is cheaper for a class: a dense one on the boundary or a sparse factor.
 
 use crate::error::TfetiError;
+use crate::tolerances::{BANDWIDTH, CACHE, FLOPS, PANEL};
 
 /// Choice of the generalised inverse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -88,9 +89,6 @@ pub(crate) struct Size {
     pub(crate) factor: usize,
 }
 
-/// From this number of members on the preconditioners form dense matrices.
-pub(crate) const SHARED: usize = 4;
-
 impl Size {
     pub(crate) fn dense_bytes(&self) -> u64 {
         8 * (self.boundary * self.boundary) as u64 + self.sparse_bytes()
@@ -126,15 +124,9 @@ impl Size {
     }
 }
 
-/// Members worked on at once: the height of the fastest dense kernels.
-pub(crate) const PANEL: usize = 24;
-const FLOPS: f64 = 8e10;
-/// Bytes of dense matrices that still stay in the caches of one processor.
-const CACHE: u64 = 16 << 20;
-
 /// Bytes per second at which a matrix is read.
 fn bandwidth(resident: bool) -> f64 {
-    if resident { 6e10 } else { 1.2e10 }
+    BANDWIDTH[usize::from(!resident)]
 }
 
 /// Chooses dense (`true`) or sparse for each class within the memory limit.

@@ -2,8 +2,8 @@
 
 use crate::error::TfetiError;
 use crate::linalg::dense;
+use crate::linalg::elimination::patterns;
 use crate::linalg::sparse::minimum_degree;
-use crate::projector::split::tree::patterns;
 use crate::subdomain::class::Classes;
 use crate::subdomain::cost::{InverseSettings, Size, choose};
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};

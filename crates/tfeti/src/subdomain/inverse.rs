@@ -9,8 +9,10 @@ use crate::linalg::dense;
 use crate::linalg::sparse::{
     Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic,
 };
+use crate::linalg::vec3::{cross, dot, norm, sub};
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::packed::PackedFactor;
+use crate::tolerances::COLUMNS;
 
 /// A generalised inverse of the whole matrix of one subdomain.
 #[derive(Debug)]
@@ -160,9 +162,6 @@ impl Inverse {
     }
 }
 
-/// Columns solved at once when a dense block is formed, at least six.
-const COLUMNS: usize = 48;
-
 /// `x = (I - R R^T) x` for every column.
 fn remove_rigid(kernel: &Kernel, x: &mut [f64]) {
     for column in x.chunks_exact_mut(3 * kernel.nodes()) {
@@ -194,29 +193,17 @@ fn anchors(kernel: &Kernel) -> [usize; 3] {
         }
         best.0
     };
-    let norm = |v: [f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    let first = farthest(&|p| norm(*p));
+    let square = |v| dot(v, v);
+    let first = farthest(&|p| square(*p));
     let a = *kernel.arm(first);
-    let second = farthest(&|p| norm(sub(p, &a)));
-    let axis = unit(sub(kernel.arm(second), &a));
-    let third = farthest(&|p| norm(cross(&axis, &sub(p, &a))));
+    let second = farthest(&|p| square(sub(*p, a)));
+    let axis = unit(sub(*kernel.arm(second), a));
+    let third = farthest(&|p| square(cross(axis, sub(*p, a))));
     [first, second, third]
 }
 
-fn sub(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
-}
-
-fn cross(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
-    [
-        p[1] * q[2] - p[2] * q[1],
-        p[2] * q[0] - p[0] * q[2],
-        p[0] * q[1] - p[1] * q[0],
-    ]
-}
-
 fn unit(v: [f64; 3]) -> [f64; 3] {
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    let length = norm(v);
     if length > 0.0 {
         v.map(|c| c / length)
     } else {
@@ -229,8 +216,9 @@ pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
     let mut matrix = stiffness.clone();
     let strength = scale(stiffness);
     let [first, second, third] = anchors(kernel);
-    let axis = unit(sub(kernel.arm(second), kernel.arm(first)));
-    let normal = unit(cross(&axis, &sub(kernel.arm(third), kernel.arm(first))));
+    let from_first = |node: usize| sub(*kernel.arm(node), *kernel.arm(first));
+    let axis = unit(from_first(second));
+    let normal = unit(cross(axis, from_first(third)));
     let mut spring = |node: usize, block: &dyn Fn(usize, usize) -> f64| {
         for i in 0..3 {
             for j in 0..3 {

@@ -1,6 +1,7 @@
 //! The six rigid motions of a subdomain, orthonormal, without eigenvalue computation.
 
 use crate::error::TfetiError;
+use crate::tolerances::PIVOT;
 
 /// Orthonormal basis of the kernel of a subdomain's stiffness matrix.
 ///
@@ -240,7 +241,7 @@ fn cholesky6(a: &[[f64; 6]; 6]) -> Option<[[f64; 6]; 6]> {
         for i in j..6 {
             let sum: f64 = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
             if i == j {
-                if sum.is_nan() || sum <= 1e-13 * scale {
+                if sum.is_nan() || sum <= PIVOT * scale {
                     return None;
                 }
                 l[i][i] = sum.sqrt();

@@ -1,11 +1,11 @@
 //! A sparse factor stored for solves with one right-hand side.
 
+use crate::linalg::elimination::{Group, grouped, patterns};
 use crate::linalg::sparse::{Columns, MemoryNeed, SparseCholesky, quotient};
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
-use crate::projector::split::tree::patterns;
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
-use std::ops::Range;
+use crate::tolerances::GROUP;
 
 /// A factor `P A P^T = L L^T` in tiles.
 #[derive(Debug, Clone)]
@@ -18,54 +18,27 @@ pub(crate) struct PackedFactor {
     tiles: Vec<Tile>,
 }
 
-/// What a group costs a solve besides its tiles, in tiles: the group itself, and four units of rows below it.
-const GROUP: usize = 4;
-const ROWS: usize = 1;
-
-/// Blocks eliminated together and the later ones that this changes.
-struct Group {
-    blocks: Range<usize>,
-    below: Vec<u32>,
-}
-
-impl Group {
-    fn cost(&self, unit: usize) -> usize {
-        let (width, height) = (self.blocks.len(), self.blocks.len() + self.below.len());
-        GROUP + (ROWS * height) / 4 + Supernodes::tiles_of(unit * width, unit * height)
-    }
-}
-
 /// Groups blocks in the order of elimination where that saves time. The factor at hand has larger groups, which serve many
 /// columns at once but hold more zeros.
 fn group(matrix: &Columns, order: &[u32], unit: usize) -> Vec<Group> {
     let (pointers, rows) = quotient(matrix, unit);
-    let graph: Vec<Vec<u32>> = pointers
-        .windows(2)
-        .map(|pair| rows[pair[0]..pair[1]].iter().map(|&r| r as u32).collect())
-        .collect();
-    let blocks: Vec<u32> = (order.iter().step_by(unit))
+    let neighbours = |pair: &[usize]| rows[pair[0]..pair[1]].iter().map(|&r| r as u32).collect();
+    let graph: Vec<Vec<u32>> = pointers.windows(2).map(neighbours).collect();
+    let blocks: Vec<u32> = order
+        .iter()
+        .step_by(unit)
         .map(|&k| k / unit as u32)
         .collect();
-    let mut groups: Vec<Group> = Vec::new();
-    for (position, below) in patterns(&graph, &blocks).into_iter().enumerate() {
-        let blocks = position..position + 1;
-        let mut next = Group { blocks, below };
-        // Earlier groups that end here and lead here are taken in if that costs less.
-        while let Some(last) = groups.last() {
-            let leads = (last.below.first()).is_some_and(|&p| next.blocks.contains(&(p as usize)));
-            let joined = Group {
-                blocks: last.blocks.start..next.blocks.end,
-                below: next.below.clone(),
-            };
-            if !leads || joined.cost(unit) > last.cost(unit) + next.cost(unit) {
-                break;
-            }
-            next = joined;
-            groups.pop();
-        }
-        groups.push(next);
-    }
-    groups
+    let cost = |width: usize, below: usize| {
+        let height = width + below;
+        GROUP + height / 4 + Supernodes::tiles_of(unit * width, unit * height)
+    };
+    grouped(
+        0..blocks.len(),
+        &patterns(&graph, &blocks),
+        |_, _| true,
+        cost,
+    )
 }
 
 /// Orders groups such that those that do not wait for one another stand together, those of one shape side by side: one
@@ -73,7 +46,7 @@ fn group(matrix: &Columns, order: &[u32], unit: usize) -> Vec<Group> {
 fn by_level(groups: &[Group], blocks: usize) -> Vec<usize> {
     let mut home = vec![0; blocks];
     for (k, g) in groups.iter().enumerate() {
-        home[g.blocks.clone()].fill(k);
+        home[g.columns.clone()].fill(k);
     }
     let mut level = vec![0; groups.len()];
     for (k, g) in groups.iter().enumerate() {
@@ -83,7 +56,7 @@ fn by_level(groups: &[Group], blocks: usize) -> Vec<usize> {
         }
     }
     let mut order: Vec<usize> = (0..groups.len()).collect();
-    order.sort_by_key(|&k| (level[k], groups[k].blocks.len(), groups[k].below.len(), k));
+    order.sort_by_key(|&k| (level[k], groups[k].columns.len(), groups[k].below.len(), k));
     order
 }
 
@@ -96,7 +69,7 @@ impl PackedFactor {
         let sequence = by_level(&pattern, blocks);
         // New number of each block, and the groups with their rows in the new numbering.
         let (mut new, mut next) = (vec![0_u32; blocks], 0);
-        for b in sequence.iter().flat_map(|&k| pattern[k].blocks.clone()) {
+        for b in sequence.iter().flat_map(|&k| pattern[k].columns.clone()) {
             new[b] = next;
             next += 1;
         }
@@ -106,8 +79,8 @@ impl PackedFactor {
             let g = &pattern[k];
             let mut below: Vec<u32> = g.below.iter().map(|&b| new[b as usize]).collect();
             below.sort_unstable();
-            let columns = order.len()..order.len() + unit * g.blocks.len();
-            order.extend_from_slice(&old[unit * g.blocks.start..unit * g.blocks.end]);
+            let columns = order.len()..order.len() + unit * g.columns.len();
+            order.extend_from_slice(&old[unit * g.columns.start..unit * g.columns.end]);
             starts[k] = size;
             size += columns.len() * (columns.len() + unit * below.len());
             groups.push(columns, below);
@@ -119,19 +92,19 @@ impl PackedFactor {
         factor.for_supernodes(&mut |columns, below, value| {
             for j in columns.clone() {
                 let g = &pattern[k];
-                let own = unit * g.blocks.start..unit * g.blocks.end;
+                let own = unit * g.columns.start..unit * g.columns.end;
                 if j == own.start {
                     rows_at.fill(usize::MAX);
                     rows_of.clear();
                     rows_of.extend_from_slice(&g.below);
                     rows_of.sort_unstable_by_key(|&b| new[b as usize]);
-                    let own = g.blocks.clone().map(|b| b as u32);
+                    let own = g.columns.clone().map(|b| b as u32);
                     for (p, b) in own.chain(rows_of.iter().copied()).enumerate() {
                         for c in 0..unit {
                             rows_at[unit * b as usize + c] = unit * p + c;
                         }
                     }
-                    height = unit * (g.blocks.len() + g.below.len());
+                    height = unit * (g.columns.len() + g.below.len());
                 }
                 let target = &mut values[starts[k] + (j - own.start) * height..][..height];
                 let rows = columns.clone().chain(below.iter().copied());

@@ -112,12 +112,12 @@ impl Tfeti {
                 }
             }
         }
-        for special in 0..gluing.specials() {
+        for nodal in 0..gluing.nodal_rows() {
             let entry = |e: &crate::rows::gluing::CopyEntry| {
                 let value = &u[start(e.subdomain, e.local)..][..3];
                 (0..3).map(|c| e.vector[c] * value[c]).sum::<f64>()
             };
-            out[gluing.special_row(special)] = gluing.special(special).iter().map(entry).sum();
+            out[gluing.nodal_row(nodal)] = gluing.nodal(nodal).iter().map(entry).sum();
         }
     }
 
@@ -141,9 +141,9 @@ impl Tfeti {
                 }
             }
         }
-        for special in 0..gluing.specials() {
-            let value = x[gluing.special_row(special)];
-            for e in gluing.special(special) {
+        for nodal in 0..gluing.nodal_rows() {
+            let value = x[gluing.nodal_row(nodal)];
+            for e in gluing.nodal(nodal) {
                 let target = &mut f[start(e.subdomain, e.local)..][..3];
                 for c in 0..3 {
                     target[c] += e.vector[c] * value;

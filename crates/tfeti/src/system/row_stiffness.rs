@@ -2,11 +2,9 @@
 
 use crate::linalg::sparse::SolveMemory;
 use crate::system::tfeti::Tfeti;
+use crate::tolerances::SAMPLE;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Nodes of a class without dense inverse at which it is asked for its compliance.
-const SAMPLE: usize = 3;
 
 /// What is known of the compliance of a class.
 enum Compliance<'a> {

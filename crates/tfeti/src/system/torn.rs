@@ -2,12 +2,9 @@
 
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::sparse::SolveMemory;
-use crate::subdomain::cost::PANEL;
 use crate::system::tfeti::Tfeti;
+use crate::tolerances::{PANEL, SHARED};
 use rayon::prelude::*;
-
-/// Members of a class with which a product by blocks is worth its table.
-const PANELS: usize = 4;
 
 impl Tfeti {
     /// `y = K x` for torn vectors.
@@ -18,7 +15,7 @@ impl Tfeti {
         let parts = &self.parts;
         self.by_class(y, |class, members, columns| {
             let base = &parts.subdomains.bases[class];
-            if parts.subdomains.classes.classes()[class].members.len() < PANELS {
+            if parts.subdomains.classes.classes()[class].members.len() < SHARED {
                 for (&s, y) in members.iter().zip(columns) {
                     let x = &x[self.torn_range(s as usize)];
                     for (j, target) in y.iter_mut().enumerate() {

@@ -256,7 +256,7 @@ fn a_body_held_by_contact_only_is_deficient_on_open_faces() {
         let closed = face(&system, 0.6, 1);
         let open = face(&system, 0.0, 1);
         for space in [&mut split, &mut sparse] {
-            space.set_rhs(&e);
+            space.set_coarse_rhs(&e);
             assert_eq!(space.set_weights(&closed), Ok(true));
             assert!(matches!(
                 space.set_weights(&open),

@@ -4,8 +4,8 @@ use crate::common::Brick;
 use signorini_fem_mesh::Decomposition;
 use signorini_qp::{EqualityProjector, Line, QpError};
 use signorini_tfeti::{
-    ActiveSetFactor, ActiveSetProjector, CopyStiffness, Gluing, LineWeight, Motion, NodeSupport,
-    RowWeights, TfetiError,
+    ActiveSetFactor, ActiveSetProjector, CopyStiffness, Gluing, Motion, NodeSupport, RowWeights,
+    TfetiError,
 };
 
 #[test]
@@ -61,8 +61,8 @@ fn line_directions_are_unit_vectors() {
         let mut weights = RowWeights::diagonal(vec![1.0; system.dual_dim()]);
         let row = system.gluing().ranges().discs.start;
         let weight = 1.0;
-        weights.lines.push(LineWeight {
-            row,
+        weights.lines.push(Line {
+            first: row,
             direction,
             weight,
         });

@@ -1,8 +1,8 @@
 //! Work memory carries nothing from one product to the next.
 
 use crate::common::{Brick, build, noise};
-use signorini_qp::{Equality, SymmetricOperator};
-use signorini_tfeti::{InverseKind, LineWeight, RowWeights};
+use signorini_qp::{Equality, Line, SymmetricOperator};
+use signorini_tfeti::{InverseKind, RowWeights};
 
 #[test]
 fn scratch_is_reused() {
@@ -37,13 +37,13 @@ fn line_weights_act_like_a_rotated_diagonal() {
     let (row, other) = (ranges.discs.start, ranges.discs.start + 4);
     let mut lines = RowWeights::diagonal(diagonal.clone());
     lines.lines = vec![
-        LineWeight {
-            row,
+        Line {
+            first: row,
             direction: [1.0, 0.0],
             weight: 0.7,
         },
-        LineWeight {
-            row: other,
+        Line {
+            first: other,
             direction: [0.0, -1.0],
             weight: 0.3,
         },
@@ -62,8 +62,8 @@ fn line_weights_act_like_a_rotated_diagonal() {
             < 1e-11 * crate::common::norm(&results[0])
     );
     let mut crossed = RowWeights::diagonal(vec![1.0; coarse.dim()]);
-    crossed.lines = vec![LineWeight {
-        row: ranges.normal.start,
+    crossed.lines = vec![Line {
+        first: ranges.normal.start,
         direction: [1.0, 0.0],
         weight: 1.0,
     }];

@@ -4,9 +4,10 @@
 //! the subdomains with the same coefficients, so a run takes one combined motion and gives one wrench; only these are
 //! shifted to the centres of the subdomains. Globs of one shape share their arms.
 
-use crate::dual::boundary::{LANES, over_lanes};
+use crate::dual::boundary::over_lanes;
 use crate::rows::gluing::{Glob, Gluing};
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
+use crate::tolerances::{GLOB_TASK, PARTS};
 use pulp::{Arch, Simd, WithSimd};
 use signorini_fem_mesh::buckets;
 use std::collections::HashMap;
@@ -145,7 +146,7 @@ impl GlobTables {
     fn cut(&mut self) {
         let work = |p: &Piece| u64::from(p.runs * (p.nodes + 4 * p.count) + 8);
         let total: u64 = self.globs.iter().map(work).sum();
-        let tasks = (total / TASK).clamp(1, LANES as u64);
+        let tasks = (total / GLOB_TASK).clamp(1, PARTS as u64);
         let (mut done, mut start) = (0, 0);
         for k in 0..self.globs.len() {
             done += work(&self.globs[k]);
@@ -190,7 +191,7 @@ impl GlobTables {
 
     /// Wrenches of the interface rows `x` on each side, about the mean of its nodes.
     pub(crate) fn wrenches(&self, x: &[f64], out: &mut [Wrench], parallel: bool) {
-        let mut none = [(); LANES];
+        let mut none = [(); PARTS];
         let work = &mut none[..self.tasks.len()];
         let offset = |task: &Task| task.side;
         over_lanes(
@@ -218,7 +219,7 @@ impl GlobTables {
         parallel: bool,
         each: &(impl Fn(&mut f64, f64) + Sync),
     ) {
-        let mut none = [(); LANES];
+        let mut none = [(); PARTS];
         let work = &mut none[..self.tasks.len()];
         let offset = |task: &Task| 3 * task.block;
         over_lanes(&self.tasks, work, x, &offset, parallel, &|task, (), x| {
@@ -281,8 +282,6 @@ fn push_coefficients(gluing: &Gluing, glob: &Glob, sides: &[Side], out: &mut Vec
 
 /// Numbers worked on at a time: whole nodes and whole vector registers.
 const CHUNK: usize = 12;
-/// Least work of a task: some microseconds.
-const TASK: u64 = 4096;
 /// Sides of a glob whose shifted motions are kept.
 const KEPT: usize = 8;
 

@@ -32,28 +32,26 @@ struct Point {
 const KEPT: usize = 8;
 
 impl PointTables {
-    /// For the special rows `specials`; `copy` gives subdomain and arm from subdomain and local node.
+    /// For `all` these nodal rows; `copy` gives subdomain and arm from subdomain and local node.
     pub(crate) fn new(
         gluing: &Gluing,
-        specials: Range<usize>,
+        all: Range<usize>,
         copy: impl Fn(u32, u32) -> [u32; 2],
     ) -> Self {
-        let places = |special: usize| {
-            let entries = gluing.special(special).iter();
+        let places = |nodal: usize| {
+            let entries = gluing.nodal(nodal).iter();
             entries.map(|e| (e.subdomain, e.local))
         };
         // group of the last row with this first copy
         let mut numbers: HashMap<Option<(u32, u32)>, usize> = HashMap::new();
         let mut groups: Vec<Vec<usize>> = Vec::new();
-        for special in specials.clone() {
-            let number = numbers
-                .entry(places(special).next())
-                .or_insert(groups.len());
+        for nodal in all.clone() {
+            let number = numbers.entry(places(nodal).next()).or_insert(groups.len());
             match groups.get_mut(*number) {
-                Some(group) if places(group[0]).eq(places(special)) => group.push(special),
+                Some(group) if places(group[0]).eq(places(nodal)) => group.push(nodal),
                 _ => {
                     *number = groups.len();
-                    groups.push(vec![special]);
+                    groups.push(vec![nodal]);
                 }
             }
         }
@@ -61,10 +59,10 @@ impl PointTables {
         for group in groups {
             let copies = places(group[0]).map(|(subdomain, local)| copy(subdomain, local));
             out.copies.extend(copies);
-            for special in group {
-                out.rows.push((special - specials.start) as u32);
+            for nodal in group {
+                out.rows.push((nodal - all.start) as u32);
                 out.vectors
-                    .extend(gluing.special(special).iter().map(|e| e.vector));
+                    .extend(gluing.nodal(nodal).iter().map(|e| e.vector));
             }
             out.points.push(Point {
                 copies: out.copies.len(),

@@ -4,10 +4,12 @@
 
 use super::globs::{GlobTables, Wrench};
 use super::points::PointTables;
-use crate::dual::boundary::{BoundaryMap, LANES, over_lanes};
+use crate::dual::boundary::{BoundaryMap, over_lanes};
+use crate::linalg::both;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench};
 use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::{PARTS, SUBDOMAIN_TASK};
 use signorini_fem_mesh::buckets;
 use std::ops::Range;
 
@@ -19,14 +21,11 @@ pub(crate) struct RigidTables {
     supports: PointTables,
     globs: GlobTables,
     /// Copies of each subdomain with rows that are no interface rows: place among those of the map, and arm.
-    special_pointers: Vec<u32>,
-    specials: Vec<[u32; 2]>,
+    nodal_pointers: Vec<u32>,
+    nodal: Vec<[u32; 2]>,
     /// Consecutive subdomains with about equal work.
     tasks: Vec<Range<usize>>,
 }
-
-/// Least work of a task, in entries of tables: some microseconds.
-const TASK: usize = 512;
 
 impl RigidTables {
     pub(crate) fn new(map: &BoundaryMap, subdomains: &Subdomains, gluing: &Gluing) -> Self {
@@ -50,19 +49,19 @@ impl RigidTables {
             let class = subdomains.class(subdomain as usize);
             (class, &subdomains.bases[class].kernel)
         };
-        let points = |specials| PointTables::new(gluing, specials, copy);
+        let points = |nodal| PointTables::new(gluing, nodal, copy);
         let (globs, (contact, supports)) = rayon::join(
             || GlobTables::new(gluing, subdomains.count(), kernel),
-            || (points(0..contact), points(contact..gluing.specials())),
+            || (points(0..contact), points(contact..gluing.nodal_rows())),
         );
-        let (special_pointers, specials) = special_copies(map, &first, subdomains.count());
+        let (nodal_pointers, nodal) = nodal_copies(map, &first, subdomains.count());
         let mut out = Self {
             arms,
             contact,
             supports,
             globs,
-            special_pointers,
-            specials,
+            nodal_pointers,
+            nodal,
             tasks: Vec::new(),
         };
         out.cut(subdomains.count());
@@ -71,9 +70,9 @@ impl RigidTables {
 
     /// Cuts the subdomains into tasks; the cuts depend on the problem only.
     fn cut(&mut self, count: usize) {
-        let work = |s: usize| 4 * self.specials_of(s).len() + self.globs.sides_of(s).len() + 4;
+        let work = |s: usize| 4 * self.nodal_of(s).len() + self.globs.sides_of(s).len() + 4;
         let total: usize = (0..count).map(work).sum();
-        let tasks = (total / TASK).clamp(1, LANES);
+        let tasks = (total / SUBDOMAIN_TASK).clamp(1, PARTS);
         let (mut list, mut done, mut start) = (Vec::new(), 0, 0);
         for s in 0..count {
             done += work(s);
@@ -85,9 +84,9 @@ impl RigidTables {
         self.tasks = list;
     }
 
-    fn specials_of(&self, subdomain: usize) -> &[[u32; 2]] {
-        let pointers = &self.special_pointers;
-        &self.specials[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
+    fn nodal_of(&self, subdomain: usize) -> &[[u32; 2]] {
+        let pointers = &self.nodal_pointers;
+        &self.nodal[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
     }
 
     /// Length of the work memory of [`BoundaryMap::wrenches`].
@@ -97,7 +96,7 @@ impl RigidTables {
 }
 
 /// Copies with rows that are no interface rows by subdomain, in the order of the map, with their arms.
-fn special_copies(
+fn nodal_copies(
     map: &BoundaryMap,
     first: &[usize],
     subdomains: usize,
@@ -105,8 +104,8 @@ fn special_copies(
     let (mut owners, mut copies) = (Vec::new(), Vec::new());
     for panel in &map.panels {
         let members = &map.classes[panel.class].members[panel.columns.clone()];
-        for k in panel.specials.clone() {
-            let copy = map.special_copies[k] as usize - panel.copies.start;
+        for k in panel.nodal.clone() {
+            let copy = map.nodal_copies[k] as usize - panel.copies.start;
             let arm = first[panel.class] + copy / members.len();
             owners.push(members[copy % members.len()]);
             copies.push([k as u32, arm as u32]);
@@ -131,7 +130,7 @@ impl BoundaryMap {
         let (interface, parallel) = (&x[self.interface.clone()], self.is_large());
         tables.globs.wrenches(interface, sides, parallel);
         let (out, _) = out.as_chunks_mut();
-        let mut none = [(); LANES];
+        let mut none = [(); PARTS];
         let work = &mut none[..tables.tasks.len()];
         let offset = |task: &Range<usize>| task.start;
         over_lanes(
@@ -143,8 +142,8 @@ impl BoundaryMap {
             &|task, (), out| {
                 for (s, target) in task.clone().zip(out) {
                     let mut wrench = tables.globs.wrench(s, sides);
-                    for &[special, arm] in tables.specials_of(s) {
-                        let force = self.special_force(special as usize, x, weights);
+                    for &[nodal, arm] in tables.nodal_of(s) {
+                        let force = self.nodal_force(nodal as usize, x, weights);
                         add_wrench(&mut wrench, &tables.arms[arm as usize], force);
                     }
                     *target = on_modes(kernel(s), &wrench);
@@ -171,14 +170,14 @@ impl BoundaryMap {
 
     /// Force of the rows that are no interface rows on one copy.
     #[inline]
-    fn special_force(&self, special: usize, x: &[f64], weights: Option<&[f64]>) -> [f64; 3] {
+    fn nodal_force(&self, nodal: usize, x: &[f64], weights: Option<&[f64]>) -> [f64; 3] {
         let mut force = [0.0; 3];
-        let pointers = &self.special_pointers[special..special + 2];
+        let pointers = &self.nodal_pointers[nodal..nodal + 2];
         for e in pointers[0] as usize..pointers[1] as usize {
-            let row = self.special_rows[e] as usize;
+            let row = self.nodal_rows[e] as usize;
             let value = x[row] * weights.map_or(1.0, |w| w[row]);
             for c in 0..3 {
-                force[c] += self.special_vectors[e][c] * value;
+                force[c] += self.nodal_vectors[e][c] * value;
             }
         }
         force
@@ -207,15 +206,12 @@ impl BoundaryMap {
             let other = |row, x: &mut f64, v| other(second + row, x, v);
             tables.supports.motions(motions, arms, dirichlet, &other);
         };
-        if self.is_large() {
-            rayon::join(
-                || tables.globs.motions(motions, inner, true, &interface),
-                || others(contact, dirichlet),
-            );
-        } else {
-            tables.globs.motions(motions, inner, false, &interface);
-            others(contact, dirichlet);
-        }
+        let large = self.is_large();
+        both(
+            large,
+            || tables.globs.motions(motions, inner, large, &interface),
+            || others(contact, dirichlet),
+        );
     }
 }
 

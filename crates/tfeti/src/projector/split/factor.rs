@@ -7,14 +7,16 @@
 //! run on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
 
 use crate::coarse::matrix::{CoarseMatrix, ModeTable};
-use crate::coarse::weights::LineWeight;
+use crate::linalg::both;
 use crate::linalg::dense;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
 use crate::projector::split::fronts::{ContactFronts, ContactWeights};
-use crate::projector::split::solve::Tiles;
+use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
 use crate::rows::gluing::Gluing;
+use crate::tolerances::{OPERATIONS, READ, SINGULAR, SOLVES, SPARSE};
+use signorini_qp::Line;
 
 /// What does not depend on the weights of contact rows.
 #[derive(Debug)]
@@ -66,46 +68,6 @@ struct Front {
     update: Vec<f64>,
 }
 
-/// Pivots below this share of the largest diagonal entry count as zero.
-const SINGULAR: f64 = 1e-14;
-/// Fewest operations of a factorisation that are worth a second thread.
-const OPERATIONS: f64 = 3e5;
-/// Solves with the factor of one face; seconds for a number that they read; seconds for an operation of a change.
-const SOLVES: f64 = 12.0;
-const READ: f64 = 0.4e-9;
-const OPERATION: f64 = 0.04e-9;
-/// Most levels of cuts through blocks that change.
-const CUTS: usize = 4;
-
-/// The cheapest tree for changes of the face and the solves between them.
-pub(crate) fn cheapest_tree(
-    graph: &[Vec<u32>],
-    centres: &[[f64; 3]],
-    changing: &[bool],
-) -> Option<CoarseTree> {
-    let mut best = CoarseTree::new(graph, centres, changing, 0).ok()?;
-    for cuts in 1..=CUTS {
-        let next = CoarseTree::new(graph, centres, changing, cuts).ok()?;
-        if cost(&next) >= cost(&best) {
-            break;
-        }
-        best = next;
-    }
-    Some(best)
-}
-
-/// Seconds on two threads.
-fn cost(tree: &CoarseTree) -> f64 {
-    tree.longest(|node| {
-        let change = if node.changing {
-            node.operations()
-        } else {
-            0.0
-        };
-        SOLVES * READ * node.stored() + OPERATION * change
-    })
-}
-
 impl SplitBase {
     /// From the `values` of the matrix without its first `contact` rows, which are contact rows.
     pub(crate) fn new(
@@ -138,7 +100,7 @@ impl SplitBase {
             front
                 .update
                 .resize((height - width) * (height - width), 0.0);
-            matrix.load(&out.tree, graph, k, values, &mut front.columns);
+            load_columns(matrix, &out.tree, graph, k, values, &mut front.columns);
         };
         let work = Growth {
             base: &out,
@@ -173,16 +135,14 @@ impl SplitBase {
     }
 
     /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows` unknowns,
-    /// counted for one change of the face and the solves until the next.
+    /// counted for one change of the active set and the solves until the next.
     pub(crate) fn pays(&self, rows: usize, stored: usize) -> bool {
-        const SPARSE: f64 = 0.1e-9;
         let whole = stored as f64;
-        let sparse = SOLVES * READ * whole + SPARSE * whole * whole / rows.max(1) as f64;
-        cost(&self.tree) < sparse
+        self.tree.cost() < SOLVES * READ * whole + SPARSE * whole * whole / rows.max(1) as f64
     }
 
     /// Whether pairs of contact rows may stand in these lines.
-    pub(crate) fn allows(&self, lines: &[LineWeight]) -> bool {
+    pub(crate) fn allows(&self, lines: &[Line]) -> bool {
         self.contact.allow(lines)
     }
 
@@ -274,14 +234,10 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
             let (a, b) = fronts[..own].split_at_mut(nodes);
             let (s, rest) = tiles.split_at_mut(left + 1 - region.first_region);
             let t = &mut rest[..right - left];
-            if self.changing && pieces[r].operations < OPERATIONS {
-                self.grow(left, a, s)?;
-                self.grow(right, b, t)?;
-            } else {
-                let (a, b) = rayon::join(|| self.grow(left, a, s), || self.grow(right, b, t));
-                a?;
-                b?;
-            }
+            let worth = !self.changing || pieces[r].operations >= OPERATIONS;
+            let (a, b) = both(worth, || self.grow(left, a, s), || self.grow(right, b, t));
+            a?;
+            b?;
         }
         let nodes = match self.changing {
             true => region.changing.clone(),
@@ -322,6 +278,35 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
         }
         tiles[r - region.first_region].round();
         Ok(())
+    }
+}
+
+/// Adds the entries of the columns of node `k` of a tree of this `graph`.
+fn load_columns(
+    matrix: &CoarseMatrix,
+    tree: &CoarseTree,
+    graph: &[Vec<u32>],
+    k: usize,
+    values: &[f64],
+    columns: &mut [f64],
+) {
+    let node = &tree.nodes[k];
+    for q in node.columns.clone() {
+        let a = tree.blocks[q];
+        for &b in graph[a as usize].iter().chain([&a]) {
+            let p = tree.place[b as usize];
+            if (p as usize) < q {
+                continue;
+            }
+            let target = &mut columns[node.place(p, q as u32)..];
+            let (start, stride) = matrix.place(a.max(b), a.min(b));
+            for c in 0..6 {
+                for r in 0..6 {
+                    let (row, column) = if a <= b { (r, c) } else { (c, r) };
+                    target[c * node.height() + r] += values[start + column * stride + row];
+                }
+            }
+        }
     }
 }
 

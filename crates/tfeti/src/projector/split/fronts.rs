@@ -1,9 +1,9 @@
 //! What the contact rows add to the fronts of the coarse matrix.
 
 use crate::coarse::matrix::ModeTable;
-use crate::coarse::weights::LineWeight;
 use crate::projector::split::tree::CoarseTree;
 use crate::rows::gluing::Gluing;
+use signorini_qp::Line;
 
 /// The terms `w_r g_r g_r^T` of the contact rows `r`, by the node to whose columns they belong.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct ContactWeights {
 }
 
 impl ContactWeights {
-    pub(crate) fn set(&mut self, diagonal: &[f64], lines: &[LineWeight]) {
+    pub(crate) fn set(&mut self, diagonal: &[f64], lines: &[Line]) {
         self.diagonal.clear();
         self.diagonal.extend_from_slice(diagonal);
         self.lines.clear();
@@ -35,8 +35,8 @@ impl ContactWeights {
         }
         self.lines.resize(diagonal.len(), [0.0; 2]);
         for line in lines {
-            self.diagonal[line.row..line.row + 2].fill(0.0);
-            self.lines[line.row] = line.direction.map(|c| c * line.weight.sqrt());
+            self.diagonal[line.first..line.first + 2].fill(0.0);
+            self.lines[line.first] = line.direction.map(|c| c * line.weight.sqrt());
         }
     }
 }
@@ -64,12 +64,12 @@ impl ContactFronts {
         let mut terms: Vec<(usize, Term)> = Vec::new();
         let (mut row, mut before) = (Vec::new(), Vec::new());
         let mut paired = vec![false; rows];
-        for special in 0..rows {
+        for nodal in 0..rows {
             row.clear();
-            modes.row(gluing, special, 1.0, &mut row);
+            modes.row(gluing, nodal, 1.0, &mut row);
             let subdomains: Vec<u32> = row.iter().map(|(s, _)| *s).collect();
-            if special > 0 {
-                paired[special - 1] = subdomains == before;
+            if nodal > 0 {
+                paired[nodal - 1] = subdomains == before;
             }
             before = subdomains;
             let first = vectors.len();
@@ -82,10 +82,10 @@ impl ContactFronts {
                     }
                     let k = tree.node_of(q as usize);
                     let term = Term {
-                        row: special as u32,
+                        row: nodal as u32,
                         vectors: [i, j].map(|v| (first + v) as u32),
                         next: row.len() as u32,
-                        place: tree.place_in(k, p, q),
+                        place: tree.nodes[k].place(p, q),
                     };
                     terms.push((k, term));
                 }
@@ -102,8 +102,10 @@ impl ContactFronts {
     }
 
     /// Whether pairs of rows may stand in these lines.
-    pub(crate) fn allow(&self, lines: &[LineWeight]) -> bool {
-        lines.iter().all(|l| self.paired.get(l.row) == Some(&true))
+    pub(crate) fn allow(&self, lines: &[Line]) -> bool {
+        lines
+            .iter()
+            .all(|l| self.paired.get(l.first) == Some(&true))
     }
 
     /// Adds the terms of one node to its columns of the given height.

@@ -5,6 +5,7 @@
 //! before the changing ones.
 
 use crate::linalg::sparse::{FactorError, minimum_degree};
+use crate::tolerances::CUT;
 use std::ops::Range;
 
 /// Blocks in the order of elimination and the regions of the cuts.
@@ -25,9 +26,6 @@ pub(crate) struct Region {
     /// The regions on both sides of the cut.
     pub(crate) children: Option<[usize; 2]>,
 }
-
-/// Fewest blocks worth a cut.
-const CUT: usize = 36;
 
 impl Dissection {
     /// For the `graph` of the blocks (neighbours of each, without itself) at `centres`; `cuts` levels of cuts go through

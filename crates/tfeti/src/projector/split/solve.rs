@@ -4,55 +4,11 @@
 //! one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a solve is
 //! symmetric and exact for a matrix next to the one given.
 
-use crate::linalg::tiles::{ShortTile, Stored, Tile};
-use crate::projector::split::factor::{Piece, SplitBase, SplitFactor};
-
-/// The tiles of a region, exact and rounded.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Tiles {
-    pub(crate) exact: Vec<Tile>,
-    short: Vec<ShortTile>,
-}
-
-impl Tiles {
-    pub(crate) fn clear(&mut self) {
-        self.exact.clear();
-        self.short.clear();
-    }
-
-    /// Rounds what has been packed.
-    pub(crate) fn round(&mut self) {
-        self.short.clear();
-        self.short.extend(self.exact.iter().map(ShortTile::from));
-    }
-}
-
-/// Which tiles of a region a solve reads.
-trait Reads: Stored {
-    fn of(tiles: &Tiles) -> &[Self];
-}
-
-impl Reads for Tile {
-    fn of(tiles: &Tiles) -> &[Self] {
-        &tiles.exact
-    }
-}
-
-impl Reads for ShortTile {
-    fn of(tiles: &Tiles) -> &[Self] {
-        &tiles.short
-    }
-}
-
-/// Digits of the factor that a solve reads. Single precision costs half of the time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Digits {
-    Double,
-    Single,
-}
-
-/// Fewest numbers a solve reads that are worth a second thread.
-const READS: usize = 25_000;
+use crate::linalg::both;
+use crate::linalg::tiles::{Digits, ShortTile, Tile};
+use crate::projector::split::factor::{SplitBase, SplitFactor};
+use crate::projector::split::tiles::Reads;
+use crate::tolerances::SOLVE_READS;
 
 impl SplitBase {
     /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for blocks
@@ -114,8 +70,8 @@ impl SplitBase {
         if let Some([left, right]) = region.region.children {
             let (x, y) = self.divide(left, x);
             let (a, b) = work.split_at_mut(self.pieces[left].work);
-            self.both(
-                piece,
+            both(
+                piece.reads >= SOLVE_READS,
                 || self.forward::<T>(left, factor, x, a, changing),
                 || self.forward::<T>(right, factor, y, b, changing),
             );
@@ -170,8 +126,8 @@ impl SplitBase {
                     });
                 }
             }
-            self.both(
-                piece,
+            both(
+                piece.reads >= SOLVE_READS,
                 || self.backward::<T>(left, factor, x, a),
                 || self.backward::<T>(right, factor, y, b),
             );
@@ -182,14 +138,5 @@ impl SplitBase {
     fn divide<'a>(&self, left: usize, x: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
         let region = &self.tree.regions[left].region;
         x.split_at_mut(6 * (region.own.end - region.start))
-    }
-
-    fn both(&self, piece: &Piece, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
-        if piece.reads >= READS {
-            rayon::join(a, b);
-        } else {
-            a();
-            b();
-        }
     }
 }

@@ -1,7 +1,9 @@
 //! Pattern of the factor of the coarse matrix: groups of blocks that are eliminated together.
 
+use crate::linalg::elimination::{grouped, patterns};
 use crate::linalg::sparse::FactorError;
 use crate::projector::split::order::{Dissection, Region};
+use crate::tolerances::{BORDER, CUTS, NODE, OPERATION, READ, SOLVES};
 use std::ops::Range;
 
 /// Groups of blocks (*nodes*) in the order of elimination, each with the later blocks (its *border*) that it changes.
@@ -26,9 +28,9 @@ pub(crate) struct Node {
     pub(crate) parent: Option<usize>,
     /// Earlier nodes whose parent this is.
     pub(crate) children: Vec<usize>,
-    /// Place of each border block in the parent: among its columns, then among its border.
+    /// Place of each border block in the parent.
     pub(crate) into: Vec<u32>,
-    /// Whether it changes with the face.
+    /// Whether it changes with the active set.
     pub(crate) changing: bool,
 }
 
@@ -50,15 +52,18 @@ pub(crate) struct TreeRegion {
     pub(crate) lift: Vec<u32>,
 }
 
+/// Place of a position among own columns, then among later ones.
+fn place_among(own: &Range<usize>, later: &[u32], position: u32) -> u32 {
+    match own.contains(&(position as usize)) {
+        true => position - own.start as u32,
+        false => (own.len() + later.partition_point(|&b| b < position)) as u32,
+    }
+}
+
 impl TreeRegion {
     /// Place of a position.
     pub(crate) fn local(&self, position: u32) -> u32 {
-        let own = &self.region.own;
-        if own.contains(&(position as usize)) {
-            position - own.start as u32
-        } else {
-            (own.len() + self.behind.partition_point(|&b| b < position)) as u32
-        }
+        place_among(&self.region.own, &self.behind, position)
     }
 }
 
@@ -71,10 +76,15 @@ impl Node {
         self.width() + 6 * self.border.len()
     }
 
-    /// Numbers of its columns.
-    pub(crate) fn stored(&self) -> f64 {
-        let (w, h) = (self.width() as f64, self.height() as f64);
-        w * (h - 0.5 * w)
+    /// Place of a position.
+    fn local(&self, position: u32) -> u32 {
+        place_among(&self.columns, &self.border, position)
+    }
+
+    /// Where the block of the positions `row >= column`, its own, begins in its columns.
+    pub(crate) fn place(&self, row: u32, column: u32) -> usize {
+        let own = column as usize - self.columns.start;
+        6 * own * self.height() + 6 * self.local(row) as usize
     }
 
     /// Operations of its elimination.
@@ -82,14 +92,38 @@ impl Node {
         let (w, b) = (self.width() as f64, 6.0 * self.border.len() as f64);
         w * w * w / 3.0 + w * w * b + w * b * b
     }
+
+    /// Seconds of the solves between two changes, and of a change.
+    fn cost(&self) -> f64 {
+        let (w, h) = (self.width() as f64, self.height() as f64);
+        let change = if self.changing {
+            self.operations()
+        } else {
+            0.0
+        };
+        SOLVES * READ * (w * (h - 0.5 * w)) + OPERATION * change
+    }
 }
 
-/// What a node costs a solve besides its numbers, in numbers: the node itself, and a block of its border.
-const NODE: usize = 90;
-const BORDER: usize = 12;
+/// The cheapest tree for changes of the active set and the solves between them.
+pub(crate) fn cheapest_tree(
+    graph: &[Vec<u32>],
+    centres: &[[f64; 3]],
+    changing: &[bool],
+) -> Option<CoarseTree> {
+    let mut best = CoarseTree::new(graph, centres, changing, 0).ok()?;
+    for cuts in 1..=CUTS {
+        let next = CoarseTree::new(graph, centres, changing, cuts).ok()?;
+        if next.cost() >= best.cost() {
+            break;
+        }
+        best = next;
+    }
+    Some(best)
+}
 
 impl CoarseTree {
-    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the face.
+    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set.
     pub(crate) fn new(
         graph: &[Vec<u32>],
         centres: &[[f64; 3]],
@@ -103,9 +137,10 @@ impl CoarseTree {
         for (position, &block) in blocks.iter().enumerate() {
             place[block as usize] = position as u32;
         }
+        let (nodes, trees) = (Vec::new(), Vec::new());
         let mut out = Self {
-            nodes: Vec::new(),
-            regions: Vec::new(),
+            nodes,
+            regions: trees,
             place,
             blocks,
         };
@@ -121,12 +156,12 @@ impl CoarseTree {
         6 * self.blocks.len()
     }
 
-    /// Sum of a size of all nodes, of the larger side only of the first cut.
-    pub(crate) fn longest(&self, size: impl Fn(&Node) -> f64) -> f64 {
+    /// Seconds on two threads: of the larger side only of the first cut.
+    pub(crate) fn cost(&self) -> f64 {
         let Some(root) = self.regions.last() else {
             return 0.0;
         };
-        let sum = |nodes: Range<usize>| self.nodes[nodes].iter().map(&size).sum::<f64>();
+        let sum = |nodes: Range<usize>| self.nodes[nodes].iter().map(Node::cost).sum::<f64>();
         let own = root.steady.start..root.changing.end;
         let middle = (root.region.children).map_or(0, |[_, right]| self.regions[right].first_node);
         sum(own.clone()) + sum(0..middle).max(sum(middle..own.start))
@@ -137,68 +172,38 @@ impl CoarseTree {
         self.nodes.partition_point(|n| n.columns.end <= position)
     }
 
-    /// Where the block of the positions `row >= column` begins in the columns of `node`, which holds `column`.
-    pub(crate) fn place_in(&self, node: usize, row: u32, column: u32) -> usize {
-        let node = &self.nodes[node];
-        let own = node.columns.start as u32..node.columns.end as u32;
-        let place = match own.contains(&row) {
-            true => row - own.start,
-            false => (own.len() + node.border.partition_point(|&b| b < row)) as u32,
-        };
-        6 * (column - own.start) as usize * node.height() + 6 * place as usize
-    }
-
     /// Groups the own blocks of a region where that saves time.
     fn group(&mut self, region: Region, patterns: &[Vec<u32>], changing: &[bool]) {
         let first_own = self.nodes.len();
+        let changes = |position: usize| changing[self.blocks[position] as usize];
         let cost = |width: usize, border: usize| {
             let w = 6 * width;
             NODE + BORDER * (border + width) + w * (6 * border) + w * w / 2
         };
-        for position in region.own.clone() {
-            let mut node = Node {
-                columns: position..position + 1,
-                border: patterns[position].clone(),
+        let alike = |a, b| changes(a) == changes(b);
+        let groups = grouped(region.own.clone(), patterns, alike, cost)
+            .into_iter()
+            .map(|g| Node {
+                changing: changes(g.columns.start),
+                columns: g.columns,
+                border: g.below,
                 parent: None,
                 children: Vec::new(),
                 into: Vec::new(),
-                changing: changing[self.blocks[position] as usize],
-            };
-            // Earlier groups that end here and lead here are taken in if that costs less.
-            while self.nodes.len() > first_own {
-                let last = &self.nodes[self.nodes.len() - 1];
-                let leads =
-                    (last.border.first()).is_some_and(|&p| node.columns.contains(&(p as usize)));
-                let separate = cost(last.columns.len(), last.border.len())
-                    + cost(node.columns.len(), node.border.len());
-                let width = last.columns.len() + node.columns.len();
-                if !leads
-                    || last.changing != node.changing
-                    || cost(width, node.border.len()) > separate
-                {
-                    break;
-                }
-                node.columns.start = last.columns.start;
-                self.nodes.pop();
-            }
-            self.nodes.push(node);
-        }
+            });
+        self.nodes.extend(groups);
         let within = region.children.map(|c| &self.regions[c[0]]);
         let first_node = within.map_or(first_own, |r| r.first_node);
         let first_region = within.map_or(self.regions.len(), |r| r.first_region);
         let end = self.nodes.len();
-        let mut behind: Vec<u32> = (self.nodes[first_own..].iter())
-            .flat_map(|n| &n.border)
-            .chain(
-                region
-                    .children
-                    .iter()
-                    .flatten()
-                    .flat_map(|&k| &self.regions[k].behind),
-            )
-            .copied()
-            .filter(|&p| p as usize >= region.own.end)
-            .collect();
+        let inner = region
+            .children
+            .iter()
+            .flatten()
+            .flat_map(|&k| &self.regions[k].behind);
+        let borders = self.nodes[first_own..].iter().flat_map(|n| &n.border);
+        let later = |p: &u32| *p as usize >= region.own.end;
+        let mut behind: Vec<u32> = borders.chain(inner).copied().filter(later).collect();
         behind.sort_unstable();
         behind.dedup();
         let region = TreeRegion {
@@ -219,68 +224,28 @@ impl CoarseTree {
 
     /// Finds parents and what changes, and divides each region into what stays and what changes.
     fn join(&mut self) {
-        for region in &mut self.regions {
-            let own = region.steady.clone();
+        for r in 0..self.regions.len() {
+            let own = self.regions[r].steady.clone();
             let mut changes = false;
             for k in own.clone() {
                 changes |= self.nodes[k].changing;
                 self.nodes[k].changing = changes;
-                let first = self.nodes[k].border.first().copied();
-                let parent =
-                    first.map(|p| self.nodes.partition_point(|n| n.columns.end <= p as usize));
-                self.nodes[k].parent = parent;
-                if let Some(parent) = parent {
-                    let above = &self.nodes[parent];
-                    let width = above.columns.len();
-                    let into = |&p: &u32| match above.columns.contains(&(p as usize)) {
-                        true => p - above.columns.start as u32,
-                        false => (width + above.border.partition_point(|&b| b < p)) as u32,
-                    };
-                    self.nodes[k].into = self.nodes[k].border.iter().map(into).collect();
-                    self.nodes[parent].changing |= changes;
-                    self.nodes[parent].children.push(k);
-                }
+                let Some(&first) = self.nodes[k].border.first() else {
+                    continue;
+                };
+                let parent = self.node_of(first as usize);
+                let (node, above) = (&self.nodes[k], &self.nodes[parent]);
+                let into = node.border.iter().map(|&p| above.local(p)).collect();
+                self.nodes[k].parent = Some(parent);
+                self.nodes[k].into = into;
+                self.nodes[parent].changing |= changes;
+                self.nodes[parent].children.push(k);
             }
             let steady = own.clone().take_while(|&k| !self.nodes[k].changing).count();
-            region.changing = own.start + steady..own.end;
-            region.steady = own.start..own.start + steady;
+            self.regions[r].changing = own.start + steady..own.end;
+            self.regions[r].steady = own.start..own.start + steady;
         }
     }
-}
-
-/// Positions below the diagonal in each column of the factor.
-pub(crate) fn patterns(graph: &[Vec<u32>], blocks: &[u32]) -> Vec<Vec<u32>> {
-    let count = blocks.len();
-    let mut place = vec![0_u32; count];
-    for (position, &block) in blocks.iter().enumerate() {
-        place[block as usize] = position as u32;
-    }
-    let mut patterns: Vec<Vec<u32>> = Vec::with_capacity(count);
-    let mut children: Vec<Vec<u32>> = vec![Vec::new(); count];
-    let mut seen = vec![u32::MAX; count];
-    for (position, &block) in blocks.iter().enumerate() {
-        let mark = position as u32;
-        seen[position] = mark;
-        let mut own = Vec::new();
-        let mut add = |p: u32| {
-            if p > mark && seen[p as usize] != mark {
-                seen[p as usize] = mark;
-                own.push(p);
-            }
-        };
-        graph[block as usize]
-            .iter()
-            .for_each(|&b| add(place[b as usize]));
-        for &child in &children[position] {
-            patterns[child as usize].iter().for_each(|&p| add(p));
-        }
-        own.sort_unstable();
-        if let Some(&first) = own.first() {
-            children[first as usize].push(mark);
-        }
-        patterns.push(own);
-    }
-    patterns
 }
 
 /// Reorders the own blocks of each region such that what leads to a block stands right before it: what stays first, then
