@@ -103,7 +103,7 @@ impl ActiveSetSolver {
         level.slip_bounds(model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
         let start = iterate.lambda.clone();
-        self.space.set_rhs(&level.rhs);
+        self.space.set_coarse_rhs(&level.rhs);
         let problem = ActiveSetProblem {
             operator: model.tfeti.dual(),
             preconditioner: &self.preconditioner,
