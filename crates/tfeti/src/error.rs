@@ -114,6 +114,16 @@ pub enum TfetiError {
         /// Mesh node.
         node: u32,
     },
+    /// A side of a contact point whose nodes and weights are no mean.
+    #[error(
+        "contact point {point}: a side of it is no weighted mean of nodes: {what}; give it nodes, each once, with finite weights that sum to one"
+    )]
+    BadSide {
+        /// Position in the list of contact points.
+        point: usize,
+        /// What is wrong.
+        what: &'static str,
+    },
     /// A contact frame that is not orthonormal or not finite.
     #[error("contact point {point} (node {node}): normal and tangents are not orthonormal")]
     BadFrame {
@@ -203,6 +213,19 @@ pub enum TfetiError {
     FactorPattern {
         /// Subdomain number.
         subdomain: usize,
+    },
+    /// Contact points join so many rows that a preconditioner cannot scale them; no such case is covered yet.
+    #[error(
+        "node {node}: contact points join {rows} rows by the nodes of their sides, preconditioners scale at most {limit} together; \
+         solve without preconditioner, or cut the sides"
+    )]
+    JoinedRows {
+        /// First of the mesh nodes.
+        node: u32,
+        /// Number of rows.
+        rows: usize,
+        /// Largest number.
+        limit: usize,
     },
     /// More unknowns than 32-bit tables can number.
     #[error("{what} = {count} is more than the 32-bit tables can number")]

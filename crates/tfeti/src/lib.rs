@@ -68,12 +68,11 @@ pub use preconditioner::operator::{DualPreconditioner, DualPreconditionerScratch
 pub use projector::active_set::{ActiveSetFactor, ActiveSetProjector};
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
-pub use rows::contact::{
-    ContactConstraint, ContactConstraints, PrescribedPoint, prescribed_points,
-};
+pub use rows::contact::{PrescribedPoint, prescribed_points};
 pub use rows::dependencies::Dependency;
 pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
 pub use rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges};
+pub use rows::side::{ContactConstraint, ContactConstraints, Side};
 pub use rows::supports::{
     Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions,
 };

@@ -3,7 +3,7 @@
 use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{DEPENDENT, SINGULAR};
+use crate::tolerances::{DEPENDENT, GROUP_ROWS, SINGULAR};
 use signorini_qp::{ActiveSetView, Freedom};
 
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or to
@@ -106,6 +106,14 @@ impl Scaling {
                     gluing.row(row as usize).into_iter().map(entry).collect()
                 })
                 .collect();
+            if count > GROUP_ROWS {
+                let node = rows[0].0;
+                return Err(TfetiError::JoinedRows {
+                    node,
+                    rows: count,
+                    limit: GROUP_ROWS,
+                });
+            }
             let mut matrix = vec![0.0; count * count];
             for i in 0..count {
                 for j in 0..count {

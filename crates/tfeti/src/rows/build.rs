@@ -1,20 +1,37 @@
 //! Building the rows: contact rows, interface blocks glob by glob, support rows.
 
-use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, TangentialRows};
-use crate::rows::contact::{ContactConstraints, ContactRow, PointRows};
-use crate::rows::supports::{MergedSupports, dot};
+use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows};
+use crate::linalg::vec3::dot;
+use crate::rows::contact::{ContactRow, PointRows};
+use crate::rows::side::{ContactConstraint, ContactConstraints};
+use crate::rows::supports::MergedSupports;
 use crate::subdomain::copy_stiffness::CopyStiffness;
+use crate::tolerances::SAME;
 use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 pub(super) struct Builder<'a> {
-    pub(super) decomposition: &'a Decomposition,
-    pub(super) stiffness: &'a CopyStiffness,
+    decomposition: &'a Decomposition,
+    stiffness: &'a CopyStiffness,
     /// Shares of the copies of a node.
-    pub(super) shares: Vec<f64>,
-    pub(super) gluing: Gluing,
+    shares: Vec<f64>,
+    gluing: &'a mut Gluing,
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    pub(super) fn new(
+        decomposition: &'a Decomposition,
+        stiffness: &'a CopyStiffness,
+        gluing: &'a mut Gluing,
+    ) -> Self {
+        let shares = Vec::new();
+        Self {
+            decomposition,
+            stiffness,
+            shares,
+            gluing,
+        }
+    }
+
     /// Spreads a vector that multiplies the mean displacement of a node over its copies.
     fn spread(&mut self, node: u32, vector: [f64; 3]) {
         if vector == [0.0; 3] {
@@ -40,87 +57,70 @@ impl Builder<'_> {
 
     fn contact_row(
         &mut self,
-        node: u32,
-        partner: Option<u32>,
+        point: &ContactConstraint,
         row: &ContactRow,
         prescribed: &[(u32, [f64; 3])],
     ) -> usize {
-        self.spread(node, row.node);
-        if let Some(partner) = partner {
-            self.spread(partner, row.partner);
+        for ((node, _), part) in point.nodes().zip(&row.parts) {
+            self.spread(node, *part);
         }
-        let number = self.close(node);
-        for (case, moved) in prescribed {
-            let along: f64 = (0..3).map(|c| row.direction[c] * moved[c]).sum();
+        let number = self.close(point.side.first());
+        for &(case, moved) in prescribed {
+            let along = dot(row.direction, moved);
             if along != 0.0 {
-                self.gluing.prescribed[*case as usize].push((number as u32, -row.scale * along));
+                self.gluing.prescribed[case as usize].push((number as u32, -row.scale * along));
             }
         }
         number
     }
 
+    /// Normal rows, then pairs of tangential rows, then single ones.
     pub(super) fn contact(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
-        let place = |p: &PointRows| {
-            (
-                contact.points[p.point].node,
-                contact.points[p.point].partner,
-            )
-        };
+        let of = |p: &PointRows| &contact.points[p.point];
         for p in points {
-            let (node, partner) = place(p);
-            let row = self.contact_row(node, partner, &p.normal, &p.prescribed);
+            let row = self.contact_row(of(p), &p.normal, &p.prescribed);
             self.gluing.contact.push(ContactRows {
                 point: p.point,
-                node,
-                partner,
-                frame: contact.points[p.point].frame,
                 row,
                 scale: p.normal.scale,
                 tangential: TangentialRows::None,
             });
             let skew = |r: &ContactRow| {
-                let length: f64 = (0..3)
-                    .map(|c| r.node[c] * r.node[c] + r.partner[c] * r.partner[c])
-                    .sum();
-                (length - 1.0).abs() > 1e-12
+                let length: f64 = r.parts.iter().map(|&v| dot(v, v)).sum();
+                (length - 1.0).abs() > SAME
             };
             if skew(&p.normal) || p.tangential.iter().any(skew) {
                 (self.gluing.orthonormal, self.gluing.aligned) = (false, false);
             }
         }
+        self.gluing.groups = NodeGroups::new(points.iter().map(of));
         self.dependent(contact, points);
         let normal = self.gluing.nodal_rows();
-        for (k, p) in points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.tangential.len() == 2)
-        {
-            let (node, partner) = place(p);
-            let row = self.contact_row(node, partner, &p.tangential[0], &p.prescribed);
-            self.contact_row(node, partner, &p.tangential[1], &p.prescribed);
-            self.gluing.contact[k].tangential = TangentialRows::Disc {
-                row,
-                scale: p.tangential[0].scale,
-            };
+        let mut ends = [normal; 2];
+        for (end, count) in ends.iter_mut().zip([2, 1]) {
+            let with = points
+                .iter()
+                .enumerate()
+                .filter(|(_, p)| p.tangential.len() == count);
+            for (k, p) in with {
+                let rows = p
+                    .tangential
+                    .iter()
+                    .map(|t| self.contact_row(of(p), t, &p.prescribed));
+                let row = rows.min().unwrap_or_default();
+                let (direction, scale) = (p.tangential[0].direction, p.tangential[0].scale);
+                self.gluing.contact[k].tangential = match count {
+                    2 => TangentialRows::Disc { row, scale },
+                    _ => TangentialRows::Interval {
+                        row,
+                        direction,
+                        scale,
+                    },
+                };
+            }
+            *end = self.gluing.nodal_rows();
         }
-        let discs = self.gluing.nodal_rows();
-        for (k, p) in points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.tangential.len() == 1)
-        {
-            let (node, partner) = place(p);
-            let tangent = &p.tangential[0];
-            let row = self.contact_row(node, partner, tangent, &p.prescribed);
-            let (direction, scale) = (tangent.direction, tangent.scale);
-            self.gluing.contact[k].tangential = TangentialRows::Interval {
-                row,
-                direction,
-                scale,
-            };
-        }
-        let end = self.gluing.nodal_rows();
-        let ranges = &mut self.gluing.ranges;
+        let ([discs, end], ranges) = (ends, &mut self.gluing.ranges);
         (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
         ranges.interface = end..end;
     }
@@ -128,20 +128,20 @@ impl Builder<'_> {
     /// Notes the nodes whose rows may depend on one another.
     fn dependent(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
         let of = |k: &usize| &contact.points[points[*k].point];
-        let groups = self.gluing.node_groups();
+        let group = |k: &usize| self.gluing.groups.of(of(k).side.first());
         let mut order: Vec<usize> = (0..points.len()).collect();
-        let group = |k: &usize| groups.of(of(k).node);
         order.sort_by_key(group);
+        let mut orthonormal = true;
         for same in order.chunk_by(|a, b| group(a) == group(b)) {
             let dragged = same.iter().any(|&k| points[k].dragged);
             if same.len() > 1 || dragged {
-                let nodes = same.iter().map(of);
-                let nodes = nodes.flat_map(|p| std::iter::once(p.node).chain(p.partner));
-                self.gluing.dependent.extend(nodes);
-                let pairs = same.iter().any(|k| of(k).partner.is_some());
-                self.gluing.orthonormal &= !dragged && !pairs && separate(points, same);
+                let nodes = same.iter().flat_map(|k| of(k).nodes());
+                self.gluing.dependent.extend(nodes.map(|n| n.0));
+                let single = same.iter().all(|k| of(k).is_single());
+                orthonormal &= !dragged && single && separate(points, same);
             }
         }
+        self.gluing.orthonormal &= orthonormal;
         self.gluing.dependent.sort_unstable();
         self.gluing.dependent.dedup();
     }
@@ -210,7 +210,7 @@ impl Builder<'_> {
 /// Whether the rows of different points of one node are orthogonal.
 fn separate(points: &[PointRows], same: &[usize]) -> bool {
     let rows = |k: usize| std::iter::once(&points[k].normal).chain(&points[k].tangential);
-    let orthogonal =
-        |a: usize, b: usize| rows(a).all(|x| rows(b).all(|y| dot(&x.node, &y.node).abs() <= 1e-12));
+    let apart = |x: &ContactRow, y: &ContactRow| dot(x.parts[0], y.parts[0]).abs() <= SAME;
+    let orthogonal = |a: usize, b: usize| rows(a).all(|x| rows(b).all(|y| apart(x, y)));
     (1..same.len()).all(|i| (0..i).all(|j| orthogonal(same[i], same[j])))
 }

@@ -1,18 +1,18 @@
 //! The gluing matrix `B = (N, T, B_int, B_Dir)` of the torn body.
 //!
-//! `B` acts on the displacements of all subdomains, node copies included. It is stored by what its rows do: an
-//! *interface block* is three rows (x, y, z) that combine the copies of one node with the same coefficients, every other
-//! row is a list of (copy, vector). Supports and contact act on the mean of the copies, the interface rows on its
-//! complement, so the rows are independent by construction, except at [dependent nodes](Gluing::dependent_nodes) (edges, and nodes that a support drags
-//! along an obstacle); what else would depend is reported in [`Gluing::removed`].
+//! It is stored by what its rows do: an *interface block* is three rows (x, y, z) that combine the copies of one node with
+//! the same coefficients; every other row, a *nodal row*, is a list of (copy, vector). Supports and contact act on the mean
+//! of the copies, the interface rows on its complement, so the rows are independent by construction, except at
+//! [dependent nodes](Gluing::dependent_nodes); what else would depend is reported in [`Gluing::removed`].
 
 use super::build::Builder;
 use crate::error::TfetiError;
-use crate::rows::contact::{ContactConstraints, contact_rows};
+use crate::rows::contact::contact_rows;
 use crate::rows::kinds::{RemovedRow, RowRanges};
+use crate::rows::side::{ContactConstraint, ContactConstraints};
 use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
-use signorini_fem_mesh::{Decomposition, DisjointSets, SurfaceFrame};
+use signorini_fem_mesh::{Decomposition, DisjointSets};
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,21 +38,15 @@ pub enum TangentialRows {
     },
 }
 
-/// A contact point that has a normal row.
+/// The rows of a contact point that has a normal row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactRows {
     /// Position in the list of contact points given.
     pub point: usize,
-    /// Mesh node.
-    pub node: u32,
-    /// Node of the other body, if any.
-    pub partner: Option<u32>,
-    /// Outward normal and tangents.
-    pub frame: SurfaceFrame,
     /// The normal row.
     pub row: usize,
-    /// The normal row is `scale` times the normal displacement; the nodal force is `scale * lambda`, the offset of
-    /// the row `scale * gap`. The square root of the number of copies for orthonormal rows at an unsupported node.
+    /// The normal row is `scale` times the normal displacement; the force of the point is `scale * lambda`, the offset of
+    /// the row `scale * gap`. The square root of the number of copies at an unsupported node.
     pub scale: f64,
     /// The tangential rows.
     pub tangential: TangentialRows,
@@ -92,7 +86,7 @@ impl Glob {
 }
 
 /// The rows of `B`, their names and their counts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Gluing {
     pub(super) ranges: RowRanges,
     pub(super) block_pointers: Vec<u32>,
@@ -105,6 +99,8 @@ pub struct Gluing {
     pub(super) contact: Vec<ContactRows>,
     pub(super) removed: Vec<RemovedRow>,
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
+    /// Mesh nodes that contact points join.
+    pub(super) groups: NodeGroups,
     pub(super) paper_rows: usize,
     pub(super) orthonormal: bool,
     /// The same without rows that depend on others of their node.
@@ -126,91 +122,56 @@ impl Gluing {
         contact: Option<&ContactConstraints>,
         stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
-        if decomposition.nodes() != nodes {
+        let (what, found, expected) = ("nodes", decomposition.nodes(), nodes);
+        if found != expected {
             return Err(TfetiError::DecompositionMismatch {
-                what: "nodes",
-                found: decomposition.nodes(),
-                expected: nodes,
+                what,
+                found,
+                expected,
             });
         }
         stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
         let none = ContactConstraints::default();
-        let contact_nodes = contact.unwrap_or(&none);
+        let contact = contact.unwrap_or(&none);
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
-        let found = contact_rows(contact_nodes, &merged, nodes, squares)?;
-        let mut builder = Builder {
-            decomposition,
-            stiffness,
-            shares: Vec::new(),
-            gluing: Self::empty(merged.cases, stiffness.is_plain()),
+        let found = contact_rows(contact, &merged, nodes, squares)?;
+        let mut gluing = Self {
+            block_pointers: vec![0],
+            row_pointers: vec![0],
+            prescribed: vec![Vec::new(); merged.cases],
+            orthonormal: stiffness.is_plain(),
+            aligned: stiffness.is_plain(),
+            removed: [found.removed, merged.removed.clone()].concat(),
+            ..Self::default()
         };
-        builder.gluing.removed = found
-            .removed
-            .into_iter()
-            .chain(merged.removed.iter().copied())
-            .collect();
-        builder.contact(contact_nodes, &found.rows);
+        let mut builder = Builder::new(decomposition, stiffness, &mut gluing);
+        builder.contact(contact, &found.rows);
         builder.interface(nodes);
         builder.dirichlet(&merged);
-        let mut gluing = builder.gluing;
-        gluing.ranges.interface.end = gluing.ranges.interface.start + 3 * gluing.blocks();
-        let supported = gluing.row_pointers.len() - 1 - gluing.ranges.contact().len();
-        gluing.ranges.dirichlet =
-            gluing.ranges.interface.end..gluing.ranges.interface.end + supported;
+        let supported = gluing.nodal_rows() - gluing.ranges.contact().len();
+        let interface = gluing.ranges.interface.start;
+        let supports = interface + 3 * gluing.blocks();
+        gluing.ranges.interface.end = supports;
+        gluing.ranges.dirichlet = supports..supports + supported;
         for case in &mut gluing.prescribed {
-            for (row, _) in case.iter_mut() {
-                if *row as usize >= gluing.ranges.interface.start {
-                    *row += gluing.ranges.interface.len() as u32;
-                }
-            }
+            let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
+            later.for_each(|v| v.0 += (supports - interface) as u32);
             case.sort_by_key(|v| v.0);
         }
-        let torn: usize = decomposition
-            .subdomains()
-            .iter()
-            .map(|s| s.nodes.len())
-            .sum();
-        let contact_rows = contact_nodes
+        let torn = decomposition.torn_dofs();
+        let of_contact = contact
             .points
             .iter()
             .map(|p| if p.friction { 3 } else { 1 });
         gluing.paper_rows =
-            3 * (torn - nodes.min(torn)) + 3 * merged.nodes.len() + contact_rows.sum::<usize>();
-        let entries = gluing.block_entries.len().max(gluing.row_entries.len());
-        if entries.max(gluing.ranges.total()).max(3 * torn) >= u32::MAX as usize {
-            return Err(TfetiError::TooLarge {
-                what: "entries of B",
-                count: entries,
-            });
+            torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
+        let count = gluing.block_entries.len().max(gluing.row_entries.len());
+        if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
+            let what = "entries of B";
+            return Err(TfetiError::TooLarge { what, count });
         }
         Ok(gluing)
-    }
-
-    fn empty(cases: usize, plain: bool) -> Self {
-        Self {
-            ranges: RowRanges {
-                normal: 0..0,
-                discs: 0..0,
-                intervals: 0..0,
-                interface: 0..0,
-                dirichlet: 0..0,
-            },
-            block_pointers: vec![0],
-            block_entries: Vec::new(),
-            block_nodes: Vec::new(),
-            globs: Vec::new(),
-            row_pointers: vec![0],
-            row_entries: Vec::new(),
-            row_nodes: Vec::new(),
-            contact: Vec::new(),
-            removed: Vec::new(),
-            prescribed: vec![Vec::new(); cases],
-            paper_rows: 0,
-            orthonormal: plain,
-            aligned: plain,
-            dependent: Vec::new(),
-        }
     }
 
     /// Where each kind of row stands.
@@ -253,20 +214,8 @@ impl Gluing {
     }
 
     /// Mesh nodes that contact points join.
-    pub(crate) fn node_groups(&self) -> NodeGroups {
-        let pairs = || {
-            self.contact
-                .iter()
-                .filter_map(|c| Some((c.node, c.partner?)))
-        };
-        let most = pairs().map(|(a, b)| a.max(b)).max();
-        let mut sets = DisjointSets::new(most.map_or(0, |most| most as usize + 1));
-        pairs().for_each(|(a, b)| sets.join(a as usize, b as usize));
-        NodeGroups(
-            (0..most.map_or(0, |m| m + 1))
-                .map(|n| sets.first(n as usize) as u32)
-                .collect(),
-        )
+    pub(crate) fn node_groups(&self) -> &NodeGroups {
+        &self.groups
     }
 
     /// Whether `B B^T` is the identity, but for rows of dependent nodes.
@@ -296,7 +245,7 @@ impl Gluing {
         self.prescribed.get(case).map_or(&[], Vec::as_slice)
     }
 
-    /// Mesh node to which a row belongs (for a contact row the first of a pair). `None` beyond the last row.
+    /// Mesh node to which a row belongs (for a contact row the first of its side). `None` beyond the last row.
     #[must_use]
     pub fn node(&self, row: usize) -> Option<u32> {
         let range = &self.ranges.interface;
@@ -310,30 +259,34 @@ impl Gluing {
     /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.
     #[must_use]
     pub fn row(&self, row: usize) -> Vec<(usize, usize, f64)> {
-        let range = &self.ranges.interface;
-        let mut out = Vec::new();
-        if row >= self.ranges.total() {
-            return out;
-        }
+        let (range, mut out) = (&self.ranges.interface, Vec::new());
+        let mut push = |subdomain: u32, local: u32, c: usize, value: f64| {
+            out.push((subdomain as usize, 3 * local as usize + c, value));
+        };
         if range.contains(&row) {
-            let (block, component) = ((row - range.start) / 3, (row - range.start) % 3);
-            out.extend(self.block(block).iter().map(|e| {
-                (
-                    e.subdomain as usize,
-                    3 * e.local as usize + component,
-                    e.coefficient,
-                )
-            }));
-        } else {
+            let (block, c) = ((row - range.start) / 3, (row - range.start) % 3);
+            for e in self.block(block) {
+                push(e.subdomain, e.local, c, e.coefficient);
+            }
+        } else if row < self.ranges.total() {
             for e in self.nodal(self.nodal_of(row)) {
-                for (c, &v) in e.vector.iter().enumerate() {
-                    if v != 0.0 {
-                        out.push((e.subdomain as usize, 3 * e.local as usize + c, v));
-                    }
-                }
+                let nonzero = (0..3).filter(|&c| e.vector[c] != 0.0);
+                nonzero.for_each(|c| push(e.subdomain, e.local, c, e.vector[c]));
             }
         }
         out
+    }
+
+    /// What a row does to a displacement that is the same everywhere: the sum of its coefficients by component. For a
+    /// support row, and a contact row against a rigid obstacle, that is its direction in space times its scale; a contact
+    /// row between two sides, and an interface row, give zero.
+    #[must_use]
+    pub fn direction(&self, row: usize) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (_, dof, coefficient) in self.row(row) {
+            sum[dof % 3] += coefficient;
+        }
+        sum
     }
 
     /// Number of interface blocks.
@@ -379,9 +332,22 @@ impl Gluing {
 }
 
 /// For each mesh node the first of those that contact points join with it.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct NodeGroups(Vec<u32>);
 
 impl NodeGroups {
+    pub(super) fn new<'a>(points: impl Iterator<Item = &'a ContactConstraint>) -> Self {
+        let joined: Vec<_> = points.filter(|p| !p.is_single()).collect();
+        let nodes = joined.iter().flat_map(|p| p.nodes()).map(|n| n.0);
+        let count = nodes.max().map_or(0, |most| most + 1);
+        let mut sets = DisjointSets::new(count as usize);
+        for point in joined {
+            let first = point.side.first() as usize;
+            point.nodes().for_each(|n| sets.join(first, n.0 as usize));
+        }
+        Self((0..count).map(|n| sets.first(n as usize) as u32).collect())
+    }
+
     pub(crate) fn of(&self, node: u32) -> u32 {
         self.0.get(node as usize).copied().unwrap_or(node)
     }

@@ -58,7 +58,7 @@ pub struct RemovedRow {
 }
 
 /// Where each kind of row stands in a dual vector.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct RowRanges {
     /// Normal rows.
     pub normal: Range<usize>,

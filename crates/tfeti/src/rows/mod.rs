@@ -3,4 +3,5 @@ pub(crate) mod contact;
 pub(crate) mod dependencies;
 pub(crate) mod gluing;
 pub(crate) mod kinds;
+pub(crate) mod side;
 pub(crate) mod supports;

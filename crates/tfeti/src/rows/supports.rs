@@ -1,7 +1,9 @@
 //! Supports: which directions of which nodes are fixed, and by how much they are moved.
 
 use crate::error::TfetiError;
+use crate::linalg::vec3::{dot, norm};
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+use crate::tolerances::{AGREEING, FIXED};
 
 /// Directions fixed by a support.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +41,32 @@ pub struct Motion {
     pub case: u32,
     /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
     pub values: Vec<[f64; 3]>,
+}
+
+impl Motion {
+    fn check(&self, support: usize, nodes: usize, supports: usize) -> Result<(), TfetiError> {
+        let (found, case) = (self.values.len(), self.case);
+        if found != 1 && found != nodes {
+            return Err(TfetiError::MotionLength {
+                support,
+                found,
+                nodes,
+            });
+        }
+        match (case as usize) < supports {
+            true => Ok(()),
+            false => Err(TfetiError::CaseNumber {
+                support,
+                case,
+                supports,
+            }),
+        }
+    }
+
+    /// Displacement of the node `k` of the support.
+    fn of(&self, k: usize) -> [f64; 3] {
+        self.values[if self.values.len() == 1 { 0 } else { k }]
+    }
 }
 
 /// Nodes with fixed directions.
@@ -83,23 +111,23 @@ impl NodeSupport {
 
 /// One orthonormal fixed direction of a node.
 #[derive(Debug, Clone)]
-pub(crate) struct FixedDirection {
-    pub(crate) direction: [f64; 3],
+pub(super) struct FixedDirection {
+    pub(super) direction: [f64; 3],
     /// `(case, value in metres)` along the direction, cases ascending, no zeros.
-    pub(crate) values: Vec<(u32, f64)>,
+    pub(super) values: Vec<(u32, f64)>,
     support: usize,
 }
 
 /// What all supports together fix at one node.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct FixedNode {
-    pub(crate) node: u32,
-    pub(crate) directions: Vec<FixedDirection>,
+pub(super) struct FixedNode {
+    pub(super) node: u32,
+    pub(super) directions: Vec<FixedDirection>,
 }
 
 impl FixedNode {
     /// Prescribed displacement vector of each case: the sum of value times direction.
-    pub(crate) fn prescribed(&self) -> Vec<(u32, [f64; 3])> {
+    pub(super) fn prescribed(&self) -> Vec<(u32, [f64; 3])> {
         let mut out: Vec<(u32, [f64; 3])> = Vec::new();
         for fixed in &self.directions {
             for &(case, value) in &fixed.values {
@@ -121,13 +149,11 @@ impl FixedNode {
 
 /// All supports merged by node.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct MergedSupports {
-    /// Fixed nodes, ascending.
-    pub(crate) nodes: Vec<FixedNode>,
-    pub(crate) removed: Vec<RemovedRow>,
-    pub(crate) cases: usize,
-    /// Distinct nodes with at least one fixed direction (each counts three rows in the paper).
-    index: Vec<u32>,
+pub(super) struct MergedSupports {
+    /// Nodes with at least one fixed direction, ascending (each counts three rows in the paper).
+    pub(super) nodes: Vec<FixedNode>,
+    pub(super) removed: Vec<RemovedRow>,
+    pub(super) cases: usize,
 }
 
 /// A direction that supports fix at a node, and the first of them that does.
@@ -162,99 +188,68 @@ pub fn prescribed_directions(
     Ok(merged.nodes.iter().flat_map(of_node).collect())
 }
 
-/// Two unit directions closer than this to dependence are taken as dependent.
-const DEPENDENT: f64 = 1e-8;
-
-pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+pub(super) fn check_node(
+    node: u32,
+    nodes: usize,
+    place: impl FnOnce() -> String,
+) -> Result<(), TfetiError> {
+    match (node as usize) < nodes {
+        true => Ok(()),
+        false => Err(TfetiError::UnknownNode {
+            place: place(),
+            node,
+            nodes,
+        }),
+    }
 }
 
 impl MergedSupports {
-    pub(crate) fn at(&self, node: u32) -> Option<&FixedNode> {
-        match self.index.get(node as usize) {
-            Some(&k) if k != u32::MAX => Some(&self.nodes[k as usize]),
-            _ => None,
-        }
+    pub(super) fn at(&self, node: u32) -> Option<&FixedNode> {
+        let at = self.nodes.binary_search_by_key(&node, |n| n.node);
+        at.ok().map(|k| &self.nodes[k])
     }
 
-    pub(crate) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
+    pub(super) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
         let mut fixed: Vec<Option<FixedNode>> = vec![None; nodes];
         let mut merged = Self::default();
         for (s, support) in supports.iter().enumerate() {
             let directions = unit_directions(s, support)?;
             if let Some(motion) = &support.motion {
-                if motion.values.len() != 1 && motion.values.len() != support.nodes.len() {
-                    let (found, nodes) = (motion.values.len(), support.nodes.len());
-                    return Err(TfetiError::MotionLength {
-                        support: s,
-                        found,
-                        nodes,
-                    });
-                }
-                if motion.case as usize >= supports.len() {
-                    return Err(TfetiError::CaseNumber {
-                        support: s,
-                        case: motion.case,
-                        supports: supports.len(),
-                    });
-                }
+                motion.check(s, support.nodes.len(), supports.len())?;
                 merged.cases = merged.cases.max(motion.case as usize + 1);
             }
             for (k, &node) in support.nodes.iter().enumerate() {
-                if node as usize >= nodes {
-                    return Err(TfetiError::UnknownNode {
-                        place: format!("support {s}"),
-                        node,
-                        nodes,
-                    });
+                check_node(node, nodes, || format!("support {s}"))?;
+                let motion = support.motion.as_ref().map(|m| (m.case, m.of(k)));
+                if motion.is_some_and(|(_, value)| !value.iter().all(|v| v.is_finite())) {
+                    return Err(TfetiError::BadMotion { support: s, node });
                 }
-                let motion = match &support.motion {
-                    None => None,
-                    Some(motion) => {
-                        let value = if motion.values.len() == 1 {
-                            motion.values[0]
-                        } else {
-                            motion.values[k]
-                        };
-                        if !value.iter().all(|v| v.is_finite()) {
-                            return Err(TfetiError::BadMotion { support: s, node });
-                        }
-                        Some((motion.case, value))
-                    }
-                };
-                let entry = fixed[node as usize].get_or_insert_with(|| FixedNode {
+                let directions_of = || FixedNode {
                     node,
                     directions: Vec::new(),
-                });
+                };
+                let entry = fixed[node as usize].get_or_insert_with(directions_of);
                 for direction in &directions {
-                    if let Some(row) = add_direction(entry, s, direction, motion)? {
-                        merged.removed.push(row);
-                    }
+                    merged
+                        .removed
+                        .extend(add_direction(entry, s, *direction, motion)?);
                 }
             }
         }
-        merged.index = vec![u32::MAX; nodes];
-        for node in fixed.into_iter().flatten() {
-            merged.index[node.node as usize] = merged.nodes.len() as u32;
-            merged.nodes.push(node);
-        }
+        merged.nodes = fixed.into_iter().flatten().collect();
         Ok(merged)
     }
 }
 
 fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, TfetiError> {
     let mut directions = support.directions.vectors();
-    if support.nodes.is_empty() {
-        return Err(TfetiError::EmptySupport {
-            support: s,
-            what: "nodes",
-        });
-    }
-    if directions.is_empty() {
-        return Err(TfetiError::EmptySupport {
-            support: s,
-            what: "directions",
-        });
+    for (none, what) in [
+        (support.nodes.is_empty(), "nodes"),
+        (directions.is_empty(), "directions"),
+    ] {
+        if none {
+            return Err(TfetiError::EmptySupport { support: s, what });
+        }
     }
     for (k, direction) in directions.iter_mut().enumerate() {
         // Scaled first, so that neither tiny nor huge vectors lose their length.
@@ -267,7 +262,7 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, Tfe
             });
         }
         let scaled = direction.map(|v| v / largest);
-        let length = dot(&scaled, &scaled).sqrt();
+        let length = norm(scaled);
         *direction = scaled.map(|v| v / length);
     }
     Ok(directions)
@@ -277,26 +272,26 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, Tfe
 fn add_direction(
     entry: &mut FixedNode,
     support: usize,
-    direction: &[f64; 3],
+    direction: [f64; 3],
     motion: Option<(u32, [f64; 3])>,
 ) -> Result<Option<RemovedRow>, TfetiError> {
-    let mut rest = *direction;
+    let mut rest = direction;
     let mut values: Vec<(u32, f64)> = Vec::new();
     let mut size = 0.0_f64;
     if let Some((case, vector)) = motion {
-        let value = dot(direction, &vector);
-        size = dot(&vector, &vector).sqrt();
+        let value = dot(direction, vector);
+        size = norm(vector);
         values.push((case, value));
     }
     let mut first = support;
     // Twice, so that rounding leaves the new direction orthogonal; the second pass changes no value noticeably.
     for _ in 0..2 {
         for fixed in &entry.directions {
-            let along = dot(&rest, &fixed.direction);
+            let along = dot(rest, fixed.direction);
             for c in 0..3 {
                 rest[c] -= along * fixed.direction[c];
             }
-            if along.abs() > DEPENDENT {
+            if along.abs() > FIXED {
                 first = fixed.support;
             }
             for &(case, value) in &fixed.values {
@@ -308,8 +303,8 @@ fn add_direction(
             }
         }
     }
-    let length = dot(&rest, &rest).sqrt();
-    if length > DEPENDENT {
+    let length = norm(rest);
+    if length > FIXED {
         values.sort_by_key(|v| v.0);
         values.retain(|v| v.1.abs() > f64::EPSILON * size);
         for value in &mut values {
@@ -323,7 +318,7 @@ fn add_direction(
         });
         return Ok(None);
     }
-    if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > 1e-7 * size) {
+    if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > AGREEING * size) {
         return Err(TfetiError::ContradictorySupports {
             node: entry.node,
             first,

@@ -10,5 +10,6 @@ mod preconditioners;
 mod refusals;
 mod rows;
 mod scratch;
+mod sides;
 mod single_precision;
 mod supports;

@@ -4,7 +4,7 @@ use crate::common::{Brick, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
 use signorini_tfeti::{
     ContactConstraint, ContactConstraints, CopyStiffness, Directions, Gluing, Motion, NodeSupport,
-    TangentialRows, TfetiBuilder, TfetiError,
+    Side, TangentialRows, TfetiBuilder, TfetiError,
 };
 
 #[test]
@@ -125,7 +125,9 @@ fn nodes_of_pairs_may_have_other_points() {
     let [o, q] = [1, 4].map(|k| b.mesh.nodes_on(brick::Z_MAX)[k]);
     let reversed = SurfaceFrame::from_normal(frame.normal.map(|c| -c)).unwrap();
     let sideways = SurfaceFrame::from_normal([1.0, 0.0, 0.0]).unwrap();
-    let pair = |node, frame, partner| ContactConstraint::new(node, frame).with_partner(partner);
+    let pair = |node: u32, frame, partner: Option<u32>| {
+        ContactConstraint::new(node, frame).with_partner(partner)
+    };
     let make = |points: Vec<ContactConstraint>| {
         let contact: ContactConstraints = points.into_iter().collect();
         gluing(&b, &[], Some(&contact))
@@ -140,9 +142,11 @@ fn nodes_of_pairs_may_have_other_points() {
     ] {
         let g = make(vec![first(), second.clone()]).unwrap();
         assert_eq!(g.ranges().normal.len(), 2, "{second:?}");
-        assert!(!g.is_orthonormal() && smallest_eigenvalue(&gram(&g)) > 1e-6 || second.node == o);
-        let nodes = std::iter::once(second.node).chain(second.partner);
-        for node in nodes.chain([a, o]) {
+        assert!(
+            !g.is_orthonormal() && smallest_eigenvalue(&gram(&g)) > 1e-6 || second.side == o.into()
+        );
+        let sides = std::iter::once(&second.side).chain(&second.partner);
+        for node in sides.flat_map(Side::nodes).map(|n| n.0).chain([a, o]) {
             assert!(g.is_dependent(node), "{second:?}: {node}");
         }
     }
@@ -205,13 +209,13 @@ fn bad_input_is_named() {
         TfetiError::BadMotion { node: 1, .. }
     ));
     let mut contact = b.contact(true);
-    contact.points[3].node = contact.points[2].node;
+    contact.points[3].side = contact.points[2].side.clone();
     assert!(matches!(
         err(&[], Some(&contact)),
         TfetiError::ContactNodeTwice { .. }
     ));
     let mut contact = b.contact(true);
-    contact.points[1].partner = Some(many + 5);
+    contact.points[1].partner = Some(Side::node(many + 5));
     assert!(matches!(
         err(&[], Some(&contact)),
         TfetiError::UnknownNode { .. }
