@@ -368,11 +368,11 @@ pub(crate) fn constrained_points(
             _ => Tangential::None,
         };
         ConstrainedPoint {
-            node: info.node,
+            node: candidate.node,
             partner: candidate.partner,
             surface: candidate.surface,
-            position: scene.mesh.points()[info.node as usize],
-            frame: info.frame,
+            position: scene.mesh.points()[candidate.node as usize],
+            frame: candidate.frame,
             area: candidate.area,
             gap: candidate.gap,
             place,
