@@ -1,5 +1,7 @@
 //! What can go wrong while a T-FETI system is built.
 
+use crate::linalg::sparse::FactorError;
+
 /// Errors of the set-up. Every message names the place and, where there is one, the remedy.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -241,5 +243,15 @@ pub enum TfetiError {
 impl std::fmt::Debug for TfetiError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         std::fmt::Display::fmt(self, f)
+    }
+}
+
+impl TfetiError {
+    /// What a failure of a factorisation says of a subdomain.
+    pub(crate) fn pattern(error: FactorError, subdomain: usize) -> Self {
+        match error {
+            FactorError::Pivot(pivot) => Self::Singular { subdomain, pivot },
+            FactorError::Pattern => Self::FactorPattern { subdomain },
+        }
     }
 }

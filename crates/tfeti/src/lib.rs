@@ -1,16 +1,15 @@
-//! Total FETI for elasticity with contact: the body is torn into subdomains that all float, and everything that
-//! holds them (gluing, supports, contact, friction) becomes a row of one matrix `B` with a Lagrange multiplier.
+//! Total FETI for elasticity with contact: the body is torn into subdomains that all float, and everything that holds
+//! them (gluing, supports, contact, friction) becomes a row of one matrix `B` with a Lagrange multiplier.
 //!
 //! For `K u = f + B^T lambda` and row offsets `c` this crate builds, once,
 //!
 //! | symbol | here | meaning |
 //! |---|---|---|
-//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent rows are removed and reported, or kept where contact needs them |
-//! | `R` | [`Kernel`] | six orthonormal rigid motions of a subdomain, without eigenvalue computation |
-//! | `F = B K+ B^T` | [`DualOperator`] | the dual operator, a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
+//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent ones are removed and reported, or kept |
+//! | `F = B K+ B^T` | [`DualOperator`] | a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
 //! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium of the subdomains, `G lambda = e` |
 //! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, with row weights if wanted |
-//! | `C`, `C C^T = I` | [`OrthonormalCoarse`] | orthonormal rows that span those of `G`, an [`Equality`](signorini_qp::Equality) |
+//! | `C`, `C C^T = I` | [`OrthonormalCoarse`] | rows that span those of `G`, an [`Equality`](signorini_qp::Equality) |
 //! | `alpha` | [`CoarseFactor::amplitudes`] | rigid amplitudes in `u = K+ (f + B^T lambda) + R alpha` (5.27) |
 //!
 //! and two preconditioners ([`Tfeti::lumped`], [`Tfeti::dirichlet`]). The dual problem is: minimise
@@ -18,11 +17,8 @@
 //! Multipliers are forces on the body; a normal multiplier is at most zero. The residual of the rows is
 //! `B u - c = F lambda - d + G^T alpha`.
 //!
-//! Subdomains that are translations of one another share one matrix and are applied together ([`Classes`]); for others a
-//! cost model chooses between dense blocks and sparse factors ([`InverseSettings`]). Everything is immutable once built and
-//! applied without allocation with work memory that the caller owns; results have the same bits for any number of threads.
-//! Products run in parallel on the current rayon pool. An iteration is best run on one of its threads (`rayon::scope`): called from
-//! outside of it, each parallel part changes threads twice.
+//! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products run
+//! in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of threads.
 //!
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};
@@ -47,6 +43,9 @@
 //! println!("{}", system.report());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Rooms, each of which uses those before it: `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
+//! `preconditioner`.
 
 mod coarse;
 mod dual;
@@ -60,28 +59,39 @@ mod system;
 mod tolerances;
 
 pub use coarse::mobility::{BodyMotion, FreeMotion};
-pub use coarse::space::{Coarse, CoarseScratch};
+pub use coarse::space::Coarse;
 pub use coarse::weights::RowWeights;
-pub use dual::operator::{DualOperator, DualScratch};
+pub use dual::operator::DualOperator;
 pub use error::TfetiError;
-pub use preconditioner::operator::{DualPreconditioner, DualPreconditionerScratch};
-pub use projector::active_set::{ActiveSetFactor, ActiveSetProjector};
+pub use preconditioner::operator::DualPreconditioner;
+pub use projector::active_set::ActiveSetProjector;
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
-pub use rows::contact::{PrescribedPoint, prescribed_points};
-pub use rows::dependencies::Dependency;
 pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
-pub use rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges};
+pub use rows::kinds::RowRanges;
 pub use rows::side::{ContactConstraint, ContactConstraints, Side};
-pub use rows::supports::{
-    Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions,
-};
-pub use subdomain::class::{Class, Classes};
-pub use subdomain::copy_stiffness::CopyStiffness;
-pub use subdomain::cost::{InverseKind, InverseSettings};
-pub use subdomain::forecast::{ClassForecast, Forecast, Rate};
-pub use subdomain::kernel::Kernel;
+pub use rows::supports::{Directions, Motion, NodeSupport};
+pub use subdomain::cost::InverseSettings;
 pub use system::builder::TfetiBuilder;
-pub use system::recovery::{Jump, LoadResponse};
-pub use system::report::{ClassReport, SetupReport};
+pub use system::recovery::LoadResponse;
+pub use system::report::SetupReport;
 pub use system::tfeti::Tfeti;
+
+/// Plumbing for the other crates of the workspace, without promises.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::coarse::space::CoarseScratch;
+    pub use crate::dual::operator::DualScratch;
+    pub use crate::preconditioner::operator::DualPreconditionerScratch;
+    pub use crate::projector::active_set::ActiveSetFactor;
+    pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
+    pub use crate::rows::dependencies::Dependency;
+    pub use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+    pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
+    pub use crate::subdomain::class::{Class, Classes};
+    pub use crate::subdomain::copy_stiffness::CopyStiffness;
+    pub use crate::subdomain::cost::{ClassReport, InverseKind};
+    pub use crate::subdomain::forecast::{Forecast, Rate};
+    pub use crate::subdomain::kernel::Kernel;
+    pub use crate::system::recovery::Jump;
+}

@@ -13,7 +13,8 @@ use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
     ProductSet, Segment, SymmetricOperator, active_set,
 };
-use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind};
+use signorini_tfeti::ActiveSetProjector;
+use signorini_tfeti::internal::{ActiveSetFactor, InverseKind};
 
 #[test]
 fn products_and_projectors_allocate_nothing() {

@@ -4,7 +4,7 @@ use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
 use crate::linalg::sparse::Symbolic;
 use crate::subdomain::cost::{InverseSettings, Size, choose};
-use crate::subdomain::inverse::{Inverse, pattern_error, regularised};
+use crate::subdomain::inverse::{Inverse, regularised};
 use crate::subdomain::matrices::Subdomains;
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ pub(crate) fn invert(
     let first = |k: usize| classes[k].members[0] as usize;
     let symbolic = |k: usize| {
         Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel), 3)
-            .map_err(|e| pattern_error(e, first(k)))
+            .map_err(|e| TfetiError::pattern(e, first(k)))
     };
     let each = || (0..bases.len()).into_par_iter();
     let patterns: Vec<Symbolic> = each().map(symbolic).collect::<Result<_, _>>()?;
@@ -50,7 +50,7 @@ pub(crate) fn invert(
         let full = Inverse::new(&base.stiffness, &base.kernel, &patterns[k], first(k))?;
         let boundary = dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
         let full = match &boundary {
-            None if sizes[k].members == 1 => full.packed(&base.stiffness),
+            None if sizes[k].is_packed(dense[k]) => full.packed(&base.stiffness),
             _ => full,
         };
         Ok(ClassInverse { full, boundary })

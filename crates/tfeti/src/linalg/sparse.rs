@@ -34,6 +34,29 @@ impl Columns {
         }
     }
 
+    /// The pattern of full blocks of `unit` unknowns, all values zero, from the neighbours of each block, which are sorted.
+    pub(crate) fn of_blocks(graph: &mut [Vec<u32>], unit: usize) -> Self {
+        let (mut pointers, mut rows) = (vec![0], Vec::new());
+        for list in &mut *graph {
+            list.sort_unstable();
+            list.dedup();
+            for _ in 0..unit {
+                let own = list
+                    .iter()
+                    .flat_map(|&b| (0..unit).map(move |c| unit * b as usize + c));
+                rows.extend(own);
+                pointers.push(rows.len());
+            }
+        }
+        let (dim, values) = (unit * graph.len(), vec![0.0; rows.len()]);
+        Self {
+            dim,
+            pointers,
+            rows,
+            values,
+        }
+    }
+
     /// Position of an entry in `values`.
     pub(crate) fn find(&self, row: usize, column: usize) -> Option<usize> {
         let range = self.pointers[column]..self.pointers[column + 1];
@@ -110,6 +133,14 @@ impl Symbolic {
     /// Numbers stored for the factor.
     pub(crate) fn stored(&self) -> usize {
         self.0.len_val()
+    }
+
+    /// Old number of each unknown.
+    pub(crate) fn order(&self) -> Vec<u32> {
+        match self.0.perm() {
+            Some(permutation) => permutation.arrays().0.iter().map(|&k| k as u32).collect(),
+            None => (0..self.0.nrows() as u32).collect(),
+        }
     }
 }
 
@@ -258,10 +289,7 @@ impl SparseCholesky {
 
     /// Old number of each unknown.
     pub(crate) fn order(&self) -> Vec<u32> {
-        match self.symbolic.0.perm() {
-            Some(permutation) => permutation.arrays().0.iter().map(|&k| k as u32).collect(),
-            None => (0..self.dim() as u32).collect(),
-        }
+        self.symbolic.order()
     }
 
     /// Smallest and largest squared pivot with the elimination step of the smallest.

@@ -11,7 +11,6 @@ use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::preconditioner::scaling::Scaling;
-use crate::subdomain::inverse::pattern_error;
 use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
@@ -227,7 +226,7 @@ impl BoundaryStiffness {
         {
             Ok(factor) => factor,
             Err(FactorError::Pivot(_)) => return Ok(Self::Lumped(BlockRows::new(&split.boundary))),
-            Err(error) => return Err(pattern_error(error, subdomain)),
+            Err(error) => return Err(TfetiError::pattern(error, subdomain)),
         };
         let (smallest, _, largest) = factor.pivots();
         if smallest <= PIVOT * largest {

@@ -18,14 +18,10 @@ pub enum InverseKind {
 
 /// Settings of the generalised inverses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct InverseSettings {
-    /// Dense, sparse, or chosen by cost. Default: by cost.
-    pub kind: InverseKind,
-    /// Upper bound in bytes for all inverses and factors. Default: 8 GiB.
-    pub memory_limit: u64,
-    /// Number of products with `F` expected, for the cost model. Default: 2000, at least 1.
-    pub expected_products: usize,
+    kind: InverseKind,
+    memory_limit: u64,
+    expected_products: usize,
 }
 
 impl Default for InverseSettings {
@@ -39,21 +35,22 @@ impl Default for InverseSettings {
 }
 
 impl InverseSettings {
-    /// Sets [`InverseSettings::kind`].
+    /// Dense or sparse inverses for all classes, for benches and tests. Default: chosen by cost.
+    #[doc(hidden)]
     #[must_use]
     pub fn with_kind(mut self, kind: InverseKind) -> Self {
         self.kind = kind;
         self
     }
 
-    /// Sets [`InverseSettings::memory_limit`].
+    /// Upper bound in bytes for all inverses and factors. Default: 8 GiB.
     #[must_use]
     pub fn with_memory_limit(mut self, bytes: u64) -> Self {
         self.memory_limit = bytes;
         self
     }
 
-    /// Sets [`InverseSettings::expected_products`].
+    /// Number of products with `F` expected, for the cost model. Default: 2000, at least 1.
     #[must_use]
     pub fn with_expected_products(mut self, products: usize) -> Self {
         self.expected_products = products;
@@ -66,13 +63,40 @@ impl InverseSettings {
     /// [`TfetiError::Setting`] naming the setting and its range.
     pub fn validate(&self) -> Result<(), TfetiError> {
         if self.expected_products == 0 {
+            let (name, range) = ("expected_products", "at least 1");
             return Err(TfetiError::Setting {
-                name: "expected_products",
+                name,
                 value: 0.0,
-                range: "at least 1",
+                range,
             });
         }
         Ok(())
+    }
+}
+
+/// Sizes of a class of translates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ClassReport {
+    /// Number of members.
+    pub members: usize,
+    /// Unknowns of a member.
+    pub unknowns: usize,
+    /// Unknowns on nodes that rows of `B` touch in some member.
+    pub boundary: usize,
+    /// Whether products use a dense matrix on the boundary (otherwise a sparse factor).
+    pub dense: bool,
+    /// Bytes of the inverses.
+    pub bytes: u64,
+}
+
+impl ClassReport {
+    /// Operations of a product with one member.
+    pub(crate) fn flops(&self) -> f64 {
+        match self.dense {
+            true => 2.0 * (self.boundary * self.boundary) as f64,
+            false => 4.0 * (self.bytes / 8) as f64,
+        }
     }
 }
 
@@ -90,12 +114,28 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    pub(crate) fn dense_bytes(&self) -> u64 {
-        8 * (self.boundary * self.boundary) as u64 + self.sparse_bytes()
+    pub(crate) fn report(&self, dense: bool) -> ClassReport {
+        ClassReport {
+            members: self.members,
+            unknowns: self.dim,
+            boundary: self.boundary,
+            dense,
+            bytes: self.bytes(dense),
+        }
     }
 
-    pub(crate) fn sparse_bytes(&self) -> u64 {
-        8 * self.factor as u64
+    /// Whether the factor is stored for products with one column.
+    pub(crate) fn is_packed(&self, dense: bool) -> bool {
+        self.members == 1 && !dense
+    }
+
+    fn bytes(&self, dense: bool) -> u64 {
+        8 * (self.factor
+            + if dense {
+                self.boundary * self.boundary
+            } else {
+                0
+            }) as u64
     }
 
     /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single ones.
@@ -141,49 +181,35 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
             InverseKind::Sparse => false,
         })
         .collect();
-    let bytes = |dense: &[bool]| -> u64 {
+    let (limit, auto) = (settings.memory_limit, settings.kind == InverseKind::Auto);
+    let bytes = |dense: &[bool]| {
         sizes
             .iter()
             .zip(dense)
-            .map(|(s, d)| {
-                if *d {
-                    s.dense_bytes()
-                } else {
-                    s.sparse_bytes()
-                }
-            })
-            .sum()
+            .map(|(s, d)| s.bytes(*d))
+            .sum::<u64>()
     };
     let mut needed = bytes(&dense);
-    if needed > settings.memory_limit && settings.kind == InverseKind::Auto {
+    if needed > limit && auto {
         // Give up the dense matrices that cost most memory for the time they save.
         let mut order: Vec<usize> = (0..sizes.len()).filter(|&k| dense[k]).collect();
         let worth = |k: usize| {
-            let saved =
-                (sizes[k].sparse_product() - sizes[k].dense_product(bandwidth(resident))).max(0.0);
-            saved
-                / sizes[k]
-                    .dense_bytes()
-                    .saturating_sub(sizes[k].sparse_bytes())
-                    .max(1) as f64
+            let saved = sizes[k].sparse_product() - sizes[k].dense_product(bandwidth(resident));
+            saved.max(0.0) / boundary(&sizes[k]).max(1) as f64
         };
         order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)).then(a.cmp(&b)));
         for k in order {
-            if needed <= settings.memory_limit {
+            if needed <= limit {
                 break;
             }
             dense[k] = false;
-            needed = needed + sizes[k].sparse_bytes() - sizes[k].dense_bytes().min(needed);
+            needed -= boundary(&sizes[k]);
         }
-        needed = bytes(&dense);
     }
-    if needed > settings.memory_limit {
-        return Err(TfetiError::Memory {
-            needed,
-            limit: settings.memory_limit,
-        });
+    match needed > limit {
+        true => Err(TfetiError::Memory { needed, limit }),
+        false => Ok(dense),
     }
-    Ok(dense)
 }
 
 #[cfg(test)]
@@ -222,7 +248,7 @@ mod tests {
             members: 188,
             factor: 39_740,
         };
-        let sparse = size.sparse_bytes();
+        let sparse = size.bytes(false);
         let limited = InverseSettings::default().with_memory_limit(sparse);
         assert_eq!(choose(&[size], &limited), Ok(vec![false]));
         let impossible = limited.with_memory_limit(sparse - 1);

@@ -6,9 +6,7 @@
 
 use crate::error::TfetiError;
 use crate::linalg::dense;
-use crate::linalg::sparse::{
-    Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic,
-};
+use crate::linalg::sparse::{Columns, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use crate::linalg::vec3::{cross, dot, norm, sub};
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::packed::PackedFactor;
@@ -33,7 +31,7 @@ impl Inverse {
     ) -> Result<Self, TfetiError> {
         let matrix = regularised(stiffness, kernel);
         let factor = SparseCholesky::new(symbolic, &matrix)
-            .map_err(|error| pattern_error(error, subdomain))?;
+            .map_err(|error| TfetiError::pattern(error, subdomain))?;
         let (smallest, pivot, largest) = factor.pivots();
         if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
             return Err(TfetiError::Singular { subdomain, pivot });
@@ -235,17 +233,10 @@ pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
     matrix
 }
 
-/// Turns a failure of the factorisation into an error that names the subdomain.
-pub(crate) fn pattern_error(error: FactorError, subdomain: usize) -> TfetiError {
-    match error {
-        FactorError::Pivot(pivot) => TfetiError::Singular { subdomain, pivot },
-        FactorError::Pattern => TfetiError::FactorPattern { subdomain },
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::sparse::FactorError;
     use signorini_fem_mesh::{Hooke, assemble_stiffness};
 
     fn inverse(
@@ -304,7 +295,7 @@ mod tests {
 
     #[test]
     fn a_pattern_error_names_the_subdomain() {
-        let text = pattern_error(FactorError::Pattern, 7).to_string();
+        let text = TfetiError::pattern(FactorError::Pattern, 7).to_string();
         assert!(text.starts_with("subdomain 7: "), "{text}");
     }
 

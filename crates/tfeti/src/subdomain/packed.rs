@@ -41,6 +41,15 @@ fn group(matrix: &Columns, order: &[u32], unit: usize) -> Vec<Group> {
     )
 }
 
+/// Numbers stored for a factor of a matrix with this pattern and order of elimination.
+pub(super) fn stored(matrix: &Columns, order: &[u32], unit: usize) -> usize {
+    let of = |g: &Group| {
+        let (width, height) = (g.columns.len(), g.columns.len() + g.below.len());
+        Supernodes::tiles_of(unit * width, unit * height)
+    };
+    Tile::NUMBERS * group(matrix, order, unit).iter().map(of).sum::<usize>()
+}
+
 /// Orders groups such that those that do not wait for one another stand together, those of one shape side by side: one
 /// short loop then serves many of them. Returns old numbers.
 fn by_level(groups: &[Group], blocks: usize) -> Vec<usize> {

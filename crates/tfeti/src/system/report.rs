@@ -4,6 +4,7 @@ use crate::dual::boundary::BoundaryMap;
 use crate::dual::inverses::ClassInverse;
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges};
 use crate::subdomain::class::Classes;
+use crate::subdomain::cost::ClassReport;
 use std::fmt;
 
 /// Sizes, choices and times of the set-up.
@@ -42,22 +43,6 @@ pub struct SetupReport {
     pub inverse_seconds: f64,
     /// Seconds for the coarse matrix and its factor beyond those for the inverses, which run beside it.
     pub coarse_seconds: f64,
-}
-
-/// One class of translates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct ClassReport {
-    /// Number of members.
-    pub members: usize,
-    /// Unknowns of a member.
-    pub unknowns: usize,
-    /// Unknowns on the boundary nodes that `B` touches.
-    pub boundary: usize,
-    /// Whether products use a dense matrix on the boundary (otherwise a sparse factor).
-    pub dense: bool,
-    /// Bytes of the inverses.
-    pub bytes: u64,
 }
 
 impl SetupReport {

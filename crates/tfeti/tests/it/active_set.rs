@@ -3,9 +3,8 @@
 use crate::common::{Brick, distance, noise, norm};
 use signorini_fem_mesh::Decomposition;
 use signorini_qp::{EqualityProjector, QpError};
-use signorini_tfeti::{
-    ActiveSetFactor, ActiveSetProjector, CoarseFactor, NodeSupport, Tfeti, TfetiBuilder,
-};
+use signorini_tfeti::internal::ActiveSetFactor;
+use signorini_tfeti::{ActiveSetProjector, CoarseFactor, NodeSupport, Tfeti, TfetiBuilder};
 use std::ops::{Deref, DerefMut};
 
 fn system(n: usize, cells: usize) -> Tfeti {

@@ -2,7 +2,8 @@
 
 use crate::common::Brick;
 use signorini_fem_mesh::{Decomposition, Hooke, Materials};
-use signorini_tfeti::{Classes, NodeSupport, TfetiBuilder, TfetiError};
+use signorini_tfeti::internal::Classes;
+use signorini_tfeti::{NodeSupport, TfetiBuilder, TfetiError};
 
 fn classes(b: &Brick, share: bool) -> Classes {
     Classes::find(&b.mesh, &b.decomposition, &b.materials, share).unwrap()

@@ -4,9 +4,9 @@ use signorini_fem_mesh::{
     Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick,
 };
 use signorini_qp::SymmetricOperator;
+use signorini_tfeti::internal::{CopyStiffness, InverseKind};
 use signorini_tfeti::{
-    ContactConstraints, CopyStiffness, Gluing, InverseKind, InverseSettings, NodeSupport, Tfeti,
-    TfetiBuilder, TfetiError,
+    ContactConstraints, Gluing, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError,
 };
 
 pub(crate) struct Brick {

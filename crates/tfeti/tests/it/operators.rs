@@ -2,7 +2,8 @@
 
 use crate::common::{Brick, build, column, distance, dot, noise, norm, product};
 use signorini_qp::{Equality, SymmetricOperator};
-use signorini_tfeti::{InverseKind, InverseSettings, RowWeights, TfetiBuilder, TfetiError};
+use signorini_tfeti::internal::InverseKind;
+use signorini_tfeti::{InverseSettings, RowWeights, TfetiBuilder, TfetiError};
 
 #[test]
 fn generalised_inverse_laws() {

@@ -3,7 +3,8 @@
 use crate::common::{Brick, build, dot, noise, norm};
 use signorini_fem_mesh::{Hooke, Materials};
 use signorini_qp::SymmetricOperator;
-use signorini_tfeti::{DualPreconditioner, InverseKind, Tfeti};
+use signorini_tfeti::internal::InverseKind;
+use signorini_tfeti::{DualPreconditioner, Tfeti};
 
 /// Iterations of preconditioned projected conjugate gradients to a relative residual of 1e-8.
 fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&DualPreconditioner>) -> usize {
@@ -17,7 +18,7 @@ fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&DualPrecond
     factor.project(&mut r, None, &mut cs);
     let start = norm(&r);
     let mut ps = preconditioner.map(SymmetricOperator::scratch);
-    let mut precondition = |r: &[f64], cs: &mut signorini_tfeti::CoarseScratch| {
+    let mut precondition = |r: &[f64], cs: &mut signorini_tfeti::internal::CoarseScratch| {
         let mut z = r.to_vec();
         if let (Some(m), Some(s)) = (preconditioner, ps.as_mut()) {
             m.apply(r, &mut z, s);

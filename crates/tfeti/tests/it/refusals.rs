@@ -3,10 +3,8 @@
 use crate::common::Brick;
 use signorini_fem_mesh::Decomposition;
 use signorini_qp::{EqualityProjector, Line, QpError};
-use signorini_tfeti::{
-    ActiveSetFactor, ActiveSetProjector, CopyStiffness, Gluing, Motion, NodeSupport, RowWeights,
-    TfetiError,
-};
+use signorini_tfeti::internal::{ActiveSetFactor, CopyStiffness};
+use signorini_tfeti::{ActiveSetProjector, Gluing, Motion, NodeSupport, RowWeights, TfetiError};
 
 #[test]
 fn face_spaces_check_their_arguments() {

@@ -2,9 +2,10 @@
 
 use crate::common::{Brick, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
+use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{
-    ContactConstraint, ContactConstraints, CopyStiffness, Directions, Gluing, Motion, NodeSupport,
-    Side, TangentialRows, TfetiBuilder, TfetiError,
+    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, Side,
+    TangentialRows, TfetiBuilder, TfetiError,
 };
 
 #[test]

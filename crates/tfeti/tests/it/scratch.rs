@@ -2,7 +2,8 @@
 
 use crate::common::{Brick, build, noise};
 use signorini_qp::{Equality, Line, SymmetricOperator};
-use signorini_tfeti::{InverseKind, RowWeights};
+use signorini_tfeti::RowWeights;
+use signorini_tfeti::internal::InverseKind;
 
 #[test]
 fn scratch_is_reused() {

@@ -3,9 +3,10 @@
 use crate::common::{Brick, column, distance, dot, gluing, noise, norm, product};
 use signorini_fem_mesh::{SurfaceFrame, brick};
 use signorini_qp::EqualityProjector;
+use signorini_tfeti::internal::{ActiveSetFactor, prescribed_points};
 use signorini_tfeti::{
-    ActiveSetFactor, ActiveSetProjector, ContactConstraint, ContactConstraints, Directions, Motion,
-    NodeSupport, Side, TangentialRows, Tfeti, TfetiError, prescribed_points,
+    ActiveSetProjector, ContactConstraint, ContactConstraints, Directions, Motion, NodeSupport,
+    Side, TangentialRows, Tfeti, TfetiError,
 };
 
 const WEIGHTS: [f64; 3] = [0.2, 0.3, 0.5];

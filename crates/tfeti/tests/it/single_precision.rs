@@ -2,7 +2,8 @@
 
 use crate::common::{Brick, distance, noise, norm};
 use signorini_qp::EqualityProjector;
-use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, Tfeti};
+use signorini_tfeti::internal::ActiveSetFactor;
+use signorini_tfeti::{ActiveSetProjector, Tfeti};
 
 fn system(brick: &Brick) -> Tfeti {
     brick.system()

@@ -2,9 +2,10 @@
 
 use crate::common::{Brick, dot, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{SurfaceFrame, brick};
+use signorini_tfeti::internal::{RemovalReason, RowKind, prescribed_points};
 use signorini_tfeti::{
-    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, RemovalReason,
-    RowKind, TangentialRows, TfetiError, prescribed_points,
+    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, TangentialRows,
+    TfetiError,
 };
 
 #[test]
