@@ -7,7 +7,8 @@
 //! `cargo bench -p signorini-benches --bench ratios`; with `-- --test` everything runs once and the figures mean nothing.
 
 use signorini::qp::{EqualityProjector, SymmetricOperator, vector};
-use signorini::tfeti::{ActiveSetProjector, InverseKind, Tfeti};
+use signorini::tfeti::internal::InverseKind;
+use signorini::tfeti::{ActiveSetProjector, Tfeti};
 use signorini_benches::{Body, Failure, MEMORY, gemm, seconds, triad, wave};
 
 fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> {

@@ -4,10 +4,8 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 use signorini::fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, TetMesh, brick};
-use signorini::tfeti::{
-    ContactConstraints, InverseKind, InverseSettings, NodeSupport, Tfeti, TfetiBuilder,
-    TfetiError,
-};
+use signorini::tfeti::internal::InverseKind;
+use signorini::tfeti::{ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 use std::time::Instant;
 
 /// Errors of all crates.

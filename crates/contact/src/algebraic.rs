@@ -82,7 +82,8 @@ use crate::point_state::PointState;
 use crate::state::REST;
 use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
-use signorini_tfeti::{CoarseFactor, CopyStiffness, RowWeights, Tfeti};
+use signorini_tfeti::internal::CopyStiffness;
+use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 

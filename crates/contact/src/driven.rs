@@ -8,7 +8,8 @@ use crate::error::ContactError;
 use crate::magnitude::rounding;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
-use signorini_tfeti::{NodeSupport, PrescribedPoint, prescribed_points};
+use signorini_tfeti::internal::{PrescribedPoint, prescribed_points};
+use signorini_tfeti::NodeSupport;
 
 /// Depth above this share of the displacement or the gap counts.
 const RELATIVE: f64 = 1e-9;

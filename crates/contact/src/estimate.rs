@@ -58,7 +58,7 @@ use crate::clock::Analysis;
 use crate::plan::{Effects, FrictionKind};
 use crate::settings::{Method, Settings};
 use signorini_fem_mesh::Hooke;
-use signorini_tfeti::{Forecast, Rate};
+use signorini_tfeti::internal::{Forecast, Rate};
 
 /// Estimated cost of a run; made before any work.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,7 +15,7 @@
 use crate::level::StepProblem;
 use crate::model::{Model, Tangential};
 use nalgebra::{DMatrix, DVector};
-use signorini_tfeti::Dependency;
+use signorini_tfeti::internal::Dependency;
 
 /// A point within rounding of its bound.
 const AT_BOUND: f64 = 1.0 - 1e-9;

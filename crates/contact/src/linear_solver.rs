@@ -9,7 +9,8 @@ use crate::report::StepReport;
 use crate::settings::Settings;
 use crate::solver::{Iterate, level_status};
 use signorini_qp::{CgWorkspace, Tolerance, projected_cg};
-use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
+use signorini_tfeti::internal::CoarseScratch;
+use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// Estimated error of the multipliers, over the tolerance of a level, at which conjugate gradients stop: no condition but continuity
 /// is left to them, and what copies differ by, over the largest displacement, is a thirtieth of that error and less. The certificate tells

@@ -120,7 +120,7 @@ pub(crate) struct Model {
     /// Stiffness of the support rows, made if supports move.
     support_stiffness: std::sync::OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
-    copies: std::sync::OnceLock<signorini_tfeti::CopyStiffness>,
+    copies: std::sync::OnceLock<signorini_tfeti::internal::CopyStiffness>,
     /// Patches of the estimate of the discretisation error; made when it is first asked for.
     pub(crate) recovery: std::sync::OnceLock<StrainRecovery>,
 }
@@ -147,7 +147,7 @@ impl Model {
     }
 
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales certificates.
-    pub(crate) fn copies(&self) -> &signorini_tfeti::CopyStiffness {
+    pub(crate) fn copies(&self) -> &signorini_tfeti::internal::CopyStiffness {
         self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
     }
 

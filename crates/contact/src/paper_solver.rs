@@ -14,7 +14,8 @@ use signorini_qp::{
     HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
     SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
 };
-use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
+use signorini_tfeti::internal::CoarseScratch;
+use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// Safety factor between the tolerance of a level and those of SMALSE.
 const SAFETY: f64 = 0.05;

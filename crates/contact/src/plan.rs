@@ -11,7 +11,8 @@ use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use crate::slender::slenderness;
 use signorini_fem_mesh::Decomposition;
-use signorini_tfeti::{Directions, Forecast, Rate};
+use signorini_tfeti::internal::{Forecast, Rate};
+use signorini_tfeti::Directions;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 

@@ -12,7 +12,7 @@ use crate::model::supports;
 use crate::scene::Scene;
 use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_qp::vector;
-use signorini_tfeti::prescribed_points;
+use signorini_tfeti::internal::prescribed_points;
 
 /// Refuses what [`Simulation::new`](crate::Simulation::new) would refuse of materials, supports, contact, loads and laws, with the same
 /// error; not subdomains that cannot be factored.

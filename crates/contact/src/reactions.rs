@@ -8,7 +8,8 @@ use crate::error::ContactError;
 use crate::level::StepProblem;
 use crate::model::{ConstrainedPoint, Model, supports};
 use crate::point_state::PointState;
-use signorini_tfeti::{NodeSupport, PrescribedDirection, prescribed_directions};
+use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
+use signorini_tfeti::NodeSupport;
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
