@@ -7,18 +7,19 @@
 //! |---|---|---|
 //! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent ones are removed and reported, or kept |
 //! | `F = B K+ B^T` | [`DualOperator`] | a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
-//! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium of the subdomains, `G lambda = e` |
+//! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium: `G lambda = e` |
 //! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, with row weights if wanted |
 //! | `C`, `C C^T = I` | [`OrthonormalCoarse`] | rows that span those of `G`, an [`Equality`](signorini_qp::Equality) |
 //! | `alpha` | [`CoarseFactor::amplitudes`] | rigid amplitudes in `u = K+ (f + B^T lambda) + R alpha` (5.27) |
 //!
-//! and two preconditioners ([`Tfeti::lumped`], [`Tfeti::dirichlet`]). The dual problem is: minimise
-//! `1/2 lambda^T F lambda - lambda^T d`, `d = c - B K+ f`, subject to `G lambda = e` and the bounds of the contact rows.
-//! Multipliers are forces on the body; a normal multiplier is at most zero. The residual of the rows is
-//! `B u - c = F lambda - d + G^T alpha`.
+//! and two preconditioners ([`Tfeti::lumped`], [`Tfeti::dirichlet`]). The dual problem is: minimise `1/2 lambda^T F
+//! lambda - lambda^T d`, `d = c - B K+ f`, subject to `G lambda = e` and the bounds of the contact rows. Multipliers
+//! are forces on the body; a normal multiplier is at most zero. The residual of the rows is `B u - c = F lambda - d +
+//! G^T alpha`.
 //!
-//! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products run
-//! in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of threads.
+//! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products
+//! run in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of
+//! threads.
 //!
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};

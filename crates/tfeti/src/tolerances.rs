@@ -18,9 +18,11 @@ pub(crate) const AGREEING: f64 = 1e-7;
 pub(crate) const ANGLE: f64 = 1e-6;
 /// Pivots and eigenvalues of small matrices, relative to the largest.
 pub(crate) const PIVOT: f64 = 1e-13;
-/// Pivots of coarse factors and of matrices from which directions are taken out, relative to the largest diagonal entry.
+/// Pivots of coarse factors and of matrices from which directions are taken out, relative to the largest diagonal
+/// entry.
 pub(crate) const SINGULAR: f64 = 1e-14;
-/// Eigenvalues of free motions, relative to the largest: a support of extent `h` on a body of length `L` gives `(h/L)^2`.
+/// Eigenvalues of free motions, relative to the largest: a support of extent `h` on a body of length `L` gives
+/// `(h/L)^2`.
 pub(crate) const FREE: f64 = 1e-11;
 /// Components of a free motion that is described, relative to its length.
 pub(crate) const MOVING: f64 = 1e-9;
@@ -30,8 +32,8 @@ pub(crate) const WORK: f64 = 1e-9;
 pub(crate) const SUPPORTED: f64 = 0.01;
 /// Error in the equality of a solve with a factor in single precision with which steps are projected, relative.
 pub(crate) const ROUNDED_STEP: f64 = 1e-4;
-/// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular mesh,
-/// 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
+/// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular
+/// mesh, 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
 pub(crate) const ALIKE: f64 = 4.0;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
@@ -65,8 +67,8 @@ pub(crate) const PARTS: usize = 64;
 pub(crate) const BLOCKS: usize = 2048;
 pub(crate) const GLOB_TASK: u64 = 4096;
 pub(crate) const SUBDOMAIN_TASK: usize = 512;
-/// Coarse solves between two changes of the active set; seconds for a number that they read, for an operation of a change
-/// and for a number of a sparse factor over its mean column.
+/// Coarse solves between two changes of the active set; seconds for a number that they read, for an operation of a
+/// change and for a number of a sparse factor over its mean column.
 pub(crate) const SOLVES: f64 = 12.0;
 pub(crate) const READ: f64 = 0.4e-9;
 pub(crate) const OPERATION: f64 = 0.04e-9;

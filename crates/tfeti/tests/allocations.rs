@@ -1,7 +1,7 @@
 //! With work memory made before, products, preconditioners and projectors allocate nothing.
 //!
-//! The counter sees the calling thread only, and a parallel loop may make it wait on others: the systems are small enough
-//! that everything stays on the calling thread.
+//! The counter sees the calling thread only, and a parallel loop may make it wait on others: the systems are small
+//! enough that everything stays on the calling thread.
 
 use common::{Brick, build, noise};
 #[path = "it/common.rs"]

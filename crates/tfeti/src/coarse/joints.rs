@@ -1,7 +1,7 @@
 //! Which subdomains the interface joins rigidly, and what it does to those that it joins by an edge or a node only.
 //!
-//! Two subdomains that share three nodes not on one line move as one body. Those that share less are bodies of their own,
-//! held together by the interface rows of the nodes that they share: a hinge or a ball joint.
+//! Two subdomains that share three nodes not on one line move as one body. Those that share less are bodies of their
+//! own, held together by the interface rows of the nodes that they share: a hinge or a ball joint.
 
 use crate::linalg::vec3::{cross, norm, sub};
 use crate::rows::gluing::{CopyEntry, Gluing};

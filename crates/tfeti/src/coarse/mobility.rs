@@ -2,8 +2,8 @@
 //!
 //! The rank of `G W G^T` is decided here and not by small pivots: the interface rows join subdomains to bodies, and a
 //! vector of its null space is a rigid motion of bodies that all other rows of positive weight leave alone. That is an
-//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is. Subdomains that
-//! share an edge or a node only are bodies of their own: the rows between them leave a hinge free.
+//! eigenvalue problem of six unknowns a body, with a clear gap however long or finely divided the body is. Subdomains
+//! that share an edge or a node only are bodies of their own: the rows between them leave a hinge free.
 
 use crate::coarse::joints::{joint_rows, rigid_pairs};
 use crate::rows::gluing::{CopyEntry, Gluing};
@@ -30,7 +30,8 @@ pub struct FreeMotion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BodyMotion {
-    /// Body number; bodies are numbered by their first subdomain. Parts of a body that hinges join move each in their way.
+    /// Body number; bodies are numbered by their first subdomain. Parts of a body that hinges join move each in their
+    /// way.
     pub body: usize,
     /// The first subdomain of the body, or of its part.
     pub subdomain: usize,

@@ -91,37 +91,31 @@ impl Coarse {
     }
 
     /// Number of rows of `G`: six per subdomain.
-    #[must_use]
     pub fn rows(&self) -> usize {
         6 * self.0.subdomains.count()
     }
 
     /// Length of dual vectors.
-    #[must_use]
     pub fn dim(&self) -> usize {
         self.0.map.rows()
     }
 
     /// Number of bodies: sets of subdomains that interface rows join, be it by a hinge.
-    #[must_use]
     pub fn bodies(&self) -> usize {
         self.0.mobility.bodies()
     }
 
     /// The body of each subdomain; bodies are numbered by their first subdomains.
-    #[must_use]
     pub fn body_of(&self) -> &[u32] {
         self.0.mobility.body_of()
     }
 
     /// Numbers stored for a factor of `G W G^T`.
-    #[must_use]
     pub fn factor_size(&self) -> usize {
         self.0.symbolic.stored()
     }
 
     /// Creates the work memory.
-    #[must_use]
     pub fn scratch(&self) -> CoarseScratch {
         let rows = self.rows();
         CoarseScratch {

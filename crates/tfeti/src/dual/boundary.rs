@@ -1,10 +1,10 @@
 //! Gather tables between dual vectors and the boundary unknowns of all subdomains.
 //!
 //! A *boundary vector* holds the components at the boundary nodes of all members of all classes, in panels of up to
-//! `PANEL` members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at
-//! `(3 b + c) w + m` of the panel. With the members next to one another, products with a small matrix run at full speed and
-//! loops over nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather
-//! (each result is summed by one task in a fixed order), so results do not depend on the number of threads.
+//! `PANEL` members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at `(3 b + c) w +
+//! m` of the panel. With the members next to one another, products with a small matrix run at full speed and loops over
+//! nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather (each
+//! result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
 use crate::linalg::both;
 use crate::tolerances::{BLOCKS, LARGE};

@@ -99,8 +99,8 @@ impl BoundaryMap {
         }
     }
 
-    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work. The cuts depend on
-    /// the problem only, not on the number of threads.
+    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work. The cuts depend
+    /// on the problem only, not on the number of threads.
     fn fill_panels(&mut self) {
         let mut work = Vec::new();
         for (class, boundary) in self

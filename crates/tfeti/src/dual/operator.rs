@@ -51,7 +51,6 @@ impl DualOperator {
     }
 
     /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
-    #[must_use]
     pub fn flops(&self) -> u64 {
         product_flops(&self.map, &self.inverses)
     }

@@ -1,3 +1,13 @@
+//! Linear algebra of single matrices: nothing here knows of subdomains or of `B`.
+//!
+//! Uses no other room. `dense` and `sparse` are the only files that name the library behind them (faer). In go matrices
+//! by columns, out come factors, inverses and products with work memory of the caller; everything runs on the calling
+//! thread.
+//!
+//! `elimination` finds the pattern of a factor, `supernodes` and `tiles` store one for solves with one right-hand side
+//! (see [`split`](crate::projector::split) for what they are worth), `block_rows` multiplies one matrix with many
+//! vectors.
+
 pub(crate) mod block_rows;
 pub(crate) mod dense;
 pub(crate) mod elimination;

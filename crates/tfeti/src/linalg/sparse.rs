@@ -34,7 +34,8 @@ impl Columns {
         }
     }
 
-    /// The pattern of full blocks of `unit` unknowns, all values zero, from the neighbours of each block, which are sorted.
+    /// The pattern of full blocks of `unit` unknowns, all values zero, from the neighbours of each block, which are
+    /// sorted.
     pub(crate) fn of_blocks(graph: &mut [Vec<u32>], unit: usize) -> Self {
         let (mut pointers, mut rows) = (vec![0], Vec::new());
         for list in &mut *graph {
@@ -91,9 +92,9 @@ pub(crate) enum FactorError {
 pub(crate) struct Symbolic(Arc<SymbolicCholesky<usize>>);
 
 impl Symbolic {
-    /// Analyses the lower triangle of a pattern of full blocks of `block` unknowns, ordered by approximate minimum degree
-    /// of the blocks. The supernodal form is forced: it is the faster one from about 600 unknowns on, and the only one
-    /// with half solves.
+    /// Analyses the lower triangle of a pattern of full blocks of `block` unknowns, ordered by approximate minimum
+    /// degree of the blocks. The supernodal form is forced: it is the faster one from about 600 unknowns on, and the
+    /// only one with half solves.
     pub(crate) fn new(pattern: &Columns, block: usize) -> Result<Self, FactorError> {
         debug_assert!(block > 0 && pattern.dim.is_multiple_of(block));
         let (pointers, rows) = quotient(pattern, block);

@@ -1,9 +1,10 @@
 //! Triangular solves with groups of columns of one pattern.
 //!
-//! One right-hand side at a time, so the time is that of reading the factor once in each direction. The columns of a group
-//! are stored in panels of up to [`PANEL`], each a run of tiles in the order in which both directions read it. The factor
-//! is `L D L^T` with unit diagonal blocks: the first rows of a panel's tiles are `D^-1`, the others are `-L`. Elimination
-//! then is one product with all tiles, substitution one with their transposes, and no tile is left half empty in between.
+//! One right-hand side at a time, so the time is that of reading the factor once in each direction. The columns of a
+//! group are stored in panels of up to [`PANEL`], each a run of tiles in the order in which both directions read it.
+//! The factor is `L D L^T` with unit diagonal blocks: the first rows of a panel's tiles are `D^-1`, the others are
+//! `-L`. Elimination then is one product with all tiles, substitution one with their transposes, and no tile is left
+//! half empty in between.
 
 use crate::linalg::tiles::{
     LANES, PANEL, Stored, Tile, copy, eliminate, eliminate_alike, panel, substitute,
@@ -12,8 +13,8 @@ use crate::linalg::tiles::{
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
-/// Pattern of groups of columns. Rows are counted from the first of these columns on; rows beyond them (*behind*) belong
-/// to others. Rows below a group come in units of `unit` consecutive ones.
+/// Pattern of groups of columns. Rows are counted from the first of these columns on; rows beyond them (*behind*)
+/// belong to others. Rows below a group come in units of `unit` consecutive ones.
 #[derive(Debug, Clone)]
 pub(crate) struct Supernodes {
     unit: usize,

@@ -1,8 +1,8 @@
 //! The lumped and the Dirichlet preconditioner.
 //!
 //! Both are `B_D S B_D^T` with a stiffness `S` on the boundary nodes: the block `K_bb` (lumped) or the Schur complement
-//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D` distributes
-//! forces by stiffness, see [`Scaling`].
+//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D`
+//! distributes forces by stiffness, see [`Scaling`].
 
 use crate::dual::boundary::BoundaryMap;
 use crate::dual::operator::multiply_members;

@@ -6,15 +6,16 @@ use crate::system::tfeti::Tfeti;
 use crate::tolerances::{DEPENDENT, GROUP_ROWS, SINGULAR};
 use signorini_qp::{ActiveSetView, Freedom};
 
-/// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or to
-/// a contact pair) are coupled by a small matrix, which is inverted once.
+/// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or
+/// to a contact pair) are coupled by a small matrix, which is inverted once.
 #[derive(Debug)]
 pub(crate) struct Scaling {
     /// `1 / D` of each boundary copy, relative to the stiffest.
     weights: Vec<f64>,
     /// Groups with contact or support rows.
     groups: Groups,
-    /// Groups of interface rows only: their components do not couple, and have the same matrix. First rows of the triples.
+    /// Groups of interface rows only: their components do not couple, and have the same matrix. First rows of the
+    /// triples.
     triples: Groups,
     /// Group of each contact row, and its place there.
     contact: Vec<(u32, u32)>,
@@ -155,10 +156,10 @@ impl Scaling {
         &self.weights
     }
 
-    /// The matrices of the groups without the directions that a face holds: with `H` these directions,
-    /// `N - N H (H^T N H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and
-    /// a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the copies. (Rows that
-    /// weigh the copies by stiffness do not need it, chained ones do.)
+    /// The matrices of the groups without the directions that a face holds: with `H` these directions, `N - N H (H^T N
+    /// H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and a soft
+    /// subdomain follows the soft one, but the stiff one where contact holds the mean of the copies. (Rows that weigh
+    /// the copies by stiffness do not need it, chained ones do.)
     pub(crate) fn on_face(&self, face: &ActiveSetView<'_>, groups: &mut Vec<f64>) {
         groups.clear();
         groups.extend_from_slice(&self.groups.inverses);

@@ -28,8 +28,8 @@ pub enum ActiveSetFactor {
 
 /// `G x = e` with projectors weighted by the free rows of the current active set, see [`EqualityProjector`].
 ///
-/// Repairs use the interface and support rows only, so they never touch a contact row. Motions of bodies that these rows do
-/// not stop are [loose](EqualityProjector::loose).
+/// Repairs use the interface and support rows only, so they never touch a contact row. Motions of bodies that these
+/// rows do not stop are [loose](EqualityProjector::loose).
 #[derive(Debug)]
 pub struct ActiveSetProjector {
     coarse: Coarse,
@@ -150,13 +150,12 @@ impl ActiveSetProjector {
     }
 
     /// The factor of the last active set.
-    #[must_use]
     pub fn factor(&self) -> &CoarseFactor {
         &self.active
     }
 
-    /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e` does
-    /// no work on them.
+    /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e`
+    /// does no work on them.
     ///
     /// # Panics
     /// If `e` does not have one entry for each row of `G`.

@@ -52,9 +52,9 @@ impl Coarse {
 
     /// Factor of `G W G^T`.
     ///
-    /// If some rigid motions of bodies escape all rows of positive weight (see [`CoarseFactor::free_motions`]), the matrix
-    /// is singular; it is then regularised such that solves apply a generalised inverse, exact for right-hand sides that
-    /// do no work on the free motions.
+    /// If some rigid motions of bodies escape all rows of positive weight (see [`CoarseFactor::free_motions`]), the
+    /// matrix is singular; it is then regularised such that solves apply a generalised inverse, exact for right-hand
+    /// sides that do no work on the free motions.
     ///
     /// # Errors
     /// [`TfetiError::Setting`] and [`TfetiError::Length`] for unusable weights, and those of [`factor`](Self::factor).
@@ -150,7 +150,6 @@ impl CoarseFactor {
     }
 
     /// Numbers stored.
-    #[must_use]
     pub fn stored(&self) -> usize {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.stored(),
@@ -159,25 +158,21 @@ impl CoarseFactor {
     }
 
     /// The coarse space.
-    #[must_use]
     pub fn coarse(&self) -> &Coarse {
         &self.0.coarse
     }
 
     /// Rigid motions that the rows of positive weight do not stop. Empty if `G W G^T` is regular.
-    #[must_use]
     pub fn free_motions(&self) -> &[FreeMotion] {
         &self.0.free
     }
 
     /// The weights; `None` for `W = I`.
-    #[must_use]
     pub fn weights(&self) -> Option<&RowWeights> {
         self.0.weights.as_ref()
     }
 
     /// Creates the work memory.
-    #[must_use]
     pub fn scratch(&self) -> CoarseScratch {
         let mut scratch = self.0.coarse.scratch();
         if let Factor::Split(base, _) = &self.0.factor {
@@ -216,8 +211,8 @@ impl CoarseFactor {
         matches!(self.0.factor, Factor::Split(..))
     }
 
-    /// How far `G W G^T` times a solve in single precision is from the right side, relative, for one in which all motions
-    /// are: what steps do to the equality.
+    /// How far `G W G^T` times a solve in single precision is from the right side, relative, for one in which all
+    /// motions are: what steps do to the equality.
     pub(super) fn single_error(&self, s: &mut CoarseScratch) -> f64 {
         let data = &self.0.coarse.0;
         let rows = 0..self.0.coarse.rows();
@@ -240,7 +235,8 @@ impl CoarseFactor {
         }
     }
 
-    /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if `None`.
+    /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if
+    /// `None`.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
         self.0.coarse.0.product(x, None, &mut s.first, &mut s.sides);
         if let Some(e) = e {
@@ -250,8 +246,8 @@ impl CoarseFactor {
         self.subtract_weighted(x, s);
     }
 
-    /// `to = from + c - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper than
-    /// [`project`](Self::project) where these are the contact rows.
+    /// `to = from + c - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper
+    /// than [`project`](Self::project) where these are the contact rows.
     pub fn compensate(&self, from: &[f64], change: &[f64], to: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
         let contact = change.len() == data.gluing.ranges().contact().end;
@@ -301,8 +297,8 @@ impl CoarseFactor {
         }
     }
 
-    /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha` the
-    /// amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
+    /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha`
+    /// the amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
     pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         if self.0.plain {
             keep(self.lines(), r, &mut s.pairs);

@@ -16,7 +16,6 @@ pub struct OrthonormalCoarse {
 
 impl CoarseFactor {
     /// The orthonormal basis of the row space of `G`. `None` if there are weights or free motions.
-    #[must_use]
     pub fn orthonormal(&self) -> Option<OrthonormalCoarse> {
         let (factor, cholesky) = (self.clone(), self.unweighted()?.clone());
         Some(OrthonormalCoarse { factor, cholesky })
@@ -41,7 +40,6 @@ impl OrthonormalCoarse {
     }
 
     /// The factor.
-    #[must_use]
     pub fn factor(&self) -> &CoarseFactor {
         &self.factor
     }

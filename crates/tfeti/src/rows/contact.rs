@@ -85,8 +85,8 @@ pub(super) fn contact_rows(
 
 /// Free part of the relative displacement of the sides of a point.
 struct Space {
-    /// Of each node its coefficient, signed, on the mean of its copies (as a unit vector of these), and the projector on
-    /// what supports leave free.
+    /// Of each node its coefficient, signed, on the mean of its copies (as a unit vector of these), and the projector
+    /// on what supports leave free.
     nodes: Vec<(f64, Matrix3<f64>)>,
     /// Scale of a row of length one if there are no supports.
     scale: f64,
@@ -168,8 +168,8 @@ impl Space {
         fixed.map(|k| eigen.eigenvectors.column(k).into()).collect()
     }
 
-    /// Whether supports move the point along the surface, or fix a direction that is neither normal nor tangential, so that
-    /// friction works where they act.
+    /// Whether supports move the point along the surface, or fix a direction that is neither normal nor tangential, so
+    /// that friction works where they act.
     fn is_dragged(&self, normal: &Vector3<f64>, fixed: &[Vector3<f64>]) -> bool {
         let moved = self.prescribed.iter().any(|(_, value)| {
             let value = Vector3::from(*value);

@@ -11,15 +11,14 @@ use std::collections::BTreeMap;
 pub struct Dependency {
     /// Rows of `B`, ascending.
     pub rows: Vec<usize>,
-    /// Orthonormal multipliers of these rows whose nodal forces cancel: what may be added to a solution as far as signs and
-    /// slip bounds allow.
+    /// Orthonormal multipliers of these rows whose nodal forces cancel: what may be added to a solution as far as signs
+    /// and slip bounds allow.
     pub vectors: Vec<Vec<f64>>,
 }
 
 impl Gluing {
-    /// What depends on what at the [dependent nodes](Self::dependent_nodes), group by group; groups whose rows turn out to be
-    /// independent are left out.
-    #[must_use]
+    /// What depends on what at the [dependent nodes](Self::dependent_nodes), group by group; groups whose rows turn out
+    /// to be independent are left out.
     pub fn dependencies(&self) -> Vec<Dependency> {
         let groups = self.node_groups();
         let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();

@@ -1,8 +1,8 @@
 //! The gluing matrix `B = (N, T, B_int, B_Dir)` of the torn body.
 //!
-//! It is stored by what its rows do: an *interface block* is three rows (x, y, z) that combine the copies of one node with
-//! the same coefficients; every other row, a *nodal row*, is a list of (copy, vector). Supports and contact act on the mean
-//! of the copies, the interface rows on its complement, so the rows are independent by construction, except at
+//! It is stored by what its rows do: an *interface block* is three rows (x, y, z) that combine the copies of one node
+//! with the same coefficients; every other row, a *nodal row*, is a list of (copy, vector). Supports and contact act on
+//! the mean of the copies, the interface rows on its complement, so the rows are independent by construction, except at
 //! [dependent nodes](Gluing::dependent_nodes); what else would depend is reported in [`Gluing::removed`].
 
 use super::build::Builder;
@@ -45,8 +45,8 @@ pub struct ContactRows {
     pub point: usize,
     /// The normal row.
     pub row: usize,
-    /// The normal row is `scale` times the normal displacement; the force of the point is `scale * lambda`, the offset of
-    /// the row `scale * gap`. The square root of the number of copies at an unsupported node.
+    /// The normal row is `scale` times the normal displacement; the force of the point is `scale * lambda`, the offset
+    /// of the row `scale * gap`. The square root of the number of copies at an unsupported node.
     pub scale: f64,
     /// The tangential rows.
     pub tangential: TangentialRows,
@@ -114,7 +114,8 @@ impl Gluing {
     /// orthonormal contact and support rows, its default all alike. `nodes` is the number of mesh nodes.
     ///
     /// # Errors
-    /// [`TfetiError`] for bad supports or contact points, and where `nodes` or `stiffness` belong to another decomposition.
+    /// [`TfetiError`] for bad supports or contact points, and where `nodes` or `stiffness` belong to another
+    /// decomposition.
     pub fn new(
         decomposition: &Decomposition,
         nodes: usize,
@@ -175,40 +176,34 @@ impl Gluing {
     }
 
     /// Where each kind of row stands.
-    #[must_use]
     pub fn ranges(&self) -> &RowRanges {
         &self.ranges
     }
 
     /// Number of rows of `B`: the length of dual vectors. `B` has full rank, except at [dependent
     /// nodes](Self::dependent_nodes).
-    #[must_use]
     pub fn rows_full_rank(&self) -> usize {
         self.ranges.total()
     }
 
     /// Number of rows as the paper counts them: three for each additional copy of a node, three for each supported node
     /// and three (without friction one) for each contact point, supported or not.
-    #[must_use]
     pub fn rows_as_paper(&self) -> usize {
         self.paper_rows
     }
 
     /// Whether `B B^T = I`.
-    #[must_use]
     pub fn is_orthonormal(&self) -> bool {
         self.orthonormal
     }
 
-    /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a support
-    /// drags along an obstacle with friction, where the friction force is wanted although the support takes it.
-    #[must_use]
+    /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a
+    /// support drags along an obstacle with friction, where the friction force is wanted although the support takes it.
     pub fn dependent_nodes(&self) -> &[u32] {
         &self.dependent
     }
 
     /// Whether a node is one of the [dependent nodes](Self::dependent_nodes).
-    #[must_use]
     pub fn is_dependent(&self, node: u32) -> bool {
         self.dependent.binary_search(&node).is_ok()
     }
@@ -224,13 +219,11 @@ impl Gluing {
     }
 
     /// The contact points that have a normal row, in the order of the normal rows.
-    #[must_use]
     pub fn contact(&self) -> &[ContactRows] {
         &self.contact
     }
 
     /// Rows left out because they would depend on others, with the reason.
-    #[must_use]
     pub fn removed(&self) -> &[RemovedRow] {
         &self.removed
     }
@@ -240,13 +233,11 @@ impl Gluing {
     /// They belong to support rows and, where a support also moves a contact point, to contact rows: the offset of a
     /// contact row is `scale * (gap or slip) + sum factor * value`, and the physical displacement is
     /// `(B u - sum factor * value) / scale`. Empty for a case that does not exist.
-    #[must_use]
     pub fn prescribed(&self, case: usize) -> &[(u32, f64)] {
         self.prescribed.get(case).map_or(&[], Vec::as_slice)
     }
 
     /// Mesh node to which a row belongs (for a contact row the first of its side). `None` beyond the last row.
-    #[must_use]
     pub fn node(&self, row: usize) -> Option<u32> {
         let range = &self.ranges.interface;
         if range.contains(&row) {
@@ -257,7 +248,6 @@ impl Gluing {
     }
 
     /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.
-    #[must_use]
     pub fn row(&self, row: usize) -> Vec<(usize, usize, f64)> {
         let (range, mut out) = (&self.ranges.interface, Vec::new());
         let mut push = |subdomain: u32, local: u32, c: usize, value: f64| {
@@ -278,9 +268,8 @@ impl Gluing {
     }
 
     /// What a row does to a displacement that is the same everywhere: the sum of its coefficients by component. For a
-    /// support row, and a contact row against a rigid obstacle, that is its direction in space times its scale; a contact
-    /// row between two sides, and an interface row, give zero.
-    #[must_use]
+    /// support row, and a contact row against a rigid obstacle, that is its direction in space times its scale; a
+    /// contact row between two sides, and an interface row, give zero.
     pub fn direction(&self, row: usize) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (_, dof, coefficient) in self.row(row) {

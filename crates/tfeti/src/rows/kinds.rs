@@ -74,25 +74,21 @@ pub struct RowRanges {
 
 impl RowRanges {
     /// All tangential rows.
-    #[must_use]
     pub fn tangential(&self) -> Range<usize> {
         self.discs.start..self.intervals.end
     }
 
     /// All contact rows: normal and tangential.
-    #[must_use]
     pub fn contact(&self) -> Range<usize> {
         self.normal.start..self.intervals.end
     }
 
     /// Number of rows of `B`.
-    #[must_use]
     pub fn total(&self) -> usize {
         self.dirichlet.end
     }
 
     /// Kind of a row; `None` beyond the last.
-    #[must_use]
     pub fn kind(&self, row: usize) -> Option<RowKind> {
         if self.normal.contains(&row) {
             Some(RowKind::Normal)

@@ -9,8 +9,8 @@ use signorini_fem_mesh::SurfaceFrame;
 /// One side of a contact constraint: nodes with weights that sum to one. It moves by the weighted mean of their
 /// displacements.
 ///
-/// A side of node-to-node contact is the list of length one. Weights may be negative, as those of dual shape functions and
-/// of quadratic facets are.
+/// A side of node-to-node contact is the list of length one. Weights may be negative, as those of dual shape functions
+/// and of quadratic facets are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Side(Vec<(u32, f64)>);
 
@@ -28,7 +28,6 @@ impl Side {
     }
 
     /// The nodes and their weights.
-    #[must_use]
     pub fn nodes(&self) -> &[(u32, f64)] {
         &self.0
     }
@@ -159,8 +158,8 @@ impl ContactConstraint {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ContactConstraints {
-    /// A node in an edge or a corner appears several times, with other normals or partners; rows of such a node may depend
-    /// on one another.
+    /// A node in an edge or a corner appears several times, with other normals or partners; rows of such a node may
+    /// depend on one another.
     pub points: Vec<ContactConstraint>,
 }
 

@@ -19,7 +19,6 @@ pub enum Directions {
 
 impl Directions {
     /// The directions as vectors, not normalised.
-    #[must_use]
     pub fn vectors(&self) -> Vec<[f64; 3]> {
         const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         match self {
@@ -36,8 +35,8 @@ impl Directions {
 /// fixed directions counts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// Number of the displacement case. Cases are numbered from 0, below the number of supports; several supports may belong to
-    /// one case.
+    /// Number of the displacement case. Cases are numbered from 0, below the number of supports; several supports may
+    /// belong to one case.
     pub case: u32,
     /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
     pub values: Vec<[f64; 3]>,

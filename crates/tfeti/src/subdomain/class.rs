@@ -31,7 +31,6 @@ pub struct Classes {
 
 impl Classes {
     /// The classes, in order of their first member.
-    #[must_use]
     pub fn classes(&self) -> &[Class] {
         &self.classes
     }
@@ -40,21 +39,19 @@ impl Classes {
     ///
     /// # Panics
     /// If there is no such subdomain.
-    #[must_use]
     pub fn place(&self, subdomain: usize) -> (usize, usize) {
         let (class, member) = self.place[subdomain];
         (class as usize, member as usize)
     }
 
     /// Number of subdomains.
-    #[must_use]
     pub fn subdomains(&self) -> usize {
         self.place.len()
     }
 
-    /// Finds the classes: each subdomain its own, or those of translates. Two subdomains share one if their local connectivity is identical, their elements have equal
-    /// Hooke tensors, and their node positions agree up to a translation within `1e-12` of their size (plus the
-    /// rounding of the coordinates themselves).
+    /// Finds the classes: each subdomain its own, or those of translates. Two subdomains share one if their local
+    /// connectivity is identical, their elements have equal Hooke tensors, and their node positions agree up to a
+    /// translation within `1e-12` of their size (plus the rounding of the coordinates themselves).
     ///
     /// # Errors
     /// [`TfetiError::Material`] if a region has none.

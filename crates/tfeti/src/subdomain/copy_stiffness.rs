@@ -8,8 +8,9 @@ use signorini_fem_mesh::{Decomposition, NodeCopy};
 /// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
 ///
 /// Rows that act on a node of several subdomains take the mean of its copies with these weights. Between a stiff and a
-/// soft subdomain they so follow the stiff one, to which gluing takes the soft copy, and the errors of gluing, large in the
-/// soft one, stay out of them. Likewise between the bulk of a subdomain and the tip of a single tetrahedron of another one.
+/// soft subdomain they so follow the stiff one, to which gluing takes the soft copy, and the errors of gluing, large in
+/// the soft one, stay out of them. Likewise between the bulk of a subdomain and the tip of a single tetrahedron of
+/// another one.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CopyStiffness {
     /// First node of each subdomain in torn order.
@@ -82,7 +83,6 @@ impl CopyStiffness {
     }
 
     /// What the copy `k` in torn order counts in the mean of its node; only ratios matter.
-    #[must_use]
     pub fn weight(&self, k: usize) -> f64 {
         self.values.get(k).copied().unwrap_or(1.0)
     }

@@ -138,7 +138,8 @@ impl Size {
             }) as u64
     }
 
-    /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single ones.
+    /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single
+    /// ones.
     fn dense_product(&self, bandwidth: f64) -> f64 {
         let entries = (self.boundary * self.boundary) as f64;
         let arithmetic = 2.0 * entries * self.members as f64 / FLOPS;

@@ -28,8 +28,8 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// Counts. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from the
-    /// decomposition.
+    /// Counts. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from
+    /// the decomposition.
     ///
     /// # Errors
     /// [`TfetiError::Material`] for elements without material, and those of patterns too large to be analysed. A memory
@@ -105,7 +105,6 @@ impl Forecast {
     }
 
     /// Operations of a product with `F`.
-    #[must_use]
     pub fn product_flops(&self) -> f64 {
         self.classes
             .iter()
@@ -114,7 +113,6 @@ impl Forecast {
     }
 
     /// Operations to form all inverses.
-    #[must_use]
     pub fn setup_flops(&self) -> f64 {
         // solves with few columns run at less than half the speed of dense products
         let of = |c: &ClassReport| {
@@ -139,8 +137,8 @@ fn nodal_pattern(nodes: usize, tets: &[[u32; 4]]) -> Columns {
     Columns::of_blocks(&mut graph, 3)
 }
 
-/// Numbers and operations of the factor of the coarse matrix: subdomains that share a node are coupled, be it by a corner
-/// only.
+/// Numbers and operations of the factor of the coarse matrix: subdomains that share a node are coupled, be it by a
+/// corner only.
 fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorError> {
     let count = decomposition.subdomains().len() as u32;
     // the lower triangle, as the matrix is stored

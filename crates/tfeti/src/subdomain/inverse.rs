@@ -1,8 +1,9 @@
 //! Generalised inverses of the stiffness matrix of one class.
 //!
-//! `K` plus six springs on three nodes (the 3-2-1 rule) is positive definite, and its inverse `K^-` is a generalised inverse
-//! of `K`: the springs stop the rigid motions and carry no force when the loads are in balance. Between two projections
-//! `I - R R^T` it becomes the Moore-Penrose inverse. Products with many columns use the dense block of it on the boundary.
+//! `K` plus six springs on three nodes (the 3-2-1 rule) is positive definite, and its inverse `K^-` is a generalised
+//! inverse of `K`: the springs stop the rigid motions and carry no force when the loads are in balance. Between two
+//! projections `I - R R^T` it becomes the Moore-Penrose inverse. Products with many columns use the dense block of it
+//! on the boundary.
 
 use crate::error::TfetiError;
 use crate::linalg::dense;

@@ -118,14 +118,12 @@ impl Kernel {
     }
 
     /// Number of nodes.
-    #[must_use]
     pub fn nodes(&self) -> usize {
         self.arms.len()
     }
 
     /// Root mean square distance of the nodes from their mean, in metres. Rotations are measured by the displacement
     /// at this distance.
-    #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -138,7 +136,6 @@ impl Kernel {
     ///
     /// # Panics
     /// If there is no such node.
-    #[must_use]
     pub fn node_modes(&self, node: usize) -> [[f64; 6]; 3] {
         let mut out = [[0.0; 6]; 3];
         for mode in 0..6 {
@@ -155,7 +152,6 @@ impl Kernel {
     }
 
     /// The whole `R`, column-major, `3 nodes x 6`.
-    #[must_use]
     pub fn modes(&self) -> Vec<f64> {
         let dim = 3 * self.nodes();
         let mut out = vec![0.0; 6 * dim];
@@ -198,7 +194,6 @@ impl Kernel {
     }
 
     /// `R^T f` for a local vector of length `3 nodes`.
-    #[must_use]
     pub fn transpose_times(&self, f: &[f64]) -> [f64; 6] {
         let mut wrench = [0.0; 6];
         for (arm, force) in self.arms.iter().zip(f.chunks_exact(3)) {

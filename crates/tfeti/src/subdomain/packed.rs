@@ -18,8 +18,8 @@ pub(crate) struct PackedFactor {
     tiles: Vec<Tile>,
 }
 
-/// Groups blocks in the order of elimination where that saves time. The factor at hand has larger groups, which serve many
-/// columns at once but hold more zeros.
+/// Groups blocks in the order of elimination where that saves time. The factor at hand has larger groups, which serve
+/// many columns at once but hold more zeros.
 fn group(matrix: &Columns, order: &[u32], unit: usize) -> Vec<Group> {
     let (pointers, rows) = quotient(matrix, unit);
     let neighbours = |pair: &[usize]| rows[pair[0]..pair[1]].iter().map(|&r| r as u32).collect();

@@ -153,7 +153,6 @@ impl Tfeti {
     }
 
     /// Sum of loads: `sum factor * force`.
-    #[must_use]
     pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
         let mut force = vec![0.0; self.torn_dim()];
         for (factor, load) in loads {
@@ -194,7 +193,6 @@ impl Tfeti {
     ///
     /// # Panics
     /// If `u` is shorter than a torn vector.
-    #[must_use]
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
         let mut sums = vec![0.0; self.nodes];
@@ -215,7 +213,6 @@ impl Tfeti {
     ///
     /// # Panics
     /// If `u` is shorter than a torn vector.
-    #[must_use]
     pub fn jump(&self, u: &[f64]) -> Jump {
         let mean = self.nodal_mean(u);
         let mut jump = Jump {
@@ -254,7 +251,6 @@ impl Tfeti {
     }
 
     /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.
-    #[must_use]
     pub fn prescribed_offsets(&self, factors: &[(usize, f64)]) -> Vec<f64> {
         let mut c = vec![0.0; self.dual_dim()];
         for &(case, factor) in factors {

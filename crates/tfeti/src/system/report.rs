@@ -47,7 +47,6 @@ pub struct SetupReport {
 
 impl SetupReport {
     /// Seconds of the whole set-up.
-    #[must_use]
     pub fn seconds(&self) -> f64 {
         self.classes_seconds
             + self.gluing_seconds

@@ -15,11 +15,11 @@ enum Compliance<'a> {
 }
 
 impl Tfeti {
-    /// `out[k] = b K+ bᵀ` for the rows `b` of `B` in `rows`, in m/N: the diagonal of `F`, `K+` the Moore-Penrose inverse.
-    /// Exact for subdomains with a dense inverse; for others a lower estimate from a few of their nodes.
+    /// `out[k] = b K+ bᵀ` for the rows `b` of `B` in `rows`, in m/N: the diagonal of `F`, `K+` the Moore-Penrose
+    /// inverse. Exact for subdomains with a dense inverse; for others a lower estimate from a few of their nodes.
     ///
-    /// Over the inverse of [`row_stiffness`](Self::row_stiffness) it is 1 to 4 in a well shaped, compressible body. It is
-    /// large where single nodes can hardly move with all others held: near incompressibility, and in thin elements.
+    /// Over the inverse of [`row_stiffness`](Self::row_stiffness) it is 1 to 4 in a well shaped, compressible body. It
+    /// is large where single nodes can hardly move with all others held: near incompressibility, and in thin elements.
     ///
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_compliance(&self, rows: Range<usize>, out: &mut [f64]) {
@@ -126,9 +126,8 @@ impl Tfeti {
     }
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one. `None` where all copies
-    /// [count alike](Self::copy_stiffness).
-    #[must_use]
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one. `None` where all
+    /// copies [count alike](Self::copy_stiffness).
     pub fn row_weights(&self) -> Option<Vec<f64>> {
         if self.copy_stiffness().is_plain() {
             return None;

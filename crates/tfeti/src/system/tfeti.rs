@@ -74,68 +74,58 @@ impl Tfeti {
     }
 
     /// The rows of `B`.
-    #[must_use]
     pub fn gluing(&self) -> &Gluing {
         &self.parts.gluing
     }
 
-    /// How the copies of a node count in contact and support rows: by their stiffness in a body of several materials, and
-    /// where that of the copies of a node differs by more than a factor of four, as in ragged cuts; alike otherwise.
-    #[must_use]
+    /// How the copies of a node count in contact and support rows: by their stiffness in a body of several materials,
+    /// and where that of the copies of a node differs by more than a factor of four, as in ragged cuts; alike
+    /// otherwise.
     pub fn copy_stiffness(&self) -> &CopyStiffness {
         &self.stiffness
     }
 
     /// The stiffness of the copies of each node, whether or not they differ.
-    #[must_use]
     pub fn all_copy_stiffness(&self) -> CopyStiffness {
         CopyStiffness::new(&self.parts.subdomains)
     }
 
     /// The classes of subdomains.
-    #[must_use]
     pub fn classes(&self) -> &Classes {
         &self.parts.subdomains.classes
     }
 
     /// `F = B K+ B^T`.
-    #[must_use]
     pub fn dual(&self) -> &DualOperator {
         &self.dual
     }
 
     /// `G = R^T B^T`.
-    #[must_use]
     pub fn coarse(&self) -> &Coarse {
         &self.coarse
     }
 
     /// The factor of `G G^T`. If its free motions are not empty, no row stops the body from moving that way.
-    #[must_use]
     pub fn coarse_factor(&self) -> &CoarseFactor {
         &self.factor
     }
 
     /// What was built, how large it is and how long it took.
-    #[must_use]
     pub fn report(&self) -> &SetupReport {
         &self.report
     }
 
     /// Number of subdomains.
-    #[must_use]
     pub fn subdomains(&self) -> usize {
         self.parts.subdomains.count()
     }
 
     /// Length of dual vectors.
-    #[must_use]
     pub fn dual_dim(&self) -> usize {
         self.parts.gluing.rows_full_rank()
     }
 
     /// Length of torn vectors: the paper's `n_p`.
-    #[must_use]
     pub fn torn_dim(&self) -> usize {
         3 * self.node_of.len()
     }
@@ -144,7 +134,6 @@ impl Tfeti {
     ///
     /// # Panics
     /// If there is no such subdomain.
-    #[must_use]
     pub fn torn_range(&self, subdomain: usize) -> Range<usize> {
         self.offsets[subdomain]..self.offsets[subdomain + 1]
     }
@@ -153,7 +142,6 @@ impl Tfeti {
     ///
     /// # Panics
     /// If there is no such subdomain.
-    #[must_use]
     pub fn kernel(&self, subdomain: usize) -> &Kernel {
         self.parts.subdomains.kernel(subdomain)
     }

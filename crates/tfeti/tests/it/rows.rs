@@ -117,8 +117,8 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
     assert!((action / info.scale + 3.0).abs() < 1e-13);
 }
 
-/// A node may have several partners, and meet obstacles besides; the same pair along the same normal is one too many, from
-/// whichever side it is seen.
+/// A node may have several partners, and meet obstacles besides; the same pair along the same normal is one too many,
+/// from whichever side it is seen.
 #[test]
 fn nodes_of_pairs_may_have_other_points() {
     let b = Brick::new(1, 2);
@@ -250,8 +250,8 @@ fn a_whole_body_has_no_interface_rows() {
     assert!(g.contact().iter().all(|c| down(&g.row(c.row))));
 }
 
-/// Between a stiff and a soft subdomain a contact row follows the stiff one, and gluing errors of the soft one stay out of
-/// it. Physical forces and gaps go with the sum of the coefficients.
+/// Between a stiff and a soft subdomain a contact row follows the stiff one, and gluing errors of the soft one stay out
+/// of it. Physical forces and gaps go with the sum of the coefficients.
 #[test]
 fn contact_rows_follow_the_stiff_copy() {
     let mut b = Brick::new(1, 2);

@@ -263,8 +263,8 @@ fn a_node_may_have_several_normals() {
     ));
 }
 
-/// A contact point whose node and partner are both moved along the normal moves by the difference, whether with one history
-/// or with two.
+/// A contact point whose node and partner are both moved along the normal moves by the difference, whether with one
+/// history or with two.
 #[test]
 fn the_motion_of_a_partner_counts_against_that_of_the_node() {
     let frame = SurfaceFrame::from_normal([0.0, 0.0, -1.0]).unwrap();

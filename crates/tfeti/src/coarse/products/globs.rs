@@ -1,8 +1,8 @@
 //! Rigid motions on the interface, glob by glob.
 //!
-//! On the nodes of a glob a rigid motion is `t + omega x q` with the arms `q` from their mean. The blocks of a run combine
-//! the subdomains with the same coefficients, so a run takes one combined motion and gives one wrench; only these are
-//! shifted to the centres of the subdomains. Globs of one shape share their arms.
+//! On the nodes of a glob a rigid motion is `t + omega x q` with the arms `q` from their mean. The blocks of a run
+//! combine the subdomains with the same coefficients, so a run takes one combined motion and gives one wrench; only
+//! these are shifted to the centres of the subdomains. Globs of one shape share their arms.
 
 use crate::dual::boundary::over_lanes;
 use crate::rows::gluing::{Glob, Gluing};

@@ -1,10 +1,9 @@
-//! Factor of `G W G^T` of which only the part that follows the weights of the contact rows is done anew.
+//! The factorisation along a tree of dense *fronts*: the columns of a node and what their elimination does to later
+//! unknowns.
 //!
-//! Weights of contact rows change with every face, and only the blocks of the subdomains that carry them change with
-//! them. The matrix is factored along a tree of dense *fronts* (the columns of a node and what their elimination does to
-//! later unknowns). Fronts that no changing block leads to are eliminated once; of the others the sum of what is steady is
-//! kept, and a new face adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut
-//! run on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
+//! Fronts that no changing block leads to are eliminated once; of the others the sum of what is steady is kept, and a
+//! new active set adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut run
+//! on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
 
 use crate::coarse::matrix::{CoarseMatrix, ModeTable};
 use crate::linalg::both;
@@ -134,8 +133,8 @@ impl SplitBase {
         self.pieces.iter().map(tiles).sum::<usize>() + self.base.iter().map(Vec::len).sum::<usize>()
     }
 
-    /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows` unknowns,
-    /// counted for one change of the active set and the solves until the next.
+    /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows`
+    /// unknowns, counted for one change of the active set and the solves until the next.
     pub(crate) fn pays(&self, rows: usize, stored: usize) -> bool {
         let whole = stored as f64;
         self.tree.cost() < SOLVES * READ * whole + SPARSE * whole * whole / rows.max(1) as f64

@@ -1,8 +1,8 @@
 //! Solves with a [split factor](crate::split_factor), in double or in single precision.
 //!
-//! A solve waits for the factor, which is read twice. Steps of an iteration, whose errors are relative to the step, read
-//! one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a solve is
-//! symmetric and exact for a matrix next to the one given.
+//! A solve waits for the factor, which is read twice. Steps of an iteration, whose errors are relative to the step,
+//! read one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a
+//! solve is symmetric and exact for a matrix next to the one given.
 
 use crate::linalg::both;
 use crate::linalg::tiles::{Digits, ShortTile, Tile};
@@ -11,8 +11,8 @@ use crate::projector::split::tiles::Reads;
 use crate::tolerances::SOLVE_READS;
 
 impl SplitBase {
-    /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for blocks
-    /// that change, and nothing steady is read on the way up.
+    /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for
+    /// blocks that change, and nothing steady is read on the way up.
     pub(crate) fn solve(
         &self,
         factor: &SplitFactor,
@@ -49,8 +49,8 @@ impl SplitBase {
         }
     }
 
-    /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If only
-    /// blocks that are `changing` differ from zero, steady ones are left out.
+    /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If
+    /// only blocks that are `changing` differ from zero, steady ones are left out.
     fn forward<T: Reads>(
         &self,
         r: usize,

@@ -248,8 +248,8 @@ impl CoarseTree {
     }
 }
 
-/// Reorders the own blocks of each region such that what leads to a block stands right before it: what stays first, then
-/// the larger last.
+/// Reorders the own blocks of each region such that what leads to a block stands right before it: what stays first,
+/// then the larger last.
 fn postorder(
     blocks: &[u32],
     patterns: &[Vec<u32>],
