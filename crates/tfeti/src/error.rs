@@ -160,6 +160,22 @@ impl std::fmt::Debug for TfetiError {
 }
 
 impl TfetiError {
+    /// An error if a vector does not have the length expected.
+    pub(crate) fn check_length(
+        what: &'static str,
+        found: usize,
+        expected: usize,
+    ) -> Result<(), Self> {
+        match found == expected {
+            true => Ok(()),
+            false => Err(Self::Length {
+                what,
+                expected,
+                found,
+            }),
+        }
+    }
+
     /// What a failure of a factorisation says of a subdomain.
     pub(crate) fn pattern(error: FactorError, subdomain: usize) -> Self {
         match error {

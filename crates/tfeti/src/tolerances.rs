@@ -66,7 +66,7 @@ pub(crate) const OPERATIONS: f64 = 3e5;
 pub(crate) const PARTS: usize = 64;
 pub(crate) const BLOCKS: usize = 2048;
 pub(crate) const GLOB_TASK: u64 = 4096;
-pub(crate) const SUBDOMAIN_TASK: usize = 512;
+pub(crate) const SUBDOMAIN_TASK: u64 = 512;
 /// Coarse solves between two changes of the active set; seconds for a number that they read, for an operation of a
 /// change and for a number of a sparse factor over its mean column.
 pub(crate) const SOLVES: f64 = 12.0;

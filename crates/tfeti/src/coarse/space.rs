@@ -179,14 +179,14 @@ impl CoarseData {
         out: &mut [f64],
         sides: &mut [Wrench],
     ) {
-        self.map
-            .wrenches(&self.tables, |s| self.kernel(s), x, weights, out, sides);
+        self.tables
+            .wrenches(&self.map, |s| self.kernel(s), x, weights, out, sides);
     }
 
     /// `out = G x` for a vector of which `contact` are the leading entries, the contact rows, and the others are zero.
     pub(crate) fn contact_product(&self, contact: &[f64], out: &mut [f64]) {
-        self.map
-            .contact_wrenches(&self.tables, |s| self.kernel(s), contact, out);
+        self.tables
+            .contact_wrenches(|s| self.kernel(s), contact, out);
     }
 
     /// Whether work on all interface rows is worth several threads.
@@ -221,8 +221,8 @@ impl CoarseData {
         other: impl Fn(usize, &mut f64, f64) + Sync,
     ) {
         self.motions(y, motions);
-        self.map
-            .for_motions(&self.tables, motions, x, contact, interface, other);
+        self.tables
+            .for_motions(&self.map, motions, x, contact, interface, other);
     }
 
     pub(crate) fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {

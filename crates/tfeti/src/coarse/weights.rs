@@ -36,15 +36,7 @@ impl RowWeights {
 
     /// Checks lengths, signs, and order and directions of the lines against the rows of `B`.
     pub(crate) fn validate(&self, ranges: &RowRanges) -> Result<(), TfetiError> {
-        let (expected, found) = (ranges.total(), self.diagonal.len());
-        if found != expected {
-            let what = "row weights";
-            return Err(TfetiError::Length {
-                what,
-                expected,
-                found,
-            });
-        }
+        TfetiError::check_length("row weights", self.diagonal.len(), ranges.total())?;
         let refuse = |name, value, range| Err(TfetiError::Setting { name, value, range });
         let mut all = self
             .diagonal

@@ -7,7 +7,8 @@
 //! result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
 use crate::linalg::both;
-use crate::tolerances::{BLOCKS, LARGE};
+use crate::linalg::sparse::{MemoryNeed, SolveMemory};
+use crate::tolerances::{BLOCKS, LARGE, PARTS};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -40,7 +41,7 @@ pub(crate) struct Lane {
 }
 
 /// The tables.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct BoundaryMap {
     pub(crate) classes: Vec<BoundaryClass>,
     pub(crate) panels: Vec<Panel>,
@@ -82,15 +83,28 @@ impl Place {
     }
 }
 
+/// Work memory of products by panels: a boundary vector, and what each lane needs.
+#[derive(Debug)]
+pub(crate) struct PanelScratch {
+    boundary: Vec<f64>,
+    lanes: Vec<LaneScratch>,
+}
+
+#[derive(Debug)]
+struct LaneScratch {
+    gathered: Vec<f64>,
+    full: Vec<f64>,
+    memory: Option<SolveMemory>,
+}
+
+/// What a product does to a panel.
+pub(crate) type PanelWork<'a> =
+    dyn Fn(&Panel, &mut [f64], &mut [f64], &mut [f64], Option<&mut SolveMemory>) + Sync + 'a;
+
 impl BoundaryMap {
     /// Length of dual vectors.
     pub(crate) fn rows(&self) -> usize {
         self.rows
-    }
-
-    /// Length of boundary vectors.
-    pub(crate) fn len(&self) -> usize {
-        3 * self.copies
     }
 
     pub(crate) fn bytes(&self) -> u64 {
@@ -100,11 +114,6 @@ impl BoundaryMap {
             + 2 * self.block_places.len();
         let numbers = self.spread_weights.len() + self.block_weights.len();
         (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
-    }
-
-    /// Node copies of a panel.
-    pub(crate) fn copies_of(&self, panel: &Panel) -> Range<usize> {
-        panel.copies.clone()
     }
 
     /// A number for each boundary copy, from its subdomain and local node.
@@ -120,22 +129,8 @@ impl BoundaryMap {
         out
     }
 
-    /// Panels of a lane with the part of the lane's boundary vector that belongs to each.
-    pub(crate) fn panels_of<'a>(
-        &'a self,
-        lane: &Lane,
-        y: &'a mut [f64],
-    ) -> impl Iterator<Item = (&'a Panel, &'a mut [f64])> {
-        let mut rest = y;
-        self.panels[lane.panels.clone()].iter().map(move |panel| {
-            let (part, tail) = std::mem::take(&mut rest).split_at_mut(3 * panel.copies.len());
-            rest = tail;
-            (panel, part)
-        })
-    }
-
     /// `B^T x` on the copies of a panel.
-    pub(crate) fn spread(&self, x: &[f64], panel: &Panel, out: &mut [f64]) {
+    fn spread(&self, x: &[f64], panel: &Panel, out: &mut [f64]) {
         let interface = &x[self.interface.clone()];
         let width = panel.columns.len();
         let pointers = &self.spread_pointers[panel.copies.start..=panel.copies.end];
@@ -171,7 +166,7 @@ impl BoundaryMap {
     }
 
     /// `out = B y` for a boundary vector.
-    pub(crate) fn collect(&self, y: &[f64], out: &mut [f64]) {
+    fn collect(&self, y: &[f64], out: &mut [f64]) {
         let (contact, rest) = out.split_at_mut(self.interface.start);
         let (interface, dirichlet) = rest.split_at_mut(self.interface.len());
         let blocks = || match self.is_large() {
@@ -221,15 +216,62 @@ impl BoundaryMap {
         }
     }
 
-    /// Runs `task` on every lane with its work memory and its part of a boundary vector.
-    pub(crate) fn for_lanes<W: Send>(
+    /// Work memory of [`by_panels`](Self::by_panels); `more` tells how many numbers a panel needs besides those on the
+    /// boundary, and what memory of solves.
+    pub(crate) fn scratch(
         &self,
-        work: &mut [W],
+        more: impl Fn(&Panel) -> Option<(usize, MemoryNeed)>,
+    ) -> PanelScratch {
+        let lane = |lane: &Lane| {
+            let (mut gathered, mut full, mut need) = (0, 0, None);
+            for panel in &self.panels[lane.panels.clone()] {
+                gathered = gathered.max(3 * panel.copies.len());
+                if let Some((numbers, own)) = more(panel) {
+                    full = full.max(numbers);
+                    need = Some(need.map_or(own, |n: MemoryNeed| n.or(own)));
+                }
+            }
+            LaneScratch {
+                gathered: vec![0.0; gathered],
+                full: vec![0.0; full],
+                memory: need.map(SolveMemory::new),
+            }
+        };
+        PanelScratch {
+            boundary: vec![0.0; 3 * self.copies],
+            lanes: self.lanes.iter().map(lane).collect(),
+        }
+    }
+
+    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does.
+    pub(crate) fn by_panels(
+        &self,
+        x: &[f64],
         y: &mut [f64],
         parallel: bool,
-        task: &(impl Fn(&Lane, &mut W, &mut [f64]) + Sync),
+        s: &mut PanelScratch,
+        work: &PanelWork<'_>,
     ) {
-        over_lanes(&self.lanes, work, y, &|lane| 3 * lane.copy, parallel, task);
+        let task = |lane: &Lane, s: &mut LaneScratch, part: &mut [f64]| {
+            let mut rest = part;
+            for panel in &self.panels[lane.panels.clone()] {
+                let (out, tail) = std::mem::take(&mut rest).split_at_mut(3 * panel.copies.len());
+                rest = tail;
+                let gathered = &mut s.gathered[..out.len()];
+                self.spread(x, panel, gathered);
+                work(panel, gathered, out, &mut s.full, s.memory.as_mut());
+            }
+        };
+        let offset = |lane: &Lane| 3 * lane.copy;
+        over_lanes(
+            &self.lanes,
+            &mut s.lanes,
+            &mut s.boundary,
+            &offset,
+            parallel,
+            &task,
+        );
+        self.collect(&s.boundary, y);
     }
 
     /// Whether loops over all copies are worth several threads.
@@ -265,4 +307,20 @@ pub(crate) fn over_lanes<L: Sync, W: Send, T: Send>(
             );
         }
     }
+}
+
+/// Consecutive items in ranges of about equal work, of which no one is below `least` and there are no more than `most`.
+/// They depend on the problem only, not on the number of threads.
+pub(crate) fn shares(work: &[u64], least: u64, most: usize) -> Vec<Range<usize>> {
+    let total: u64 = work.iter().sum();
+    let parts = (total / least).clamp(1, most.clamp(1, PARTS) as u64);
+    let (mut out, mut done, mut start) = (Vec::new(), 0, 0);
+    for (k, own) in work.iter().enumerate() {
+        done += own;
+        if done * parts >= total * (out.len() as u64 + 1) || k + 1 == work.len() {
+            out.push(start..k + 1);
+            start = k + 1;
+        }
+    }
+    out
 }

@@ -1,10 +1,11 @@
 //! Building the gather tables.
 
-use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place};
+use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
 use crate::rows::gluing::Gluing;
-use crate::subdomain::class::Classes;
-use crate::tolerances::{PANEL, PARTS};
+use crate::subdomain::class::{Class, Classes};
+use crate::tolerances::PANEL;
 use signorini_fem_mesh::buckets;
+use std::ops::Range;
 
 /// For each class: place of each node on the boundary, first panel, and first member of each panel.
 struct Numbering<'a> {
@@ -32,83 +33,34 @@ impl Numbering<'_> {
 
 impl BoundaryMap {
     pub(crate) fn new(classes: &Classes, gluing: &Gluing) -> Self {
-        let mut map = Self::layout(classes, gluing);
+        let mut map = Self {
+            classes: boundaries(classes, gluing),
+            interface: gluing.ranges().interface.clone(),
+            rows: gluing.ranges().total(),
+            nodal_pointers: vec![0],
+            block_pointers: vec![0],
+            row_pointers: vec![0],
+            ..Self::default()
+        };
         map.fill_panels();
         let copies = map.fill_collect(gluing, &map.numbering(classes));
         map.fill_spread(gluing, &copies);
-        map.fill_nodal();
+        let place = |copy: usize| map.nodal_copies.partition_point(|&c| (c as usize) < copy);
+        for panel in &mut map.panels {
+            panel.nodal = place(panel.copies.start)..place(panel.copies.end);
+        }
         map
     }
 
-    /// Boundary nodes of each class: those touched in any member.
-    fn layout(classes: &Classes, gluing: &Gluing) -> Self {
-        let mut touched: Vec<Vec<bool>> = classes
-            .classes()
-            .iter()
-            .map(|c| vec![false; c.nodes])
-            .collect();
-        let mut touch = |subdomain: u32, local: u32| {
-            touched[classes.place(subdomain as usize).0][local as usize] = true;
-        };
-        for block in 0..gluing.blocks() {
-            gluing
-                .block(block)
-                .iter()
-                .for_each(|e| touch(e.subdomain, e.local));
-        }
-        for nodal in 0..gluing.nodal_rows() {
-            gluing
-                .nodal(nodal)
-                .iter()
-                .for_each(|e| touch(e.subdomain, e.local));
-        }
-        let list: Vec<BoundaryClass> = classes
-            .classes()
-            .iter()
-            .zip(&touched)
-            .map(|(class, touched)| {
-                let nodes = (0..touched.len() as u32)
-                    .filter(|&n| touched[n as usize])
-                    .collect();
-                BoundaryClass {
-                    nodes,
-                    members: class.members.clone(),
-                }
-            })
-            .collect();
-        Self {
-            classes: list,
-            panels: Vec::new(),
-            lanes: Vec::new(),
-            copies: 0,
-            interface: gluing.ranges().interface.clone(),
-            rows: gluing.ranges().total(),
-            spread_pointers: Vec::new(),
-            spread_blocks: Vec::new(),
-            spread_weights: Vec::new(),
-            nodal_copies: Vec::new(),
-            nodal_pointers: vec![0],
-            nodal_rows: Vec::new(),
-            nodal_vectors: Vec::new(),
-            block_pointers: vec![0],
-            block_places: Vec::new(),
-            block_weights: Vec::new(),
-            row_pointers: vec![0],
-            row_places: Vec::new(),
-            row_vectors: Vec::new(),
-        }
-    }
-
-    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work. The cuts depend
-    /// on the problem only, not on the number of threads.
+    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work.
     fn fill_panels(&mut self) {
         let mut work = Vec::new();
-        for (class, boundary) in self
+        let touched = self
             .classes
             .iter()
             .enumerate()
-            .filter(|(_, b)| !b.nodes.is_empty())
-        {
+            .filter(|(_, b)| !b.nodes.is_empty());
+        for (class, boundary) in touched {
             let (members, nodes) = (boundary.members.len(), boundary.nodes.len());
             let count = members.div_ceil(PANEL);
             for k in 0..count {
@@ -116,49 +68,42 @@ impl BoundaryMap {
                 let copies = self.copies..self.copies + columns.len() * nodes;
                 self.copies = copies.end;
                 work.push((columns.len() * nodes * (nodes + 64)) as u64);
+                let nodal = 0..0;
                 self.panels.push(Panel {
                     class,
                     columns,
                     copies,
-                    nodal: 0..0,
+                    nodal,
                 });
             }
         }
-        let total: u64 = work.iter().sum();
-        let lanes = PARTS.min(self.panels.len()).max(1) as u64;
-        let (mut done, mut start) = (0, 0);
-        for k in 0..self.panels.len() {
-            done += work[k];
-            let full = done * lanes >= total * (self.lanes.len() as u64 + 1);
-            if full || k + 1 == self.panels.len() {
-                let first = &self.panels[start];
-                self.lanes.push(Lane {
-                    panels: start..k + 1,
-                    copy: first.copies.start,
-                });
-                start = k + 1;
-            }
-        }
+        let lane = |panels: Range<usize>| Lane {
+            copy: self.panels[panels.start].copies.start,
+            panels,
+        };
+        self.lanes = shares(&work, 1, self.panels.len())
+            .into_iter()
+            .map(lane)
+            .collect();
     }
 
     fn numbering<'a>(&self, classes: &'a Classes) -> Numbering<'a> {
-        let places = (self.classes.iter().zip(classes.classes()))
+        let places = self
+            .classes
+            .iter()
+            .zip(classes.classes())
             .map(|(boundary, class)| {
                 let mut place = vec![u32::MAX; class.nodes];
                 for (k, &node) in boundary.nodes.iter().enumerate() {
                     place[node as usize] = k as u32;
                 }
                 place
-            })
-            .collect();
+            });
         let mut panels = vec![Vec::new(); self.classes.len()];
-        for panel in &self.panels {
-            panels[panel.class].push((
-                panel.columns.start,
-                panel.columns.len(),
-                panel.copies.start,
-            ));
+        for p in &self.panels {
+            panels[p.class].push((p.columns.start, p.columns.len(), p.copies.start));
         }
+        let places = places.collect();
         Numbering {
             classes,
             places,
@@ -195,10 +140,10 @@ impl BoundaryMap {
         let (pointers, order) = transpose(&self.block_pointers, &copies[0], self.copies);
         self.spread_pointers = pointers;
         self.spread_blocks = order.iter().map(|&(block, _)| block).collect();
-        self.spread_weights = order
+        let weights = order
             .iter()
-            .map(|&(_, entry)| self.block_weights[entry as usize])
-            .collect();
+            .map(|&(_, entry)| self.block_weights[entry as usize]);
+        self.spread_weights = weights.collect();
         let (pointers, order) = transpose(&self.row_pointers, &copies[1], self.copies);
         for copy in 0..self.copies {
             let range = pointers[copy] as usize..pointers[copy + 1] as usize;
@@ -214,14 +159,34 @@ impl BoundaryMap {
             self.nodal_pointers.push(self.nodal_rows.len() as u32);
         }
     }
+}
 
-    fn fill_nodal(&mut self) {
-        let copies = &self.nodal_copies;
-        let place = |copy: usize| copies.partition_point(|&c| (c as usize) < copy);
-        for panel in &mut self.panels {
-            panel.nodal = place(panel.copies.start)..place(panel.copies.end);
-        }
+/// Boundary nodes of each class: those touched in any member.
+fn boundaries(classes: &Classes, gluing: &Gluing) -> Vec<BoundaryClass> {
+    let list = classes.classes();
+    let mut touched: Vec<Vec<bool>> = list.iter().map(|c| vec![false; c.nodes]).collect();
+    let mut touch = |subdomain: u32, local: u32| {
+        touched[classes.place(subdomain as usize).0][local as usize] = true;
+    };
+    for block in 0..gluing.blocks() {
+        gluing
+            .block(block)
+            .iter()
+            .for_each(|e| touch(e.subdomain, e.local));
     }
+    for nodal in 0..gluing.nodal_rows() {
+        gluing
+            .nodal(nodal)
+            .iter()
+            .for_each(|e| touch(e.subdomain, e.local));
+    }
+    let boundary = |(class, touched): (&Class, Vec<bool>)| BoundaryClass {
+        nodes: (0..class.nodes as u32)
+            .filter(|&n| touched[n as usize])
+            .collect(),
+        members: class.members.clone(),
+    };
+    list.iter().zip(touched).map(boundary).collect()
 }
 
 /// Transposes a table of rows: pointers by column, and for each entry its row and its position.

@@ -1,9 +1,8 @@
 //! The dual operator `F = B K+ B^T`.
 
-use crate::dual::boundary::BoundaryMap;
+use crate::dual::boundary::{BoundaryMap, PanelScratch};
 use crate::dual::inverses::ClassInverse;
 use crate::linalg::dense;
-use crate::linalg::sparse::{MemoryNeed, SolveMemory};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::PRODUCT;
 use signorini_qp::SymmetricOperator;
@@ -23,17 +22,7 @@ pub struct DualOperator {
 
 /// Work memory of a product with `F`.
 #[derive(Debug)]
-pub struct DualScratch {
-    boundary: Vec<f64>,
-    lanes: Vec<LaneScratch>,
-}
-
-#[derive(Debug)]
-struct LaneScratch {
-    gathered: Vec<f64>,
-    full: Vec<f64>,
-    memory: Option<SolveMemory>,
-}
+pub struct DualScratch(PanelScratch);
 
 impl DualOperator {
     pub(crate) fn new(
@@ -53,63 +42,6 @@ impl DualOperator {
     /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
     pub fn flops(&self) -> u64 {
         product_flops(&self.map, &self.inverses)
-    }
-
-    fn lane_scratch(&self, lane: usize) -> LaneScratch {
-        let panels = &self.map.panels[self.map.lanes[lane].panels.clone()];
-        let (mut gathered, mut full) = (0, 0);
-        let mut need: Option<MemoryNeed> = None;
-        for panel in panels {
-            let columns = panel.columns.len();
-            gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
-            if self.inverses[panel.class].boundary.is_none() {
-                if !self.inverses[panel.class].full.is_packed() {
-                    full = full.max(self.subdomains.bases[panel.class].stiffness.dim * columns);
-                }
-                let own = self.inverses[panel.class].full.need(columns);
-                need = Some(need.map_or(own, |n| n.or(own)));
-            }
-        }
-        let memory = need.map(SolveMemory::new);
-        LaneScratch {
-            gathered: vec![0.0; gathered],
-            full: vec![0.0; full],
-            memory,
-        }
-    }
-
-    /// `K+ B^T x` as a boundary vector.
-    fn boundary_product(&self, x: &[f64], s: &mut DualScratch) {
-        self.map.for_lanes(
-            &mut s.lanes,
-            &mut s.boundary,
-            self.parallel,
-            &|lane, scratch, part| {
-                for (panel, out) in self.map.panels_of(lane, part) {
-                    let columns = panel.columns.len();
-                    let gathered = &mut scratch.gathered[..out.len()];
-                    self.map.spread(x, panel, gathered);
-                    let size = out.len() / columns;
-                    let inverse = &self.inverses[panel.class];
-                    if let Some(matrix) = &inverse.boundary {
-                        multiply_members(out, gathered, matrix, columns, size);
-                    } else if let Some(memory) = &mut scratch.memory {
-                        let base = &self.subdomains.bases[panel.class];
-                        let nodes = &self.map.classes[panel.class].nodes;
-                        let dim = base.stiffness.dim;
-                        let full_inverse = &inverse.full;
-                        if full_inverse.apply_at(&base.kernel, nodes, gathered, out, memory) {
-                            continue;
-                        }
-                        let full = &mut scratch.full[..dim * columns];
-                        full.fill(0.0);
-                        expand(nodes, gathered, full, dim);
-                        full_inverse.apply(&base.kernel, full, columns, memory);
-                        restrict(nodes, full, out, dim);
-                    }
-                }
-            },
-        );
     }
 }
 
@@ -165,17 +97,45 @@ impl SymmetricOperator for DualOperator {
     }
 
     fn scratch(&self) -> DualScratch {
-        let lanes = (0..self.map.lanes.len())
-            .map(|lane| self.lane_scratch(lane))
-            .collect();
-        DualScratch {
-            boundary: vec![0.0; self.map.len()],
-            lanes,
-        }
+        DualScratch(self.map.scratch(|panel| {
+            let (inverse, columns) = (&self.inverses[panel.class], panel.columns.len());
+            let dim = self.subdomains.bases[panel.class].stiffness.dim;
+            let full = if inverse.full.is_packed() {
+                0
+            } else {
+                dim * columns
+            };
+            inverse
+                .boundary
+                .is_none()
+                .then(|| (full, inverse.full.need(columns)))
+        }))
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
-        self.boundary_product(x, s);
-        self.map.collect(&s.boundary, y);
+        self.map.by_panels(
+            x,
+            y,
+            self.parallel,
+            &mut s.0,
+            &|panel, x, y, full, memory| {
+                let (columns, class) = (panel.columns.len(), panel.class);
+                let inverse = &self.inverses[class];
+                if let Some(matrix) = &inverse.boundary {
+                    multiply_members(y, x, matrix, columns, x.len() / columns);
+                } else if let Some(memory) = memory {
+                    let base = &self.subdomains.bases[class];
+                    let (nodes, dim) = (&self.map.classes[class].nodes, base.stiffness.dim);
+                    if inverse.full.apply_at(&base.kernel, nodes, x, y, memory) {
+                        return;
+                    }
+                    let full = &mut full[..dim * columns];
+                    full.fill(0.0);
+                    expand(nodes, x, full, dim);
+                    inverse.full.apply(&base.kernel, full, columns, memory);
+                    restrict(nodes, full, y, dim);
+                }
+            },
+        );
     }
 }

@@ -293,38 +293,43 @@ impl SparseCholesky {
         self.symbolic.order()
     }
 
+    /// The groups of columns with one pattern.
+    fn supernodes(&self) -> Option<(SupernodalLltRef<'_, usize, f64>, usize)> {
+        match self.symbolic.0.raw() {
+            SymbolicCholeskyRaw::Supernodal(symbolic) => Some((
+                SupernodalLltRef::new(symbolic, &self.values),
+                symbolic.n_supernodes(),
+            )),
+            SymbolicCholeskyRaw::Simplicial(_) => None,
+        }
+    }
+
     /// Smallest and largest squared pivot with the elimination step of the smallest.
     pub(crate) fn pivots(&self) -> (f64, usize, f64) {
-        let mut smallest = (f64::INFINITY, 0);
-        let mut largest = 0.0_f64;
-        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
-            let factor = SupernodalLltRef::new(symbolic, &self.values);
-            for s in 0..symbolic.n_supernodes() {
-                let node = factor.supernode(s);
-                let block = node.val();
-                for j in 0..block.ncols() {
-                    let pivot = block[(j, j)] * block[(j, j)];
-                    if pivot < smallest.0 {
-                        smallest = (pivot, node.start() + j);
-                    }
-                    largest = largest.max(pivot);
+        let (mut smallest, mut largest) = ((f64::INFINITY, 0), 0.0_f64);
+        self.for_supernodes(&mut |columns, _, value| {
+            for (j, column) in columns.enumerate() {
+                let pivot = value(j, j) * value(j, j);
+                if pivot < smallest.0 {
+                    smallest = (pivot, column);
                 }
+                largest = largest.max(pivot);
             }
-        }
+        });
         (smallest.0, smallest.1, largest)
     }
 
     /// Calls `each(columns, rows below them, value)` for every group of columns with one pattern; `value(i, j)` is an
     /// entry of the factor, both counted within the group, rows below the columns after them.
     pub(crate) fn for_supernodes(&self, each: &mut EachSupernode<'_>) {
-        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
-            let factor = SupernodalLltRef::new(symbolic, &self.values);
-            for s in 0..symbolic.n_supernodes() {
-                let node = factor.supernode(s);
-                let block = node.val();
-                let columns = node.start()..node.start() + block.ncols();
-                each(columns, node.pattern(), &|i, j| block[(i, j)]);
-            }
+        let Some((factor, count)) = self.supernodes() else {
+            return;
+        };
+        for s in 0..count {
+            let node = factor.supernode(s);
+            let block = node.val();
+            let columns = node.start()..node.start() + block.ncols();
+            each(columns, node.pattern(), &|i, j| block[(i, j)]);
         }
     }
 
@@ -343,10 +348,6 @@ impl SparseCholesky {
         }
     }
 
-    pub(crate) fn memory(&self, columns: usize) -> SolveMemory {
-        SolveMemory::new(self.need(columns))
-    }
-
     /// Solves `A X = B` in place, column-major, at most as many columns as the memory was made for.
     pub(crate) fn solve(&self, rhs: &mut [f64], columns: usize, memory: &mut SolveMemory) {
         let x = MatMut::from_column_major_slice_mut(rhs, self.dim(), columns);
@@ -362,20 +363,15 @@ impl SparseCholesky {
     pub(crate) fn half_solve(&self, x: &[f64], out: &mut [f64], memory: &mut SolveMemory) {
         match self.symbolic.0.perm() {
             Some(permutation) => {
-                for (o, &old) in out.iter_mut().zip(permutation.arrays().0) {
-                    *o = x[old];
-                }
+                let old = permutation.arrays().0;
+                out.iter_mut().zip(old).for_each(|(o, &old)| *o = x[old]);
             }
             None => out.copy_from_slice(x),
         }
-        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
-            let column = MatMut::from_column_major_slice_mut(out, self.dim(), 1);
-            SupernodalLltRef::new(symbolic, &self.values).l_solve_with_conj(
-                Conj::No,
-                column,
-                Par::Seq,
-                MemStack::new(&mut memory.memory),
-            );
+        let column = MatMut::from_column_major_slice_mut(out, self.dim(), 1);
+        let memory = MemStack::new(&mut memory.memory);
+        if let Some((factor, _)) = self.supernodes() {
+            factor.l_solve_with_conj(Conj::No, column, Par::Seq, memory);
         }
     }
 
@@ -386,20 +382,15 @@ impl SparseCholesky {
         out: &mut [f64],
         memory: &mut SolveMemory,
     ) {
-        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.0.raw() {
-            let column = MatMut::from_column_major_slice_mut(y, self.dim(), 1);
-            SupernodalLltRef::new(symbolic, &self.values).l_transpose_solve_with_conj(
-                Conj::No,
-                column,
-                Par::Seq,
-                MemStack::new(&mut memory.memory),
-            );
+        let column = MatMut::from_column_major_slice_mut(&mut *y, self.dim(), 1);
+        let memory = MemStack::new(&mut memory.memory);
+        if let Some((factor, _)) = self.supernodes() {
+            factor.l_transpose_solve_with_conj(Conj::No, column, Par::Seq, memory);
         }
         match self.symbolic.0.perm() {
             Some(permutation) => {
-                for (&v, &old) in y.iter().zip(permutation.arrays().0) {
-                    out[old] = v;
-                }
+                let old = permutation.arrays().0;
+                y.iter().zip(old).for_each(|(&v, &old)| out[old] = v);
             }
             None => out.copy_from_slice(y),
         }
@@ -431,7 +422,7 @@ mod tests {
     fn half_solves_compose_to_the_inverse() {
         let a = laplacian(50);
         let factor = SparseCholesky::new(&Symbolic::new(&a, 1).unwrap(), &a).unwrap();
-        let mut memory = factor.memory(1);
+        let mut memory = SolveMemory::new(factor.need(1));
         let b: Vec<f64> = (0..50).map(|i| (i as f64).sin()).collect();
         let mut x = b.clone();
         factor.solve(&mut x, 1, &mut memory);

@@ -4,12 +4,14 @@
 //! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D`
 //! distributes forces by stiffness, see [`Scaling`].
 
-use crate::dual::boundary::BoundaryMap;
+use crate::dual::boundary::{BoundaryMap, PanelScratch};
 use crate::dual::operator::multiply_members;
 use crate::error::TfetiError;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
-use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
+use crate::linalg::sparse::{
+    Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic,
+};
 use crate::preconditioner::scaling::Scaling;
 use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
@@ -54,18 +56,10 @@ struct Coupling {
 /// Work memory of a preconditioner.
 #[derive(Debug)]
 pub struct DualPreconditionerScratch {
-    boundary: Vec<f64>,
-    lanes: Vec<LaneScratch>,
+    panels: PanelScratch,
     dual: Vec<f64>,
-    /// The matrices of [`Scaling`] on the face; empty for all rows.
+    /// The matrices of [`Scaling`] for the active set; empty for all rows.
     groups: Vec<f64>,
-}
-
-#[derive(Debug)]
-struct LaneScratch {
-    gathered: Vec<f64>,
-    interior: Vec<f64>,
-    memory: Option<SolveMemory>,
 }
 
 impl Tfeti {
@@ -104,30 +98,19 @@ impl DualPreconditioner {
         })
     }
 
-    fn stiffness_product(&self, x: &[f64], s: &mut DualPreconditionerScratch) {
-        let parallel = self.map.is_large();
+    fn stiffness_product(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {
         let divide = self.scaling.as_ref().map(Scaling::weights);
-        self.map.for_lanes(
-            &mut s.lanes,
-            &mut s.boundary,
-            parallel,
-            &|lane, scratch, part| {
-                for (panel, out) in self.map.panels_of(lane, part) {
-                    let columns = panel.columns.len();
-                    let gathered = &mut scratch.gathered[..out.len()];
-                    self.map.spread(x, panel, gathered);
-                    let weights = divide.map(|w| &w[self.map.copies_of(panel)]);
-                    scale_nodes(weights, gathered, columns);
-                    let class = &self.classes[panel.class];
-                    class.apply(
-                        gathered,
-                        out,
-                        columns,
-                        &mut scratch.interior,
-                        &mut scratch.memory,
-                    );
-                    scale_nodes(weights, out, columns);
-                }
+        self.map.by_panels(
+            x,
+            y,
+            self.map.is_large(),
+            s,
+            &|panel, x, y, interior, memory| {
+                let columns = panel.columns.len();
+                let weights = divide.map(|w| &w[panel.copies.clone()]);
+                scale_nodes(weights, x, columns);
+                self.classes[panel.class].apply(x, y, columns, interior, memory);
+                scale_nodes(weights, y, columns);
             },
         );
     }
@@ -153,48 +136,29 @@ impl SymmetricOperator for DualPreconditioner {
     }
 
     fn scratch(&self) -> DualPreconditionerScratch {
-        let lane = |k: usize| {
-            let (mut gathered, mut interior, mut need) = (0, 0, None);
-            for panel in &self.map.panels[self.map.lanes[k].panels.clone()] {
-                let columns = panel.columns.len();
-                gathered = gathered.max(3 * self.map.classes[panel.class].nodes.len() * columns);
-                if let BoundaryStiffness::Schur {
-                    coupling, factor, ..
-                } = &self.classes[panel.class]
-                {
-                    interior = interior.max(coupling.interior * columns);
-                    let own = factor.need(columns);
-                    need = Some(need.map_or(own, |n: crate::linalg::sparse::MemoryNeed| n.or(own)));
-                }
-            }
-            let memory = need.map(SolveMemory::new);
-            LaneScratch {
-                gathered: vec![0.0; gathered],
-                interior: vec![0.0; interior],
-                memory,
-            }
+        let panels = self
+            .map
+            .scratch(|panel| self.classes[panel.class].need(panel.columns.len()));
+        let dual = if self.scaling.is_some() {
+            self.dim()
+        } else {
+            0
         };
-        let rows = self.map.rows();
         DualPreconditionerScratch {
-            boundary: vec![0.0; self.map.len()],
-            lanes: (0..self.map.lanes.len()).map(lane).collect(),
-            dual: vec![0.0; if self.scaling.is_some() { rows } else { 0 }],
+            panels,
+            dual: vec![0.0; dual],
             groups: Vec::new(),
         }
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
         let Some(scaling) = &self.scaling else {
-            self.stiffness_product(x, s);
-            self.map.collect(&s.boundary, y);
+            self.stiffness_product(x, y, &mut s.panels);
             return;
         };
-        let mut dual = std::mem::take(&mut s.dual);
-        scaling.solve(&s.groups, x, &mut dual);
-        self.stiffness_product(&dual, s);
-        self.map.collect(&s.boundary, &mut dual);
-        scaling.solve(&s.groups, &dual, y);
-        s.dual = dual;
+        scaling.solve(&s.groups, x, y);
+        self.stiffness_product(y, &mut s.dual, &mut s.panels);
+        scaling.solve(&s.groups, &s.dual, y);
     }
 }
 
@@ -254,6 +218,16 @@ impl BoundaryStiffness {
         }
     }
 
+    /// Numbers and memory of solves that products with so many members need.
+    fn need(&self, members: usize) -> Option<(usize, MemoryNeed)> {
+        match self {
+            Self::Schur {
+                coupling, factor, ..
+            } => Some((coupling.interior * members, factor.need(members))),
+            _ => None,
+        }
+    }
+
     /// The matrix in full, some columns at a time.
     fn dense(&self) -> Vec<f64> {
         let dim = self.dim();
@@ -262,21 +236,15 @@ impl BoundaryStiffness {
             vec![0.0; dim * PANEL],
             vec![0.0; dim * PANEL],
         );
-        let (mut interior, mut memory) = match self {
-            Self::Schur {
-                coupling, factor, ..
-            } => (
-                vec![0.0; coupling.interior * PANEL],
-                Some(factor.memory(PANEL)),
-            ),
-            _ => (Vec::new(), None),
-        };
+        let (interior, need) = self.need(PANEL).unzip();
+        let mut interior = vec![0.0; interior.unwrap_or(0)];
+        let mut memory = need.map(SolveMemory::new);
         for start in (0..dim).step_by(PANEL) {
             let columns = PANEL.min(dim - start);
             let (x, y) = (&mut x[..dim * columns], &mut y[..dim * columns]);
             x.fill(0.0);
             (0..columns).for_each(|j| x[(start + j) * columns + j] = 1.0);
-            self.apply(x, y, columns, &mut interior, &mut memory);
+            self.apply(x, y, columns, &mut interior, memory.as_mut());
             for (i, row) in y.chunks_exact(columns).enumerate() {
                 row.iter()
                     .enumerate()
@@ -294,7 +262,7 @@ impl BoundaryStiffness {
         y: &mut [f64],
         members: usize,
         interior: &mut [f64],
-        memory: &mut Option<SolveMemory>,
+        memory: Option<&mut SolveMemory>,
     ) {
         match self {
             Self::Dense(values) => multiply_members(y, x, values, members, y.len() / members),

@@ -223,7 +223,7 @@ fn rigid(kernel: &Kernel, vectors: impl Iterator<Item = (usize, [f64; 3])>) -> [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::sparse::{Columns, Symbolic};
+    use crate::linalg::sparse::{Columns, SolveMemory, Symbolic};
 
     /// Chains of `links` nodes of `block` unknowns, fully coupled with their neighbours.
     fn chains(nodes: usize, links: usize, block: usize) -> Columns {
@@ -260,7 +260,7 @@ mod tests {
             let packed = PackedFactor::new(&factor, &matrix, unit);
             let mut x: Vec<f64> = (0..2 * matrix.dim).map(|i| (i as f64).sin()).collect();
             let mut y = x.clone();
-            factor.solve(&mut x, 2, &mut factor.memory(2));
+            factor.solve(&mut x, 2, &mut SolveMemory::new(factor.need(2)));
             let mut memory = vec![f64::NAN; matrix.dim + packed.groups.buffer()];
             packed.solve(&mut y, &mut memory);
             for (x, y) in x.iter().zip(&y) {

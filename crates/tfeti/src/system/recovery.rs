@@ -1,6 +1,7 @@
 //! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
 
 use crate::error::TfetiError;
+use crate::rows::gluing::CopyEntry;
 use crate::system::tfeti::Tfeti;
 
 /// Response of the torn body to one load: what a time step needs to combine.
@@ -16,52 +17,9 @@ pub struct LoadResponse {
     pub force: Vec<f64>,
 }
 
-/// How far a torn displacement is from a continuous one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jump {
-    /// Largest difference between a copy and the mean of its node, in metres.
-    pub largest: f64,
-    /// Largest displacement component, in metres.
-    pub displacement: f64,
-}
-
 impl Tfeti {
-    /// Joins local vectors of all subdomains (length `3 local nodes` each) to one torn vector.
-    ///
-    /// # Errors
-    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn torn_from_local(&self, local: &[Vec<f64>]) -> Result<Vec<f64>, TfetiError> {
-        if local.len() != self.subdomains() {
-            return Err(TfetiError::Length {
-                what: "local vectors",
-                expected: self.subdomains(),
-                found: local.len(),
-            });
-        }
-        let mut out = Vec::with_capacity(self.torn_dim());
-        for (s, part) in local.iter().enumerate() {
-            let expected = self.torn_range(s).len();
-            if part.len() != expected {
-                return Err(TfetiError::Length {
-                    what: "local vector",
-                    expected,
-                    found: part.len(),
-                });
-            }
-            out.extend_from_slice(part);
-        }
-        self.check("load", &out, self.torn_dim())?;
-        Ok(out)
-    }
-
     fn check(&self, what: &'static str, x: &[f64], expected: usize) -> Result<(), TfetiError> {
-        if x.len() != expected {
-            return Err(TfetiError::Length {
-                what,
-                expected,
-                found: x.len(),
-            });
-        }
+        TfetiError::check_length(what, x.len(), expected)?;
         match x.iter().position(|v| !v.is_finite()) {
             Some(index) => Err(TfetiError::NotFinite { what, index }),
             None => Ok(()),
@@ -73,24 +31,30 @@ impl Tfeti {
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
     pub fn load_response(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
-        let force = self.torn_from_local(local)?;
+        TfetiError::check_length("local vectors", local.len(), self.subdomains())?;
+        for (s, part) in local.iter().enumerate() {
+            self.check("local vector", part, self.torn_range(s).len())?;
+        }
+        let force = local.concat();
         let mut displaced = vec![0.0; self.torn_dim()];
         self.generalised_inverse(&force, &mut displaced);
         let mut dual = vec![0.0; self.dual_dim()];
         self.rows_times(&displaced, &mut dual);
-        let mut coarse = Vec::with_capacity(6 * self.subdomains());
-        for s in 0..self.subdomains() {
-            coarse.extend(
-                self.kernel(s)
-                    .transpose_times(&force[self.torn_range(s)])
-                    .map(|v| -v),
-            );
-        }
+        let wrench = |s: usize| self.kernel(s).transpose_times(&force[self.torn_range(s)]);
+        let coarse = (0..self.subdomains())
+            .flat_map(|s| wrench(s).map(|v| -v))
+            .collect();
         Ok(LoadResponse {
             dual,
             coarse,
             force,
         })
+    }
+
+    /// Place of the three components of a node copy in torn vectors.
+    fn place(&self, subdomain: u32, local: u32) -> std::ops::Range<usize> {
+        let start = self.torn_range(subdomain as usize).start + 3 * local as usize;
+        start..start + 3
     }
 
     /// `out = B u` for a torn vector.
@@ -99,22 +63,17 @@ impl Tfeti {
     /// If a vector is too short.
     pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
         let gluing = self.gluing();
-        let start = |subdomain: u32, local: u32| {
-            self.torn_range(subdomain as usize).start + 3 * local as usize
-        };
         let interface = gluing.ranges().interface.clone();
         for (block, target) in out[interface].chunks_exact_mut(3).enumerate() {
             target.fill(0.0);
             for e in gluing.block(block) {
-                let value = &u[start(e.subdomain, e.local)..][..3];
-                for c in 0..3 {
-                    target[c] += e.coefficient * value[c];
-                }
+                let value = &u[self.place(e.subdomain, e.local)];
+                (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
             }
         }
         for nodal in 0..gluing.nodal_rows() {
-            let entry = |e: &crate::rows::gluing::CopyEntry| {
-                let value = &u[start(e.subdomain, e.local)..][..3];
+            let entry = |e: &CopyEntry| {
+                let value = &u[self.place(e.subdomain, e.local)];
                 (0..3).map(|c| e.vector[c] * value[c]).sum::<f64>()
             };
             out[gluing.nodal_row(nodal)] = gluing.nodal(nodal).iter().map(entry).sum();
@@ -127,27 +86,18 @@ impl Tfeti {
     /// If a vector is too short.
     pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
         let gluing = self.gluing();
-        let start = |subdomain: u32, local: u32| {
-            self.torn_range(subdomain as usize).start + 3 * local as usize
-        };
-        for (block, value) in x[gluing.ranges().interface.clone()]
-            .chunks_exact(3)
-            .enumerate()
-        {
+        let interface = &x[gluing.ranges().interface.clone()];
+        for (block, value) in interface.chunks_exact(3).enumerate() {
             for e in gluing.block(block) {
-                let target = &mut f[start(e.subdomain, e.local)..][..3];
-                for c in 0..3 {
-                    target[c] += e.coefficient * value[c];
-                }
+                let target = &mut f[self.place(e.subdomain, e.local)];
+                (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
             }
         }
         for nodal in 0..gluing.nodal_rows() {
             let value = x[gluing.nodal_row(nodal)];
             for e in gluing.nodal(nodal) {
-                let target = &mut f[start(e.subdomain, e.local)..][..3];
-                for c in 0..3 {
-                    target[c] += e.vector[c] * value;
-                }
+                let target = &mut f[self.place(e.subdomain, e.local)];
+                (0..3).for_each(|c| target[c] += e.vector[c] * value);
             }
         }
     }
@@ -207,26 +157,6 @@ impl Tfeti {
             value.iter_mut().for_each(|v| *v /= sum);
         }
         out
-    }
-
-    /// How far the copies of a node are from their mean.
-    ///
-    /// # Panics
-    /// If `u` is shorter than a torn vector.
-    pub fn jump(&self, u: &[f64]) -> Jump {
-        let mean = self.nodal_mean(u);
-        let mut jump = Jump {
-            largest: 0.0,
-            displacement: 0.0,
-        };
-        for (k, &node) in self.node_of.iter().enumerate() {
-            for c in 0..3 {
-                let m = mean[3 * node as usize + c];
-                jump.largest = jump.largest.max((u[3 * k + c] - m).abs());
-                jump.displacement = jump.displacement.max(m.abs());
-            }
-        }
-        jump
     }
 
     /// Residual of equilibrium `K u - f - B^T lambda` in newtons, a torn vector.

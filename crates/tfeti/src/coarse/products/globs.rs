@@ -4,7 +4,7 @@
 //! combine the subdomains with the same coefficients, so a run takes one combined motion and gives one wrench; only
 //! these are shifted to the centres of the subdomains. Globs of one shape share their arms.
 
-use crate::dual::boundary::over_lanes;
+use crate::dual::boundary::{over_lanes, shares};
 use crate::rows::gluing::{Glob, Gluing};
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::{GLOB_TASK, PARTS};
@@ -15,7 +15,7 @@ use std::hint::black_box;
 use std::ops::Range;
 
 /// The globs and their *sides*: the pairs of a glob and a subdomain that shares it.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct GlobTables {
     globs: Vec<Piece>,
     /// Subdomain of each side.
@@ -68,17 +68,7 @@ impl GlobTables {
         subdomains: usize,
         kernel: impl Fn(u32) -> (usize, &'k Kernel),
     ) -> Self {
-        let mut out = Self {
-            globs: Vec::with_capacity(gluing.globs().len()),
-            subdomains: Vec::new(),
-            levers: Vec::new(),
-            arms: Vec::new(),
-            node_arms: Vec::new(),
-            coefficients: Vec::new(),
-            tasks: Vec::new(),
-            side_pointers: Vec::new(),
-            sides: Vec::new(),
-        };
+        let mut out = Self::default();
         let mut shapes: HashMap<(usize, Vec<u32>), [u32; 2]> = HashMap::new();
         let mut rules: Vec<Range<usize>> = Vec::new();
         for glob in gluing.globs() {
@@ -120,7 +110,17 @@ impl GlobTables {
                 coefficients: coefficients as u32,
             });
         }
-        out.cut();
+        let work = |p: &Piece| u64::from(p.runs * (p.nodes + 4 * p.count) + 8);
+        let work: Vec<u64> = out.globs.iter().map(work).collect();
+        let task = |globs: Range<usize>| Task {
+            block: out.globs[globs.start].blocks as usize,
+            side: out.globs[globs.start].side as usize,
+            globs,
+        };
+        out.tasks = shares(&work, GLOB_TASK, PARTS)
+            .into_iter()
+            .map(task)
+            .collect();
         (out.side_pointers, out.sides) = buckets(subdomains, &out.subdomains);
         out
     }
@@ -139,27 +139,6 @@ impl GlobTables {
                 });
             }
             self.arms.push(arms);
-        }
-    }
-
-    /// Cuts the globs into tasks of about equal work; the cuts depend on the problem only.
-    fn cut(&mut self) {
-        let work = |p: &Piece| u64::from(p.runs * (p.nodes + 4 * p.count) + 8);
-        let total: u64 = self.globs.iter().map(work).sum();
-        let tasks = (total / GLOB_TASK).clamp(1, PARTS as u64);
-        let (mut done, mut start) = (0, 0);
-        for k in 0..self.globs.len() {
-            done += work(&self.globs[k]);
-            let full = done * tasks >= total * (self.tasks.len() as u64 + 1);
-            if full || k + 1 == self.globs.len() {
-                let first = &self.globs[start];
-                self.tasks.push(Task {
-                    globs: start..k + 1,
-                    block: first.blocks as usize,
-                    side: first.side as usize,
-                });
-                start = k + 1;
-            }
         }
     }
 

@@ -4,7 +4,7 @@
 
 use super::globs::{GlobTables, Wrench};
 use super::points::PointTables;
-use crate::dual::boundary::{BoundaryMap, over_lanes};
+use crate::dual::boundary::{BoundaryMap, over_lanes, shares};
 use crate::linalg::both;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench};
@@ -62,26 +62,12 @@ impl RigidTables {
             globs,
             nodal_pointers,
             nodal,
-            tasks: Vec::new(),
+            tasks: vec![],
         };
-        out.cut(subdomains.count());
+        let work = |s: usize| 4 * out.nodal_of(s).len() + out.globs.sides_of(s).len() + 4;
+        let work: Vec<u64> = (0..subdomains.count()).map(|s| work(s) as u64).collect();
+        out.tasks = shares(&work, SUBDOMAIN_TASK, PARTS);
         out
-    }
-
-    /// Cuts the subdomains into tasks; the cuts depend on the problem only.
-    fn cut(&mut self, count: usize) {
-        let work = |s: usize| 4 * self.nodal_of(s).len() + self.globs.sides_of(s).len() + 4;
-        let total: usize = (0..count).map(work).sum();
-        let tasks = (total / SUBDOMAIN_TASK).clamp(1, PARTS);
-        let (mut list, mut done, mut start) = (Vec::new(), 0, 0);
-        for s in 0..count {
-            done += work(s);
-            if done * tasks >= total * (list.len() + 1) || s + 1 == count {
-                list.push(start..s + 1);
-                start = s + 1;
-            }
-        }
-        self.tasks = list;
     }
 
     fn nodal_of(&self, subdomain: usize) -> &[[u32; 2]] {
@@ -116,35 +102,35 @@ fn nodal_copies(
     (pointers, sorted)
 }
 
-impl BoundaryMap {
+impl RigidTables {
     /// `R^T B^T W x`, six numbers a subdomain; `W` is one on interface rows and given by `weights` on the others.
     pub(crate) fn wrenches<'k>(
         &self,
-        tables: &RigidTables,
+        map: &BoundaryMap,
         kernel: impl Fn(usize) -> &'k Kernel + Sync,
         x: &[f64],
         weights: Option<&[f64]>,
         out: &mut [f64],
         sides: &mut [Wrench],
     ) {
-        let (interface, parallel) = (&x[self.interface.clone()], self.is_large());
-        tables.globs.wrenches(interface, sides, parallel);
+        let (interface, parallel) = (&x[map.interface.clone()], map.is_large());
+        self.globs.wrenches(interface, sides, parallel);
         let (out, _) = out.as_chunks_mut();
         let mut none = [(); PARTS];
-        let work = &mut none[..tables.tasks.len()];
+        let work = &mut none[..self.tasks.len()];
         let offset = |task: &Range<usize>| task.start;
         over_lanes(
-            &tables.tasks,
+            &self.tasks,
             work,
             out,
             &offset,
             parallel,
             &|task, (), out| {
                 for (s, target) in task.clone().zip(out) {
-                    let mut wrench = tables.globs.wrench(s, sides);
-                    for &[nodal, arm] in tables.nodal_of(s) {
-                        let force = self.nodal_force(nodal as usize, x, weights);
-                        add_wrench(&mut wrench, &tables.arms[arm as usize], force);
+                    let mut wrench = self.globs.wrench(s, sides);
+                    for &[nodal, arm] in self.nodal_of(s) {
+                        let force = nodal_force(map, nodal as usize, x, weights);
+                        add_wrench(&mut wrench, &self.arms[arm as usize], force);
                     }
                     *target = on_modes(kernel(s), &wrench);
                 }
@@ -155,32 +141,16 @@ impl BoundaryMap {
     /// The same for the contact rows `x` alone, where most are zero.
     pub(crate) fn contact_wrenches<'k>(
         &self,
-        tables: &RigidTables,
         kernel: impl Fn(usize) -> &'k Kernel,
         x: &[f64],
         out: &mut [f64],
     ) {
         let (out, _) = out.as_chunks_mut();
         out.fill([0.0; 6]);
-        tables.contact.add_wrenches(&tables.arms, x, out);
+        self.contact.add_wrenches(&self.arms, x, out);
         for (s, target) in out.iter_mut().enumerate().filter(|(_, w)| **w != [0.0; 6]) {
             *target = on_modes(kernel(s), target);
         }
-    }
-
-    /// Force of the rows that are no interface rows on one copy.
-    #[inline]
-    fn nodal_force(&self, nodal: usize, x: &[f64], weights: Option<&[f64]>) -> [f64; 3] {
-        let mut force = [0.0; 3];
-        let pointers = &self.nodal_pointers[nodal..nodal + 2];
-        for e in pointers[0] as usize..pointers[1] as usize {
-            let row = self.nodal_rows[e] as usize;
-            let value = x[row] * weights.map_or(1.0, |w| w[row]);
-            for c in 0..3 {
-                force[c] += self.nodal_vectors[e][c] * value;
-            }
-        }
-        force
     }
 
     /// Hands `B R alpha` to `interface(x, value)` and `other(row, x, value)`, row by row, with the entries of `x`;
@@ -188,31 +158,46 @@ impl BoundaryMap {
     /// `motions` are those of the subdomains, about their means, rotations in radians.
     pub(crate) fn for_motions(
         &self,
-        tables: &RigidTables,
+        map: &BoundaryMap,
         motions: &[[f64; 6]],
         x: &mut [f64],
         with_contact: bool,
         interface: impl Fn(&mut f64, f64) + Sync,
         other: impl Fn(usize, &mut f64, f64) + Sync,
     ) {
-        let (contact, rest) = x.split_at_mut(self.interface.start);
-        let (inner, dirichlet) = rest.split_at_mut(self.interface.len());
-        let second = self.interface.end;
+        let (contact, rest) = x.split_at_mut(map.interface.start);
+        let (inner, dirichlet) = rest.split_at_mut(map.interface.len());
+        let second = map.interface.end;
         let others = |contact: &mut [f64], dirichlet: &mut [f64]| {
-            let arms = &tables.arms;
+            let arms = &self.arms;
             if with_contact {
-                tables.contact.motions(motions, arms, contact, &other);
+                self.contact.motions(motions, arms, contact, &other);
             }
             let other = |row, x: &mut f64, v| other(second + row, x, v);
-            tables.supports.motions(motions, arms, dirichlet, &other);
+            self.supports.motions(motions, arms, dirichlet, &other);
         };
-        let large = self.is_large();
+        let large = map.is_large();
         both(
             large,
-            || tables.globs.motions(motions, inner, large, &interface),
+            || self.globs.motions(motions, inner, large, &interface),
             || others(contact, dirichlet),
         );
     }
+}
+
+/// Force of the rows that are no interface rows on one copy.
+#[inline]
+fn nodal_force(map: &BoundaryMap, nodal: usize, x: &[f64], weights: Option<&[f64]>) -> [f64; 3] {
+    let mut force = [0.0; 3];
+    let pointers = &map.nodal_pointers[nodal..nodal + 2];
+    for e in pointers[0] as usize..pointers[1] as usize {
+        let row = map.nodal_rows[e] as usize;
+        let value = x[row] * weights.map_or(1.0, |w| w[row]);
+        for c in 0..3 {
+            force[c] += map.nodal_vectors[e][c] * value;
+        }
+    }
+    force
 }
 
 /// `R^T` of a wrench in metres about the mean of the nodes.
