@@ -1,6 +1,7 @@
 //! Assembly of `G W G^T` in blocks of six.
 
 use crate::coarse::weights::RowWeights;
+use crate::linalg::entry;
 use crate::linalg::sparse::Columns;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::Kernel;
@@ -53,15 +54,9 @@ impl<'a> ModeTable<'a> {
     ) {
         for e in gluing.nodal(nodal) {
             let modes = self.at(e.subdomain, e.local);
-            let at = match out.iter().position(|v| v.0 == e.subdomain) {
-                Some(at) => at,
-                None => {
-                    out.push((e.subdomain, [0.0; 6]));
-                    out.len() - 1
-                }
-            };
+            let sum = entry(out, e.subdomain, [0.0; 6]);
             for m in 0..6 {
-                out[at].1[m] += factor * (0..3).map(|c| e.vector[c] * modes[c][m]).sum::<f64>();
+                sum[m] += factor * (0..3).map(|c| e.vector[c] * modes[c][m]).sum::<f64>();
             }
         }
     }
@@ -310,26 +305,20 @@ fn block_column(
         let entries = gluing.block(block as usize);
         for b in entries.iter().filter(|e| e.subdomain == own) {
             for a in entries.iter().filter(|e| e.subdomain >= own) {
-                let at = match moments.iter().position(|m| m.0 == a.subdomain) {
-                    Some(at) => at,
-                    None => {
-                        moments.push((a.subdomain, Moments::default()));
-                        moments.len() - 1
-                    }
-                };
-                moments[at].1.add(
-                    a.coefficient * b.coefficient,
-                    modes.kernel(a.subdomain).arm(a.local as usize),
-                    kernel.arm(b.local as usize),
-                );
+                let sums = entry(&mut moments, a.subdomain, Moments::default());
+                let arm = modes.kernel(a.subdomain).arm(a.local as usize);
+                let factor = a.coefficient * b.coefficient;
+                sums.add(factor, arm, kernel.arm(b.local as usize));
             }
         }
     }
     for &nodal in nodal.of(subdomain) {
-        for e in gluing.nodal(nodal as usize) {
-            if e.subdomain > own && moments.iter().all(|m| m.0 != e.subdomain) {
-                moments.push((e.subdomain, Moments::default()));
-            }
+        for e in gluing
+            .nodal(nodal as usize)
+            .iter()
+            .filter(|e| e.subdomain > own)
+        {
+            entry(&mut moments, e.subdomain, Moments::default());
         }
     }
     moments.sort_unstable_by_key(|m| m.0);

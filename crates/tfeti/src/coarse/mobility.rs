@@ -6,8 +6,10 @@
 //! that share an edge or a node only are bodies of their own: the rows between them leave a hinge free.
 
 use crate::coarse::joints::{joint_rows, rigid_pairs};
+use crate::linalg::entry;
+use crate::linalg::vec3::{dot, sub};
 use crate::rows::gluing::{CopyEntry, Gluing};
-use crate::subdomain::kernel::{Kernel, displacement};
+use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{FREE, MOVING};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -104,38 +106,27 @@ impl Mobility {
         for (a, b) in rigid_pairs(gluing, position) {
             sets.join(a as usize, b as usize);
         }
-        let mut bodies: Vec<Body> = Vec::new();
-        let mut part_of = vec![0; centres.len()];
-        let mut members: Vec<Vec<usize>> = Vec::new();
-        for s in 0..centres.len() {
-            let first = sets.first(s);
-            if first == s {
-                part_of[s] = bodies.len() as u32;
-                bodies.push(Body {
-                    centre: [0.0; 3],
-                    radius: 1.0,
-                    first: s,
-                });
-                members.push(vec![s]);
-            } else {
-                part_of[s] = part_of[first];
-                members[part_of[s] as usize].push(s);
+        let part_of = sets.numbers();
+        let count = part_of.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for (s, &part) in part_of.iter().enumerate() {
+            members[part as usize].push(s);
+        }
+        let body = |members: Vec<usize>| {
+            let centre = mean(members.iter().map(|&s| centres[s]));
+            let square = |&s: &usize| {
+                let (own, off) = (subdomains.kernel(s).radius(), sub(centres[s], centre));
+                dot(off, off) + own * own
+            };
+            let square: f64 = members.iter().map(square).sum();
+            let radius = (square / members.len() as f64).sqrt();
+            Body {
+                centre,
+                radius,
+                first: members[0],
             }
-        }
-        for (body, members) in bodies.iter_mut().zip(&members) {
-            body.centre = crate::subdomain::kernel::mean(members.iter().map(|&s| centres[s]));
-            let square: f64 = members
-                .iter()
-                .map(|&s| {
-                    let own = subdomains.kernel(s).radius();
-                    (0..3)
-                        .map(|c| (centres[s][c] - body.centre[c]).powi(2))
-                        .sum::<f64>()
-                        + own * own
-                })
-                .sum();
-            body.radius = (square / members.len() as f64).sqrt();
-        }
+        };
+        let bodies = members.into_iter().map(body).collect();
         let joints = joint_rows(gluing, &part_of);
         for row in &joints {
             for pair in row.windows(2) {
@@ -184,14 +175,8 @@ impl Mobility {
         let arm = std::array::from_fn(|k| (c[k] - body.centre[k]) / body.radius);
         let [x, y, z] = displacement(motion, &arm);
         let ratio = self.kernel(subdomain).radius() / body.radius;
-        [
-            x,
-            y,
-            z,
-            motion[3] * ratio,
-            motion[4] * ratio,
-            motion[5] * ratio,
-        ]
+        let [.., a, b, c] = motion.map(|m| m * ratio);
+        [x, y, z, a, b, c]
     }
 
     /// Adds what a row (entries times `factor`) does to the motions of the bodies.
@@ -199,21 +184,13 @@ impl Mobility {
         for e in entries {
             let s = e.subdomain as usize;
             let body = self.part_of[s] as usize;
-            let at = match out.iter().position(|v| v.0 == body) {
-                Some(at) => at,
-                None => {
-                    out.push((body, [0.0; 6]));
-                    out.len() - 1
-                }
-            };
-            for mode in 0..6 {
+            let sum = entry(out, body, [0.0; 6]);
+            let arm = self.kernel(s).arm(e.local as usize);
+            for (mode, sum) in sum.iter_mut().enumerate() {
                 let mut motion = [0.0; 6];
                 motion[mode] = 1.0;
-                let u = displacement(
-                    &self.restrict(s, &motion),
-                    self.kernel(s).arm(e.local as usize),
-                );
-                out[at].1[mode] += factor * (0..3).map(|c| e.vector[c] * u[c]).sum::<f64>();
+                let u = displacement(&self.restrict(s, &motion), arm);
+                *sum += factor * dot(e.vector, u);
             }
         }
     }
@@ -232,21 +209,17 @@ impl Mobility {
                 sets.join(pair[0].0, pair[1].0);
             }
         }
-        let mut groups: Vec<Group> = (0..self.bodies.len()).map(|_| Group::default()).collect();
-        let mut place = vec![0; self.bodies.len()];
-        for body in 0..self.bodies.len() {
-            let group = &mut groups[sets.first(body)];
-            place[body] = group.bodies.len();
-            group.bodies.push(body);
+        let of: Vec<usize> = sets.numbers().into_iter().map(|g| g as usize).collect();
+        let count = of.iter().max().map_or(0, |last| last + 1);
+        let mut groups: Vec<Group> = (0..count).map(|_| Group::default()).collect();
+        let mut place = vec![0; of.len()];
+        for (body, &group) in of.iter().enumerate() {
+            place[body] = groups[group].bodies.len();
+            groups[group].bodies.push(body);
         }
-        groups.retain(|group| !group.bodies.is_empty());
-        let mut of = vec![0; self.bodies.len()];
-        for (k, group) in groups.iter_mut().enumerate() {
+        for group in &mut groups {
             let dim = 6 * group.bodies.len();
             group.gram = DMatrix::zeros(dim, dim);
-            for &body in &group.bodies {
-                of[body] = k;
-            }
         }
         for row in &rows {
             for (a, ga) in row {

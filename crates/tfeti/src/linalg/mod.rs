@@ -24,3 +24,12 @@ pub(crate) fn both<A: Send, B: Send>(
 ) -> (A, B) {
     if worth { rayon::join(a, b) } else { (a(), b()) }
 }
+
+/// The value of a key in a short list; `new` if it is not there yet.
+pub(crate) fn entry<K: PartialEq, V>(list: &mut Vec<(K, V)>, key: K, new: V) -> &mut V {
+    let at = list.iter().position(|v| v.0 == key).unwrap_or(list.len());
+    if at == list.len() {
+        list.push((key, new));
+    }
+    &mut list[at].1
+}

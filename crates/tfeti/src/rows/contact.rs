@@ -1,6 +1,7 @@
 //! The rows of contact constraints: the directions in which they can still move once supports are taken into account.
 
 use crate::error::TfetiError;
+use crate::linalg::entry;
 use crate::linalg::vec3::dot;
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::rows::side::{ContactConstraint, ContactConstraints};
@@ -115,10 +116,8 @@ impl Space {
             }
             nodes.push((scale * squares(node).sqrt() * weight, free));
             for (case, value) in fixed.map(FixedNode::prescribed).unwrap_or_default() {
-                match prescribed.iter_mut().find(|v| v.0 == case) {
-                    Some(v) => (0..3).for_each(|c| v.1[c] += weight * value[c]),
-                    None => prescribed.push((case, value.map(|v| weight * v))),
-                }
+                let sum = entry(&mut prescribed, case, [0.0; 3]);
+                (0..3).for_each(|c| sum[c] += weight * value[c]);
             }
         }
         prescribed.sort_by_key(|v| v.0);

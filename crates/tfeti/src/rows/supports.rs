@@ -1,6 +1,7 @@
 //! Supports: which directions of which nodes are fixed, and by how much they are moved.
 
 use crate::error::TfetiError;
+use crate::linalg::entry;
 use crate::linalg::vec3::{dot, norm};
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::tolerances::{AGREEING, FIXED};
@@ -130,16 +131,8 @@ impl FixedNode {
         let mut out: Vec<(u32, [f64; 3])> = Vec::new();
         for fixed in &self.directions {
             for &(case, value) in &fixed.values {
-                let at = match out.binary_search_by_key(&case, |v| v.0) {
-                    Ok(at) => at,
-                    Err(at) => {
-                        out.insert(at, (case, [0.0; 3]));
-                        at
-                    }
-                };
-                for c in 0..3 {
-                    out[at].1[c] += value * fixed.direction[c];
-                }
+                let sum = entry(&mut out, case, [0.0; 3]);
+                (0..3).for_each(|c| sum[c] += value * fixed.direction[c]);
             }
         }
         out
@@ -176,15 +169,19 @@ pub fn prescribed_directions(
     nodes: usize,
 ) -> Result<Vec<PrescribedDirection>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
-    let of_node = |fixed: &FixedNode| -> Vec<PrescribedDirection> {
-        let held = |d: &FixedDirection| PrescribedDirection {
-            node: fixed.node,
-            direction: d.direction,
-            support: d.support,
-        };
-        fixed.directions.iter().map(held).collect()
+    let of = |node: &FixedNode| {
+        let directions = node.directions.iter();
+        let (node, of) = (node.node, |d: &FixedDirection| (d.direction, d.support));
+        directions
+            .map(of)
+            .map(move |(direction, support)| PrescribedDirection {
+                node,
+                direction,
+                support,
+            })
+            .collect::<Vec<_>>()
     };
-    Ok(merged.nodes.iter().flat_map(of_node).collect())
+    Ok(merged.nodes.iter().flat_map(of).collect())
 }
 
 pub(super) fn check_node(
@@ -269,7 +266,7 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, Tfe
 
 /// Orthonormalises a direction against those already fixed; `Some` if it adds nothing.
 fn add_direction(
-    entry: &mut FixedNode,
+    fixed_node: &mut FixedNode,
     support: usize,
     direction: [f64; 3],
     motion: Option<(u32, [f64; 3])>,
@@ -285,7 +282,7 @@ fn add_direction(
     let mut first = support;
     // Twice, so that rounding leaves the new direction orthogonal; the second pass changes no value noticeably.
     for _ in 0..2 {
-        for fixed in &entry.directions {
+        for fixed in &fixed_node.directions {
             let along = dot(rest, fixed.direction);
             for c in 0..3 {
                 rest[c] -= along * fixed.direction[c];
@@ -295,10 +292,7 @@ fn add_direction(
             }
             for &(case, value) in &fixed.values {
                 size = size.max(value.abs());
-                match values.iter_mut().find(|v| v.0 == case) {
-                    Some(v) => v.1 -= along * value,
-                    None => values.push((case, -along * value)),
-                }
+                *entry(&mut values, case, 0.0) -= along * value;
             }
         }
     }
@@ -310,7 +304,7 @@ fn add_direction(
             value.1 /= length;
         }
         let direction = rest.map(|v| v / length);
-        entry.directions.push(FixedDirection {
+        fixed_node.directions.push(FixedDirection {
             direction,
             values,
             support,
@@ -319,7 +313,7 @@ fn add_direction(
     }
     if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > AGREEING * size) {
         return Err(TfetiError::ContradictorySupports {
-            node: entry.node,
+            node: fixed_node.node,
             first,
             second: support,
             case,
@@ -327,7 +321,7 @@ fn add_direction(
         });
     }
     Ok(Some(RemovedRow {
-        node: entry.node,
+        node: fixed_node.node,
         kind: RowKind::Dirichlet,
         reason: RemovalReason::DoubledSupport { support },
     }))
