@@ -280,7 +280,7 @@ impl BoundaryMap {
     }
 }
 
-pub(crate) fn over_lanes<L: Sync, W: Send, T: Send>(
+fn over_lanes<L: Sync, W: Send, T: Send>(
     lanes: &[L],
     work: &mut [W],
     y: &mut [T],
@@ -307,6 +307,18 @@ pub(crate) fn over_lanes<L: Sync, W: Send, T: Send>(
             );
         }
     }
+}
+
+/// Runs `task` on every task with its part of `y`, which begins at its offset.
+pub(crate) fn over_tasks<L: Sync, T: Send>(
+    tasks: &[L],
+    y: &mut [T],
+    offset: &(impl Fn(&L) -> usize + Sync),
+    parallel: bool,
+    task: &(impl Fn(&L, &mut [T]) + Sync),
+) {
+    let work = &mut [(); PARTS][..tasks.len()];
+    over_lanes(tasks, work, y, offset, parallel, &|one, (), y| task(one, y));
 }
 
 /// Consecutive items in ranges of about equal work, of which no one is below `least` and there are no more than `most`.

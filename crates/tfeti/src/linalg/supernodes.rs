@@ -110,29 +110,33 @@ impl Supernodes {
         behind: &mut [f64],
         buffer: &mut [f64],
     ) {
-        Arch::new().dispatch(Forward {
-            factor: self,
+        let (factor, forward) = (self, true);
+        Arch::new().dispatch(Solve {
+            factor,
             tiles,
             x,
             behind,
             buffer,
+            forward,
         });
     }
 
-    /// `x = L^-T x` for the columns' unknowns, given those `behind`.
+    /// `x = L^-T x` for the columns' unknowns, given those `behind`, which stay.
     pub(crate) fn backward<T: Stored>(
         &self,
         tiles: &[T],
         x: &mut [f64],
-        behind: &[f64],
+        behind: &mut [f64],
         buffer: &mut [f64],
     ) {
-        Arch::new().dispatch(Backward {
-            factor: self,
+        let (factor, forward) = (self, false);
+        Arch::new().dispatch(Solve {
+            factor,
             tiles,
             x,
             behind,
             buffer,
+            forward,
         });
     }
 }
@@ -196,31 +200,35 @@ impl WithSimd for Pack<'_> {
     }
 }
 
-/// The arguments of [`Supernodes::forward`].
-struct Forward<'a, T> {
+/// The arguments of [`Supernodes::forward`] and [`Supernodes::backward`].
+struct Solve<'a, T> {
     factor: &'a Supernodes,
     tiles: &'a [T],
     x: &'a mut [f64],
     behind: &'a mut [f64],
     buffer: &'a mut [f64],
+    forward: bool,
 }
 
-impl<T: Stored> WithSimd for Forward<'_, T> {
+impl<T: Stored> WithSimd for Solve<'_, T> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        match self.factor.unit {
-            6 => self.run::<S, 6>(simd),
-            3 => self.run::<S, 3>(simd),
-            _ => self.run::<S, 1>(simd),
+        match (self.forward, self.factor.unit) {
+            (true, 6) => self.forward::<S, 6>(simd),
+            (true, 3) => self.forward::<S, 3>(simd),
+            (true, _) => self.forward::<S, 1>(simd),
+            (false, 6) => self.backward::<S, 6>(simd),
+            (false, 3) => self.backward::<S, 3>(simd),
+            (false, _) => self.backward::<S, 1>(simd),
         }
     }
 }
 
-impl<T: Stored> Forward<'_, T> {
+impl<T: Stored> Solve<'_, T> {
     #[inline(always)]
-    fn run<S: Simd, const U: usize>(self, simd: S) {
+    fn forward<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
         let first = x.len() / U;
         let mut nodes = &factor.nodes[..];
@@ -274,33 +282,9 @@ impl<T: Stored> Forward<'_, T> {
             }
         }
     }
-}
-
-/// The arguments of [`Supernodes::backward`].
-struct Backward<'a, T> {
-    factor: &'a Supernodes,
-    tiles: &'a [T],
-    x: &'a mut [f64],
-    behind: &'a [f64],
-    buffer: &'a mut [f64],
-}
-
-impl<T: Stored> WithSimd for Backward<'_, T> {
-    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        match self.factor.unit {
-            6 => self.run::<S, 6>(simd),
-            3 => self.run::<S, 3>(simd),
-            _ => self.run::<S, 1>(simd),
-        }
-    }
-}
-
-impl<T: Stored> Backward<'_, T> {
-    #[inline(always)]
-    fn run<S: Simd, const U: usize>(self, simd: S) {
+    fn backward<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
         let first = x.len() / U;
         let mut nodes = &factor.nodes[..];
@@ -314,7 +298,7 @@ impl<T: Stored> Backward<'_, T> {
                 let rows = &factor.rows[first.rows.start..node.rows.end];
                 let units = node.rows.len();
                 let t = &mut self.buffer[..];
-                let behind = self.behind;
+                let behind = &*self.behind;
                 panel!(
                     substitute_alike,
                     simd,
@@ -406,7 +390,7 @@ mod tests {
             for (sum, b) in behind.iter().zip(&b[own..]) {
                 assert!((sum + b).abs() < 1e-9, "unit {unit}: {sum} {b}");
             }
-            supernodes.backward(&tiles, &mut z, &x[own..], &mut buffer);
+            supernodes.backward(&tiles, &mut z, &mut x[own..].to_vec(), &mut buffer);
             for (z, x) in z.iter().zip(&x) {
                 assert!((z - x).abs() < 1e-12, "unit {unit}: {z} {x}");
             }

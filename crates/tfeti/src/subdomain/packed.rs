@@ -164,7 +164,7 @@ impl PackedFactor {
                 *x = column[old as usize];
             }
             self.groups.forward(&self.tiles, x, &mut [], buffer);
-            self.groups.backward(&self.tiles, x, &[], buffer);
+            self.groups.backward(&self.tiles, x, &mut [], buffer);
             for (&x, &old) in x.iter().zip(&self.order) {
                 column[old as usize] = x;
             }
@@ -197,7 +197,7 @@ impl PackedFactor {
             }
         }
         self.groups.forward(&self.tiles, x, &mut [], buffer);
-        self.groups.backward(&self.tiles, x, &[], buffer);
+        self.groups.backward(&self.tiles, x, &mut [], buffer);
         let all = (0..kernel.nodes()).map(|node| (node, three(&x[at(node)..][..3])));
         let motion = rigid(kernel, all);
         for (&node, u) in nodes.iter().zip(u.chunks_exact_mut(3)) {

@@ -4,7 +4,7 @@
 //! combine the subdomains with the same coefficients, so a run takes one combined motion and gives one wrench; only
 //! these are shifted to the centres of the subdomains. Globs of one shape share their arms.
 
-use crate::dual::boundary::{over_lanes, shares};
+use crate::dual::boundary::{over_tasks, shares};
 use crate::rows::gluing::{Glob, Gluing};
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::{GLOB_TASK, PARTS};
@@ -170,24 +170,15 @@ impl GlobTables {
 
     /// Wrenches of the interface rows `x` on each side, about the mean of its nodes.
     pub(crate) fn wrenches(&self, x: &[f64], out: &mut [Wrench], parallel: bool) {
-        let mut none = [(); PARTS];
-        let work = &mut none[..self.tasks.len()];
         let offset = |task: &Task| task.side;
-        over_lanes(
-            &self.tasks,
-            work,
-            out,
-            &offset,
-            parallel,
-            &|task, (), out| {
-                Arch::new().dispatch(Wrenches {
-                    tables: self,
-                    task,
-                    x,
-                    out,
-                });
-            },
-        );
+        over_tasks(&self.tasks, out, &offset, parallel, &|task, out| {
+            Arch::new().dispatch(Wrenches {
+                tables: self,
+                task,
+                x,
+                out,
+            });
+        });
     }
 
     /// Hands each interface row to `each` with the displacement that the motions of the subdomains give it.
@@ -198,10 +189,8 @@ impl GlobTables {
         parallel: bool,
         each: &(impl Fn(&mut f64, f64) + Sync),
     ) {
-        let mut none = [(); PARTS];
-        let work = &mut none[..self.tasks.len()];
         let offset = |task: &Task| 3 * task.block;
-        over_lanes(&self.tasks, work, x, &offset, parallel, &|task, (), x| {
+        over_tasks(&self.tasks, x, &offset, parallel, &|task, x| {
             Arch::new().dispatch(Motions {
                 tables: self,
                 task,

@@ -4,7 +4,7 @@
 
 use super::globs::{GlobTables, Wrench};
 use super::points::PointTables;
-use crate::dual::boundary::{BoundaryMap, over_lanes, shares};
+use crate::dual::boundary::{BoundaryMap, over_tasks, shares};
 use crate::linalg::both;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench};
@@ -116,26 +116,17 @@ impl RigidTables {
         let (interface, parallel) = (&x[map.interface.clone()], map.is_large());
         self.globs.wrenches(interface, sides, parallel);
         let (out, _) = out.as_chunks_mut();
-        let mut none = [(); PARTS];
-        let work = &mut none[..self.tasks.len()];
         let offset = |task: &Range<usize>| task.start;
-        over_lanes(
-            &self.tasks,
-            work,
-            out,
-            &offset,
-            parallel,
-            &|task, (), out| {
-                for (s, target) in task.clone().zip(out) {
-                    let mut wrench = self.globs.wrench(s, sides);
-                    for &[nodal, arm] in self.nodal_of(s) {
-                        let force = nodal_force(map, nodal as usize, x, weights);
-                        add_wrench(&mut wrench, &self.arms[arm as usize], force);
-                    }
-                    *target = on_modes(kernel(s), &wrench);
+        over_tasks(&self.tasks, out, &offset, parallel, &|task, out| {
+            for (s, target) in task.clone().zip(out) {
+                let mut wrench = self.globs.wrench(s, sides);
+                for &[nodal, arm] in self.nodal_of(s) {
+                    let force = nodal_force(map, nodal as usize, x, weights);
+                    add_wrench(&mut wrench, &self.arms[arm as usize], force);
                 }
-            },
-        );
+                *target = on_modes(kernel(s), &wrench);
+            }
+        });
     }
 
     /// The same for the contact rows `x` alone, where most are zero.
