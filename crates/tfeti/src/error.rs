@@ -136,6 +136,11 @@ pub enum TfetiError {
          numbered; use smaller subdomains"
     )]
     FactorPattern { subdomain: usize },
+    /// Rows of a node depend on one another where they should not.
+    #[error(
+        "node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once"
+    )]
+    DependentRows { node: u32 },
     /// Contact points join so many rows that a preconditioner cannot scale them; no such case is covered yet.
     #[error(
         "node {node}: contact points join {rows} rows by the nodes of their sides, \

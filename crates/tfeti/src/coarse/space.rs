@@ -9,7 +9,6 @@ use crate::error::TfetiError;
 use crate::linalg::sparse::{SolveMemory, SparseCholesky, Symbolic};
 use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
-use crate::subdomain::kernel::Kernel;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::SUPPORTED;
 use signorini_qp::LooseMode;
@@ -70,7 +69,10 @@ impl Coarse {
             || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
             || {
                 let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
-                (mobility, RigidTables::new(&map, &subdomains, &gluing))
+                (
+                    mobility,
+                    RigidTables::new(&map, subdomains.clone(), &gluing),
+                )
             },
         );
         let symbolic = symbolic?;
@@ -167,10 +169,6 @@ impl Coarse {
 }
 
 impl CoarseData {
-    fn kernel(&self, subdomain: usize) -> &Kernel {
-        self.subdomains.kernel(subdomain)
-    }
-
     /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
     pub(crate) fn product(
         &self,
@@ -179,14 +177,12 @@ impl CoarseData {
         out: &mut [f64],
         sides: &mut [Wrench],
     ) {
-        self.tables
-            .wrenches(&self.map, |s| self.kernel(s), x, weights, out, sides);
+        self.tables.wrenches(&self.map, x, weights, out, sides);
     }
 
     /// `out = G x` for a vector of which `contact` are the leading entries, the contact rows, and the others are zero.
     pub(crate) fn contact_product(&self, contact: &[f64], out: &mut [f64]) {
-        self.tables
-            .contact_wrenches(|s| self.kernel(s), contact, out);
+        self.tables.contact_wrenches(contact, out);
     }
 
     /// Whether work on all interface rows is worth several threads.
@@ -198,7 +194,7 @@ impl CoarseData {
     fn motions(&self, y: &[f64], motions: &mut [[f64; 6]]) {
         let both = y.chunks_exact(6).zip(motions);
         for (s, (amplitudes, target)) in both.enumerate() {
-            let kernel = self.kernel(s);
+            let kernel = self.subdomains.kernel(s);
             *target = kernel.motion(amplitudes);
             target[3..].iter_mut().for_each(|w| *w /= kernel.radius());
         }

@@ -66,7 +66,7 @@ impl Tfeti {
     /// The lumped preconditioner `B_D K_bb B_D^T`: cheap, no further factorisation.
     ///
     /// # Errors
-    /// [`TfetiError::Memory`] never, [`TfetiError::Singular`] never; the signature leaves room for other choices.
+    /// [`TfetiError::DependentRows`] and [`TfetiError::JoinedRows`] for rows of nodes that cannot be scaled.
     pub fn lumped(&self) -> Result<DualPreconditioner, TfetiError> {
         DualPreconditioner::new(self, Kind::Lumped)
     }
@@ -75,7 +75,7 @@ impl Tfeti {
     /// costly as a product with `F`. Classes whose interior is not held by their boundary use the lumped block.
     ///
     /// # Errors
-    /// [`TfetiError::FactorPattern`] if a factor is too large.
+    /// As [`lumped`](Self::lumped), and [`TfetiError::FactorPattern`] if a factor is too large.
     pub fn dirichlet(&self) -> Result<DualPreconditioner, TfetiError> {
         DualPreconditioner::new(self, Kind::Dirichlet)
     }

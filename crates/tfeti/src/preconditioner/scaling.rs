@@ -93,20 +93,12 @@ impl Scaling {
         let interface = &gluing.ranges().interface;
         for group in members.chunk_by(|a, b| a.0 == b.0) {
             let plain = group.iter().all(|r| interface.contains(&(r.1 as usize)));
-            let rows: Vec<(u32, u32)> = group
-                .iter()
-                .copied()
-                .step_by(if plain { 3 } else { 1 })
-                .collect();
+            let step = if plain { 3 } else { 1 };
+            let rows: Vec<(u32, u32)> = group.iter().copied().step_by(step).collect();
             let count = rows.len();
-            let entries: Vec<Vec<(usize, f64)>> = rows
-                .iter()
-                .map(|&(_, row)| {
-                    let entry =
-                        |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
-                    gluing.row(row as usize).into_iter().map(entry).collect()
-                })
-                .collect();
+            let entry = |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
+            let row = |row: u32| gluing.row(row as usize).into_iter().map(entry).collect();
+            let entries: Vec<Vec<(usize, f64)>> = rows.iter().map(|r| row(r.1)).collect();
             if count > GROUP_ROWS {
                 let node = rows[0].0;
                 return Err(TfetiError::JoinedRows {
@@ -131,8 +123,9 @@ impl Scaling {
                     .fold(0.0, f64::max);
                 (0..count).for_each(|k| matrix[k * (count + 1)] += DEPENDENT * size);
             }
-            let inverse = dense::inverse(matrix, count, 0.0)
-                .map_err(|pivot| TfetiError::CoarseSingular { pivot })?;
+            let node = rows[0].0;
+            let inverse = dense::inverse(matrix, count, 0.0);
+            let inverse = inverse.map_err(|_| TfetiError::DependentRows { node })?;
             for (place, &(_, row)) in rows.iter().enumerate() {
                 if let Some(contact) = out.contact.get_mut(row as usize) {
                     *contact = (out.groups.count() as u32, place as u32);

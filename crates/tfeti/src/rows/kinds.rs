@@ -87,19 +87,4 @@ impl RowRanges {
     pub fn total(&self) -> usize {
         self.dirichlet.end
     }
-
-    /// Kind of a row; `None` beyond the last.
-    pub fn kind(&self, row: usize) -> Option<RowKind> {
-        if self.normal.contains(&row) {
-            Some(RowKind::Normal)
-        } else if self.tangential().contains(&row) {
-            Some(RowKind::Tangential)
-        } else if self.interface.contains(&row) {
-            Some(RowKind::Interface)
-        } else if self.dirichlet.contains(&row) {
-            Some(RowKind::Dirichlet)
-        } else {
-            None
-        }
-    }
 }

@@ -17,8 +17,6 @@ pub struct Class {
     pub members: Vec<u32>,
     /// Nodes of each member.
     pub nodes: usize,
-    /// Tetrahedra of each member.
-    pub elements: usize,
 }
 
 /// Partition of the subdomains into classes.
@@ -89,12 +87,8 @@ impl Classes {
                 }
             }
             let class = home.unwrap_or_else(|| {
-                let (nodes, elements) = (subdomains[s].nodes.len(), subdomains[s].tets.len());
-                classes.push(Class {
-                    members: Vec::new(),
-                    nodes,
-                    elements,
-                });
+                let (members, nodes) = (Vec::new(), subdomains[s].nodes.len());
+                classes.push(Class { members, nodes });
                 classes.len() - 1
             });
             place.push((class as u32, classes[class].members.len() as u32));
@@ -129,22 +123,20 @@ impl<'a> Candidate<'a> {
         let mut last = None;
         for &element in &subdomain.elements {
             let region = mesh.regions()[element as usize];
-            if last == Some(region) {
-                if let Some(run) = hooke.last_mut() {
-                    run.0 += 1;
+            if last != Some(region) {
+                last = Some(region);
+                let law = materials
+                    .get(region)
+                    .map_err(|error| TfetiError::Material {
+                        element: element as usize,
+                        message: error.to_string(),
+                    })?;
+                if hooke.last().is_none_or(|run| run.1.voigt() != law.voigt()) {
+                    hooke.push((0, law));
                 }
-                continue;
             }
-            last = Some(region);
-            let law = materials
-                .get(region)
-                .map_err(|error| TfetiError::Material {
-                    element: element as usize,
-                    message: error.to_string(),
-                })?;
-            match hooke.last_mut() {
-                Some(run) if run.1.voigt() == law.voigt() => run.0 += 1,
-                _ => hooke.push((1, law)),
+            if let Some(run) = hooke.last_mut() {
+                run.0 += 1;
             }
         }
         let points = mesh.points();

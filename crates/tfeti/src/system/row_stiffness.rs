@@ -24,35 +24,28 @@ impl Tfeti {
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_compliance(&self, rows: Range<usize>, out: &mut [f64]) {
         let parts = &self.parts;
-        let entries: Vec<_> = rows
-            .map(|row| {
-                if row < self.dual_dim() {
-                    self.gluing().row(row)
-                } else {
-                    Vec::new()
-                }
-            })
-            .collect();
-        let mut nodes = vec![Vec::new(); parts.subdomains.bases.len()];
+        let subdomains = &parts.subdomains;
+        let entries: Vec<_> = rows.map(|row| self.gluing().row(row)).collect();
+        let mut nodes = vec![Vec::new(); subdomains.bases.len()];
         for &(subdomain, dof, _) in entries.iter().flatten() {
-            nodes[parts.subdomains.class(subdomain)].push(dof / 3);
+            nodes[subdomains.class(subdomain)].push(dof / 3);
         }
-        let compliance: Vec<Compliance<'_>> = (0..nodes.len())
-            .into_par_iter()
-            .map(|class| match &parts.inverses[class].boundary {
+        let of_class =
+            |(class, mut nodes): (usize, Vec<usize>)| match &parts.inverses[class].boundary {
                 Some(block) => Compliance::Block(block),
                 None => {
-                    let mut nodes = nodes[class].clone();
                     nodes.sort_unstable();
                     nodes.dedup();
                     Compliance::Sample(self.sample_compliance(class, &nodes))
                 }
-            })
-            .collect();
+            };
+        let compliance: Vec<Compliance<'_>> =
+            nodes.into_par_iter().enumerate().map(of_class).collect();
         for (entries, target) in entries.iter().zip(out) {
             *target = 0.0;
             for &(subdomain, dof, value) in entries {
-                let class = parts.subdomains.class(subdomain);
+                let class = subdomains.class(subdomain);
+                let own = entries.iter().filter(|e| e.0 == subdomain);
                 match &compliance[class] {
                     Compliance::Block(block) => {
                         let nodes = &parts.map.classes[class].nodes;
@@ -60,14 +53,14 @@ impl Tfeti {
                             let node = nodes.binary_search(&((dof / 3) as u32));
                             node.ok().map(|node| 3 * node + dof % 3)
                         };
-                        for &(_, other, factor) in entries.iter().filter(|e| e.0 == subdomain) {
+                        for &(_, other, factor) in own {
                             if let (Some(i), Some(j)) = (place(dof), place(other)) {
                                 *target += value * factor * block[i + j * 3 * nodes.len()];
                             }
                         }
                     }
                     Compliance::Sample(ratios) => {
-                        let diagonal = parts.subdomains.bases[class].stiffness.diagonal(dof);
+                        let diagonal = subdomains.bases[class].stiffness.diagonal(dof);
                         if diagonal > 0.0 {
                             *target += value * value * ratios[dof % 3] / diagonal;
                         }
@@ -103,22 +96,14 @@ impl Tfeti {
     ///
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_stiffness(&self, rows: Range<usize>, out: &mut [f64]) {
-        let parts = &self.parts;
         for (row, target) in rows.zip(out) {
-            let entries = if row < self.dual_dim() {
-                self.gluing().row(row)
-            } else {
-                Vec::new()
-            };
+            let entries = self.gluing().row(row);
             *target = 0.0;
             for &(subdomain, dof, value) in &entries {
-                let stiffness = &parts.subdomains.of(subdomain).stiffness;
-                let (indices, values) = stiffness.column(dof);
-                for &(other, other_dof, other_value) in entries.iter().filter(|e| e.0 == subdomain)
-                {
-                    debug_assert_eq!(other, subdomain);
-                    if let Ok(at) = indices.binary_search(&other_dof) {
-                        *target += value * values[at] * other_value;
+                let stiffness = &self.parts.subdomains.of(subdomain).stiffness;
+                for &(_, other, factor) in entries.iter().filter(|e| e.0 == subdomain) {
+                    if let Some(at) = stiffness.find(other, dof) {
+                        *target += value * stiffness.values[at] * factor;
                     }
                 }
             }
@@ -132,26 +117,19 @@ impl Tfeti {
         if self.copy_stiffness().is_plain() {
             return None;
         }
-        let parts = &self.parts;
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
-            let stiffness = &parts.subdomains.of(subdomain).stiffness;
-            let diagonal = stiffness.diagonal(dof);
+            let diagonal = self.parts.subdomains.of(subdomain).stiffness.diagonal(dof);
             if diagonal > 0.0 {
                 value * value / diagonal
             } else {
                 0.0
             }
         };
-        let mut weights: Vec<f64> = (0..self.dual_dim())
-            .map(|row| {
-                self.gluing()
-                    .row(row)
-                    .into_iter()
-                    .map(compliance)
-                    .sum::<f64>()
-            })
-            .map(|c| if c > 0.0 { 1.0 / c } else { 0.0 })
-            .collect();
+        let weight = |row: usize| {
+            let sum: f64 = self.gluing().row(row).into_iter().map(compliance).sum();
+            if sum > 0.0 { 1.0 / sum } else { 0.0 }
+        };
+        let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
         let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for w in &mut weights {
             *w = if *w > 0.0 { *w / largest } else { 1.0 };

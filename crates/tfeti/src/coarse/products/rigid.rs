@@ -12,10 +12,12 @@ use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{PARTS, SUBDOMAIN_TASK};
 use signorini_fem_mesh::buckets;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Arms of the boundary nodes of all classes in metres, and the rows of `B` grouped by nodes.
 #[derive(Debug)]
 pub(crate) struct RigidTables {
+    subdomains: Arc<Subdomains>,
     arms: Vec<[f64; 3]>,
     contact: PointTables,
     supports: PointTables,
@@ -28,7 +30,7 @@ pub(crate) struct RigidTables {
 }
 
 impl RigidTables {
-    pub(crate) fn new(map: &BoundaryMap, subdomains: &Subdomains, gluing: &Gluing) -> Self {
+    pub(crate) fn new(map: &BoundaryMap, subdomains: Arc<Subdomains>, gluing: &Gluing) -> Self {
         let (mut arms, mut first, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for (class, base) in map.classes.iter().zip(&subdomains.bases) {
             first.push(arms.len());
@@ -56,6 +58,7 @@ impl RigidTables {
         );
         let (nodal_pointers, nodal) = nodal_copies(map, &first, subdomains.count());
         let mut out = Self {
+            subdomains,
             arms,
             contact,
             supports,
@@ -65,7 +68,9 @@ impl RigidTables {
             tasks: vec![],
         };
         let work = |s: usize| 4 * out.nodal_of(s).len() + out.globs.sides_of(s).len() + 4;
-        let work: Vec<u64> = (0..subdomains.count()).map(|s| work(s) as u64).collect();
+        let work: Vec<u64> = (0..out.subdomains.count())
+            .map(|s| work(s) as u64)
+            .collect();
         out.tasks = shares(&work, SUBDOMAIN_TASK, PARTS);
         out
     }
@@ -104,10 +109,9 @@ fn nodal_copies(
 
 impl RigidTables {
     /// `R^T B^T W x`, six numbers a subdomain; `W` is one on interface rows and given by `weights` on the others.
-    pub(crate) fn wrenches<'k>(
+    pub(crate) fn wrenches(
         &self,
         map: &BoundaryMap,
-        kernel: impl Fn(usize) -> &'k Kernel + Sync,
         x: &[f64],
         weights: Option<&[f64]>,
         out: &mut [f64],
@@ -124,23 +128,18 @@ impl RigidTables {
                     let force = nodal_force(map, nodal as usize, x, weights);
                     add_wrench(&mut wrench, &self.arms[arm as usize], force);
                 }
-                *target = on_modes(kernel(s), &wrench);
+                *target = on_modes(self.subdomains.kernel(s), &wrench);
             }
         });
     }
 
     /// The same for the contact rows `x` alone, where most are zero.
-    pub(crate) fn contact_wrenches<'k>(
-        &self,
-        kernel: impl Fn(usize) -> &'k Kernel,
-        x: &[f64],
-        out: &mut [f64],
-    ) {
+    pub(crate) fn contact_wrenches(&self, x: &[f64], out: &mut [f64]) {
         let (out, _) = out.as_chunks_mut();
         out.fill([0.0; 6]);
         self.contact.add_wrenches(&self.arms, x, out);
         for (s, target) in out.iter_mut().enumerate().filter(|(_, w)| **w != [0.0; 6]) {
-            *target = on_modes(kernel(s), target);
+            *target = on_modes(self.subdomains.kernel(s), target);
         }
     }
 
