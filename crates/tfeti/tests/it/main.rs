@@ -4,6 +4,8 @@ mod active_set;
 mod classes;
 mod coarse;
 mod common;
+mod forecast;
+mod kernel;
 mod linear;
 mod operators;
 mod preconditioners;
