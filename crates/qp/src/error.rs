@@ -13,7 +13,8 @@ macro_rules! debug_is_display {
     )+};
 }
 
-debug_is_display!(SetError, QpError, crate::laws::LawViolation);
+debug_is_display!(SetError, QpError);
+pub(crate) use debug_is_display;
 
 /// The data of a convex set are wrong.
 #[derive(Clone, PartialEq, Error)]
@@ -137,12 +138,12 @@ pub enum QpError {
         /// Operator products so far.
         products: usize,
     },
-    /// The free components of a face leave a combination of the equality rows without weight.
+    /// The free components leave a combination of the equality rows without weight.
     #[error(
         "the free components do not determine the multiplier of the equality ({motion}); more components must be free, or use smalse"
     )]
     CoarseDeficient {
-        /// What stays undetermined, in the words of the coarse space.
+        /// What stays undetermined, in the words of the projector.
         motion: String,
     },
     /// A row of an equality matrix depends on the rows before it.
@@ -175,14 +176,23 @@ pub(crate) fn expect_length(
     found: usize,
     expected: usize,
 ) -> Result<(), QpError> {
-    if found == expected {
-        Ok(())
-    } else {
-        Err(QpError::Length {
+    expect_lengths([(what, found, expected)])
+}
+
+/// Checks lengths: of what, found and expected.
+pub(crate) fn expect_lengths<const N: usize>(
+    lengths: [(&'static str, usize, usize); N],
+) -> Result<(), QpError> {
+    match lengths
+        .into_iter()
+        .find(|(_, found, expected)| found != expected)
+    {
+        Some((what, found, expected)) => Err(QpError::Length {
             what,
             found,
             expected,
-        })
+        }),
+        None => Ok(()),
     }
 }
 
@@ -191,19 +201,5 @@ pub(crate) fn expect_finite(what: &'static str, x: &[f64]) -> Result<(), QpError
     match x.iter().position(|v| !v.is_finite()) {
         Some(entry) => Err(QpError::Input { what, entry }),
         None => Ok(()),
-    }
-}
-
-/// Checks the range of a setting.
-pub(crate) fn expect_setting(
-    name: &'static str,
-    value: f64,
-    range: &'static str,
-    inside: bool,
-) -> Result<(), QpError> {
-    if inside {
-        Ok(())
-    } else {
-        Err(QpError::Setting { name, value, range })
     }
 }

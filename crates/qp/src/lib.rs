@@ -87,63 +87,40 @@
 //! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads
 //! changes no bit of a result. Loops over the set are serial.
 
-pub mod active_set;
-mod balanced;
-mod block;
-mod coarse_space;
-pub mod dense;
-mod dense_coarse;
+mod active_set;
+mod check;
 mod error;
-mod face_cg;
-mod face_coupling;
-mod face_hold;
-mod face_iterate;
-mod face_move;
-mod face_run;
-mod face_settings;
-mod face_state;
-mod face_view;
-mod guard;
-pub mod kkt;
-pub mod kprgp;
-mod kprgp_settings;
-pub mod laws;
-mod natural_map;
-mod objective;
-pub mod operator;
-mod penalised;
-mod product;
-mod projected;
+mod fixed_point;
+mod kprgp;
+mod problem;
 mod projected_cg;
 mod report;
-pub mod set;
-pub mod smalse;
-mod smalse_settings;
-pub mod spectrum;
+mod settings;
+mod smalse;
+mod tolerances;
 pub mod vector;
 
-pub use active_set::{ActiveSetHook, ActiveSetProblem, active_set};
-pub use balanced::LooseMode;
-pub use coarse_space::{EqualityProjector, Line, NoEquality};
-pub use dense::{DenseEquality, DenseOperator};
-pub use dense_coarse::DenseProjector;
+pub use active_set::{
+    ActiveSetHook, ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings,
+    ActiveSetView, ActiveSetWorkspace, Freedom, RadiusSlope, active_set,
+};
+pub use check::{NormEstimate, NormSettings, kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
-pub use face_coupling::RadiusSlope;
-pub use face_settings::{ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace};
-pub use face_view::{ActiveSetPreconditioner, ActiveSetView, Freedom};
-pub use kkt::Kkt;
-pub use kprgp::kprgp;
-pub use kprgp_settings::{
-    Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Measure, Release, Verification,
+pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
+pub use kprgp::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, kprgp};
+pub use problem::{
+    Block, BlockState, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality,
+    EqualityProjector, GradientNorms, Identity, ProductSet, Projected, Segment, SymmetricOperator,
 };
-pub use operator::{Equality, SymmetricOperator};
-pub use product::{ProductSet, Segment};
-pub use projected::{Projected, ProjectedScratch};
-pub use projected_cg::{CgReport, CgWorkspace, Identity, projected_cg};
+pub use projected_cg::{CgReport, CgWorkspace, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};
-pub use set::{Block, BlockKind, BlockState, ConvexSet, GradientNorms};
-pub use smalse::smalse;
-pub use smalse_settings::{
-    HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace, Update,
+pub use smalse::{
+    HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace, smalse,
 };
-pub use spectrum::{NormEstimate, NormSettings, norm_estimate};
+
+/// What the crates of this workspace share beyond the interface.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::fixed_point::Contraction;
+    pub use crate::problem::{LineWeight, LooseMode};
+}

@@ -62,7 +62,7 @@ pub fn decrease(x0: &[f64], g0: &[f64], x1: &[f64], g1: &[f64]) -> f64 {
         for (k, i) in r.enumerate() {
             acc[k % LANES] += (x0[i] - x1[i]) * (g0[i] + g1[i]);
         }
-        ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
+        folded(acc)
     });
     0.5 * sum
 }
@@ -218,6 +218,11 @@ fn leaf(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     for (k, (&a, &b)) in xr.iter().zip(yr).enumerate() {
         acc[k] += f(a, b);
     }
+    folded(acc)
+}
+
+/// The partial sums of a leaf together.
+fn folded(acc: [f64; LANES]) -> f64 {
     ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
 }
 
