@@ -73,7 +73,6 @@ impl Contraction {
 
 /// Result of [`successive_approximations`].
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct FixedPointReport {
     /// How it ended.
     pub verdict: Verdict,

@@ -88,10 +88,10 @@ impl ActiveSet {
     /// The directions of sliding discs, weighted like the preconditioner weighs them.
     pub(crate) fn lines(&self, set: &ProductSet, lines: &mut Vec<LineWeight>) {
         lines.clear();
-        for_discs(set, |first, k, _| {
+        for_discs(set, |row, k, _| {
             if let Disc::Sliding { tau, damp, .. } = self.discs[k] {
                 lines.push(LineWeight {
-                    first,
+                    row,
                     direction: tau,
                     weight: damp,
                 });

@@ -104,15 +104,25 @@ pub trait EqualityProjector {
     }
 }
 
-/// Weight `weight * c cᵀ` on the components `first` and `first + 1`, `c` the unit `direction`.
+/// Weight `weight * c cᵀ` on the rows `row` and `row + 1` of `Gᵀ`, which are components of `x`; `c` is the unit `direction`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineWeight {
-    /// First of the two components.
-    pub first: usize,
+    /// First of the two rows.
+    pub row: usize,
     /// Unit vector.
     pub direction: [f64; 2],
     /// Weight, not negative.
     pub weight: f64,
+}
+
+impl LineWeight {
+    /// `weight * c cᵀ` times a pair.
+    #[must_use]
+    pub fn along(&self, pair: [f64; 2]) -> [f64; 2] {
+        let [c, d] = self.direction;
+        let value = self.weight * (c * pair[0] + d * pair[1]);
+        [value * c, value * d]
+    }
 }
 
 /// A mode that no unconstrained component stops: a combination of the rows of `G` that vanishes on all of them.
