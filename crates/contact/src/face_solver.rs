@@ -112,10 +112,11 @@ impl ActiveSetSolver {
             rhs: &level.rhs,
         };
         let [least, least_contact] = level.least();
+        let tolerance = settings.tolerance * SAFETY;
         let face_settings = self
             .settings
             .clone()
-            .with_tolerance(settings.tolerance * SAFETY)
+            .with_tolerance(tolerance)
             .with_error_floor(least)
             .with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
@@ -145,11 +146,11 @@ impl ActiveSetSolver {
             );
             let status = match outcome {
                 Ok(outcome) => {
-                    report.iterations += outcome.faces;
+                    report.iterations += outcome.active_sets;
                     report.counters.products += outcome.products();
                     report.counters.preconditionings += outcome.preconditionings;
                     report.counters.coarse_factorisations += outcome.factorisations;
-                    report.counters.faces += outcome.faces;
+                    report.counters.faces += outcome.active_sets;
                     report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
                     outcome.status
                 }
@@ -160,9 +161,7 @@ impl ActiveSetSolver {
                 ) => Status::Stagnated,
                 Err(error) => return Err(error.into()),
             };
-            let limit = CONTRADICTION
-                * face_settings.tolerance
-                * vector::norm(&iterate.lambda).max(face_settings.error_floor);
+            let limit = CONTRADICTION * tolerance * vector::norm(&iterate.lambda).max(least);
             if status != Status::Converged
                 || turns == TURNS
                 || !self.exchanges.settle(

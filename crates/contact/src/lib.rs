@@ -89,7 +89,10 @@ mod estimate;
 mod exchange;
 mod face_solver;
 mod fingerprint;
-pub mod fixed_point;
+/// Successive approximations, see `signorini_qp`.
+pub mod fixed_point {
+    pub use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
+}
 mod frame;
 mod held;
 mod law;

@@ -2,7 +2,6 @@
 //! (Algorithm 4.1), and the one inexact loop in which the slip bounds follow the outer steps of SMALSE.
 
 use crate::error::ContactError;
-use crate::fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
 use crate::held::orthonormal_coarse;
 use crate::law::Friction;
 use crate::level::StepProblem;
@@ -10,6 +9,8 @@ use crate::model::{DISCS, INTERVALS, Model};
 use crate::report::{StepReport, StepStatus};
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::solver::{Iterate, is_coulomb, level_status};
+use signorini_qp::internal::Contraction;
+use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
     HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
     SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
@@ -141,11 +142,11 @@ impl SmalseSolver {
         hook: &mut impl OuterHook<ProductSet>,
         iterate: &mut Iterate,
     ) -> Result<SmalseReport, ContactError> {
-        let mut settings = self
+        let settings = self
             .settings
             .with_tolerance(Tolerance::Relative(tolerance))
-            .with_equality(tolerance);
-        settings.inner.max_products = settings.inner.max_products.min(self.left).max(1);
+            .with_equality(tolerance)
+            .limited_to(self.left);
         let operator = model.tfeti.dual();
         let report = smalse(
             operator,

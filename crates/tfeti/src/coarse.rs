@@ -12,7 +12,7 @@ use crate::mobility::{FreeMotion, Mobility};
 use crate::row_weights::RowWeights;
 use crate::sparse::{FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::split_factor::{SplitBase, cheapest_tree};
-use signorini_qp::LooseMode;
+use signorini_qp::internal::LooseMode;
 use std::sync::Arc;
 
 /// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.

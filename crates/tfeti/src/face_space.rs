@@ -7,7 +7,8 @@ use crate::error::TfetiError;
 use crate::row_weights::{LineWeight, RowWeights};
 use crate::split_factor::{Fronts, SplitBase, SplitFactor};
 use crate::split_solve::Digits;
-use signorini_qp::{EqualityProjector, Line, LooseMode, QpError};
+use signorini_qp::internal::LooseMode;
+use signorini_qp::{EqualityProjector, QpError};
 use std::sync::Arc;
 
 /// How `G W G^T` is factored when the face changes.
@@ -37,7 +38,7 @@ pub struct ActiveSetProjector {
     face: CoarseFactor,
     weights: Vec<f64>,
     /// Directions of the last face besides its weights.
-    lines: Vec<Line>,
+    lines: Vec<LineWeight>,
     contact_rows: usize,
     split: Option<Arc<SplitBase>>,
     /// Memory of the last but one factor.
@@ -243,7 +244,7 @@ impl EqualityProjector for ActiveSetProjector {
         self.set_weights_and_lines(w, &[])
     }
 
-    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[Line]) -> Result<bool, QpError> {
+    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[LineWeight]) -> Result<bool, QpError> {
         if w == self.weights && lines == self.lines {
             return match self.deficiency(&self.face) {
                 Some(motion) => Err(QpError::CoarseDeficient { motion }),
@@ -264,9 +265,9 @@ impl EqualityProjector for ActiveSetProjector {
             metric.and_then(|m| m.get(row)).copied().unwrap_or(1.0)
         };
         weights.lines.extend(lines.iter().map(|line| LineWeight {
-            row: line.first,
+            row: line.row,
             direction: line.direction,
-            weight: line.weight * metric(line.first),
+            weight: line.weight * metric(line.row),
         }));
         let fixed = w[self.contact_rows..].iter().all(|w| *w == 1.0);
         let split = self.split.as_ref().filter(|_| fixed);
@@ -323,10 +324,6 @@ impl EqualityProjector for ActiveSetProjector {
     fn project_step_transpose(&mut self, g: &mut [f64]) {
         self.face
             .project_transpose_to(self.digits, g, &mut self.alpha, &mut self.scratch);
-    }
-
-    fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
-        self.face.amplitudes(g, out, &mut self.scratch);
     }
 
     fn loose(&self) -> &[LooseMode] {

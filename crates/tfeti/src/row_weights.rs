@@ -3,6 +3,8 @@
 use crate::error::TfetiError;
 use crate::rows::RowRanges;
 
+pub use signorini_qp::internal::LineWeight;
+
 /// Weights `W` of the rows of `B` in `G W G^T`: a diagonal, and for chosen pairs of tangential rows a single direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowWeights {
@@ -14,26 +16,6 @@ pub struct RowWeights {
 
 /// Largest error of the length of a direction.
 const UNIT: f64 = 1e-10;
-
-/// Weight `weight * c c^T` on the rows `row, row + 1`, `c` the unit `direction`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LineWeight {
-    /// First of the two rows.
-    pub row: usize,
-    /// Unit vector, of length 1 within `1e-10`.
-    pub direction: [f64; 2],
-    /// Non-negative weight.
-    pub weight: f64,
-}
-
-impl LineWeight {
-    /// `weight * c c^T` times a pair.
-    pub(crate) fn along(&self, pair: [f64; 2]) -> [f64; 2] {
-        let [c, d] = self.direction;
-        let value = self.weight * (c * pair[0] + d * pair[1]);
-        [value * c, value * d]
-    }
-}
 
 impl RowWeights {
     /// A diagonal only.

@@ -9,7 +9,7 @@ use allocation_counter::measure;
 use common::{Brick, build, noise};
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
-    ProductSet, Segment, SymmetricOperator, face,
+    ProductSet, Segment, SymmetricOperator, active_set,
 };
 use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, RowScaling, Sharing};
 
@@ -42,7 +42,7 @@ fn products_and_projectors_allocate_nothing() {
             let count = measure(|| {
                 space.project(&mut y);
                 space.project_transpose(&mut y);
-                space.multiplier(&x, &mut beta);
+                space.amplitudes(&x, &mut beta);
                 space.repair(&mut y, &beta);
                 space.compensate(&x, &x[..contact], &mut y);
             });
@@ -83,7 +83,7 @@ fn iterations_of_the_face_method_allocate_nothing() {
             .with_max_products(products);
         let mut steps = 0;
         let count = measure(|| {
-            let report = face(
+            let report = active_set(
                 &problem,
                 &mut space,
                 &mut set,

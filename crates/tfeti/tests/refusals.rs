@@ -4,7 +4,7 @@ mod common;
 
 use common::{Brick, build};
 use signorini_fem_mesh::Decomposition;
-use signorini_qp::{EqualityProjector, Line, QpError};
+use signorini_qp::{EqualityProjector, QpError};
 use signorini_tfeti::{
     ActiveSetFactor, ActiveSetProjector, CopyStiffness, Gluing, InverseKind, LineWeight, Motion,
     NodeSupport, RowScaling, RowWeights, Sharing, Tfeti, TfetiBuilder, TfetiError,
@@ -43,8 +43,8 @@ fn face_spaces_check_their_arguments() {
             let error = space.set_weights(&vec![1.0; length]).unwrap_err();
             assert!(matches!(error, QpError::Length { .. }), "{error}");
         }
-        let line = |first, direction| Line {
-            first,
+        let line = |row, direction| LineWeight {
+            row,
             direction,
             weight: 1.0,
         };
