@@ -75,7 +75,7 @@ const JUMPS: [(f64, f64, usize); 6] = [
 #[test]
 fn the_fall_back_is_bounded() {
     let limit = 50;
-    let few = Method::ActiveSet(ActiveSetSettings::default().with_max_faces(1));
+    let few = Method::ActiveSet(ActiveSetSettings::default().with_max_active_sets(1));
     let settings = Settings::default()
         .with_method(few)
         .with_max_fallback_products(limit);
