@@ -1,12 +1,13 @@
 //! The checks that a table of nodes and tetrahedra must pass before it becomes a mesh.
 
-use crate::disjoint::DisjointSets;
 use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::MeshError;
+use crate::tables::DisjointSets;
 use crate::vec3::{self, Vec3};
+
+use super::error::MeshError;
 
 /// Six times the volume over the cube of the longest edge, below which a tetrahedron counts as
 /// flat. Coordinates carry about 16 digits, so less than this is mostly rounding.
