@@ -10,7 +10,8 @@ use crate::candidates::ContactPoint;
 use crate::level::StepProblem;
 use crate::model::Model;
 use crate::solver::Iterate;
-use signorini_fem_mesh::{Decomposition, DisjointSets};
+use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::internal::DisjointSets;
 use signorini_tfeti::Tfeti;
 
 /// To which body rows and subdomains belong. With one body there are no tables.

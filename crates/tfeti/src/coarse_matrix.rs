@@ -8,7 +8,7 @@ use crate::matrices::ClassBase;
 use crate::row_weights::RowWeights;
 use crate::sparse::Columns;
 use rayon::prelude::*;
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 
 /// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
 #[derive(Debug)]

@@ -14,7 +14,8 @@ use crate::copy_stiffness::CopyStiffness;
 use crate::error::TfetiError;
 use crate::rows::{RemovedRow, RowRanges, RowScaling};
 use crate::supports::{MergedSupports, NodeSupport};
-use signorini_fem_mesh::{Decomposition, DisjointSets, SurfaceFrame};
+use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::{Decomposition, SurfaceFrame};
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,7 +11,7 @@ use crate::joints::{joint_rows, rigid_pairs};
 use crate::kernel::{Kernel, displacement};
 use crate::matrices::ClassBase;
 use nalgebra::{DMatrix, SymmetricEigen};
-use signorini_fem_mesh::DisjointSets;
+use signorini_fem_mesh::internal::DisjointSets;
 use std::fmt;
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use super::{BoundaryClass, BoundaryMap, LANES, Lane, Panel, Place};
 use crate::class::Classes;
 use crate::cost::PANEL;
 use crate::gluing::Gluing;
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 
 /// For each class: place of each node on the boundary, first panel, and first member of each panel.
 struct Numbering<'a> {

@@ -8,7 +8,7 @@ use super::{LANES, over_lanes};
 use crate::gluing::{Glob, Gluing};
 use crate::kernel::{Kernel, add_wrench, displacement};
 use pulp::{Arch, Simd, WithSimd};
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::ops::Range;

@@ -9,7 +9,7 @@ use crate::class::Classes;
 use crate::gluing::Gluing;
 use crate::kernel::{Kernel, add_wrench};
 use crate::matrices::ClassBase;
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 use std::ops::Range;
 
 /// Arms of the boundary nodes of all classes in metres, and the rows of `B` grouped by nodes.
