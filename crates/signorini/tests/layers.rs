@@ -51,7 +51,18 @@ const CRATES: [(&str, &[&str]); 5] = [
             "error tolerances",
         ],
     ),
-    ("fem-mesh", &[]),
+    (
+        "fem-mesh",
+        &[
+            "files recovery",
+            "fields",
+            "assembly loads",
+            "decomposition",
+            "element",
+            "material mesh",
+            "tables vec3",
+        ],
+    ),
 ];
 
 /// Crates that do not know one another, though one stands below the other in the list.
