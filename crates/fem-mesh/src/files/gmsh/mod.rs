@@ -1,28 +1,18 @@
 //! Mesh files of Gmsh, format 4.1, text or binary (feature `gmsh`).
 //!
-//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are
-//! skipped, and nodes that no tetrahedron uses are dropped. The tag of a facet is the physical
-//! group of its surface, the region of a tetrahedron that of its volume; if the file has no
-//! physical groups of that dimension, the numbers of the geometric entities are used, and surfaces
-//! between two volumes are skipped. Entities outside of the groups, if there are any groups, leave
-//! triangles untagged and give region 0. [`read_named_gmsh`] also gives the names of the groups:
+//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are skipped, and nodes that no tetrahedron
+//! uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron that of its volume; if
+//! the file has no physical groups of that dimension, the numbers of the geometric entities are used, and surfaces between two
+//! volumes are skipped. Entities outside of the groups, if there are any groups, leave triangles untagged and give region 0.
 //!
-//! ```no_run
-//! use signorini_fem_mesh::gmsh::read_named_gmsh;
-//!
-//! let (mesh, names) = read_named_gmsh("block.msh")?;
-//! let floor = names.surface("foundation")?;
-//! println!("{} nodes can touch", mesh.nodes_on(floor).len());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! `reader` takes the file apart, `names` has the names of the groups.
 
 mod names;
-mod walk;
+mod reader;
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use mshio::{ElementType, MshFile};
 use thiserror::Error;
 
 pub use names::GroupNames;
@@ -146,12 +136,6 @@ pub enum GmshError {
         /// The groups.
         groups: [u32; 2],
     },
-    /// The parser refuses.
-    #[error("the Gmsh file cannot be parsed: {message}")]
-    Parser {
-        /// What the parser says.
-        message: String,
-    },
     /// The mesh in the file is not valid.
     #[error("the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}")]
     Mesh(#[from] MeshError),
@@ -177,6 +161,15 @@ pub fn read_gmsh(path: impl AsRef<Path>) -> Result<TetMesh, GmshError> {
 }
 
 /// As [`read_gmsh`], with the names of the physical groups.
+///
+/// ```no_run
+/// use signorini_fem_mesh::gmsh::read_named_gmsh;
+///
+/// let (mesh, names) = read_named_gmsh("block.msh")?;
+/// let floor = names.surface("foundation")?;
+/// println!("{} nodes can touch", mesh.nodes_on(floor).len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// As [`read_gmsh`], and if two groups have the same name.
@@ -212,56 +205,34 @@ pub fn parse_named_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError
     Ok((mesh, names))
 }
 
-fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<walk::Name>), GmshError> {
-    // mshio trusts the counts in the file and drops node numbers and names: all are looked at first.
-    let (node_tags, names) = walk::node_tags_and_names(bytes)?;
-    let file = parse(bytes)?;
-    let nodes = file.data.nodes.as_ref();
-    let mut points: Vec<[f64; 3]> = nodes
-        .iter()
-        .flat_map(|n| &n.node_blocks)
-        .flat_map(|block| &block.nodes)
-        .map(|node| [node.x, node.y, node.z])
-        .collect();
-    if points.len() != node_tags.len() {
-        return Err(GmshError::Parser {
-            message: "numbers and coordinates of nodes differ".into(),
-        });
-    }
-    let mut number = HashMap::with_capacity(node_tags.len());
-    for (place, &tag) in node_tags.iter().enumerate() {
+fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<(i32, i32, String)>), GmshError> {
+    let file = reader::read(bytes)?;
+    let mut points = file.points;
+    let mut number = HashMap::with_capacity(file.tags.len());
+    for (place, &tag) in file.tags.iter().enumerate() {
         if number.insert(tag, place as u32).is_some() {
             return Err(GmshError::RepeatedNode { tag });
         }
     }
-    let groups = Groups::new(&file)?;
+    let surfaces = Tags::new("surface", &file.entities[0])?;
+    let volumes = Tags::new("volume", &file.entities[1])?;
     let (mut tets, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new());
-    for block in file.data.elements.iter().flat_map(|e| &e.element_blocks) {
-        for element in &block.elements {
-            let node = |place: usize| {
-                let node = element.nodes.get(place).copied().unwrap_or(0);
-                let element = element.element_tag;
-                number
-                    .get(&node)
-                    .copied()
-                    .ok_or(GmshError::UnknownNode { element, node })
-            };
-            match block.element_type {
-                ElementType::Tri3 => {
-                    if let Some(tag) = groups.surfaces.of(block.entity_tag) {
-                        let nodes = [node(0)?, node(1)?, node(2)?];
-                        facets.push(Facet {
-                            nodes,
-                            tag: FacetTag(tag),
-                        });
-                    }
-                }
-                ElementType::Tet4 => {
-                    tets.push([node(0)?, node(1)?, node(2)?, node(3)?]);
-                    regions.push(groups.volumes.of(block.entity_tag).unwrap_or(0));
-                }
-                _ => {}
-            }
+    for element in &file.elements {
+        let node = |place: usize| {
+            let (element, node) = (element.tag, element.nodes[place]);
+            number
+                .get(&node)
+                .copied()
+                .ok_or(GmshError::UnknownNode { element, node })
+        };
+        if element.is_tet {
+            tets.push([node(0)?, node(1)?, node(2)?, node(3)?]);
+            regions.push(volumes.of(element.entity).unwrap_or(0));
+        } else if let Some(tag) = surfaces.of(element.entity) {
+            facets.push(Facet {
+                nodes: [node(0)?, node(1)?, node(2)?],
+                tag: FacetTag(tag),
+            });
         }
     }
     if tets.is_empty() {
@@ -269,12 +240,12 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<walk::Name>), GmshError>
     }
     orient_tets(&points, &mut tets);
     drop_unused_nodes(&mut points, &mut tets, &mut facets);
-    if !groups.surfaces.grouped {
+    if !surfaces.grouped {
         // Nobody asked for these surfaces by name, and some may lie between two volumes.
         facets = on_boundary(&points, &tets, facets)?;
     }
     let mesh = TetMesh::new(points, tets, facets)?.with_regions(regions)?;
-    Ok((mesh, names))
+    Ok((mesh, file.names))
 }
 
 /// The facets that lie on the boundary of the mesh.
@@ -299,21 +270,6 @@ fn on_boundary(
         .collect())
 }
 
-/// Calls mshio. The walk has excluded the contents on which it is known to panic; should another
-/// case exist, it ends here as an error as well.
-fn parse(bytes: &[u8]) -> Result<MshFile<u64, i32, f64>, GmshError> {
-    let parsed = std::panic::catch_unwind(|| {
-        mshio::parse_msh_bytes(bytes).map_err(|error| error.to_string())
-    });
-    match parsed {
-        Ok(Ok(file)) => Ok(file),
-        Ok(Err(message)) => Err(GmshError::Parser { message }),
-        Err(_) => Err(GmshError::Parser {
-            message: "the parser gave up".into(),
-        }),
-    }
-}
-
 /// From entities to tags, for one dimension.
 struct Tags {
     group_of: HashMap<i32, u32>,
@@ -322,12 +278,9 @@ struct Tags {
 }
 
 impl Tags {
-    fn new<'a>(
-        what: &'static str,
-        entities: impl Iterator<Item = (i32, &'a Vec<i32>)>,
-    ) -> Result<Self, GmshError> {
+    fn new(what: &'static str, entities: &[(i32, Vec<i32>)]) -> Result<Self, GmshError> {
         let mut group_of = HashMap::new();
-        for (entity, groups) in entities {
+        for &(entity, ref groups) in entities {
             // The sign of a group is an orientation.
             let mut distinct: Vec<u32> = groups.iter().map(|g| g.unsigned_abs()).collect();
             distinct.sort_unstable();
@@ -357,22 +310,5 @@ impl Tags {
         } else {
             Some(entity.unsigned_abs())
         }
-    }
-}
-
-struct Groups {
-    surfaces: Tags,
-    volumes: Tags,
-}
-
-impl Groups {
-    fn new(file: &MshFile<u64, i32, f64>) -> Result<Self, GmshError> {
-        let entities = file.data.entities.iter();
-        let surfaces = entities.clone().flat_map(|e| &e.surfaces);
-        let volumes = entities.flat_map(|e| &e.volumes);
-        Ok(Self {
-            surfaces: Tags::new("surface", surfaces.map(|s| (s.tag, &s.physical_tags)))?,
-            volumes: Tags::new("volume", volumes.map(|v| (v.tag, &v.physical_tags)))?,
-        })
     }
 }

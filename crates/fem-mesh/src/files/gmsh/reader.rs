@@ -1,13 +1,8 @@
-//! A walk through a Gmsh 4.1 file before mshio parses it.
-//!
-//! mshio 0.4 reserves memory for any count that the file claims, subtracts unsigned numbers and
-//! panics on unknown sizes, and it drops the node numbers of files whose numbers have no gaps even
-//! if they are not in order, and the names of physical groups. This walk checks every count against
-//! the bytes that are there, and keeps the node numbers in the order of the coordinates and the names.
+//! A reader of Gmsh 4.1 files. Every count is checked against the bytes that are there before it is believed.
 
 use super::GmshError;
 
-/// Nodes and name of the element types that the walk can skip; others are refused.
+/// Nodes and name of the element types, and whether they are read or skipped; others are refused.
 const TYPES: [(i32, usize, &str, bool); 12] = [
     (1, 2, "2-node line", true),
     (2, 3, "3-node triangle", true),
@@ -23,44 +18,67 @@ const TYPES: [(i32, usize, &str, bool); 12] = [
     (15, 1, "point", true),
 ];
 
-/// Dimension, number and name of a physical group.
-pub(super) type Name = (i32, i32, String);
+/// What a file holds.
+#[derive(Default)]
+pub(super) struct Contents {
+    /// Dimension, number and name of each named physical group.
+    pub(super) names: Vec<(i32, i32, String)>,
+    /// Number and physical groups of the surfaces, and of the volumes.
+    pub(super) entities: [Vec<(i32, Vec<i32>)>; 2],
+    /// Node numbers and coordinates.
+    pub(super) tags: Vec<u64>,
+    pub(super) points: Vec<[f64; 3]>,
+    /// Triangles and tetrahedra in the order of the file.
+    pub(super) elements: Vec<Element>,
+}
 
-/// Node numbers of a file in the order in which it gives the coordinates, and the names of its groups.
-pub(super) fn node_tags_and_names(bytes: &[u8]) -> Result<(Vec<u64>, Vec<Name>), GmshError> {
-    let mut walk = Walk {
+/// A triangle or a tetrahedron.
+pub(super) struct Element {
+    pub(super) tag: u64,
+    /// The surface or volume that it belongs to.
+    pub(super) entity: i32,
+    /// Node numbers; four only for a tetrahedron.
+    pub(super) nodes: [u64; 4],
+    pub(super) is_tet: bool,
+}
+
+/// Reads the contents of a file.
+pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
+    let mut reader = Reader {
         bytes,
         at: 0,
         section: "$MeshFormat",
-        order: None,
+        is_big: false,
         is_binary: false,
     };
-    if walk.line() != b"$MeshFormat" {
+    if reader.line() != b"$MeshFormat" {
         return Err(GmshError::NotGmsh);
     }
-    walk.format()?;
-    let (mut tags, mut names, mut elements) = (None, Vec::new(), false);
-    while walk.skip_blanks() {
-        match walk.line() {
+    reader.format()?;
+    let mut out = Contents::default();
+    let (mut nodes, mut elements) = (false, false);
+    while reader.skip_blanks() {
+        match reader.line() {
             b"$PhysicalNames" => {
-                walk.section = "$PhysicalNames";
-                names = walk.names()?;
-                walk.end(b"$EndPhysicalNames")?;
+                reader.section = "$PhysicalNames";
+                out.names = reader.names()?;
+                reader.end(b"$EndPhysicalNames")?;
             }
             b"$Entities" => {
-                walk.section = "$Entities";
-                walk.entities()?;
-                walk.end(b"$EndEntities")?;
+                reader.section = "$Entities";
+                out.entities = reader.entities()?;
+                reader.end(b"$EndEntities")?;
             }
             b"$Nodes" => {
-                walk.section = "$Nodes";
-                tags = Some(walk.nodes()?);
-                walk.end(b"$EndNodes")?;
+                reader.section = "$Nodes";
+                (out.tags, out.points) = reader.nodes()?;
+                reader.end(b"$EndNodes")?;
+                nodes = true;
             }
             b"$Elements" => {
-                walk.section = "$Elements";
-                walk.elements()?;
-                walk.end(b"$EndElements")?;
+                reader.section = "$Elements";
+                out.elements = reader.elements()?;
+                reader.end(b"$EndElements")?;
                 elements = true;
             }
             b"$PartitionedEntities" => {
@@ -68,33 +86,27 @@ pub(super) fn node_tags_and_names(bytes: &[u8]) -> Result<(Vec<u64>, Vec<Name>),
                     section: "$PartitionedEntities",
                 });
             }
-            other => walk.skip_section(other)?,
+            other => reader.skip_section(other)?,
         }
     }
-    if !elements {
-        return Err(GmshError::MissingSection {
-            section: "$Elements",
-        });
+    for (found, section) in [(elements, "$Elements"), (nodes, "$Nodes")] {
+        if !found {
+            return Err(GmshError::MissingSection { section });
+        }
     }
-    let tags = tags.ok_or(GmshError::MissingSection { section: "$Nodes" })?;
-    Ok((tags, names))
+    Ok(out)
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Order {
-    Little,
-    Big,
-}
-
-struct Walk<'a> {
+struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
     section: &'static str,
-    order: Option<Order>,
+    /// Byte order of a binary file.
+    is_big: bool,
     is_binary: bool,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> Reader<'a> {
     fn damaged<T>(&self, what: &'static str) -> Result<T, GmshError> {
         Err(GmshError::Damaged {
             section: self.section,
@@ -147,43 +159,35 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// An unsigned number, `size_t` of Gmsh.
-    fn size(&mut self) -> Result<u64, GmshError> {
+    /// A number in text, or by its bytes, most significant first.
+    fn number<T: std::str::FromStr, const N: usize>(
+        &mut self,
+        of: fn([u8; N]) -> T,
+        wanted: &'static str,
+    ) -> Result<T, GmshError> {
         if self.is_binary {
-            let bytes = self.take::<8>()?;
-            return Ok(match self.order {
-                Some(Order::Big) => u64::from_be_bytes(bytes),
-                _ => u64::from_le_bytes(bytes),
-            });
+            let mut bytes = self.take::<N>()?;
+            if !self.is_big {
+                bytes.reverse();
+            }
+            return Ok(of(bytes));
         }
         let word = self.word()?;
         let number = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
-        number.map_or_else(|| self.damaged("a whole number from 0 is expected"), Ok)
+        number.map_or_else(|| self.damaged(wanted), Ok)
+    }
+
+    /// An unsigned number, `size_t` of Gmsh.
+    fn size(&mut self) -> Result<u64, GmshError> {
+        self.number(u64::from_be_bytes, "a whole number from 0 is expected")
     }
 
     fn int(&mut self) -> Result<i32, GmshError> {
-        if self.is_binary {
-            let bytes = self.take::<4>()?;
-            return Ok(match self.order {
-                Some(Order::Big) => i32::from_be_bytes(bytes),
-                _ => i32::from_le_bytes(bytes),
-            });
-        }
-        let word = self.word()?;
-        let number = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
-        number.map_or_else(|| self.damaged("a whole number is expected"), Ok)
+        self.number(i32::from_be_bytes, "a whole number is expected")
     }
 
-    /// Skips floating point numbers; mshio reads them.
-    fn floats(&mut self, count: usize) -> Result<(), GmshError> {
-        for _ in 0..count {
-            if self.is_binary {
-                self.take::<8>()?;
-            } else {
-                self.word()?;
-            }
-        }
-        Ok(())
+    fn float(&mut self) -> Result<f64, GmshError> {
+        self.number(f64::from_be_bytes, "a number is expected")
     }
 
     /// A count of things that take at least so many numbers each, believed only if the rest of the
@@ -225,9 +229,9 @@ impl<'a> Walk<'a> {
         }
         if self.is_binary {
             self.line();
-            self.order = match self.take::<4>()? {
-                [1, 0, 0, 0] => Some(Order::Little),
-                [0, 0, 0, 1] => Some(Order::Big),
+            self.is_big = match self.take::<4>()? {
+                [1, 0, 0, 0] => false,
+                [0, 0, 0, 1] => true,
                 _ => return self.damaged("the number 1 is expected, which tells the byte order"),
             };
         }
@@ -235,7 +239,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Names of groups: text also in binary files.
-    fn names(&mut self) -> Result<Vec<Name>, GmshError> {
+    fn names(&mut self) -> Result<Vec<(i32, i32, String)>, GmshError> {
         let is_binary = std::mem::replace(&mut self.is_binary, false);
         let mut names = Vec::new();
         for _ in 0..self.count(3)? {
@@ -253,26 +257,36 @@ impl<'a> Walk<'a> {
         Ok(names)
     }
 
-    fn entities(&mut self) -> Result<(), GmshError> {
+    /// Number and physical groups of the surfaces and of the volumes.
+    fn entities(&mut self) -> Result<[Vec<(i32, Vec<i32>)>; 2], GmshError> {
         let counts = [
             self.count(5)?,
             self.count(9)?,
             self.count(9)?,
             self.count(9)?,
         ];
+        let mut out = [Vec::new(), Vec::new()];
         for (dimension, count) in counts.into_iter().enumerate() {
             for _ in 0..count {
-                self.int()?;
-                self.floats(if dimension == 0 { 3 } else { 6 })?;
-                // Physical groups, then the bounding entities.
-                for _ in 0..if dimension == 0 { 1 } else { 2 } {
-                    for _ in 0..self.count(1)? {
-                        self.int()?;
-                    }
+                let entity = self.int()?;
+                for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                    self.float()?;
+                }
+                let groups = self.ints()?;
+                if dimension > 0 {
+                    // the entities that bound it
+                    self.ints()?;
+                }
+                if dimension > 1 {
+                    out[dimension - 2].push((entity, groups));
                 }
             }
         }
-        Ok(())
+        Ok(out)
+    }
+
+    fn ints(&mut self) -> Result<Vec<i32>, GmshError> {
+        (0..self.count(1)?).map(|_| self.int()).collect()
     }
 
     /// The header of the nodes or elements: the number of blocks, after checks.
@@ -288,8 +302,8 @@ impl<'a> Walk<'a> {
         Ok(blocks)
     }
 
-    fn nodes(&mut self) -> Result<Vec<u64>, GmshError> {
-        let mut tags = Vec::new();
+    fn nodes(&mut self) -> Result<(Vec<u64>, Vec<[f64; 3]>), GmshError> {
+        let (mut tags, mut points) = (Vec::new(), Vec::new());
         for _ in 0..self.header()? {
             let (_dimension, _entity, parametric) = (self.int()?, self.int()?, self.int()?);
             if parametric != 0 {
@@ -299,31 +313,39 @@ impl<'a> Walk<'a> {
             for _ in 0..count {
                 tags.push(self.size()?);
             }
-            self.floats(3 * count)?;
+            for _ in 0..count {
+                points.push([self.float()?, self.float()?, self.float()?]);
+            }
         }
-        Ok(tags)
+        Ok((tags, points))
     }
 
-    fn elements(&mut self) -> Result<(), GmshError> {
+    fn elements(&mut self) -> Result<Vec<Element>, GmshError> {
+        let mut out = Vec::new();
         for _ in 0..self.header()? {
-            let (_dimension, _entity, kind) = (self.int()?, self.int()?, self.int()?);
-            let nodes = match TYPES.iter().find(|t| t.0 == kind) {
-                Some(&(_, nodes, _, true)) => nodes,
-                Some(&(_, _, name, false)) => return Err(GmshError::Unsupported { kind, name }),
-                None => {
-                    return Err(GmshError::Unsupported {
-                        kind,
-                        name: "unknown",
-                    });
-                }
+            let (_dimension, entity, kind) = (self.int()?, self.int()?, self.int()?);
+            let name = match TYPES.iter().find(|t| t.0 == kind) {
+                Some(&(_, count, _, true)) => Ok(count),
+                Some(&(_, _, name, false)) => Err(name),
+                None => Err("unknown"),
             };
-            for _ in 0..self.count(1 + nodes)? {
-                for _ in 0..=nodes {
-                    self.size()?;
+            let count = name.map_err(|name| GmshError::Unsupported { kind, name })?;
+            for _ in 0..self.count(1 + count)? {
+                let (tag, mut nodes) = (self.size()?, [0; 4]);
+                for node in &mut nodes[..count] {
+                    *node = self.size()?;
+                }
+                if count > 2 {
+                    out.push(Element {
+                        tag,
+                        entity,
+                        nodes,
+                        is_tet: count == 4,
+                    });
                 }
             }
         }
-        Ok(())
+        Ok(out)
     }
 
     /// Skips a section of another kind, up to and with its end.
