@@ -72,7 +72,7 @@
 //!
 //! # Features
 //!
-//! None is on by default. `vtu` adds [`output`] (crate vtkio), `gmsh` adds [`gmsh`], `serde` lets
+//! None is on by default. `vtu` adds [`output`] (crate flate2), `gmsh` adds [`gmsh`], `serde` lets
 //! [`FacetTag`], [`Facet`], [`SurfaceFrame`] and [`Brick`] be serialised (crate serde).
 
 #![cfg_attr(

@@ -1,4 +1,4 @@
-//! Written files, read back by vtkio.
+//! Written files, read back by vtkio, which shares no code with the writer.
 
 use signorini_fem_mesh::brick::{Brick, Z_MIN};
 use signorini_fem_mesh::output::{
@@ -382,8 +382,6 @@ fn arrays_that_fill_their_last_block() {
         &[],
     )
     .unwrap();
-    let text = std::fs::read_to_string(&path).unwrap();
-    assert!(!text.contains("vtkZLibDataCompressor"));
     assert_eq!(
         values(&pieces(&path)[0].data.point, "u"),
         mesh.points().concat()

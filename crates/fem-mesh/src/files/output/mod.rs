@@ -1,23 +1,7 @@
 //! VTU files and PVD time series for ParaView (feature `vtu`).
 //!
-//! Arrays are binary (base64 inside the XML, 64-bit headers, little endian) and compressed by
-//! zlib, except in files where an array fills its last block exactly.
-//!
-//! ```
-//! use signorini_fem_mesh::output::{Field, PvdSeries};
-//! use signorini_fem_mesh::{Brick, FacetTag};
-//!
-//! # let directory = tempfile::tempdir()?;
-//! # let folder = directory.path();
-//! let mesh = Brick::new([1.0; 3], [2, 2, 2]).build()?;
-//! let mut series = PvdSeries::create(folder, "block")?;
-//! for step in 0..3 {
-//!     let height: Vec<f64> = mesh.points().iter().map(|p| p[2] * f64::from(step)).collect();
-//!     series.write(0.1 * f64::from(step), &mesh, &[Field::scalar("height", height)], &[])?;
-//! }
-//! assert!(folder.join("block.pvd").is_file() && folder.join("block_0002.vtu").is_file());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! Arrays are binary: base64 inside the XML, 64-bit headers, little endian, compressed by zlib. `vtu` writes one file, `pvd` a
+//! series of them that can be continued.
 
 mod pvd;
 mod vtu;
@@ -30,6 +14,22 @@ pub use pvd::PvdSeries;
 pub use vtu::{write_surface_vtu, write_vtu, write_vtu_pieces};
 
 /// Values at the nodes or in the cells of a mesh, under a name.
+///
+/// ```
+/// use signorini_fem_mesh::Brick;
+/// use signorini_fem_mesh::output::{Field, PvdSeries};
+///
+/// # let directory = tempfile::tempdir()?;
+/// # let folder = directory.path();
+/// let mesh = Brick::new([1.0; 3], [2, 2, 2]).build()?;
+/// let mut series = PvdSeries::create(folder, "block")?;
+/// for step in 0..3 {
+///     let height: Vec<f64> = mesh.points().iter().map(|p| p[2] * f64::from(step)).collect();
+///     series.write(0.1 * f64::from(step), &mesh, &[Field::scalar("height", height)], &[])?;
+/// }
+/// assert!(folder.join("block.pvd").is_file() && folder.join("block_0002.vtu").is_file());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
     name: String,
@@ -182,13 +182,5 @@ pub enum OutputError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
-    },
-    /// The VTK writer refuses.
-    #[error("cannot write {} as VTU: {message}", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-        /// What the writer says.
-        message: String,
     },
 }

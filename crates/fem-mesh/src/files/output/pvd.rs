@@ -281,7 +281,7 @@ impl PvdSeries {
 }
 
 /// The characters that XML reserves inside an attribute.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('"', "&quot;")

@@ -1,18 +1,17 @@
 //! One VTU file.
 
+use std::io::Read;
 use std::path::Path;
 
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, CellType, Cells, DataArrayBase, DataSet, ElementType,
-    IOBuffer, Piece, UnstructuredGridPiece, Version, VertexNumbers, Vtk,
-};
-use vtkio::xml::Compressor;
+use flate2::Compression;
+use flate2::read::ZlibEncoder;
 
-use super::{Field, OutputError};
-use crate::decomposition::{Decomposition, Subdomain};
+use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
-use crate::mesh::Surface;
-use crate::mesh::TetMesh;
+use crate::mesh::{Surface, TetMesh};
+
+use super::pvd::escape;
+use super::{Field, OutputError};
 
 /// Writes the mesh as one piece with fields at its nodes and in its tetrahedra.
 ///
@@ -26,21 +25,15 @@ pub fn write_vtu(
 ) -> Result<(), OutputError> {
     check(point_fields, mesh.points().len(), "nodes")?;
     check(cell_fields, mesh.tets().len(), "cells")?;
-    let piece = UnstructuredGridPiece {
-        points: coordinates(mesh.points().iter()),
-        cells: cells(mesh.tets(), CellType::Tetra),
-        data: Attributes {
-            point: point_fields
-                .iter()
-                .map(|f| attribute(f, 0..mesh.points().len()))
-                .collect(),
-            cell: cell_fields
-                .iter()
-                .map(|f| attribute(f, 0..mesh.tets().len()))
-                .collect(),
-        },
-    };
-    write(path.as_ref(), vec![piece])
+    let mut file = File::new();
+    let all = (0..mesh.points().len(), 0..mesh.tets().len());
+    file.piece(
+        mesh.points(),
+        mesh.tets(),
+        (point_fields, all.0),
+        (cell_fields, all.1),
+    );
+    file.write(path.as_ref())
 }
 
 /// Writes each subdomain as a piece. The fields are those of the mesh, as for [`write_vtu`]; a
@@ -70,25 +63,19 @@ pub fn write_vtu_pieces(
     let cell_fields = [cell_fields, &[part]].concat();
     check(point_fields, mesh.points().len(), "nodes")?;
     check(&cell_fields, mesh.tets().len(), "cells")?;
-    let piece = |subdomain: &Subdomain| {
-        let nodes = || subdomain.nodes.iter().map(|&n| n as usize);
-        let elements = || subdomain.elements.iter().map(|&e| e as usize);
-        UnstructuredGridPiece {
-            points: coordinates(nodes().map(|n| &mesh.points()[n])),
-            cells: cells(&subdomain.tets, CellType::Tetra),
-            data: Attributes {
-                point: point_fields.iter().map(|f| attribute(f, nodes())).collect(),
-                cell: cell_fields
-                    .iter()
-                    .map(|f| attribute(f, elements()))
-                    .collect(),
-            },
-        }
-    };
-    write(
-        path.as_ref(),
-        decomposition.subdomains().iter().map(piece).collect(),
-    )
+    let mut file = File::new();
+    for subdomain in decomposition.subdomains() {
+        let nodes = subdomain.nodes.iter().map(|&n| n as usize);
+        let elements = subdomain.elements.iter().map(|&e| e as usize);
+        let points = subdomain.points(mesh);
+        file.piece(
+            &points,
+            &subdomain.tets,
+            (point_fields, nodes),
+            (&cell_fields, elements),
+        );
+    }
+    file.write(path.as_ref())
 }
 
 /// Writes a surface as triangles. The fields have one value for each of [`Surface::nodes`] and
@@ -106,26 +93,18 @@ pub fn write_surface_vtu(
     let (nodes, triangles) = (surface.nodes(), surface.triangles());
     check(point_fields, nodes.len(), "nodes")?;
     check(cell_fields, triangles.len(), "cells")?;
-    let points: Option<Vec<_>> = nodes
-        .iter()
-        .map(|&n| mesh.points().get(n as usize))
-        .collect();
+    let point = |&n: &u32| mesh.points().get(n as usize).copied();
+    let points: Option<Vec<_>> = nodes.iter().map(point).collect();
     let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
-    let piece = UnstructuredGridPiece {
-        points: coordinates(points.into_iter()),
-        cells: cells(triangles, CellType::Triangle),
-        data: Attributes {
-            point: point_fields
-                .iter()
-                .map(|f| attribute(f, 0..nodes.len()))
-                .collect(),
-            cell: cell_fields
-                .iter()
-                .map(|f| attribute(f, 0..triangles.len()))
-                .collect(),
-        },
-    };
-    write(path.as_ref(), vec![piece])
+    let mut file = File::new();
+    let all = (0..nodes.len(), 0..triangles.len());
+    file.piece(
+        &points,
+        triangles,
+        (point_fields, all.0),
+        (cell_fields, all.1),
+    );
+    file.write(path.as_ref())
 }
 
 fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), OutputError> {
@@ -160,98 +139,130 @@ fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), Outpu
     Ok(())
 }
 
-fn coordinates<'a>(points: impl Iterator<Item = &'a [f64; 3]>) -> IOBuffer {
-    IOBuffer::F64(points.flatten().copied().collect())
-}
+/// A file of unstructured grids: XML with binary arrays.
+struct File(String);
 
-fn cells<const N: usize>(cells: &[[u32; N]], kind: CellType) -> Cells {
-    Cells {
-        cell_verts: VertexNumbers::XML {
-            connectivity: cells.iter().flatten().map(|&n| n.into()).collect(),
-            offsets: (1..=cells.len()).map(|n| (N * n) as u64).collect(),
-        },
-        types: vec![kind; cells.len()],
+impl File {
+    fn new() -> Self {
+        let head = "<?xml version=\"1.0\"?>\n\
+            <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+            compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+        Self(head.into())
+    }
+
+    /// Cells of `N` nodes, and of each field the chosen values.
+    fn piece<const N: usize>(
+        &mut self,
+        points: &[[f64; 3]],
+        cells: &[[u32; N]],
+        (point_fields, nodes): (&[Field], impl Iterator<Item = usize> + Clone),
+        (cell_fields, chosen): (&[Field], impl Iterator<Item = usize> + Clone),
+    ) {
+        let numbers = |n: u64| n.to_le_bytes();
+        let counts = [points.len(), cells.len()];
+        self.open(
+            "Piece",
+            &format!(
+                "NumberOfPoints=\"{}\" NumberOfCells=\"{}\"",
+                counts[0], counts[1]
+            ),
+        );
+        self.open("PointData", "");
+        point_fields
+            .iter()
+            .for_each(|field| self.field(field, nodes.clone()));
+        self.close("PointData");
+        self.open("CellData", "");
+        cell_fields
+            .iter()
+            .for_each(|field| self.field(field, chosen.clone()));
+        self.close("CellData");
+        self.open("Points", "");
+        let coordinates = points.iter().flatten().flat_map(|x| x.to_le_bytes());
+        self.array("Float64", "Points", 3, coordinates.collect());
+        self.close("Points");
+        self.open("Cells", "");
+        let connectivity = cells.iter().flatten().flat_map(|&n| numbers(n.into()));
+        self.array("UInt64", "connectivity", 1, connectivity.collect());
+        let offsets = (1..=cells.len()).flat_map(|n| numbers((N * n) as u64));
+        self.array("UInt64", "offsets", 1, offsets.collect());
+        // triangle or tetrahedron
+        let kind = if N == 3 { 5 } else { 10 };
+        self.array("UInt8", "types", 1, vec![kind; cells.len()]);
+        self.close("Cells");
+        self.close("Piece");
+    }
+
+    fn field(&mut self, field: &Field, chosen: impl Iterator<Item = usize>) {
+        let n = field.components;
+        let values = chosen.flat_map(|i| &field.values[n * i..n * (i + 1)]);
+        let bytes = values.flat_map(|x| x.to_le_bytes()).collect();
+        self.array("Float64", &escape(&field.name), n, bytes);
+    }
+
+    fn open(&mut self, tag: &str, attributes: &str) {
+        let blank = if attributes.is_empty() { "" } else { " " };
+        self.0 += &format!("<{tag}{blank}{attributes}>\n");
+    }
+
+    fn close(&mut self, tag: &str) {
+        self.0 += &format!("</{tag}>\n");
+    }
+
+    /// Blocks of zlib behind a header: numbers of blocks and of bytes in the first and the last, compressed sizes.
+    fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
+        let attributes = format!(
+            "type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\""
+        );
+        self.open("DataArray", &attributes);
+        let last = bytes.chunks(BLOCK).last().map_or(0, <[u8]>::len);
+        let mut header = vec![bytes.len().div_ceil(BLOCK), BLOCK, last];
+        let mut data = Vec::new();
+        for block in bytes.chunks(BLOCK) {
+            let before = data.len();
+            data.extend(compressed(block));
+            header.push(data.len() - before);
+        }
+        let header: Vec<u8> = header
+            .iter()
+            .flat_map(|&n| (n as u64).to_le_bytes())
+            .collect();
+        base64(&header, &mut self.0);
+        base64(&data, &mut self.0);
+        self.0.push('\n');
+        self.close("DataArray");
+    }
+
+    fn write(mut self, path: &Path) -> Result<(), OutputError> {
+        self.close("UnstructuredGrid");
+        self.close("VTKFile");
+        replace(path, self.0.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })
     }
 }
 
-/// The chosen values of a field.
-fn attribute(field: &Field, chosen: impl Iterator<Item = usize>) -> Attribute {
-    let n = field.components;
-    let values = chosen
-        .flat_map(|i| &field.values[n * i..n * (i + 1)])
-        .copied()
-        .collect();
-    let elem = match n {
-        3 => ElementType::Vectors,
-        _ => ElementType::Scalars {
-            num_comp: n as u32,
-            lookup_table: None,
-        },
-    };
-    let name = field.name.clone();
-    Attribute::DataArray(DataArrayBase {
-        name,
-        elem,
-        data: IOBuffer::F64(values),
-    })
+/// Bytes that are compressed together.
+const BLOCK: usize = 32768;
+
+fn compressed(block: &[u8]) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut encoder = ZlibEncoder::new(block, Compression::fast());
+    // reading from memory into memory cannot fail
+    let _ = encoder.read_to_end(&mut out);
+    out
 }
 
-fn write(path: &Path, pieces: Vec<UnstructuredGridPiece>) -> Result<(), OutputError> {
-    let format = |message| OutputError::Format {
-        path: path.into(),
-        message,
-    };
-    let (compressor, level) = if pieces.iter().all(compressible) {
-        (Compressor::ZLib, 1)
-    } else {
-        (Compressor::None, 0)
-    };
-    let vtk = Vtk {
-        // 64-bit headers came with version 1.0 of the format.
-        version: Version::new_xml(1, 0),
-        title: String::new(),
-        byte_order: ByteOrder::LittleEndian,
-        file_path: None,
-        data: DataSet::UnstructuredGrid {
-            meta: None,
-            pieces: pieces
-                .into_iter()
-                .map(|p| Piece::Inline(Box::new(p)))
-                .collect(),
-        },
-    };
-    let xml = vtk
-        .try_into_xml_format(compressor, level)
-        .map_err(|e| format(e.to_string()))?;
-    let mut contents = Vec::new();
-    xml.write(&mut contents)
-        .map_err(|e| format(e.to_string()))?;
-    replace(path, &contents).map_err(|(path, source)| OutputError::Io { path, source })
-}
-
-/// vtkio 0.7.0-rc2 compresses blocks of 32 KiB and puts an empty one behind the last full one,
-/// which VTK takes for damage. So a file is compressed only if every array ends inside a block.
-fn compressible(piece: &UnstructuredGridPiece) -> bool {
-    const BLOCK: usize = 32768;
-    let array_bytes = |attribute: &Attribute| match attribute {
-        Attribute::DataArray(array) => array.data.num_bytes(),
-        Attribute::Field { .. } => 0,
-    };
-    let cells = piece.cells.num_cells();
-    let topology = [
-        cells,
-        8 * cells,
-        8 * piece.cells.num_verts(),
-        piece.points.num_bytes(),
-    ];
-    let fields = piece
-        .data
-        .point
-        .iter()
-        .chain(&piece.data.cell)
-        .map(array_bytes);
-    topology
-        .into_iter()
-        .chain(fields)
-        .all(|bytes| bytes % BLOCK != 0)
+fn base64(bytes: &[u8], out: &mut String) {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for three in bytes.chunks(3) {
+        let mut bits = 0;
+        (0..3).for_each(|k| bits = bits << 8 | usize::from(three.get(k).copied().unwrap_or(0)));
+        for k in 0..4 {
+            let digit = DIGITS[bits >> (18 - 6 * k) & 63];
+            out.push(if k <= three.len() {
+                char::from(digit)
+            } else {
+                '='
+            });
+        }
+    }
 }
