@@ -90,6 +90,7 @@ mod material;
 mod mesh;
 pub mod recovery;
 mod tables;
+mod tolerances;
 #[doc(hidden)]
 pub mod vec3;
 

@@ -60,7 +60,7 @@ const CRATES: [(&str, &[&str]); 5] = [
             "decomposition",
             "element",
             "material mesh",
-            "tables vec3",
+            "tables tolerances vec3",
         ],
     ),
 ];

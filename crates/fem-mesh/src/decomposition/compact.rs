@@ -7,15 +7,11 @@ use rayon::prelude::*;
 
 use crate::mesh::TetMesh;
 use crate::tables::{buckets, range};
+use crate::tolerances::{SETTLED, SWEEPS};
 use crate::vec3::{self, Vec3};
 
 use super::parts::{expect_parts, renumbered, split_by};
 use super::subdomains::DecompositionError;
-
-/// Most sweeps, and the share of tetrahedra that a sweep has to move for another one. What moves last is at interfaces that are
-/// plane already.
-const SWEEPS: usize = 40;
-const SETTLED: f64 = 1e-3;
 
 /// Makes parts compact, those of a graph partitioner for instance: solvers on subdomains take the fewer steps the rounder the
 /// subdomains and the smoother the interfaces between them are. A partitioner keeps the number of cut faces small, not the shape.

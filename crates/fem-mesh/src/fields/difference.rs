@@ -3,12 +3,10 @@
 use crate::element::quadrature::{self, integral};
 use crate::material::Materials;
 use crate::mesh::TetMesh;
+use crate::tolerances::OUTSIDE;
 use crate::vec3::{sub, tet_volume};
 
 use super::strain::{FieldError, strains};
-
-/// How far outside of a tetrahedron a point may be, in barycentric coordinates, and still count.
-const OUTSIDE: f64 = 1e-9;
 
 /// Tetrahedra sorted into a grid of boxes, to find the one at a point.
 ///

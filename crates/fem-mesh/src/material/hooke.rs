@@ -3,14 +3,10 @@
 use nalgebra::SMatrix;
 use thiserror::Error;
 
+use crate::tolerances::{ASYMMETRY, ELLIPTICITY};
+
 /// Position of the tensor indices (i, j) in the Voigt order xx, yy, zz, yz, xz, xy.
 const VOIGT: [[usize; 3]; 3] = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
-
-/// Relative deviation from symmetry that is taken for rounding.
-const SYMMETRY: f64 = 1e-9;
-
-/// Ratio of the smallest to the largest eigenvalue below which a tensor counts as not elliptic.
-const ELLIPTICITY: f64 = 1e-12;
 
 /// An elastic law that is not admissible.
 #[derive(Clone, PartialEq, Error)]
@@ -130,7 +126,7 @@ impl Hooke {
         for_all_indices(|left @ [i, j, k, l]| {
             for right in [[j, i, k, l], [k, l, i, j]] {
                 let (left_value, right_value) = (at(left), at(right));
-                if (left_value - right_value).abs() > SYMMETRY * largest {
+                if (left_value - right_value).abs() > ASYMMETRY * largest {
                     return Err(HookeError::NotSymmetric {
                         left,
                         left_value,
@@ -162,7 +158,7 @@ impl Hooke {
         let mut voigt = *c;
         for i in 0..6 {
             for j in 0..i {
-                if (c[i][j] - c[j][i]).abs() > SYMMETRY * scale {
+                if (c[i][j] - c[j][i]).abs() > ASYMMETRY * scale {
                     return Err(HookeError::NotSymmetric {
                         left: tensor_indices(i, j),
                         left_value: c[i][j],

@@ -2,16 +2,10 @@
 
 use thiserror::Error;
 
+use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL};
 use crate::vec3::{self, add, cross, dot, norm, scale, sub};
 
 use super::tet_mesh::{FacetTag, TetMesh, facet_area_vector, tag_list};
-
-/// Sine of the angle between normal and x axis below which the y axis is projected instead.
-const NEARLY_PARALLEL: f64 = 0.01;
-
-/// Length of the mean normal of the triangles around a node, relative to one for a plane, below
-/// which the node has no normal.
-const NO_NORMAL: f64 = 1e-6;
 
 /// An orthonormal frame on a surface: the outward normal nu and two tangents T1, T2.
 ///

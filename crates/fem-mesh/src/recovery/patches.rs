@@ -10,15 +10,10 @@ use crate::fields::{FieldError, expect_entries, strains};
 use crate::material::Materials;
 use crate::mesh::TetMesh;
 use crate::tables::buckets;
+use crate::tolerances::{PIVOT, SMALL_PATCH};
 use crate::vec3::{centroid, sub};
 
 use super::estimate::DiscretisationError;
-
-/// Patches with fewer tetrahedra are joined with those of the neighbours.
-const SMALL_PATCH: usize = 8;
-
-/// Smallest over largest pivot below which a fit is not trusted.
-const PIVOT: f64 = 1e-6;
 
 /// The recovery of strains at the nodes of a mesh, to be used for many displacements: the fits
 /// depend on the mesh only, so that each recovered strain is a fixed combination of strains.

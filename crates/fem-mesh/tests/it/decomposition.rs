@@ -1,5 +1,6 @@
 //! Decompositions of the brick: counts, copies, translates.
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::{Brick, Decomposition, TetMesh, split_disconnected};
@@ -59,7 +60,7 @@ fn translates_of_equal_parity_have_equal_tables() {
         let (p, q) = (subdomains[s].points(&mesh), reference.points(&mesh));
         for n in 0..p.len() {
             for d in 0..3 {
-                assert!(((p[n][d] - p[0][d]) - (q[n][d] - q[0][d])).abs() < 1e-14);
+                assert_abs_diff_eq!((p[n][d] - p[0][d]), (q[n][d] - q[0][d]), epsilon = 1e-14);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Stresses, recovery and error norms.
 
+use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::fields::{nodal_average, strains, von_mises};
 use signorini_fem_mesh::{Brick, TetMesh, h1_seminorm_error, l2_error};
 
@@ -17,9 +18,17 @@ fn quadratic_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
 
 #[test]
 fn von_mises_of_plain_states() {
-    assert!((von_mises(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]) - 5.0).abs() < 1e-14);
+    assert_abs_diff_eq!(
+        von_mises(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        5.0,
+        epsilon = 1e-14
+    );
     assert_eq!(von_mises(&[-3.0, -3.0, -3.0, 0.0, 0.0, 0.0]), 0.0);
-    assert!((von_mises(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]) - 12f64.sqrt()).abs() < 1e-14);
+    assert_abs_diff_eq!(
+        von_mises(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]),
+        12f64.sqrt(),
+        epsilon = 1e-14
+    );
 }
 
 #[test]
@@ -32,10 +41,10 @@ fn norms_of_known_functions() {
     // Integrals of x^4 + x^2 y^2 + (z^2 - y)^2 and of the squared gradient over the unit cube.
     let l2 = l2_error(&mesh, &zero, quadratic).unwrap();
     let exact: f64 = 1.0 / 5.0 + 1.0 / 9.0 + 1.0 / 5.0 - 1.0 / 3.0 + 1.0 / 3.0;
-    assert!((l2 - exact.sqrt()).abs() < 1e-13);
+    assert_abs_diff_eq!(l2, exact.sqrt(), epsilon = 1e-13);
     let h1 = h1_seminorm_error(&mesh, &zero, quadratic_gradient).unwrap();
     let exact: f64 = 4.0 / 3.0 + 1.0 / 3.0 + 1.0 / 3.0 + 1.0 + 4.0 / 3.0;
-    assert!((h1 - exact.sqrt()).abs() < 1e-13);
+    assert_abs_diff_eq!(h1, exact.sqrt(), epsilon = 1e-13);
 }
 
 #[test]
@@ -73,6 +82,6 @@ fn interpolation_converges_with_orders_two_and_one() {
         )
     };
     let (coarse, fine) = (errors(4), errors(8));
-    assert!(((coarse.0 / fine.0).log2() - 2.0).abs() < 0.05);
-    assert!(((coarse.1 / fine.1).log2() - 1.0).abs() < 0.05);
+    assert_abs_diff_eq!((coarse.0 / fine.0).log2(), 2.0, epsilon = 0.05);
+    assert_abs_diff_eq!((coarse.1 / fine.1).log2(), 1.0, epsilon = 0.05);
 }

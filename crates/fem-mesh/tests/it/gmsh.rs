@@ -1,5 +1,6 @@
 //! Gmsh files: good ones in text and binary, and many damaged ones.
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::gmsh::{
@@ -136,7 +137,7 @@ fn text_and_binary() {
     assert_eq!(mesh.points()[..2], [[0.0; 3], [1.0, 0.0, 0.0]]);
     assert_eq!(mesh.points().len(), 5);
     assert_eq!(mesh.regions(), [7, 8]);
-    assert!((mesh.total_volume() - 0.5).abs() < 1e-15);
+    assert_abs_diff_eq!(mesh.total_volume(), 0.5, epsilon = 1e-15);
     // Only the triangle in a group is tagged.
     assert_eq!(mesh.facets().len(), 1);
     assert_eq!(mesh.nodes_on(FacetTag(3)), [0, 1, 2]);

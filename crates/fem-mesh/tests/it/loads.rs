@@ -1,5 +1,6 @@
 //! Consistent loads: exact resultants and moments, and histories.
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::brick::{Brick, X_MAX, Z_MAX, Z_MIN};
@@ -69,14 +70,14 @@ fn varying_loads() {
     // Integrals of polynomials over the box and its sides, exact for the rules of degree 5.
     let body = LoadDensity::body_field(|[x, y, z]| [x * x, y * z, 0.0]);
     let found = resultant(&mesh, [3, 1, 1], &body);
-    assert!((found.0[0] - 9.0 * 2.0).abs() < 1e-12);
-    assert!((found.0[1] - 3.0 * 0.5 * 2.0).abs() < 1e-12);
+    assert_abs_diff_eq!(found.0[0], 9.0 * 2.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(found.0[1], 3.0 * 0.5 * 2.0, epsilon = 1e-12);
     // Moment about x: - integral of z (y z) = -3 (1/2) (8/3).
     assert!((found.1[0] + 4.0).abs() < 1e-12);
     let side = LoadDensity::traction_field(X_MAX, |[_, y, z], n| [n[0] * y * y, 0.0, z]);
     let found = resultant(&mesh, [3, 1, 2], &side);
-    assert!((found.0[0] - 2.0 / 3.0).abs() < 1e-12);
-    assert!((found.0[2] - 2.0).abs() < 1e-12);
+    assert_abs_diff_eq!(found.0[0], 2.0 / 3.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(found.0[2], 2.0, epsilon = 1e-12);
     // The same pressure as a function and as a constant.
     let by_function = LoadDensity::traction_field(Z_MIN, |_, n| n.map(|c| -7.0 * c));
     let by_value = LoadDensity::pressure(Z_MIN, 7.0);
@@ -85,7 +86,7 @@ fn varying_loads() {
         resultant(&mesh, [1; 3], &by_value),
     );
     check(a, b.0, b.1);
-    assert!((b.0[2] - 21.0).abs() < 1e-12);
+    assert_abs_diff_eq!(b.0[2], 21.0, epsilon = 1e-12);
 }
 
 #[test]
@@ -107,7 +108,7 @@ fn a_third_of_each_triangle_goes_to_its_nodes() {
     let load = &assemble_load(&mesh, &parts, &LoadDensity::pressure(Z_MIN, 1.0)).unwrap()[0];
     let surface = signorini_fem_mesh::Surface::new(&mesh, &[Z_MIN]).unwrap();
     for (&node, area) in surface.nodes().iter().zip(surface.areas()) {
-        assert!((load[3 * node as usize + 2] - area).abs() < 1e-15);
+        assert_abs_diff_eq!(load[3 * node as usize + 2], area, epsilon = 1e-15);
     }
 }
 
@@ -130,7 +131,7 @@ fn histories() {
     for (time, value) in points {
         assert_eq!(phi_c.value(time), value);
     }
-    assert!((phi_c.value(0.55) - 0.5).abs() < 1e-15);
+    assert_abs_diff_eq!(phi_c.value(0.55), 0.5, epsilon = 1e-15);
     assert_eq!(format!("{function:?}"), "Function(..)");
 }
 

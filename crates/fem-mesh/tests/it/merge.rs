@@ -1,5 +1,6 @@
 //! Parts that were meshed apart.
 
+use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, Z_MAX};
 use signorini_fem_mesh::{Facet, MeshError, TetMesh, drop_unused_nodes, merge_nodes};
 
@@ -29,7 +30,7 @@ fn parts_meshed_apart_become_one_body() {
     for (distance, count, last) in [(0.0, 0, 1), (1e-9, 0, 1), (1e-6, 9, 0), (f64::NAN, 0, 1)] {
         let (gone, body, volume) = merged(distance);
         assert_eq!((gone, body), (count, Some(last)), "{distance}");
-        assert!((volume - 2.0).abs() < 1e-6);
+        assert_abs_diff_eq!(volume, 2.0, epsilon = 1e-6);
     }
     // too far: tetrahedra lose nodes, which the mesh reports; wrong numbers are left to it, too
     let (points, mut tets) = (lower.points().to_vec(), lower.tets().to_vec());

@@ -1,5 +1,6 @@
 //! The brick and the operations on meshes.
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::brick::{Brick, SIDES, X_MAX, Z_MIN};
@@ -41,7 +42,7 @@ fn central_tetrahedra_join_even_vertices() {
 #[test]
 fn sides_are_tagged_outward_and_complete() {
     let mesh = Brick::new([3.0, 1.0, 2.0], [6, 3, 4]).build().unwrap();
-    assert!((mesh.total_volume() - 6.0).abs() < 1e-13);
+    assert_abs_diff_eq!(mesh.total_volume(), 6.0, epsilon = 1e-13);
     assert_eq!(mesh.extent(), ([0.0; 3], [3.0, 1.0, 2.0]));
     assert_eq!(mesh.facets().len(), mesh.boundary_facets().len());
     assert_eq!(mesh.tags().len(), 6);
@@ -86,10 +87,10 @@ fn grading_and_perturbation() {
     let brick = Brick::new([1.0, 1.0, 2.0], [4; 3]).graded([1.0, 8.0, 0.125]);
     let mesh = brick.build().unwrap();
     let y = |j| mesh.points()[brick.node([0, j, 0])][1];
-    assert!(((y(4) - y(3)) / (y(1) - y(0)) - 8.0).abs() < 1e-12);
+    assert_abs_diff_eq!((y(4) - y(3)) / (y(1) - y(0)), 8.0, epsilon = 1e-12);
     assert_eq!(y(4), 1.0);
     let perturbed = brick.clone().perturbed(0.15, 7).build().unwrap();
-    assert!((perturbed.total_volume() - 2.0).abs() < 1e-13);
+    assert_abs_diff_eq!(perturbed.total_volume(), 2.0, epsilon = 1e-13);
     assert_eq!(perturbed, brick.clone().perturbed(0.15, 7).build().unwrap());
     assert_ne!(perturbed, brick.perturbed(0.15, 8).build().unwrap());
     let one_cell = Brick::new([1.0; 3], [1; 3])
@@ -140,7 +141,7 @@ fn tagging_by_place_and_normal() {
         .tag_boundary(|c, n| (n[2] < -0.5 && c[0] < 1.0).then_some(FacetTag(9)));
     assert_eq!(half.tags(), [FacetTag(9)]);
     let area = Surface::new(&half, &[FacetTag(9)]).unwrap().total_area();
-    assert!((area - 1.0).abs() < 1e-14);
+    assert_abs_diff_eq!(area, 1.0, epsilon = 1e-14);
 }
 
 proptest! {
@@ -162,12 +163,12 @@ proptest! {
         let brick = Brick::new(lengths, cells).with_origin(origin);
         let mesh = brick.graded(grading).perturbed(0.15, seed).build().unwrap();
         let volume: f64 = lengths.iter().product();
-        prop_assert!((mesh.total_volume() / volume - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(mesh.total_volume() / volume, 1.0, epsilon = 1e-9);
         let closed = area_vectors(&mesh, mesh.boundary_facets().iter().map(|f| f.nodes));
         let scale: f64 = lengths.iter().map(|l| l * l).sum();
         prop_assert!(closed.iter().all(|c| c.abs() < 1e-10 * scale));
         let side = Surface::new(&mesh, &[X_MAX]).unwrap();
-        prop_assert!((side.total_area() / (lengths[1] * lengths[2]) - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(side.total_area() / (lengths[1] * lengths[2]), 1.0, epsilon = 1e-9);
     }
 
     #[test]
@@ -177,6 +178,6 @@ proptest! {
         let scaled = mesh.map_points(|p| p.map(|x| unit * x)).unwrap();
         prop_assert_eq!(scaled.tets(), mesh.tets());
         let ratio = scaled.total_volume() / mesh.total_volume() / unit.powi(3);
-        prop_assert!((ratio - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(ratio, 1.0, epsilon = 1e-12);
     }
 }

@@ -1,5 +1,6 @@
 //! Written files, read back by vtkio, which shares no code with the writer.
 
+use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, Z_MIN};
 use signorini_fem_mesh::output::{
     Field, OutputError, PvdSeries, write_surface_vtu, write_vtu, write_vtu_pieces,
@@ -121,7 +122,11 @@ fn surface() {
         panic!("one piece is expected")
     };
     assert_eq!(piece.cells.num_cells(), surface.triangles().len());
-    assert!((values(&piece.data.point, "area").iter().sum::<f64>() - 3.0).abs() < 1e-13);
+    assert_abs_diff_eq!(
+        values(&piece.data.point, "area").iter().sum::<f64>(),
+        3.0,
+        epsilon = 1e-13
+    );
     let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     assert!(matches!(
         write_surface_vtu(&path, &other, &surface, &[], &[]),

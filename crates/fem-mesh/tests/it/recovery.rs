@@ -1,5 +1,6 @@
 //! Effectivity of the estimated discretisation error: estimated over true error in the energy norm.
 
+use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::{
     Brick, Hooke, LoadDensity, Materials, TetMesh, discretisation_error, energy_of_difference,
     energy_of_error,
@@ -121,7 +122,7 @@ fn the_index_of_a_manufactured_solution_is_near_one_and_errors_fall_with_h() {
         assert!(truth < last);
         last = truth;
         let sum: f64 = estimate.energies().iter().sum();
-        assert!((sum - estimate.energy()).abs() <= 1e-12 * sum);
+        assert_abs_diff_eq!(sum, estimate.energy(), epsilon = 1e-12 * sum);
     }
 }
 

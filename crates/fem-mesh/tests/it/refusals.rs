@@ -1,5 +1,6 @@
 //! Ways to be wrong: each gives a typed error that names the place.
 
+use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, BrickError, Z_MIN};
 use signorini_fem_mesh::fields::{FieldError, nodal_average, strains, stresses};
 use signorini_fem_mesh::{
@@ -190,7 +191,7 @@ fn repairs() {
         [1, 2, 3, 4]
     );
     let mesh = TetMesh::new(points, tets, facets).unwrap();
-    assert!((mesh.volume(0) - 1.0 / 6.0).abs() < 1e-15);
+    assert_abs_diff_eq!(mesh.volume(0), 1.0 / 6.0, epsilon = 1e-15);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The element, the assembly and Hooke's law.
 
+use approx::assert_abs_diff_eq;
 use nalgebra::SMatrix;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -68,11 +69,15 @@ fn isotropic_law_is_that_of_the_textbook() {
     let uniaxial = law.stress(&[1e-3, -0.3e-3, -0.3e-3, 0.0, 0.0, 0.0]);
     assert!((uniaxial[0] - 0.2).abs() < 1e-14 && largest(&uniaxial[1..]) < 1e-14);
     let shear = law.stress(&[0.0, 0.0, 0.0, 1e-3, 0.0, 0.0]);
-    assert!((shear[3] - 0.2 / 2.6).abs() < 1e-14);
+    assert_abs_diff_eq!(shear[3], 0.2 / 2.6, epsilon = 1e-14);
     // Smallest and largest eigenvalue: 2 G and 3 K.
-    assert!((law.ellipticity() - 200.0 / 1.3).abs() < 1e-10);
-    assert!((law.bound() - 200.0 / 0.4).abs() < 1e-10);
-    assert!((law.energy_density(&[1.0, -0.3, -0.3, 0.0, 0.0, 0.0]) - 100.0).abs() < 1e-11);
+    assert_abs_diff_eq!(law.ellipticity(), 200.0 / 1.3, epsilon = 1e-10);
+    assert_abs_diff_eq!(law.bound(), 200.0 / 0.4, epsilon = 1e-10);
+    assert_abs_diff_eq!(
+        law.energy_density(&[1.0, -0.3, -0.3, 0.0, 0.0, 0.0]),
+        100.0,
+        epsilon = 1e-11
+    );
 }
 
 #[test]
@@ -169,7 +174,7 @@ fn linear_patch() {
     }
     let expected = law.energy_density(&strain) * mesh.total_volume();
     let energy = strain_energy(&mesh, &materials, &u).unwrap();
-    assert!((energy / expected - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(energy / expected, 1.0, epsilon = 1e-12);
     // K u: the tractions sigma n, a third of each triangle's force to its nodes, nothing inside.
     let f = times(&stiffness(&mesh, &law), &u);
     assert!(

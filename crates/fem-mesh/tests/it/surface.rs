@@ -1,5 +1,6 @@
 //! Normals, frames and areas on flat and curved surfaces.
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::brick::{Brick, X_MIN, Z_MAX, Z_MIN};
@@ -24,7 +25,7 @@ fn paper_frame_on_the_brick() {
                 .all(|c| *c != 0.0 || c.is_sign_positive())
         );
     }
-    assert!((surface.total_area() - 3.0).abs() < 1e-13);
+    assert_abs_diff_eq!(surface.total_area(), 3.0, epsilon = 1e-13);
     for (place, &node) in surface.nodes().iter().enumerate() {
         assert_eq!(surface.local(node), Some(place));
         let [x, y, _] = mesh.points()[node as usize];
@@ -42,7 +43,7 @@ fn paper_frame_on_the_brick() {
 fn several_tags_make_one_surface() {
     let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().unwrap();
     let both = Surface::new(&mesh, &[X_MIN, Z_MIN]).unwrap();
-    assert!((both.total_area() - 4.0).abs() < 1e-13);
+    assert_abs_diff_eq!(both.total_area(), 4.0, epsilon = 1e-13);
     assert_eq!(both.triangles().len(), both.facets().len());
     // On the common edge the normal lies between those of the sides.
     let edge = both.local(mesh.nodes_on(X_MIN)[1]).unwrap();
@@ -116,11 +117,11 @@ proptest! {
             (frame.normal, frame.normal, 1.0), (t1, t1, 1.0), (t2, t2, 1.0),
             (frame.normal, t1, 0.0), (frame.normal, t2, 0.0), (t1, t2, 0.0),
         ] {
-            prop_assert!((dot(a, b) - expected).abs() < 1e-14);
+            assert_abs_diff_eq!(dot(a, b), expected, epsilon = 1e-14);
         }
         let back = frame.vector(frame.normal_part(v), frame.tangential_part(v));
         for i in 0..3 {
-            prop_assert!((back[i] - v[i]).abs() < 1e-13);
+            assert_abs_diff_eq!(back[i], v[i], epsilon = 1e-13);
         }
     }
 
@@ -133,7 +134,7 @@ proptest! {
         let near = [0, 1, 2].map(|i| normal[i] + step[i]);
         let (a, b) = (SurfaceFrame::from_normal(normal).unwrap(), SurfaceFrame::from_normal(near).unwrap());
         for i in 0..3 {
-            prop_assert!((a.tangents[0][i] - b.tangents[0][i]).abs() < 1e-3);
+            assert_abs_diff_eq!(a.tangents[0][i], b.tangents[0][i], epsilon = 1e-3);
         }
     }
 }

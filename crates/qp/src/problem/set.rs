@@ -52,7 +52,7 @@ pub struct Block {
     pub state: BlockState,
 }
 
-/// Squared norms and the one mixed product of the gradient parts, see the [module](self).
+/// Squared norms and the one mixed product of the gradient parts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GradientNorms {
     /// `|phi|²`, free gradient.

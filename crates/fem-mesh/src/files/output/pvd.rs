@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::tolerances::SAME_TIME;
+
 use super::{Field, OutputError, write_surface_vtu, write_vtu, write_vtu_pieces};
 use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
@@ -16,9 +18,6 @@ const HEAD: [&str; 3] = [
     "  <Collection>",
 ];
 const FOOT: [&str; 2] = ["  </Collection>", "</VTKFile>"];
-
-/// Relative distance within which two times are the same.
-const SAME_TIME: f64 = 1e-9;
 
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
 ///
