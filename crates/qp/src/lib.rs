@@ -13,7 +13,7 @@
 //! |---|---|---|---|
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
-//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted faces; no penalty | see [`ActiveSetWorkspace`] |
+//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted active sets; no penalty | see [`ActiveSetWorkspace`] |
 //! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |

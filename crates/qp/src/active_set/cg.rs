@@ -1,17 +1,17 @@
-//! Projected preconditioned conjugate gradients on one face.
+//! Projected preconditioned conjugate gradients on one active set.
 //!
-//! The face restricts constrained components only. The residual on the face is therefore the vector `residual` with its
+//! It restricts constrained components only. The residual on the active set is therefore the vector `residual` with its
 //! leading part replaced by `restricted`; no second long vector is kept. Curvature enters before the projection: the
-//! rigid amplitudes are fitted to the residual on the face, else the projected matrix is not symmetric.
+//! multiplier is fitted to the residual on the set, else the projected matrix is not symmetric.
 //!
 //! | local | meaning |
 //! |---|---|
 //! | `residual` | `P_Wᵀ (A x - b + kappa s)`, `s` the steps so far |
-//! | `restricted` | its constrained part, restricted to the face |
-//! | `z` | `P_W R (D M D + T) R` of the residual on the face; `R` restricts, `D = 1 / (1 + kappa m)` (`D²` in `docs/theory.md`) and `T` account for the curvature |
+//! | `restricted` | its constrained part, restricted to the active set |
+//! | `z` | `P_W R (D M D + T) R` of the residual on the set; `R` restricts, `D = 1 / (1 + kappa m)` (`D²` in `docs/theory.md`) and `T` account for the curvature |
 //! | `p`, `ap` | direction, and `A p + kappa p`, then `P_Wᵀ` of it, then restricted |
 //! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`coupling`](crate::coupling)) |
-//! | `rho` | residual on the face times `z` |
+//! | `rho` | residual on the set times `z` |
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
@@ -20,7 +20,7 @@ use crate::vector;
 
 use super::iterate::{Iterate, Lengths};
 
-/// How far the errors are to fall on a face.
+/// How far the errors are to fall on an active set.
 pub(crate) struct Goal {
     /// By this factor from the smaller of their values at the start and those expected,
     pub(crate) forcing: f64,
@@ -130,7 +130,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         Ok(None)
     }
 
-    /// A step of this length: `x`, `ax` and both residuals; `ap` becomes that of the residual on the face.
+    /// A step of this length: `x`, `ax` and both residuals; `ap` becomes that of the residual on the set.
     fn advance(&mut self, length: f64, coupled: bool) {
         let work = &mut *self.work;
         let q = if coupled {

@@ -1,11 +1,11 @@
 //! Radii that follow other components, inside conjugate gradients.
 //!
-//! A hook moves the radii of the set between faces. Where the caller tells how (Coulomb friction: the radius of a disc is
-//! a coefficient times the normal force), conjugate gradients take it along: a step `p` on the face becomes `q = E p`, in
+//! A hook moves the radii between active sets. Where the caller tells how (Coulomb friction: the radius of a disc is
+//! a coefficient times the normal force), conjugate gradients take it along: a step `p` on the set becomes `q = E p`, in
 //! which a sliding disc also grows along its normal by `slope * p`, and unconstrained components restore `G q = 0`. The
-//! matrix of the face is then `A E` instead of `A`, not symmetric, but by a small part only: lengths of steps
+//! matrix is then `A E` instead of `A`, not symmetric, but by a small part only: lengths of steps
 //! are those that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière).
-//! What is left for the move to the next face is of second order, so that nearly nothing is lost by it.
+//! What is left for the move to the next set is of second order, so that nearly nothing is lost by it.
 
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, for_discs};
 use crate::tolerances::{
@@ -39,7 +39,7 @@ pub(crate) struct Coupling {
     pub(crate) on: bool,
     /// Whether they got on badly with it in this solve.
     pub(crate) failed: bool,
-    /// Faces without progress when it was switched on.
+    /// Active sets without progress when it was switched on.
     from: usize,
 }
 
@@ -97,7 +97,7 @@ impl Coupling {
         projector.compensate(p, &self.growth, &mut self.step);
     }
 
-    /// Decides for the next face, if it is `free` to couple: its relative `error`, and faces without progress so far.
+    /// Decides for the next set, if it is `free` to couple: its relative `error`, and sets without progress so far.
     pub(crate) fn begin(&mut self, free: bool, error: f64, waited: usize) {
         self.from = self.from.min(waited);
         self.failed |= self.on && waited >= self.from + COUPLED_WAIT;
@@ -116,8 +116,8 @@ impl Coupling {
         self.on && self.failed
     }
 
-    /// The decrease asked for on this face: as far as the move after it lets the error fall. That move is of second
-    /// order, so what it brought back of the error `first_error` of the last face bounds what it will bring back now.
+    /// The decrease asked for on this set: as far as the move after it lets the error fall. That move is of second
+    /// order, so what it brought back of the error `first_error` of the last set bounds what it will bring back now.
     pub(crate) fn forcing(&self, forcing: f64, jump: f64, first_error: f64) -> f64 {
         if !self.on {
             return forcing;
@@ -134,7 +134,7 @@ mod tests {
     use crate::problem::Segment;
 
     #[test]
-    fn couples_near_the_solution_and_changes_sides_where_faces_go_in_circles() {
+    fn couples_near_the_solution_and_changes_sides_where_sets_go_in_circles() {
         let mut coupling = Coupling::default();
         let mut begins = |free, error, waited| {
             coupling.begin(free, error, waited);
@@ -150,7 +150,7 @@ mod tests {
         assert!(begins(true, 0.02, 1) && begins(true, 0.02, COUPLED_WAIT));
         assert!(
             !begins(true, 0.02, COUPLED_WAIT + 1),
-            "four faces since it began"
+            "four sets since it began"
         );
         assert!(!begins(true, 1e-9, 0), "for the rest of the solve");
     }

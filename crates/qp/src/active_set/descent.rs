@@ -1,9 +1,9 @@
-//! Descent for faces whose predictions do not settle.
+//! Descent for active sets whose predictions do not settle.
 //!
 //! The natural map is a Newton step on a piecewise linear problem and can run in circles. Where it does, each move to
-//! a predicted face has to lower the cost `q(x) = 1/2 xᵀ A x - xᵀ b` from the last feasible point; where it does not,
+//! a predicted set has to lower the cost `q(x) = 1/2 xᵀ A x - xᵀ b` from the last feasible point; where it does not,
 //! the step of conjugate gradients is shortened and projected until it does (Bertsekas 1982: the projected step descends
-//! as long as components that the gradient presses against their bound are held). Costs are compared by their difference,
+//! as long as components that the gradient presses against their bound are active). Costs are compared by their difference,
 //! which keeps its digits near the solution.
 //!
 //! Blocks that a shortened step takes across their boundary are held (*blocked*), also those a little inside of it. Where no
@@ -14,7 +14,7 @@ use crate::problem::{ConvexSet, ProductSet};
 use crate::tolerances::{INSIDE, KEPT_DECREASE, PROGRESS, REACH, RELEASE, SHORT};
 use crate::vector;
 
-/// The last feasible point and the step from it to the minimum on its face.
+/// The last feasible point and the step from it to the minimum on its active set.
 #[derive(Debug)]
 pub(crate) struct DescentSafeguard {
     x: Vec<f64>,
@@ -29,9 +29,9 @@ pub(crate) struct DescentSafeguard {
     /// Whether the last step led from one feasible point to another, and whether it was taken back.
     exact: bool,
     stuck: bool,
-    /// Error estimate of the last face without blocked blocks.
+    /// Error estimate of the last active set without blocked blocks.
     unblocked: f64,
-    /// Whether the set followed the last face, and how far constrained components moved when it did.
+    /// Whether the set followed at the last move, and how far constrained components moved when it did.
     pub(crate) current: bool,
     pub(crate) drift: f64,
     /// Very short steps in a row.
@@ -65,7 +65,7 @@ impl DescentSafeguard {
         vector::copy(residual, &mut self.residual);
     }
 
-    /// Remembers the step to the minimum on the face; whether less than ever is left to gain.
+    /// Remembers the step to the minimum on the active set; whether less than ever is left to gain.
     pub(crate) fn leave(&mut self, x: &[f64], ax: &[f64]) -> bool {
         vector::copy(x, &mut self.step);
         vector::subtract(&self.x, &mut self.step);
@@ -80,7 +80,7 @@ impl DescentSafeguard {
         progress
     }
 
-    /// Whether blocked blocks (`any` of them) are to be released at a face with this error estimate; `solved` is what
+    /// Whether blocked blocks (`any` of them) are to be released at a set with this error estimate; `solved` is what
     /// decides where points are not feasible.
     pub(crate) fn releases(&mut self, any: bool, solved: bool, error: f64, limit: f64) -> bool {
         if !any {

@@ -1,4 +1,4 @@
-//! The moves of the [face method](crate::active_set) from a solved face to the next one.
+//! The moves of the active-set method from a solved set to the next one.
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
@@ -11,25 +11,25 @@ use super::run::{Place, Run};
 use super::view::ActiveSetPreconditioner;
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
-    /// Moves `x` to the next face, with the next step of conjugate gradients, of this `length`, on top. The set follows where
-    /// the face has settled. Then set, equality and product are in order again, and a safeguard has its say.
+    /// Moves `x` to the next active set, with the next step of conjugate gradients, of this `length`, on top. The set follows
+    /// where the active set has settled. Then set, equality and product are in order again, and a safeguard has its say.
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         self.at.mark();
         let joint = self.joint_step(length);
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
-        if self.safeguard.is_none() && self.repairs_suffice && self.waited >= UNSURE {
+        if self.safeguard.is_none() && self.repairs_suffice && self.progress.waited >= UNSURE {
             at.foresee(self.settings.natural_step);
         }
-        self.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
+        self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
         if self.repairs_suffice {
             self.settle()?;
         } else {
-            self.settle_loose(false, self.followed)?;
+            self.settle_loose(false, self.moved.followed)?;
         }
         let at = &mut self.at;
-        self.jump = vector::distance(&at.x[..constrained], &at.work.before);
+        self.moved.jump = vector::distance(&at.x[..constrained], &at.work.before);
         self.balance(joint);
         self.descend();
         Ok(())
@@ -38,9 +38,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// Moves `x` into the set as the natural map says, and lets the set follow.
     fn settle(&mut self) -> Result<(), QpError> {
         self.settle_bounds();
-        if self.followed {
+        if self.moved.followed {
             self.follow()?;
-            // held components go with bounds that moved
+            // active components go with bounds that moved
             self.settle_bounds();
         }
         let at = &mut self.at;
@@ -54,7 +54,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
         let rounds = if follow { BALANCE_ROUNDS } else { 1 };
-        self.unrest = 0.0;
+        self.moved.unrest = 0.0;
         for round in 1..=rounds {
             let at = &mut self.at;
             let last = at.x[..constrained].to_vec();
@@ -64,13 +64,17 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
                 at.work.active.aim(at.set, at.x, &map);
                 let balances = at.project();
                 if round == rounds {
-                    self.unbalanced = if balances { 0 } else { self.unbalanced + 1 };
+                    self.moved.unbalanced = if balances {
+                        0
+                    } else {
+                        self.moved.unbalanced + 1
+                    };
                 }
             } else if !at.project_start() {
                 at.project();
             }
             if round > 1 {
-                self.unrest = vector::distance(&at.x[..constrained], &last);
+                self.moved.unrest = vector::distance(&at.x[..constrained], &last);
             }
             if round < rounds {
                 self.follow()?;
@@ -99,24 +103,24 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         settle_bounds(at.set, at.x, &map);
     }
 
-    /// Whether few bounded components changed between free and held.
+    /// Whether few bounded components changed between free and active.
     fn has_settled(&self) -> bool {
-        let face = &self.at.work.active;
-        let few = (self.settings.settled_fraction * face.free_bounds as f64).max(2.0);
-        face.changed as f64 <= few
+        let active = &self.at.work.active;
+        let few = (self.settings.settled_fraction * active.free_bounds as f64).max(2.0);
+        active.changed as f64 <= few
     }
 
     /// Makes `G x = e` hold again, and the product exact.
     fn balance(&mut self, joint: bool) {
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
-            safeguard.current = self.followed;
+            safeguard.current = self.moved.followed;
         }
-        if self.jump > 0.0 || joint && self.drifted {
+        if self.moved.jump > 0.0 || joint && self.moved.drifted {
             at.projector.repair(at.x, at.problem.rhs);
-            self.drifted = false;
+            self.moved.drifted = false;
         }
-        if self.jump > 0.0 || joint {
+        if self.moved.jump > 0.0 || joint {
             at.correct();
         }
     }
@@ -128,14 +132,14 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             return;
         };
         if safeguard.current {
-            safeguard.drift = self.jump;
+            safeguard.drift = self.moved.jump;
             return;
         }
         let mut t = 1.0;
         while t > SHORTEST && !safeguard.descends(at.x, at.ax, t) {
             safeguard.shorten(t, at.x, at.ax);
             at.mark();
-            self.jump = at.restore();
+            self.moved.jump = at.restore();
             t *= 0.5;
         }
         safeguard.held_up = if t > VERY_SHORT * SHORTEST {
@@ -152,7 +156,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let more = at.work.active.block(at.set, from, step, reach);
         if rises && more {
             safeguard.back(at.x, at.ax);
-            self.jump = f64::INFINITY;
+            self.moved.jump = f64::INFINITY;
         }
     }
 }

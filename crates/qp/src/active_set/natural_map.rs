@@ -256,14 +256,14 @@ mod tests {
     }
 
     #[test]
-    fn components_are_held_where_they_are_and_would_be_held() {
+    fn components_are_active_where_they_are_and_would_be_so() {
         // x, gradient, blocked, near: free?
         for (x, g, blocked, near, free) in [
             (0.0, 0.5, false, false, false),
             (0.0, -0.5, false, false, true),
             (1.0, -0.5, false, false, false),
             (1.0, 0.5, false, false, true),
-            // predicted to be held, but not there
+            // predicted to be active, but not there
             (0.5, 2.0, false, false, true),
             (0.5, -2.0, false, false, true),
             // a step was stopped there
@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn held_bounds_that_the_map_would_move_contradict() {
+    fn active_bounds_that_the_map_would_move_contradict() {
         for (x, g, free, expected) in [
             (0.0, -0.5, false, true),
             (0.0, 0.5, false, false),

@@ -1,4 +1,4 @@
-//! The steps of the [face method](crate::active_set): what happens between one face and the next.
+//! The steps of the active-set method: what happens on one active set. [`moves`](super::moves) lead to the next one.
 
 use std::mem::Discriminant;
 
@@ -18,11 +18,11 @@ use super::settings::{ActiveSetReport, ActiveSetSettings};
 use super::view::{ActiveSetPreconditioner, ActiveSetView};
 use super::workspace::ActiveSetWorkspace;
 
-/// A face as it is entered.
+/// An active set as it is entered.
 pub(crate) struct Place {
     /// Residual times `z`.
     rho: f64,
-    /// Estimated distance to the solution of the face.
+    /// Estimated distance to the solution on the set.
     errors: Lengths,
     /// What it is to fall below.
     limits: Lengths,
@@ -33,35 +33,51 @@ pub(crate) struct Place {
     pub(crate) solved: bool,
 }
 
-/// One solve: the iterate, and what it remembers of earlier faces.
+/// What the last move from one active set to the next did.
+pub(crate) struct LastMove {
+    /// Change of the constrained components.
+    pub(crate) jump: f64,
+    /// Change by the last of the rounds in which balance and set follow each other: they may run in circles.
+    pub(crate) unrest: f64,
+    /// Moves in a row at which the set held no balance.
+    pub(crate) unbalanced: usize,
+    /// Whether the hook was called.
+    pub(crate) followed: bool,
+    /// Whether steps that round have been made since `G x = e` was restored.
+    pub(crate) drifted: bool,
+}
+
+impl LastMove {
+    /// How far constrained components may still move.
+    fn length(&self) -> f64 {
+        self.jump.max(self.unrest)
+    }
+}
+
+/// The error, relative to its limit: the smallest so far, the last one, and active sets since the smallest.
+pub(crate) struct Progress {
+    best: f64,
+    last: f64,
+    pub(crate) waited: usize,
+}
+
+/// One solve: the iterate, and what it remembers of earlier active sets.
 pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) at: Iterate<'s, A, C, M>,
     pub(crate) settings: &'s ActiveSetSettings,
     hook: &'s mut ActiveSetHook<'h>,
     /// Kind and length of each segment.
     shape: Vec<(Discriminant<Segment>, usize)>,
-    /// Whether unconstrained components alone stop every rigid mode.
+    /// Whether unconstrained components alone stop every mode of the equality.
     pub(crate) repairs_suffice: bool,
     forcing: f64,
-    /// What the last move to a predicted face changed in the constrained components.
-    pub(crate) jump: f64,
     /// Largest norm of `x` since `A x` was computed afresh.
     peak: f64,
-    /// What the last of the rounds in which balance and set follow each other changed: they may run in circles.
-    pub(crate) unrest: f64,
-    /// Moves in a row at which the set held no balance.
-    pub(crate) unbalanced: usize,
-    /// Smallest error, relative to its limit, the last one, and faces since the smallest.
-    best: f64,
-    last: f64,
-    pub(crate) waited: usize,
-    /// Estimated errors when the last face was left, and that of the constrained part when it was entered.
+    pub(crate) moved: LastMove,
+    pub(crate) progress: Progress,
+    /// Estimated errors when the last set was left, and that of the constrained part when it was entered.
     left: Lengths,
     first_error: f64,
-    /// Whether the hook was called at the last move.
-    pub(crate) followed: bool,
-    /// Whether steps that round have been made since `G x = e` was restored.
-    pub(crate) drifted: bool,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -88,17 +104,21 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             settings,
             hook,
             forcing: settings.forcing,
-            jump: f64::INFINITY,
             peak: 0.0,
-            unrest: 0.0,
-            unbalanced: 0,
-            best: f64::INFINITY,
-            last: f64::INFINITY,
-            waited: 0,
+            moved: LastMove {
+                jump: f64::INFINITY,
+                unrest: 0.0,
+                unbalanced: 0,
+                followed: false,
+                drifted: false,
+            },
+            progress: Progress {
+                best: f64::INFINITY,
+                last: f64::INFINITY,
+                waited: 0,
+            },
             left: Lengths::INFINITE,
             first_error: f64::INFINITY,
-            followed: false,
-            drifted: false,
             safeguard: None,
             at: Iterate {
                 problem,
@@ -112,17 +132,17 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         }
     }
 
-    /// A feasible point that satisfies `G x = e`, a first face and the product with it.
+    /// A feasible point that satisfies `G x = e`, a first active set and the product with the point.
     pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
         self.at.mark();
         self.guess();
-        let held = if self.repairs_suffice {
+        let stopped = if self.repairs_suffice {
             self.at.set_weights(false)?.is_some()
         } else {
             self.at.project_start()
         };
-        if !held {
-            // held by its constraints only: forces that balance with all of them at work tell the first face
+        if !stopped {
+            // only constraints stop a mode: a balance with all of them at work tells the first active set
             self.at.set_all_free()?;
             self.at.projector.balance(self.at.x, self.at.problem.rhs);
             self.follow()?;
@@ -132,7 +152,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             self.settle_loose(true, true)?;
             self.at.work.active.guess(self.at.set, self.at.x);
         }
-        if !(held && self.repairs_suffice) && self.at.set_weights(false)?.is_none() {
+        if !(stopped && self.repairs_suffice) && self.at.set_weights(false)?.is_none() {
             self.at.set_all_free()?;
         }
         self.at.projector.repair(self.at.x, self.at.problem.rhs);
@@ -145,15 +165,15 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         Ok(())
     }
 
-    /// Projects `x` on the set and guesses the face from it.
+    /// Projects `x` on the set and guesses the active set from it.
     fn guess(&mut self) {
         let at = &mut self.at;
         at.set.project(at.x);
         at.work.active.guess(at.set, at.x);
     }
 
-    /// Classifies the blocks by the natural map, and enters the face with projector and preconditioner. `None` if it holds no
-    /// equilibrium.
+    /// Classifies the blocks by the natural map, and enters the active set with projector and preconditioner. `None` if no
+    /// choice of blocks allows for the equality.
     pub(crate) fn enter(&mut self) -> Result<Option<Place>, QpError> {
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
@@ -222,15 +242,15 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         releases
     }
 
-    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and held bounds, judged
-    /// again by the residual of this face, which the last classification did not have, stay held.
+    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and active bounds,
+    /// judged by the residual on this set, which the last classification did not have, stay active.
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
         let current = self
             .safeguard
             .as_ref()
             .is_none_or(|safeguard| safeguard.current);
-        let moved = self.jump.max(self.unrest);
+        let moved = self.moved.length();
         let settled =
             at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
         let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
@@ -242,10 +262,10 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
 
     /// Whether `G x = e` holds as exactly as `x` is known, after steps that round. It does afterwards.
     pub(crate) fn is_balanced(&mut self, place: &Place) -> bool {
-        if !self.drifted {
+        if !self.moved.drifted {
             return true;
         }
-        self.drifted = false;
+        self.moved.drifted = false;
         let at = &mut self.at;
         at.mark();
         at.projector.repair(at.x, at.problem.rhs);
@@ -260,13 +280,13 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
 
     /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes.
     pub(crate) fn set_agrees(&mut self, place: &Place) -> Result<bool, QpError> {
-        if self.followed {
+        if self.moved.followed {
             return Ok(true);
         }
         let work = &mut *self.at.work;
         work.active.radii(self.at.set, &mut work.before);
         self.follow()?;
-        self.followed = true;
+        self.moved.followed = true;
         let (at, limit) = (&self.at, place.limits.constrained);
         let moved =
             at.set.violation(at.x) > limit || at.work.active.grew(at.set, &at.work.before, limit);
@@ -276,80 +296,81 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Compares the error with the smallest so far.
     pub(crate) fn note_progress(&mut self, place: &Place) {
         let (errors, limits) = (place.errors, place.limits);
-        let moved = self.jump.max(self.unrest);
+        let moved = self.moved.length();
         let constrained = errors.constrained.max(moved.min(f64::MAX));
-        self.last = (errors.all / limits.all).max(constrained / limits.constrained);
-        if self.last < PROGRESS * self.best {
-            self.best = self.last;
-            self.waited = 0;
+        let progress = &mut self.progress;
+        progress.last = (errors.all / limits.all).max(constrained / limits.constrained);
+        if progress.last < PROGRESS * progress.best {
+            progress.best = progress.last;
+            progress.waited = 0;
         } else if self.at.report.active_sets > 0 {
-            self.waited += 1;
+            progress.waited += 1;
         }
     }
 
     /// Whether predictions without a safeguard have made no progress for too long.
     pub(crate) fn in_circles(&self) -> bool {
-        self.waited >= self.settings.patience && self.safeguard.is_none()
+        self.progress.waited >= self.settings.patience && self.safeguard.is_none()
     }
 
-    /// From now on faces are solved better, and moves have to descend.
+    /// From now on the problem on a set is solved better, and moves have to descend.
     pub(crate) fn start_safeguard(&mut self) {
         self.safeguard = Some(DescentSafeguard::new(self.at.x.len()));
         self.forcing *= FINER;
-        self.best = self.last;
-        self.waited = 0;
+        self.progress.best = self.progress.last;
+        self.progress.waited = 0;
     }
 
     /// Why the solve ends without a solution, if it does.
     pub(crate) fn gives_up(&self) -> Option<Status> {
         let (settings, report) = (self.settings, &self.at.report);
-        if self.unbalanced >= settings.patience.saturating_mul(LONGER) {
+        if self.moved.unbalanced >= settings.patience.saturating_mul(LONGER) {
             return Some(Status::Infeasible);
         }
         let held_up = self
             .safeguard
             .as_ref()
             .map_or(0, |safeguard| safeguard.held_up);
-        if self.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
+        if self.progress.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
             return Some(Status::Stagnated);
         }
         let longer = if self.safeguard.is_some() { LONGER } else { 1 };
-        let faces = settings.max_active_sets.saturating_mul(longer);
-        let limit = report.active_sets >= faces || report.products() >= settings.max_products;
+        let most = settings.max_active_sets.saturating_mul(longer);
+        let limit = report.active_sets >= most || report.products() >= settings.max_products;
         limit.then_some(Status::IterationLimit)
     }
 
-    /// Conjugate gradients on the face. Returns the length of the last step, zero if another one is not worth while.
+    /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth while.
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
             safeguard.enter(at.x, at.ax, &at.work.residual);
         }
-        let steady = self.safeguard.is_none() && self.unbalanced == 0;
-        let free = self.followed && steady && !place.vanishes;
+        let steady = self.safeguard.is_none() && self.moved.unbalanced == 0;
+        let free = self.moved.followed && steady && !place.vanishes;
         let error = at.report.constrained_error;
-        at.work.coupling.begin(free, error, self.waited);
+        at.work.coupling.begin(free, error, self.progress.waited);
         let goal = Goal {
             forcing: at
                 .work
                 .coupling
-                .forcing(self.forcing, self.jump, self.first_error),
+                .forcing(self.forcing, self.moved.jump, self.first_error),
             expected: Lengths {
-                all: MAGNIFIED * (self.jump + self.left.all),
-                constrained: MAGNIFIED * (self.jump + self.left.constrained),
+                all: MAGNIFIED * (self.moved.jump + self.left.all),
+                constrained: MAGNIFIED * (self.moved.jump + self.left.constrained),
             },
             limits: place.limits,
             max_products: self.settings.max_products,
         };
         self.first_error = place.errors.constrained;
         let length = at.conjugate_gradients(place.rho, &goal)?;
-        self.drifted = at.projector.rounds_steps();
+        self.moved.drifted = at.projector.rounds_steps();
         self.left = at.errors();
         at.report.active_sets += 1;
         if let Some(safeguard) = &mut self.safeguard
             && safeguard.leave(at.x, at.ax)
         {
-            self.waited = 0;
+            self.progress.waited = 0;
         }
         Ok(length)
     }
