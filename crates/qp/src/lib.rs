@@ -1,11 +1,10 @@
 //! Quadratic programming with bounds, discs and linear equalities.
 //!
-//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and
-//! `C x = e` with orthonormal rows of `C`.
+//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and `C x = e` with orthonormal
+//! rows of `C`.
 //!
-//! `A` is known only through products. This is the form of the dual problems of T-FETI with contact and
-//! friction (normal forces are bounded, tangential ones lie in discs, rigid-body equilibrium is the equality),
-//! but the crate knows no mechanics and serves any problem of this form.
+//! `A` is known only through products. Dual problems of T-FETI with contact and friction have this form (normal forces are
+//! bounded, tangential ones lie in discs, equilibrium is the equality), but the crate knows no mechanics.
 //!
 //! # Methods
 //!
@@ -18,16 +17,16 @@
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
-//! Solvers take the start in `x` and leave the result there, write reports with counts by cause, and put all
-//! vectors into a workspace that is created once: an iteration allocates nothing. Not reaching a tolerance is
-//! a [`Status`] in an `Ok` report; errors are wrong input or a breakdown ([`QpError`]).
+//! Solvers take the start in `x` and leave the result there, report counts by cause, and put all vectors into a workspace that
+//! is created once: an iteration allocates nothing. Not reaching a tolerance is a [`Status`] in an `Ok` report; errors are wrong
+//! input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems whose set follows the solution.
 //!
 //! # Parts of a problem
 //!
 //! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices.
 //! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`].
-//! - The equality: any [`Equality`]; [`DenseEquality::orthonormal`] makes the rows of a matrix orthonormal
-//!   and names a dependent row.
+//! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and [`DenseProjector`]
+//!   for small matrices.
 //! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
 //! - [`laws`] has checkers for own implementations of the three traits.
 //!
@@ -78,14 +77,13 @@
 //!
 //! # Settings
 //!
-//! The tables are with [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
-//! default and the letter in the paper. All are dimensionless: a problem in other units needs the same
-//! settings and takes the same steps.
+//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`] tells meaning, scale, range,
+//! default and the letter in the paper. All are dimensionless: a problem in other units takes the same steps.
 //!
 //! # Determinism
 //!
-//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads
-//! changes no bit of a result. Loops over the set are serial.
+//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads changes no bit of a
+//! result. Loops over the set are serial.
 
 mod active_set;
 mod check;

@@ -50,10 +50,6 @@ pub struct KprgpReport {
     pub steps: Steps,
     /// Operator products by cause.
     pub products: Products,
-    /// Norm of the free gradient at the end.
-    pub free: f64,
-    /// Norm of the chopped gradient at the end.
-    pub chopped: f64,
     /// Norm of the projected gradient at the end.
     pub projected_gradient: f64,
     /// The tolerance it was compared with.

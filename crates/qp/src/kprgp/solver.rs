@@ -129,9 +129,12 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
     v: &mut Vectors,
 ) -> Result<KprgpReport, QpError> {
     let mut run = Run {
+        fixed: settings.step_length / objective.norm(),
+        o: objective,
         set,
         settings,
-        fixed: settings.step_length / objective.norm(),
+        x,
+        v,
         spectral: f64::INFINITY,
         norms: GradientNorms::default(),
         steps: Steps::default(),
@@ -139,25 +142,24 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         decrease: 0.0,
         halvings: 0,
     };
-    run.restart(x, v);
+    run.restart();
     let (mut best, mut waited, mut failed_checks) = (f64::INFINITY, 0, 0);
     let status = loop {
-        let measure = run.norms.projected();
+        let (measure, tolerance) = (run.norms.projected(), run.o.tolerance());
         if !measure.is_finite() {
             return Err(QpError::NotFinite {
                 quantity: "the gradient",
                 products: run.products.total(),
             });
         }
-        if measure <= objective.tolerance() {
-            if !drifted(objective.norm(), x, v.stale, objective.tolerance()) {
+        if measure <= tolerance {
+            if !drifted(run.o.norm(), run.x, run.v.stale, tolerance) {
                 break Status::Converged;
             }
-            objective.gradient(x, &mut v.g);
+            run.compute_gradient();
             run.products.restart += 1;
-            v.stale = 0;
-            run.restart(x, v);
-            if run.norms.projected() > objective.tolerance() {
+            run.restart();
+            if run.norms.projected() > run.o.tolerance() {
                 failed_checks += 1;
                 if failed_checks >= FAILED_CHECKS {
                     break Status::Stagnated;
@@ -170,7 +172,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         } else {
             waited += 1;
             if waited >= KPRGP_PATIENCE {
-                if measure <= ROUNDED_GRADIENT * objective.norm() * vector::norm(x) {
+                if measure <= ROUNDED_GRADIENT * run.o.norm() * vector::norm(run.x) {
                     break Status::Stagnated;
                 }
                 waited = 0;
@@ -182,29 +184,31 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         // proportional? (Kucera 2008; Dostal and Schoeberl 2005, (2.7))
         let gamma = settings.proportioning;
         if run.norms.reduced_chopped <= gamma * gamma * run.norms.reduced_free_dot {
-            run.conjugate(objective, x, v)?;
+            run.conjugate()?;
         } else {
-            run.proportioning(objective, x, v)?;
+            run.proportioning()?;
         }
     };
     Ok(KprgpReport {
         status,
         steps: run.steps,
         products: run.products,
-        free: run.norms.free.sqrt(),
-        chopped: run.norms.chopped.sqrt(),
         projected_gradient: run.norms.projected(),
-        tolerance: objective.tolerance(),
+        tolerance: run.o.tolerance(),
         halvings: run.halvings,
         decrease: run.decrease,
         cost: f64::NAN,
     })
 }
 
-/// State of one run besides the vectors.
-struct Run<'a, S: ?Sized> {
+/// One run.
+struct Run<'a, O, S: ?Sized> {
+    o: &'a mut O,
     set: &'a S,
     settings: &'a KprgpSettings,
+    x: &'a mut [f64],
+    v: &'a mut Vectors,
+    /// Fixed step length, and the Barzilai-Borwein length of the last release.
     fixed: f64,
     spectral: f64,
     norms: GradientNorms,
@@ -214,22 +218,25 @@ struct Run<'a, S: ?Sized> {
     halvings: usize,
 }
 
-impl<S: ConvexSet + ?Sized> Run<'_, S> {
+impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
+    fn compute_gradient(&mut self) {
+        self.o.gradient(self.x, &mut self.v.g);
+        self.v.stale = 0;
+    }
+
+    fn split(&mut self) {
+        self.norms = (self.set).split(self.x, &self.v.g, self.fixed, &mut self.v.phi);
+    }
+
     /// Splits the gradient and starts new conjugate directions from the free gradient.
-    fn restart(&mut self, x: &[f64], v: &mut Vectors) {
-        self.norms = self.set.split(x, &v.g, self.fixed, &mut v.phi);
-        vector::copy(&v.phi, &mut v.p);
+    fn restart(&mut self) {
+        self.split();
+        vector::copy(&self.v.phi, &mut self.v.p);
     }
 
     /// `t` minimising the cost along `-p` for slope `gp = g·p` and curvature `pap = p·Ap`. Infinite where the curvature is
     /// below rounding; but where the slope is, too, the fixed step, which lowers the cost whatever the curvature is.
-    fn minimising(
-        &self,
-        objective: &impl Objective,
-        x: &[f64],
-        v: &Vectors,
-        (p, gp, pap): (&[f64], f64, f64),
-    ) -> Result<f64, QpError> {
+    fn minimising(&self, p: &[f64], gp: f64, pap: f64) -> Result<f64, QpError> {
         let products = self.products.total();
         if !(gp.is_finite() && pap.is_finite()) {
             return Err(QpError::NotFinite {
@@ -237,7 +244,7 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
                 products,
             });
         }
-        let (norm, pp) = (objective.norm(), vector::dot(p, p));
+        let (norm, pp) = (self.o.norm(), vector::dot(p, p));
         if pap > 0.0 && !below_rounding(pap, norm, pp) {
             return Ok(gp / pap);
         }
@@ -247,85 +254,72 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
                 products,
             });
         }
-        let rounding = ROUNDED_GRADIENT * (norm * vector::norm(x) + vector::norm(&v.g));
-        if gp <= rounding.max(objective.tolerance()) * pp.sqrt() {
+        let size = norm * vector::norm(self.x) + vector::norm(&self.v.g);
+        if gp <= (ROUNDED_GRADIENT * size).max(self.o.tolerance()) * pp.sqrt() {
             return Ok(self.fixed);
         }
         Ok(f64::INFINITY)
     }
 
     /// Conjugate gradient step, followed by an expansion if it leaves the set.
-    fn conjugate(
-        &mut self,
-        objective: &mut impl Objective,
-        x: &mut [f64],
-        v: &mut Vectors,
-    ) -> Result<(), QpError> {
+    fn conjugate(&mut self) -> Result<(), QpError> {
+        let v = &mut *self.v;
         let mut gp = vector::dot(&v.phi, &v.p);
         if gp <= 0.0 {
             // conjugacy lost to rounding
             vector::copy(&v.phi, &mut v.p);
             gp = self.norms.free;
         }
-        objective.direction(&v.p, &mut v.ap);
+        self.o.direction(&v.p, &mut v.ap);
         self.products.cg += 1;
         let pap = vector::dot(&v.p, &v.ap);
-        let t_cg = self.minimising(objective, x, v, (&v.p, gp, pap))?;
-        let t_f = self.set.feasible_step(x, &v.p);
-        let t = t_cg.min(t_f);
-        self.straight(objective, x, v, t, (gp, pap))?;
+        let t_cg = self.minimising(&self.v.p, gp, pap)?;
+        let t_f = self.set.feasible_step(self.x, &self.v.p);
+        self.straight(t_cg.min(t_f), gp, pap)?;
         if t_cg <= t_f {
             self.steps.cg += 1;
-            if below_rounding(pap, objective.norm(), vector::dot(&v.p, &v.p)) {
-                self.restart(x, v);
+            let pp = vector::dot(&self.v.p, &self.v.p);
+            if below_rounding(pap, self.o.norm(), pp) {
+                self.restart();
                 return Ok(());
             }
-            self.norms = self.set.split(x, &v.g, self.fixed, &mut v.phi);
+            self.split();
+            let v = &mut *self.v;
             let gamma = vector::dot(&v.phi, &v.ap) / pap;
             vector::xpby(&v.phi, -gamma, &mut v.p);
         } else {
             self.steps.expansion += 1;
-            self.expand(objective, x, v, t_cg - t_f, pap)?;
-            self.restart(x, v);
+            self.expand(t_cg - t_f, pap)?;
+            self.restart();
         }
         Ok(())
     }
 
     /// A step of length `t` along `-p` within the set, with slope `gp` and curvature `pap`; the gradient by recurrence.
-    fn straight(
-        &mut self,
-        objective: &mut impl Objective,
-        x: &mut [f64],
-        v: &mut Vectors,
-        t: f64,
-        (gp, pap): (f64, f64),
-    ) -> Result<(), QpError> {
+    fn straight(&mut self, t: f64, gp: f64, pap: f64) -> Result<(), QpError> {
         if t == f64::INFINITY {
             return Err(QpError::Unbounded {
                 products: self.products.total(),
             });
         }
-        self.set.advance(x, &v.p, t);
-        vector::axpy(-t, &v.ap, &mut v.g);
-        objective.moved(t);
-        v.stale += 1;
+        self.set.advance(self.x, &self.v.p, t);
+        self.follow(t);
         self.decrease += t * (gp - 0.5 * t * pap);
         Ok(())
     }
 
-    /// From the boundary point `x` (gradient in `v.g`) to a point with more active blocks.
-    /// `rest` is what is left of the conjugate gradient step.
-    fn expand(
-        &mut self,
-        objective: &mut impl Objective,
-        x: &mut [f64],
-        v: &mut Vectors,
-        rest: f64,
-        pap: f64,
-    ) -> Result<(), QpError> {
+    /// The gradient after a step of length `t` along the direction whose product is in `ap`.
+    fn follow(&mut self, t: f64) {
+        vector::axpy(-t, &self.v.ap, &mut self.v.g);
+        self.o.moved(t);
+        self.v.stale += 1;
+    }
+
+    /// From the boundary point `x` to a point with more active blocks. `rest` is what is left of the conjugate gradient step.
+    fn expand(&mut self, rest: f64, pap: f64) -> Result<(), QpError> {
         // Barzilai-Borwein length of the conjugate direction, the shorter of the two: p·Ap / Ap·Ap
-        let spectral = pap / vector::dot(&v.ap, &v.ap);
-        self.norms = self.set.split(x, &v.g, self.fixed, &mut v.phi);
+        let spectral = pap / vector::dot(&self.v.ap, &self.v.ap);
+        self.split();
         if self.norms.free == 0.0 {
             // nothing free is left to expand along; the gradient at x is known
             return Ok(());
@@ -335,65 +329,63 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
             Expansion::ProjectedCg => Some(rest),
             Expansion::BarzilaiBorwein => Some(spectral),
             Expansion::Optimal => {
-                objective.direction(&v.phi, &mut v.ap);
+                self.o.direction(&self.v.phi, &mut self.v.ap);
                 self.products.expansion += 1;
-                let curvature = vector::dot(&v.phi, &v.ap);
-                let slope = self.norms.free;
-                let t = self.minimising(objective, x, v, (&v.phi, slope, curvature))?;
-                if t <= self.set.feasible_step(x, &v.phi) && t.is_finite() {
-                    self.set.advance(x, &v.phi, t);
-                    vector::axpy(-t, &v.ap, &mut v.g);
-                    objective.moved(t);
-                    v.stale += 1;
+                let curvature = vector::dot(&self.v.phi, &self.v.ap);
+                let t = self.minimising(&self.v.phi, self.norms.free, curvature)?;
+                if t <= self.set.feasible_step(self.x, &self.v.phi) && t.is_finite() {
+                    self.set.advance(self.x, &self.v.phi, t);
+                    self.follow(t);
                     self.decrease += 0.5 * t * self.norms.free;
                     return Ok(());
                 }
                 Some(t)
             }
         };
-        let length = length.filter(|t| t.is_finite() && *t > 0.0);
         // the point before the step goes to p, its gradient to ap
-        if let Some(t) = length {
-            vector::copy(&v.g, &mut v.ap);
-            if self.settings.expansion == Expansion::ProjectedCg {
-                vector::step_keeping_start(&mut v.p, x, t);
+        vector::copy(&self.v.g, &mut self.v.ap);
+        self.products.expansion += 1;
+        if let Some(t) = length.filter(|t| t.is_finite() && *t > 0.0) {
+            let gained = if self.settings.expansion == Expansion::ProjectedCg {
+                vector::step_keeping_start(&mut self.v.p, self.x, t);
+                self.project()
             } else {
-                vector::copy(x, &mut v.p);
-                vector::axpy(-t, &v.phi, x);
-            }
-            self.set.project(x);
-            objective.gradient(x, &mut v.g);
-            v.stale = 0;
-            self.products.expansion += 1;
-            let gained = vector::decrease(&v.p, &v.ap, x, &v.g);
+                vector::copy(self.x, &mut self.v.p);
+                self.projected_step(t)
+            };
             if gained >= LONG_STEP * self.fixed * self.norms.reduced_free_dot {
                 self.decrease += gained;
                 return Ok(());
             }
             self.products.fallback += 1;
-            vector::copy(&v.p, x);
+            vector::copy(&self.v.p, self.x);
         } else {
-            vector::copy(&v.g, &mut v.ap);
-            vector::copy(x, &mut v.p);
-            self.products.expansion += 1;
+            vector::copy(self.x, &mut self.v.p);
         }
-        vector::axpy(-self.fixed, &v.phi, x);
-        self.set.project(x);
-        objective.gradient(x, &mut v.g);
-        v.stale = 0;
-        let gained = vector::decrease(&v.p, &v.ap, x, &v.g);
-        self.check_fixed(gained, x, v);
+        let gained = self.projected_step(self.fixed);
+        self.check_fixed(gained);
         self.decrease += gained;
         Ok(())
     }
 
-    /// A fixed step from `v.p` to `x` cannot raise the cost beyond rounding unless the norm was too small.
-    fn check_fixed(&mut self, gained: f64, x: &[f64], v: &Vectors) {
+    /// `x = P(x - t phi)`; what it gained from the point in `p`.
+    fn projected_step(&mut self, t: f64) -> f64 {
+        vector::axpy(-t, &self.v.phi, self.x);
+        self.project()
+    }
+
+    fn project(&mut self) -> f64 {
+        self.set.project(self.x);
+        self.compute_gradient();
+        vector::decrease(&self.v.p, &self.v.ap, self.x, &self.v.g)
+    }
+
+    /// A fixed step from `p` to `x` cannot raise the cost beyond rounding unless the norm was too small.
+    fn check_fixed(&mut self, gained: f64) {
         if gained < 0.0 {
-            let rounding = f64::EPSILON * vector::norm(x) * vector::norm(&v.ap);
-            if -gained
-                > COST_RISE * vector::distance_squared(x, &v.p) / self.fixed + 64.0 * rounding
-            {
+            let rounding = f64::EPSILON * vector::norm(self.x) * vector::norm(&self.v.ap);
+            let explained = COST_RISE * vector::distance_squared(self.x, &self.v.p) / self.fixed;
+            if -gained > explained + 64.0 * rounding {
                 self.fixed *= 0.5;
                 self.halvings += 1;
             }
@@ -401,57 +393,51 @@ impl<S: ConvexSet + ?Sized> Run<'_, S> {
     }
 
     /// Releases active blocks.
-    fn proportioning(
-        &mut self,
-        objective: &mut impl Objective,
-        x: &mut [f64],
-        v: &mut Vectors,
-    ) -> Result<(), QpError> {
+    fn proportioning(&mut self) -> Result<(), QpError> {
         self.steps.proportioning += 1;
         self.products.proportioning += 1;
-        self.set.chopped(x, &v.g, &mut v.p);
-        let t_f = self.set.feasible_step(x, &v.p);
+        let v = &mut *self.v;
+        self.set.chopped(self.x, &v.g, &mut v.p);
+        let t_f = self.set.feasible_step(self.x, &v.p);
         if t_f >= self.fixed {
             // a straight line along -beta: the minimising length, gradient by recurrence
-            objective.direction(&v.p, &mut v.ap);
+            self.o.direction(&v.p, &mut v.ap);
             let (gp, pap) = (vector::dot(&v.p, &v.g), vector::dot(&v.p, &v.ap));
-            let t = self.minimising(objective, x, v, (&v.p, gp, pap))?.min(t_f);
-            self.straight(objective, x, v, t, (gp, pap))?;
+            let t = self.minimising(&self.v.p, gp, pap)?.min(t_f);
+            self.straight(t, gp, pap)?;
         } else {
-            self.release(objective, x, v);
+            self.release();
         }
-        self.restart(x, v);
+        self.restart();
         Ok(())
     }
 
-    /// Projected step `x = P(x - t (g - phi))` on the active blocks, the reduced chopped gradient.
-    fn release(&mut self, objective: &mut impl Objective, x: &mut [f64], v: &mut Vectors) {
+    /// Projected step `x = P(x - t (g - phi))` on the active blocks, the reduced chopped gradient. Its length is that of
+    /// Barzilai and Borwein of the last release: points that slide along their discs move at their own scale.
+    fn release(&mut self) {
         let long = self.spectral.is_finite() && self.spectral > self.fixed;
         let mut t = if long { self.spectral } else { self.fixed };
         // phi turns into g on active blocks; the point before the step goes to p, its gradient to ap
+        let v = &mut *self.v;
         vector::axpby(1.0, &v.g, -1.0, &mut v.phi);
-        vector::copy(x, &mut v.p);
+        vector::copy(self.x, &mut v.p);
         vector::copy(&v.g, &mut v.ap);
         loop {
-            vector::axpy(-t, &v.phi, x);
-            self.set.project(x);
-            objective.gradient(x, &mut v.g);
-            v.stale = 0;
-            let gained = vector::decrease(&v.p, &v.ap, x, &v.g);
+            let gained = self.projected_step(t);
             if t > self.fixed && gained < LONG_STEP * self.fixed * self.norms.reduced_chopped {
                 self.products.fallback += 1;
-                vector::copy(&v.p, x);
+                vector::copy(&self.v.p, self.x);
                 t = self.fixed;
                 continue;
             }
             if t == self.fixed {
-                self.check_fixed(gained, x, v);
+                self.check_fixed(gained);
             }
             self.decrease += gained;
             break;
         }
-        // Barzilai-Borwein length of this step, for the next one
-        vector::axpby(1.0, x, -1.0, &mut v.p);
+        let v = &mut *self.v;
+        vector::axpby(1.0, self.x, -1.0, &mut v.p);
         vector::axpby(1.0, &v.g, -1.0, &mut v.ap);
         let (ss, sy) = (vector::dot(&v.p, &v.p), vector::dot(&v.p, &v.ap));
         self.spectral = if sy > 0.0 { ss / sy } else { f64::INFINITY };

@@ -1,11 +1,10 @@
 //! The active-set method against the independent optimality check, SMALSE, and its own promises.
 
-use crate::common::{Random, spd};
+use crate::common::{Random, from_zero, spd};
 use proptest::prelude::*;
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, ConvexSet,
-    DenseOperator, DenseProjector, Identity, ProductSet, QpError, Segment, Status,
-    SymmetricOperator, active_set, vector,
+    ActiveSetReport, ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet,
+    QpError, Segment, Status, SymmetricOperator, vector,
 };
 
 /// Natural residual `x - P(x - (A x - b + Gᵀ mu))`, in its own loop.
@@ -92,36 +91,20 @@ fn solve(
     settings: &ActiveSetSettings,
 ) -> Result<(Vec<f64>, Vec<f64>, ActiveSetReport), QpError> {
     let n = p.b.len();
-    let identity = Identity(n);
-    let mut coarse = DenseProjector::new(p.rows, n, p.g.clone())?;
-    let mut set = p.set.clone();
-    let mut work = ActiveSetWorkspace::new(&p.a, &identity);
-    let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
-    let scale = vec![1.0; n];
-    let problem = ActiveSetProblem {
-        operator: &p.a,
-        preconditioner: &identity,
-        scale: &scale,
-        linear: &p.b,
-        rhs: &p.e,
-    };
-    let report = active_set(
-        &problem,
-        &mut coarse,
+    let mut projector = DenseProjector::new(p.rows, n, p.g.clone())?;
+    let (mut set, data) = (p.set.clone(), (&p.b[..], &p.e[..]));
+    let start = (true, &[][..]);
+    let solved = from_zero(
+        &p.a,
+        &mut projector,
         &mut set,
-        &mut x,
-        &mut ax,
-        true,
+        data,
         settings,
-        &mut work,
+        start,
         &mut |_, _| {},
     )?;
-    let residual = work.residual();
-    let mut force = vec![0.0; n];
-    for i in 0..n {
-        force[i] = residual[i] - (ax[i] - p.b[i]);
-    }
-    Ok((x, force, report))
+    let force = (0..n).map(|i| solved.residual[i] - (solved.ax[i] - p.b[i]));
+    Ok((solved.x, force.collect(), solved.report))
 }
 
 proptest! {
@@ -174,34 +157,25 @@ fn the_hook_follows_a_coupled_radius() {
         .expect("symmetric");
     let set =
         ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
-    let identity = Identity(3);
-    let (mut x, mut ax) = (vec![0.0; 3], vec![0.0; 3]);
-    let mut work = ActiveSetWorkspace::new(&a, &identity);
-    let linear = [-2.0, 3.0, 0.0];
-    let problem = ActiveSetProblem {
-        operator: &a,
-        preconditioner: &identity,
-        scale: &[1.0; 3],
-        linear: &linear,
-        rhs: &[],
-    };
     let mut hook = |x: &[f64], set: &mut ProductSet| {
         if let Ok(radii) = set.radii_mut(1) {
             radii[0] = -0.5 * x[0];
         }
     };
-    let report = active_set(
-        &problem,
-        &mut no_equality(3),
+    let settings = ActiveSetSettings::default().with_tolerance(1e-10);
+    let (mut projector, data) = (no_equality(3), (&[-2.0, 3.0, 0.0][..], &[][..]));
+    let start = (true, &[][..]);
+    let solved = from_zero(
+        &a,
+        &mut projector,
         &mut set.clone(),
-        &mut x,
-        &mut ax,
-        true,
-        &ActiveSetSettings::default().with_tolerance(1e-10),
-        &mut work,
+        data,
+        &settings,
+        start,
         &mut hook,
     )
     .expect("no breakdown");
+    let (x, report) = (solved.x, solved.report);
     assert_eq!(report.status, Status::Converged);
     // sliding: 2 x0 + 0.3 x1 = -2 and x1 = -x0 / 2
     let exact = -2.0 / (2.0 - 0.15);
@@ -256,30 +230,20 @@ fn a_limit_of_products_is_a_status() {
 #[test]
 fn a_point_outside_the_set_is_no_solution() {
     let a = DenseOperator::new(2, vec![1.0, 0.0, 0.0, 1.0]).expect("operator");
-    let mut coarse = DenseProjector::new(1, 2, vec![1.0, 1.0]).expect("G");
+    let mut projector = DenseProjector::new(1, 2, vec![1.0, 1.0]).expect("G");
     let mut set = ProductSet::new(vec![Segment::bounds(vec![0.0; 2], vec![1.0; 2])]).expect("set");
-    let preconditioner = Identity(2);
-    let problem = ActiveSetProblem {
-        operator: &a,
-        preconditioner: &preconditioner,
-        scale: &[1.0; 2],
-        linear: &[0.0; 2],
-        rhs: &[3.0],
-    };
-    let mut work = ActiveSetWorkspace::new(&a, &preconditioner);
-    let (mut x, mut ax) = ([0.0; 2], [0.0; 2]);
-    let report = active_set(
-        &problem,
-        &mut coarse,
+    let data = (&[0.0; 2][..], &[3.0][..]);
+    let (settings, start) = (ActiveSetSettings::default(), (false, &[][..]));
+    let solved = from_zero(
+        &a,
+        &mut projector,
         &mut set,
-        &mut x,
-        &mut ax,
-        false,
-        &ActiveSetSettings::default(),
-        &mut work,
+        data,
+        &settings,
+        start,
         &mut |_, _| {},
     );
-    assert!(report.is_err() || report.is_ok_and(|r| r.status != Status::Converged));
+    assert!(solved.is_err() || solved.is_ok_and(|s| s.report.status != Status::Converged));
 }
 
 /// Radii that are 0.3 times other components, none of which is known at the start.
@@ -292,36 +256,28 @@ fn the_set_has_followed_before_convergence() {
     .expect("operator");
     let bounds = Segment::upper(vec![0.0; 3]);
     let mut set = ProductSet::new(vec![bounds, Segment::discs(vec![0.0; 3])]).expect("set");
-    let preconditioner = Identity(9);
     let linear = [-1.0, -2.0, -3.0, 1.0, 0.0, 2.0, 0.0, 3.0, 0.0];
-    let problem = ActiveSetProblem {
-        operator: &a,
-        preconditioner: &preconditioner,
-        scale: &[1.0; 9],
-        linear: &linear,
-        rhs: &[],
+    let mut hook = |x: &[f64], set: &mut ProductSet| {
+        let radii = [0, 1, 2].map(|k: usize| 0.3 * x[k].abs());
+        *set = ProductSet::new(vec![
+            Segment::upper(vec![0.0; 3]),
+            Segment::discs(radii.to_vec()),
+        ])
+        .expect("set");
     };
-    let mut work = ActiveSetWorkspace::new(&a, &preconditioner);
-    let (mut x, mut ax) = ([0.0; 9], [0.0; 9]);
-    let report = active_set(
-        &problem,
+    let (settings, start) = (ActiveSetSettings::default(), (false, &[][..]));
+    let data = (&linear[..], &[][..]);
+    let solved = from_zero(
+        &a,
         &mut no_equality(9),
         &mut set,
-        &mut x,
-        &mut ax,
-        false,
-        &ActiveSetSettings::default(),
-        &mut work,
-        &mut |x, set| {
-            let radii = [0, 1, 2].map(|k: usize| 0.3 * x[k].abs());
-            *set = ProductSet::new(vec![
-                Segment::upper(vec![0.0; 3]),
-                Segment::discs(radii.to_vec()),
-            ])
-            .expect("set");
-        },
+        data,
+        &settings,
+        start,
+        &mut hook,
     )
     .expect("a report");
+    let (x, report) = (solved.x, solved.report);
     assert_eq!(report.status, Status::Converged);
     assert!(report.hook_calls > 0);
     for k in 0..3 {

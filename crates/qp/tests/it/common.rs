@@ -1,7 +1,10 @@
 //! Random problems from a fixed sequence.
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, KprgpWorkspace, ProductSet, QpError, Segment,
-    Status, SymmetricOperator, Tolerance, kprgp, vector,
+    ActiveSetHook, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace,
+    DenseEquality, DenseOperator, EqualityProjector, Identity, KprgpSettings, KprgpWorkspace,
+    OuterHook, ProductSet, Projected, QpError, RadiusSlope, Segment, SmalseReport, SmalseSettings,
+    SmalseWorkspace, Status, SymmetricOperator, Tolerance, active_set, kprgp, norm_estimate,
+    smalse, vector,
 };
 
 /// Reproducible numbers.
@@ -155,4 +158,103 @@ pub(crate) fn run(
 ) -> Result<Status, QpError> {
     let mut work = KprgpWorkspace::new(a);
     kprgp(a, b, set, 3.0, Tolerance::Relative(1e-10), s, x, &mut work).map(|r| r.status)
+}
+
+/// A problem with an equality.
+pub(crate) struct Quadratic {
+    pub(crate) a: DenseOperator,
+    pub(crate) b: Vec<f64>,
+    pub(crate) c: DenseEquality,
+    pub(crate) e: Vec<f64>,
+    pub(crate) set: ProductSet,
+    /// Of `PAP`.
+    pub(crate) norm: f64,
+}
+
+impl Quadratic {
+    pub(crate) fn new(
+        a: DenseOperator,
+        b: Vec<f64>,
+        (c, e): (DenseEquality, Vec<f64>),
+        set: ProductSet,
+    ) -> Self {
+        let projected = Projected::new(&a, &c).expect("dimensions");
+        let norm = norm_estimate(&projected, &Default::default()).expect("norm");
+        let norm = norm.upper.max(1e-3);
+        Self {
+            a,
+            b,
+            c,
+            e,
+            set,
+            norm,
+        }
+    }
+
+    /// SMALSE: its report, `A y - b` and the multiplier of the equality.
+    pub(crate) fn smalse(
+        &mut self,
+        settings: &SmalseSettings,
+        hook: &mut impl OuterHook<ProductSet>,
+        x: &mut [f64],
+        beta: &mut [f64],
+    ) -> (SmalseReport, Vec<f64>, Vec<f64>) {
+        let Self {
+            a,
+            b,
+            c,
+            e,
+            set,
+            norm,
+        } = self;
+        let mut work = SmalseWorkspace::new(a, c);
+        let report = smalse(a, b, c, e, set, *norm, settings, hook, x, beta, &mut work);
+        let (residual, multiplier) = (
+            work.residual().to_vec(),
+            work.equality_multiplier().to_vec(),
+        );
+        (report.expect("solve"), residual, multiplier)
+    }
+}
+
+/// What the active-set method found.
+pub(crate) struct Solved {
+    pub(crate) x: Vec<f64>,
+    pub(crate) ax: Vec<f64>,
+    pub(crate) residual: Vec<f64>,
+    pub(crate) report: ActiveSetReport,
+}
+
+/// The active-set method from zero without a preconditioner.
+pub(crate) fn from_zero(
+    a: &DenseOperator,
+    projector: &mut impl EqualityProjector,
+    set: &mut ProductSet,
+    (linear, rhs): (&[f64], &[f64]),
+    settings: &ActiveSetSettings,
+    (ax_known, slopes): (bool, &[RadiusSlope]),
+    hook: &mut ActiveSetHook<'_>,
+) -> Result<Solved, QpError> {
+    let n = a.dim();
+    let identity = Identity(n);
+    let mut work = ActiveSetWorkspace::new(a, &identity);
+    work.set_slopes(slopes);
+    let problem = ActiveSetProblem {
+        operator: a,
+        preconditioner: &identity,
+        scale: &vec![1.0; n],
+        linear,
+        rhs,
+    };
+    let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
+    let report = active_set(
+        &problem, projector, set, &mut x, &mut ax, ax_known, settings, &mut work, hook,
+    )?;
+    let residual = work.residual().to_vec();
+    Ok(Solved {
+        x,
+        ax,
+        residual,
+        report,
+    })
 }

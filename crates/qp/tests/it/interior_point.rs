@@ -1,12 +1,11 @@
 //! The same problems by an interior point method that shares no code with this crate.
 
-use crate::common::{self, Random};
+use crate::common::{self, Quadratic, Random};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini_qp::{
     ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, KprgpWorkspace, ProductSet,
-    Projected, Segment, SmalseSettings, SmalseWorkspace, Tolerance, kprgp, norm_estimate, smalse,
-    vector,
+    Segment, SmalseSettings, Tolerance, kprgp, vector,
 };
 
 /// Row-by-row matrix `rows x n` in compressed columns.
@@ -153,40 +152,20 @@ fn bounds_and_discs_agree_with_clarabel() {
 fn equalities_agree_with_clarabel() {
     for seed in 100..112 {
         let mut r = Random::new(seed);
-        let mut set = nonempty_set(&mut r);
+        let set = nonempty_set(&mut r);
         let n = set.dim();
         let (a, _) = common::spd(n, 1.5, &mut r);
         let (c, e) = common::equality(n, 1 + n / 6, &set, &mut r);
-        let b = r.vector(n);
-        let norm = norm_estimate(
-            &Projected::new(&a, &c).expect("dimensions"),
-            &Default::default(),
-        )
-        .expect("norm")
-        .upper;
-        let (mut x, mut beta) = (vec![0.0; n], vec![0.0; c.rows()]);
-        let mut work = SmalseWorkspace::new(&a, &c);
+        let mut p = Quadratic::new(a, r.vector(n), (c, e), set);
+        let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.e.len()]);
         let settings = SmalseSettings::default()
             .with_tolerance(Tolerance::Relative(1e-10))
             .with_equality(1e-10)
             .with_max_outer(20_000)
             .with_inner(KprgpSettings::default().with_max_products(500_000));
-        let report = smalse(
-            &a,
-            &b,
-            &c,
-            &e,
-            &mut set,
-            norm,
-            &settings,
-            &mut (),
-            &mut x,
-            &mut beta,
-            &mut work,
-        )
-        .expect("solve");
+        let (report, ..) = p.smalse(&settings, &mut (), &mut x, &mut beta);
         assert!(report.status.converged(), "seed {seed}: {report:?}");
-        let y = reference(&a, &b, &set, Some((&c, &e)));
+        let y = reference(&p.a, &p.b, &p.set, Some((&p.c, &p.e)));
         let gap = vector::distance(&x, &y) / vector::norm(&x).max(1.0);
         assert!(gap <= 1e-6, "seed {seed}: {gap:e}");
     }

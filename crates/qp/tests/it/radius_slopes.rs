@@ -1,9 +1,9 @@
 //! The active-set method where radii follow other components, inside conjugate gradients or between active sets.
 
-use crate::common::Random;
+use crate::common::{Random, from_zero};
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseOperator,
-    DenseProjector, Identity, ProductSet, RadiusSlope, Segment, Status, active_set, vector,
+    ActiveSetReport, ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, RadiusSlope,
+    Segment, Status, vector,
 };
 
 /// Normals that press, a disc each whose radius is a coefficient times its normal, and free components; `G` acts on the
@@ -33,30 +33,19 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
         g[i] = if i % 2 == 0 { 1.0 } else { 0.3 };
         g[n + i] = if i % 3 == 0 { 1.0 } else { -0.4 };
     }
-    let mut coarse = DenseProjector::new(2, n, g).expect("rows");
+    let mut projector = DenseProjector::new(2, n, g).expect("rows");
     let mut set = ProductSet::new(vec![
         Segment::upper(vec![0.0; points]),
         Segment::discs(vec![0.0; points]),
         Segment::Free(free),
     ])
     .expect("a set");
-    let identity = Identity(n);
-    let mut work = ActiveSetWorkspace::new(&a, &identity);
-    if slopes {
-        let slope = |k| RadiusSlope {
-            disc: points + 2 * k,
-            component: k,
-            slope: -coefficient,
-        };
-        work.set_slopes(&(0..points).map(slope).collect::<Vec<_>>());
-    }
-    let problem = ActiveSetProblem {
-        operator: &a,
-        preconditioner: &identity,
-        scale: &vec![1.0; n],
-        linear: &linear,
-        rhs: &[0.5, -0.2],
+    let slope = |k| RadiusSlope {
+        disc: points + 2 * k,
+        component: k,
+        slope: -coefficient,
     };
+    let slopes: Vec<_> = (0..points).filter(|_| slopes).map(slope).collect();
     let mut hook = |x: &[f64], set: &mut ProductSet| {
         if let Ok(radii) = set.radii_mut(1) {
             for (radius, x) in radii.iter_mut().zip(x) {
@@ -64,22 +53,21 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
             }
         }
     };
-    let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
-    let report = active_set(
-        &problem,
-        &mut coarse,
+    let settings = ActiveSetSettings::default()
+        .with_tolerance(1e-11)
+        .with_forcing(forcing);
+    let (data, start) = ((&linear[..], &[0.5, -0.2][..]), (true, &slopes[..]));
+    let solved = from_zero(
+        &a,
+        &mut projector,
         &mut set,
-        &mut x,
-        &mut ax,
-        true,
-        &ActiveSetSettings::default()
-            .with_tolerance(1e-11)
-            .with_forcing(forcing),
-        &mut work,
+        data,
+        &settings,
+        start,
         &mut hook,
-    )
-    .expect("no breakdown");
-    (x, report)
+    );
+    let solved = solved.expect("no breakdown");
+    (solved.x, solved.report)
 }
 
 #[test]

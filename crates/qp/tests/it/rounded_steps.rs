@@ -1,9 +1,9 @@
 //! A projector that rounds the projections of steps: the equality holds at the end all the same.
 
-use crate::common::{self, Random};
+use crate::common::{self, Random, Solved, from_zero};
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseOperator,
-    DenseProjector, EqualityProjector, Identity, ProductSet, QpError, Segment, active_set, vector,
+    ActiveSetReport, ActiveSetSettings, DenseProjector, EqualityProjector, ProductSet, QpError,
+    Segment, vector,
 };
 
 /// Projections of steps are off by a share of their lengths.
@@ -70,43 +70,27 @@ fn solve(seed: u64, bounds: usize, off: f64) -> (ActiveSetReport, f64, f64) {
         off,
         random: Random::new(seed + 1),
     };
-    let identity = Identity(n);
-    let mut work = ActiveSetWorkspace::new(&a, &identity);
-    let (mut x, mut ax, scale) = (vec![0.0; n], vec![0.0; n], vec![1.0; n]);
-    let problem: ActiveSetProblem<'_, DenseOperator, Identity> = ActiveSetProblem {
-        operator: &a,
-        preconditioner: &identity,
-        scale: &scale,
-        linear: &b,
-        rhs: &e,
-    };
     let settings = ActiveSetSettings::default().with_tolerance(1e-10);
-    let report = active_set(
-        &problem,
+    let (data, start) = ((&b[..], &e[..]), (false, &[][..]));
+    let solved = from_zero(
+        &a,
         &mut projector,
         &mut set,
-        &mut x,
-        &mut ax,
-        false,
+        data,
         &settings,
-        &mut work,
+        start,
         &mut |_, _| {},
-    )
-    .expect("face");
+    );
+    let Solved { x, ax, report, .. } = solved.expect("a report");
     let row = |i: usize| (0..n).map(|j| g[i * n + j] * x[j]).sum::<f64>() - e[i];
     let off = (0..rows).map(|i| row(i).powi(2)).sum::<f64>().sqrt();
-    let mut exact = vec![0.0; n];
-    signorini_qp::SymmetricOperator::apply(&a, &x, &mut exact, &mut a_scratch(&a));
+    let exact = common::product(&a, &x);
     let product = vector::distance(&exact, &ax);
     (
         report,
         off / vector::norm(&x),
         product / vector::norm(&exact),
     )
-}
-
-fn a_scratch(a: &DenseOperator) -> <DenseOperator as signorini_qp::SymmetricOperator>::Scratch {
-    signorini_qp::SymmetricOperator::scratch(a)
 }
 
 #[test]

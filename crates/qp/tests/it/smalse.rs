@@ -1,13 +1,12 @@
 //! SMALSE on random problems with equalities, by the independent optimality check.
 
-use crate::common::{self, Random};
+use crate::common::{self, Quadratic, Random};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kkt::{EqualityPart, check_with};
 use signorini_qp::{
     ConvexSet, DenseEquality, DenseOperator, Equality, HookAction, KprgpSettings, OuterStep,
-    ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace, Status,
-    SymmetricOperator, Tolerance, norm_estimate, smalse, vector,
+    ProductSet, Segment, SmalseSettings, Status, Tolerance, vector,
 };
 
 fn config() -> ProptestConfig {
@@ -19,36 +18,14 @@ fn config() -> ProptestConfig {
     }
 }
 
-struct Problem {
-    a: DenseOperator,
-    b: Vec<f64>,
-    c: DenseEquality,
-    e: Vec<f64>,
-    set: ProductSet,
-    norm: f64,
-}
-
-fn problem(seed: u64) -> Problem {
+fn problem(seed: u64) -> Quadratic {
     let mut r = Random::new(seed);
     let set = common::set(&mut r);
     let n = set.dim();
     let (a, _) = common::spd(n, 2.0, &mut r);
     let rows = if n == 0 { 0 } else { r.below(1 + n / 3) };
-    let (c, e) = common::equality(n, rows, &set, &mut r);
-    let b = r.vector(n);
-    let estimate = norm_estimate(
-        &Projected::new(&a, &c).expect("dimensions"),
-        &Default::default(),
-    )
-    .expect("norm");
-    Problem {
-        a,
-        b,
-        c,
-        e,
-        set,
-        norm: estimate.upper.max(1e-3),
-    }
+    let equality = common::equality(n, rows, &set, &mut r);
+    Quadratic::new(a, r.vector(n), equality, set)
 }
 
 fn tight() -> SmalseSettings {
@@ -59,34 +36,6 @@ fn tight() -> SmalseSettings {
         .with_inner(KprgpSettings::default().with_max_products(200_000))
 }
 
-fn solve(
-    p: &mut Problem,
-    s: &SmalseSettings,
-    x: &mut [f64],
-    beta: &mut [f64],
-) -> (SmalseReport, Vec<f64>, Vec<f64>) {
-    let mut work = SmalseWorkspace::new(&p.a, &p.c);
-    let report = smalse(
-        &p.a,
-        &p.b,
-        &p.c,
-        &p.e,
-        &mut p.set,
-        p.norm,
-        s,
-        &mut (),
-        x,
-        beta,
-        &mut work,
-    )
-    .expect("solve");
-    (
-        report,
-        work.residual().to_vec(),
-        work.equality_multiplier().to_vec(),
-    )
-}
-
 proptest! {
     #![proptest_config(config())]
 
@@ -95,7 +44,7 @@ proptest! {
         let mut p = problem(seed);
         let n = p.set.dim();
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.c.rows()]);
-        let (report, residual, mu) = solve(&mut p, &tight(), &mut x, &mut beta);
+        let (report, residual, mu) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
         prop_assert!(report.status.converged(), "{report:?} {:?}", p.set);
         let part = EqualityPart { c: &p.c, e: &p.e, multiplier: &mu };
         let check = check_with(&p.a, &p.b, &p.set, Some(part), &x, p.norm).expect("lengths");
@@ -120,10 +69,10 @@ proptest! {
     fn a_warm_start_from_the_solution_needs_two_products(seed in any::<u64>()) {
         let mut p = problem(seed);
         let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
-        let (first, ..) = solve(&mut p, &tight(), &mut x, &mut beta);
+        let (first, ..) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
         prop_assert!(first.status.converged());
         let loose = tight().with_tolerance(Tolerance::Relative(2e-8)).with_equality(2e-8);
-        let (again, ..) = solve(&mut p, &loose, &mut x, &mut beta);
+        let (again, ..) = p.smalse(&loose, &mut (), &mut x, &mut beta);
         prop_assert!(again.status.converged());
         prop_assert!(again.products.total() <= 2 && again.outer == 1, "{again:?}");
     }
@@ -133,26 +82,11 @@ proptest! {
 #[test]
 fn no_rows_no_outer_loop() {
     let mut r = Random::new(1);
-    let (a, norm) = common::spd(8, 2.0, &mut r);
+    let (a, _) = common::spd(8, 2.0, &mut r);
     let c = DenseEquality::orthonormal(0, 8, &[]).expect("empty");
-    let mut set = ProductSet::new(vec![Segment::lower(vec![0.0; 8])]).expect("set");
-    let (mut x, b) = (vec![0.0; 8], r.vector(8));
-    let mut work = SmalseWorkspace::new(&a, &c);
-    let settings = SmalseSettings::default();
-    let report = smalse(
-        &a,
-        &b,
-        &c,
-        &[],
-        &mut set,
-        norm,
-        &settings,
-        &mut (),
-        &mut x,
-        &mut [],
-        &mut work,
-    )
-    .expect("solve");
+    let set = ProductSet::new(vec![Segment::lower(vec![0.0; 8])]).expect("set");
+    let mut p = Quadratic::new(a, r.vector(8), (c, vec![]), set);
+    let (report, ..) = p.smalse(&SmalseSettings::default(), &mut (), &mut [0.0; 8], &mut []);
     assert!(report.status.converged() && report.outer == 1);
 }
 
@@ -162,37 +96,17 @@ fn equalities_alone() {
     let mut r = Random::new(2);
     let n = 10;
     let (a, _) = common::spd(n, 1.0, &mut r);
-    let mut set = ProductSet::free(n);
-    let (c, e) = common::equality(n, 3, &set, &mut r);
-    let b = r.vector(n);
-    let norm = norm_estimate(
-        &Projected::new(&a, &c).expect("dimensions"),
-        &Default::default(),
-    )
-    .expect("norm")
-    .upper;
+    let set = ProductSet::free(n);
+    let equality = common::equality(n, 3, &set, &mut r);
+    let mut p = Quadratic::new(a, r.vector(n), equality, set);
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; 3]);
-    let mut work = SmalseWorkspace::new(&a, &c);
-    let report = smalse(
-        &a,
-        &b,
-        &c,
-        &e,
-        &mut set,
-        norm,
-        &tight(),
-        &mut (),
-        &mut x,
-        &mut beta,
-        &mut work,
-    )
-    .expect("solve");
+    let (report, _, mu) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
     assert!(report.status.converged());
     // A x - b + C' mu = 0
-    let mut g = common::product(&a, &x);
-    vector::subtract(&b, &mut g);
+    let mut g = common::product(&p.a, &x);
+    vector::subtract(&p.b, &mut g);
     let mut t = vec![0.0; n];
-    c.apply_transpose(work.equality_multiplier(), &mut t, &mut ());
+    p.c.apply_transpose(&mu, &mut t, &mut ());
     vector::axpy(1.0, &t, &mut g);
     assert!(vector::norm(&g) < 1e-7);
 }
@@ -211,15 +125,8 @@ fn the_hook_may_change_radii() {
         ])
         .expect("set")
     };
-    let mut set = start();
-    let (c, _) = common::equality(n, 2, &set, &mut r);
-    let (b, e) = (r.vector(n), vec![0.1, -0.2]);
-    let norm = norm_estimate(
-        &Projected::new(&a, &c).expect("dimensions"),
-        &Default::default(),
-    )
-    .expect("norm")
-    .upper;
+    let (c, _) = common::equality(n, 2, &start(), &mut r);
+    let mut p = Quadratic::new(a, r.vector(n), (c, vec![0.1, -0.2]), start());
     let friction = 0.3;
     let mut changes = 0;
     let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
@@ -238,45 +145,17 @@ fn the_hook_may_change_radii() {
         }
     };
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; 2]);
-    let mut work = SmalseWorkspace::new(&a, &c);
-    let report = smalse(
-        &a,
-        &b,
-        &c,
-        &e,
-        &mut set,
-        norm,
-        &tight(),
-        &mut hook,
-        &mut x,
-        &mut beta,
-        &mut work,
-    )
-    .expect("solve");
+    let (report, ..) = p.smalse(&tight(), &mut hook, &mut x, &mut beta);
     assert!(report.status.converged() && changes > 1, "{report:?}");
     // the same by successive approximations with complete solves
-    let mut nested = start();
+    p.set = start();
     let mut y = vec![0.0; n];
     let mut gamma = vec![0.0; 2];
     for _ in 0..60 {
         for i in 0..m {
-            let radius = -friction * y[i];
-            nested.radii_mut(1).expect("discs")[i] = radius;
+            p.set.radii_mut(1).expect("discs")[i] = -friction * y[i];
         }
-        smalse(
-            &a,
-            &b,
-            &c,
-            &e,
-            &mut nested,
-            norm,
-            &tight(),
-            &mut (),
-            &mut y,
-            &mut gamma,
-            &mut work,
-        )
-        .expect("solve");
+        p.smalse(&tight(), &mut (), &mut y, &mut gamma);
     }
     assert!(
         vector::distance(&x, &y) <= 1e-6,
@@ -289,7 +168,7 @@ fn the_hook_may_change_radii() {
 fn outer_steps_cost_no_product() {
     let mut p = problem(77);
     let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
-    let (report, ..) = solve(&mut p, &tight(), &mut x, &mut beta);
+    let (report, ..) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
     assert!(report.outer > 2, "{report:?}");
     let q = report.products;
     assert_eq!(q.initial, 1);
@@ -301,23 +180,13 @@ fn outer_steps_cost_no_product() {
 fn infeasible_equalities_do_not_converge_and_do_not_hang() {
     let a = DenseOperator::new(1, vec![1.0]).expect("symmetric");
     let c = DenseEquality::orthonormal(1, 1, &[1.0]).expect("row");
-    let mut set = ProductSet::new(vec![Segment::lower(vec![0.0])]).expect("set");
-    let mut work = SmalseWorkspace::new(&a, &c);
+    let set = ProductSet::new(vec![Segment::lower(vec![0.0])]).expect("set");
+    let mut p = Quadratic {
+        norm: 1.0,
+        ..Quadratic::new(a, vec![1.0], (c, vec![-1.0]), set)
+    };
     let settings = SmalseSettings::default().with_max_outer(50);
-    let report = smalse(
-        &a,
-        &[1.0],
-        &c,
-        &[-1.0],
-        &mut set,
-        1.0,
-        &settings,
-        &mut (),
-        &mut [0.0],
-        &mut [0.0],
-        &mut work,
-    )
-    .expect("solve");
+    let (report, ..) = p.smalse(&settings, &mut (), &mut [0.0], &mut [0.0]);
     assert_eq!(report.status, Status::IterationLimit);
 }
 
@@ -347,22 +216,9 @@ fn products_stay_within_a_band() {
         Segment::Free(n - 3 * m),
     ])
     .expect("set");
-    let norm = norm_estimate(
-        &Projected::new(&a, &c).expect("dimensions"),
-        &Default::default(),
-    )
-    .expect("norm")
-    .upper;
-    let mut p = Problem {
-        a,
-        b,
-        c,
-        e,
-        set,
-        norm,
-    };
+    let mut p = Quadratic::new(a, b, (c, e), set);
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; rows]);
-    let (report, ..) = solve(&mut p, &SmalseSettings::default(), &mut x, &mut beta);
+    let (report, ..) = p.smalse(&SmalseSettings::default(), &mut (), &mut x, &mut beta);
     assert!(report.status.converged(), "{report:?}");
     let products = report.products.total();
     assert!((90..=135).contains(&products), "{products}");
@@ -373,7 +229,6 @@ fn products_stay_within_a_band() {
 fn two_projections_a_product() {
     let mut p = problem(77);
     let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
-    let (report, ..) = solve(&mut p, &tight(), &mut x, &mut beta);
+    let (report, ..) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
     assert!(report.projections <= 2 * report.products.total());
-    let _ = p.a.dim();
 }

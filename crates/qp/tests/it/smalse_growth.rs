@@ -1,20 +1,12 @@
 //! Step 4 of SMALSE: how often the precision shrinks, against the Lagrangian computed anew.
 
-use crate::common::{self, Random};
+use crate::common::{self, Quadratic, Random};
 use signorini_qp::{
-    DenseEquality, DenseOperator, Equality, HookAction, KprgpSettings, OuterStep, ProductSet,
-    SmalseReport, SmalseSettings, SmalseWorkspace, Tolerance, smalse, vector,
+    ConvexSet, Equality, HookAction, KprgpSettings, OuterStep, ProductSet, SmalseReport,
+    SmalseSettings, Tolerance, vector,
 };
 
-struct Problem {
-    a: DenseOperator,
-    b: Vec<f64>,
-    c: DenseEquality,
-    e: Vec<f64>,
-    norm: f64,
-}
-
-impl Problem {
+impl Quadratic {
     fn residual(&self, x: &[f64]) -> Vec<f64> {
         let mut cx = vec![0.0; self.c.rows()];
         self.c.apply(x, &mut cx, &mut ());
@@ -35,7 +27,7 @@ impl Problem {
     }
 
     /// The report, and the iterates at the end of Step 1.
-    fn solve(&self, set: &mut ProductSet, precision: f64) -> (SmalseReport, Vec<Vec<f64>>) {
+    fn iterates(&mut self, precision: f64) -> (SmalseReport, Vec<Vec<f64>>) {
         let settings = SmalseSettings::default()
             .with_penalty(PENALTY)
             .with_precision(precision)
@@ -45,17 +37,13 @@ impl Problem {
             .with_max_outer(300)
             .with_inner(KprgpSettings::default().with_max_products(100_000));
         let (mut x, mut beta) = (vec![0.0; self.b.len()], vec![0.0; self.c.rows()]);
-        let mut work = SmalseWorkspace::new(&self.a, &self.c);
         let mut iterates = Vec::new();
         let mut hook = |step: &OuterStep<'_>, _: &mut ProductSet| {
             iterates.push(step.x.to_vec());
             HookAction::Continue
         };
-        let report = smalse(
-            &self.a, &self.b, &self.c, &self.e, set, self.norm, &settings, &mut hook, &mut x,
-            &mut beta, &mut work,
-        );
-        (report.expect("solve"), iterates)
+        let (report, ..) = self.smalse(&settings, &mut hook, &mut x, &mut beta);
+        (report, iterates)
     }
 }
 
@@ -68,16 +56,23 @@ fn the_precision_shrinks_where_the_lagrangian_grows_too_little() {
     let (mut shrunk, mut kept) = (0, 0);
     for (seed, precision) in (0..40).flat_map(|seed| [4.0, 0.02].map(|p| (seed, p))) {
         let mut r = Random::new(seed);
-        let mut set = common::set(&mut r);
-        let n = signorini_qp::ConvexSet::dim(&set);
+        let set = common::set(&mut r);
+        let n = set.dim();
         if n < 6 {
             continue;
         }
         let (a, norm) = common::spd(n, 2.0, &mut r);
         let (c, e) = common::equality(n, 1 + n / 4, &set, &mut r);
         let b = r.vector(n);
-        let problem = Problem { a, b, c, e, norm };
-        let (report, iterates) = problem.solve(&mut set, precision);
+        let mut problem = Quadratic {
+            a,
+            b,
+            c,
+            e,
+            set,
+            norm,
+        };
+        let (report, iterates) = problem.iterates(precision);
         let rho = PENALTY * norm;
         let mut beta = vec![0.0; problem.e.len()];
         let (mut before, mut count, mut near) = (None, 0, false);
