@@ -4,30 +4,20 @@
 //! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
 //! no sum depends on their number, so the result is the same bit for bit for any thread count.
 
-use rayon::prelude::*;
-use sprs::CsMat;
-use thiserror::Error;
-
 use crate::element::{Element, nodal_stress, stiffness_block};
 use crate::material::Hooke;
 use crate::tables::{buckets, range};
+use rayon::prelude::*;
+use sprs::CsMat;
 
-/// A stiffness that cannot be assembled.
-#[derive(Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum AssemblyError {
-    /// A tetrahedron names a node that does not exist.
-    #[error(
-        "tetrahedron {tet} names node {node}, but there are only {nodes} nodes; give the nodes and tetrahedra of the same mesh or subdomain"
-    )]
-    NodeOutOfRange {
-        /// Tetrahedron number.
-        tet: usize,
-        /// The node that it names.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
+errors! {
+    /// A stiffness that cannot be assembled.
+    #[derive(Clone, PartialEq, Eq)]
+    AssemblyError {
+        NodeOutOfRange { tet: usize, node: u32, nodes: usize } =
+            "tetrahedron {tet} names node {node}, but there are only {nodes} nodes; give the nodes and tetrahedra of \
+            the same mesh or subdomain";
+    }
 }
 
 /// Assembles the stiffness of linear tetrahedra.

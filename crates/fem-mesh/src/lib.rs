@@ -80,6 +80,9 @@
     allow(rustdoc::broken_intra_doc_links)
 )]
 
+#[macro_use]
+mod errors;
+
 mod assembly;
 mod decomposition;
 mod element;
@@ -124,31 +127,3 @@ pub mod internal {
     pub use crate::loads::interpolate;
     pub use crate::tables::{DisjointSets, buckets};
 }
-
-/// Errors print their sentence with `{:?}`, too: that is what a user sees of a `main` that returns one.
-macro_rules! debug_is_display {
-    ($($error:ty),+) => {$(
-        impl std::fmt::Debug for $error {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                std::fmt::Display::fmt(self, f)
-            }
-        }
-    )+};
-}
-
-debug_is_display!(
-    MeshError,
-    BrickError,
-    HookeError,
-    MaterialError,
-    AssemblyError,
-    DecompositionError,
-    SurfaceError,
-    LoadError,
-    HistoryError,
-    FieldError
-);
-#[cfg(feature = "vtu")]
-debug_is_display!(output::OutputError);
-#[cfg(feature = "gmsh")]
-debug_is_display!(gmsh::GmshError);

@@ -1,7 +1,5 @@
 //! Decomposition into subdomains that are torn apart at their common nodes.
 
-use thiserror::Error;
-
 use crate::mesh::TetMesh;
 use crate::tables::{buckets, range};
 
@@ -53,50 +51,20 @@ pub struct NodeCopy {
     pub local: u32,
 }
 
-/// A decomposition that cannot be used.
-#[derive(Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum DecompositionError {
-    /// The table of parts does not have one entry for each tetrahedron.
-    #[error("{given} part numbers for {tets} tetrahedra; give exactly one each")]
-    PartCount {
-        /// Entries given.
-        given: usize,
-        /// Number of tetrahedra.
-        tets: usize,
-    },
-    /// A box grid has no boxes along an axis.
-    #[error("the grid of boxes {boxes:?} has none along {axis}; give at least 1 each")]
-    NoBoxes {
-        /// Boxes along each axis.
-        boxes: [usize; 3],
-        /// `"x"`, `"y"` or `"z"`.
-        axis: &'static str,
-    },
-    /// A part has no tetrahedra.
-    #[error(
-        "part {part} of {parts} has no tetrahedron; number the parts without gaps from 0, or use fewer of them"
-    )]
-    EmptyPart {
-        /// Number of the part.
-        part: usize,
-        /// Number of parts.
-        parts: usize,
-    },
-    /// A part falls into several pieces.
-    #[error(
-        "part {part} consists of {pieces} pieces that share no face (tetrahedra {first} and {second} are in different ones), so it would have more than six rigid motions; pass the parts through split_disconnected"
-    )]
-    DisconnectedPart {
-        /// Number of the part.
-        part: usize,
-        /// Number of its pieces.
-        pieces: usize,
-        /// A tetrahedron of the first piece.
-        first: usize,
-        /// A tetrahedron of the second piece.
-        second: usize,
-    },
+errors! {
+    /// A decomposition that cannot be used.
+    #[derive(Clone, PartialEq, Eq)]
+    DecompositionError {
+        PartCount { given: usize, tets: usize } =
+            "{given} part numbers for {tets} tetrahedra; give exactly one each";
+        NoBoxes { boxes: [usize; 3], axis: &'static str } =
+            "the grid of boxes {boxes:?} has none along {axis}; give at least 1 each";
+        EmptyPart { part: usize, parts: usize } =
+            "part {part} of {parts} has no tetrahedron; number the parts without gaps from 0, or use fewer of them";
+        DisconnectedPart { part: usize, pieces: usize, first: usize, second: usize } =
+            "part {part} consists of {pieces} pieces that share no face (tetrahedra {first} and {second} are in \
+            different ones), so it would have more than six rigid motions; pass the parts through split_disconnected";
+    }
 }
 
 /// The subdomains of a mesh, and where each node went.

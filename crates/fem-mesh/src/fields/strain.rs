@@ -1,39 +1,20 @@
 //! Strain, stress and energy of a displacement of the mesh.
 
-use rayon::prelude::*;
-use thiserror::Error;
-
 use crate::element::Element;
 use crate::material::{MaterialError, Materials};
 use crate::mesh::TetMesh;
+use rayon::prelude::*;
 
-/// A field that cannot be evaluated.
-#[derive(Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FieldError {
-    /// A table has the wrong length.
-    #[error("the {what} has {given} entries; the mesh needs {expected}")]
-    Length {
-        /// `"displacement"` or `"table of tetrahedra"`.
-        what: &'static str,
-        /// Entries given.
-        given: usize,
-        /// Entries needed.
-        expected: usize,
-    },
-    /// A displacement is NaN or infinite.
-    #[error(
-        "the displacement of node {node} is {value:?}; it must be finite, so look at the solver that computed it"
-    )]
-    NotFinite {
-        /// The node.
-        node: usize,
-        /// Its displacement.
-        value: [f64; 3],
-    },
-    /// A region has no material.
-    #[error(transparent)]
-    Material(#[from] MaterialError),
+errors! {
+    /// A field that cannot be evaluated.
+    #[derive(Clone, PartialEq)]
+    FieldError {
+        Length { what: &'static str, given: usize, expected: usize } =
+            "the {what} has {given} entries; the mesh needs {expected}";
+        NotFinite { node: usize, value: [f64; 3] } =
+            "the displacement of node {node} is {value:?}; it must be finite, so look at the solver that computed it";
+        Material(#[from] MaterialError) = "{0}";
+    }
 }
 
 /// Checks the length of a table.

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use thiserror::Error;
-
 use crate::mesh::{FacetTag, tag_list};
 
 /// A vector that depends on the point.
@@ -114,45 +112,16 @@ impl std::fmt::Debug for LoadDensity {
     }
 }
 
-/// A load that cannot be applied.
-#[derive(Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum LoadError {
-    /// The decomposition was made from another mesh.
-    #[error(
-        "the decomposition has {decomposed} tetrahedra and the mesh {meshed}; decompose the mesh that is loaded"
-    )]
-    ForeignDecomposition {
-        /// Tetrahedra of the decomposition.
-        decomposed: usize,
-        /// Tetrahedra of the mesh.
-        meshed: usize,
-    },
-    /// No facet has the tag.
-    #[error(
-        "a load is given on {tag}, but no facet has it; the mesh has {}",
-        tag_list(known)
-    )]
-    UnknownTag {
-        /// The tag.
-        tag: FacetTag,
-        /// The tags of the mesh.
-        known: Vec<FacetTag>,
-    },
-    /// A nodal force is given at a node that does not exist.
-    #[error("a force is given at node {node}, but there are only {nodes} nodes, numbered from 0")]
-    UnknownNode {
-        /// The node.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
-    /// A load is NaN or infinite.
-    #[error("the load at {place:?} is {value:?}; it must be finite")]
-    NotFinite {
-        /// Where: a quadrature point, a centroid or a node.
-        place: [f64; 3],
-        /// The load there.
-        value: [f64; 3],
-    },
+errors! {
+    /// A load that cannot be applied.
+    #[derive(Clone, PartialEq)]
+    LoadError {
+        ForeignDecomposition { decomposed: usize, meshed: usize } =
+            "the decomposition has {decomposed} tetrahedra and the mesh {meshed}; decompose the mesh that is loaded";
+        UnknownTag { tag: FacetTag, known: Vec<FacetTag> } =
+            "a load is given on {tag}, but no facet has it; the mesh has {}", tag_list(known);
+        UnknownNode { node: u32, nodes: usize } =
+            "a force is given at node {node}, but there are only {nodes} nodes, numbered from 0";
+        NotFinite { place: [f64; 3], value: [f64; 3] } = "the load at {place:?} is {value:?}; it must be finite";
+    }
 }

@@ -2,37 +2,17 @@
 
 use std::sync::Arc;
 
-use thiserror::Error;
-
-/// A history that cannot be used.
-#[derive(Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum HistoryError {
-    /// The table has no points.
-    #[error("the history has no points; give at least one (time, value)")]
-    Empty,
-    /// A time or value is NaN or infinite.
-    #[error("point {index} of the history is ({time}, {value}); both must be finite")]
-    NotFinite {
-        /// Place in the table, from 0.
-        index: usize,
-        /// Its time.
-        time: f64,
-        /// Its value.
-        value: f64,
-    },
-    /// The times do not increase.
-    #[error(
-        "point {index} of the history has time {time}, not later than {before} of the point before; sort the points by time and give each time once (a jump needs a short ramp)"
-    )]
-    NotIncreasing {
-        /// Place of the later point, from 0.
-        index: usize,
-        /// Time of the point before.
-        before: f64,
-        /// Its time.
-        time: f64,
-    },
+errors! {
+    /// A history that cannot be used.
+    #[derive(Clone, PartialEq)]
+    HistoryError {
+        Empty = "the history has no points; give at least one (time, value)";
+        NotFinite { index: usize, time: f64, value: f64 } =
+            "point {index} of the history is ({time}, {value}); both must be finite";
+        NotIncreasing { index: usize, before: f64, time: f64 } =
+            "point {index} of the history has time {time}, not later than {before} of the point before; sort the \
+            points by time and give each time once (a jump needs a short ramp)";
+    }
 }
 
 /// A factor that depends on time.

@@ -1,62 +1,28 @@
 //! Hooke's law with a general elasticity tensor.
 
-use nalgebra::SMatrix;
-use thiserror::Error;
-
 use crate::tolerances::{ASYMMETRY, ELLIPTICITY};
+use nalgebra::SMatrix;
 
 /// Position of the tensor indices (i, j) in the Voigt order xx, yy, zz, yz, xz, xy.
 const VOIGT: [[usize; 3]; 3] = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
 
-/// An elastic law that is not admissible.
-#[derive(Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum HookeError {
-    /// Young's modulus is not a positive number.
-    #[error("Young's modulus is {0}; it must be positive and finite")]
-    Young(f64),
-    /// Poisson's ratio is outside of its range, or so close to an end of it that the tensor is
-    /// elliptic only up to rounding.
-    #[error(
-        "Poisson's ratio is {0}; it must lie between -1 and 1/2, both excluded and not closer than about 1e-12 (nearly incompressible bodies need another element)"
-    )]
-    Poisson(f64),
-    /// An entry of the tensor is NaN or infinite.
-    #[error(
-        "entry ({row}, {column}) of the elasticity matrix is {value}; all entries must be finite"
-    )]
-    NotFinite {
-        /// Row in the Voigt order, from 0.
-        row: usize,
-        /// Column in the Voigt order, from 0.
-        column: usize,
-        /// The entry.
-        value: f64,
-    },
-    /// The tensor lacks a symmetry of (2.8).
-    #[error(
-        "c{left:?} = {left_value} but c{right:?} = {right_value}; (2.8) asks for c_ijkl = c_jikl = c_klij (indices here from 0)"
-    )]
-    NotSymmetric {
-        /// Indices i, j, k, l from 0.
-        left: [usize; 4],
-        /// The entry there.
-        left_value: f64,
-        /// Indices of the entry that should be equal.
-        right: [usize; 4],
-        /// The entry there.
-        right_value: f64,
-    },
-    /// The tensor is not elliptic.
-    #[error(
-        "the elasticity tensor is not elliptic: its smallest eigenvalue is {smallest:e}, its largest {largest:e}; (2.8) asks for a positive one, so check signs and moduli"
-    )]
-    NotElliptic {
-        /// Smallest eigenvalue on symmetric tensors.
-        smallest: f64,
-        /// Largest eigenvalue on symmetric tensors.
-        largest: f64,
-    },
+errors! {
+    /// An elastic law that is not admissible.
+    #[derive(Clone, PartialEq)]
+    HookeError {
+        Young(f64) = "Young's modulus is {0}; it must be positive and finite";
+        Poisson(f64) =
+            "Poisson's ratio is {0}; it must lie between -1 and 1/2, both excluded and not closer than about 1e-12 \
+            (nearly incompressible bodies need another element)";
+        NotFinite { row: usize, column: usize, value: f64 } =
+            "entry ({row}, {column}) of the elasticity matrix is {value}; all entries must be finite";
+        NotSymmetric { left: [usize; 4], left_value: f64, right: [usize; 4], right_value: f64 } =
+            "c{left:?} = {left_value} but c{right:?} = {right_value}; (2.8) asks for c_ijkl = c_jikl = c_klij \
+            (indices here from 0)";
+        NotElliptic { smallest: f64, largest: f64 } =
+            "the elasticity tensor is not elliptic: its smallest eigenvalue is {smallest:e}, its largest \
+            {largest:e}; (2.8) asks for a positive one, so check signs and moduli";
+    }
 }
 
 /// Hooke's law tau_ij = c_ijkl e_kl with the symmetries and the ellipticity of (2.8).

@@ -1,27 +1,15 @@
 //! Which material fills which region.
 
-use thiserror::Error;
-
 use super::hooke::Hooke;
 
-/// A region without a material, or with two.
-#[derive(Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum MaterialError {
-    /// A region has no material.
-    #[error("region {region} has no material; materials are given for the regions {known:?}")]
-    Unknown {
-        /// The region.
-        region: u32,
-        /// The regions that have one.
-        known: Vec<u32>,
-    },
-    /// A region was given two materials.
-    #[error("region {region} is given two materials; keep one of them")]
-    Repeated {
-        /// The region.
-        region: u32,
-    },
+errors! {
+    /// A region without a material, or with two.
+    #[derive(Clone, PartialEq, Eq)]
+    MaterialError {
+        Unknown { region: u32, known: Vec<u32> } =
+            "region {region} has no material; materials are given for the regions {known:?}";
+        Repeated { region: u32 } = "region {region} is given two materials; keep one of them";
+    }
 }
 
 /// Hooke's law of each material region.

@@ -9,8 +9,6 @@
 //! # Ok::<(), signorini_fem_mesh::brick::BrickError>(())
 //! ```
 
-use thiserror::Error;
-
 use super::check::numbered;
 use super::error::MeshError;
 use super::tet_mesh::{Facet, FacetTag, TetMesh};
@@ -66,25 +64,14 @@ pub struct Brick {
     pub seed: u64,
 }
 
-/// A brick that cannot be built.
-#[derive(Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum BrickError {
-    /// A number of the description is out of its range.
-    #[error("brick: {field} along {axis} is {value}; it must be {required}")]
-    OutOfRange {
-        /// Name of the field.
-        field: &'static str,
-        /// `"x"`, `"y"` or `"z"`, or `"all axes"`.
-        axis: &'static str,
-        /// The value given.
-        value: f64,
-        /// What it must be.
-        required: &'static str,
-    },
-    /// The mesh is too large, or its numbers are so extreme that rounding spoils it.
-    #[error("brick: {0}")]
-    Mesh(#[from] MeshError),
+errors! {
+    /// A brick that cannot be built.
+    #[derive(Clone, PartialEq)]
+    BrickError {
+        OutOfRange { field: &'static str, axis: &'static str, value: f64, required: &'static str } =
+            "brick: {field} along {axis} is {value}; it must be {required}";
+        Mesh(#[from] MeshError) = "brick: {0}";
+    }
 }
 
 /// Vertices of the unit cell by number: bit 0 is x, bit 1 is y, bit 2 is z.

@@ -1,7 +1,5 @@
 //! Surfaces with nodal normals, frames and areas, flat or curved.
 
-use thiserror::Error;
-
 use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL};
 use crate::vec3::{self, add, cross, dot, norm, scale, sub};
 
@@ -73,35 +71,18 @@ fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     Some(v.map(|x| x / length + 0.0))
 }
 
-/// A surface that cannot be used.
-#[derive(Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum SurfaceError {
-    /// No tag is given.
-    #[error("the surface has no tag; name at least one part of the boundary")]
-    NoTags,
-    /// No facet has the tag.
-    #[error("no facet has {tag}; the mesh has {}", tag_list(known))]
-    UnknownTag {
-        /// The tag.
-        tag: FacetTag,
-        /// The tags of the mesh.
-        known: Vec<FacetTag>,
-    },
-    /// The same tag is given twice.
-    #[error("{tag} is named twice; name it once")]
-    RepeatedTag {
-        /// The tag.
-        tag: FacetTag,
-    },
-    /// The normals of the triangles around a node cancel.
-    #[error(
-        "node {node} has no normal: those of its triangles cancel, as on a blade tagged on both sides; tag one side only, or split the surface there"
-    )]
-    NoNormal {
-        /// Global node number.
-        node: u32,
-    },
+errors! {
+    /// A surface that cannot be used.
+    #[derive(Clone, PartialEq, Eq)]
+    SurfaceError {
+        NoTags = "the surface has no tag; name at least one part of the boundary";
+        UnknownTag { tag: FacetTag, known: Vec<FacetTag> } =
+            "no facet has {tag}; the mesh has {}", tag_list(known);
+        RepeatedTag { tag: FacetTag } = "{tag} is named twice; name it once";
+        NoNormal { node: u32 } =
+            "node {node} has no normal: those of its triangles cancel, as on a blade tagged on both sides; tag one \
+            side only, or split the surface there";
+    }
 }
 
 /// A part of the boundary with what contact needs at its nodes.

@@ -4,13 +4,12 @@
 
 use thiserror::Error;
 
-use crate::error::debug_is_display;
 use crate::problem::{ConvexSet, Equality, SymmetricOperator};
 use crate::tolerances::{LAW, LAW_ON_CIRCLE};
 use crate::vector;
 
 /// A law that an implementation violates.
-#[derive(Clone, PartialEq, Error)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[error("{law}: off by {error:e} in sample {sample}")]
 #[non_exhaustive]
 pub struct LawViolation {
@@ -21,8 +20,6 @@ pub struct LawViolation {
     /// Number of the sample.
     pub sample: usize,
 }
-
-debug_is_display!(LawViolation);
 
 /// The first of the laws, each with its error and what is allowed, that does not hold.
 fn hold<const N: usize>(

@@ -13,132 +13,46 @@ mod reader;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use thiserror::Error;
-
 pub use names::GroupNames;
 
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
 
-/// A Gmsh file that cannot be read.
-#[derive(Error)]
-#[non_exhaustive]
-pub enum GmshError {
-    /// The file system refuses.
-    #[error("cannot read {}: {source}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// The file does not start like a Gmsh file.
-    #[error("this is no Gmsh mesh: it does not start with a $MeshFormat section")]
-    NotGmsh,
-    /// The format is another one.
-    #[error(
-        "the file has Gmsh format {found:?}; only 4.1 is read, so save it with Mesh.MshFileVersion = 4.1 (gmsh -format msh41)"
-    )]
-    Version {
-        /// Version in the file.
-        found: String,
-    },
-    /// The file breaks off or its counts are wrong.
-    #[error(
-        "section {section} of the Gmsh file is damaged at byte {offset}: {what}; export the mesh again"
-    )]
-    Damaged {
-        /// Name of the section.
-        section: &'static str,
-        /// Place in the file.
-        offset: usize,
-        /// What was expected.
-        what: &'static str,
-    },
-    /// A section is absent.
-    #[error("the Gmsh file has no section {section}; export the mesh, not only the geometry")]
-    MissingSection {
-        /// Name of the section.
-        section: &'static str,
-    },
-    /// The file is partitioned: its groups belong to entities that are not read.
-    #[error(
-        "the Gmsh file is partitioned (section {section}), and groups of its parts are not read; save the mesh before it is partitioned (gmsh.model.mesh.unpartition), and cut it with Decomposition::boxes or from_parts"
-    )]
-    Partitioned {
-        /// Name of the section.
-        section: &'static str,
-    },
-    /// No element is a tetrahedron.
-    #[error(
-        "the Gmsh file has no tetrahedra: mesh in three dimensions (gmsh -3); if that was done, add a physical volume, or set Mesh.SaveAll = 1, since Gmsh saves only what is in physical groups as soon as there are some"
-    )]
-    NoTetrahedra,
-    /// No physical group has this name.
-    #[error(
-        "the Gmsh file has no physical {what} named {name:?}; {}",
-        listed(what, known)
-    )]
-    UnknownName {
-        /// `"surface"` or `"volume"`.
-        what: &'static str,
-        /// The name asked for.
-        name: String,
-        /// The names that there are.
-        known: Vec<String>,
-    },
-    /// An element is neither a linear triangle nor a linear tetrahedron.
-    #[error(
-        "the Gmsh file has elements of type {kind} ({name}); only linear triangles and tetrahedra are read, so mesh with order 1 and without recombination"
-    )]
-    Unsupported {
-        /// Number of the type in Gmsh.
-        kind: i32,
-        /// Its name, if known.
-        name: &'static str,
-    },
-    /// A node number is used twice.
-    #[error("the Gmsh file defines node {tag} twice; export the mesh again")]
-    RepeatedNode {
-        /// The number in the file.
-        tag: u64,
-    },
-    /// An element uses a node that is not defined.
-    #[error(
-        "element {element} of the Gmsh file uses node {node}, which the file does not define; export the mesh again"
-    )]
-    UnknownNode {
-        /// The element number in the file.
-        element: u64,
-        /// The node number in the file.
-        node: u64,
-    },
-    /// A surface or volume is in several physical groups.
-    #[error(
-        "{what} {entity} of the Gmsh file is in the physical groups {groups:?}; a part of the mesh has one tag, so keep one group"
-    )]
-    SeveralGroups {
-        /// `"surface"` or `"volume"`.
-        what: &'static str,
-        /// The entity number in the file.
-        entity: i32,
-        /// Its groups.
-        groups: Vec<i32>,
-    },
-    /// Two groups of the same dimension have the same name.
-    #[error(
-        "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one",
-        groups[0],
-        groups[1]
-    )]
-    RepeatedName {
-        /// The name.
-        name: String,
-        /// The groups.
-        groups: [u32; 2],
-    },
-    /// The mesh in the file is not valid.
-    #[error("the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}")]
-    Mesh(#[from] MeshError),
+errors! {
+    /// A Gmsh file that cannot be read.
+    GmshError {
+        Io { path: PathBuf, source: std::io::Error } = "cannot read {}: {source}", path.display();
+        NotGmsh = "this is no Gmsh mesh: it does not start with a $MeshFormat section";
+        Version { found: String } =
+            "the file has Gmsh format {found:?}; only 4.1 is read, so save it with Mesh.MshFileVersion = 4.1 (gmsh \
+            -format msh41)";
+        Damaged { section: &'static str, offset: usize, what: &'static str } =
+            "section {section} of the Gmsh file is damaged at byte {offset}: {what}; export the mesh again";
+        MissingSection { section: &'static str } =
+            "the Gmsh file has no section {section}; export the mesh, not only the geometry";
+        Partitioned { section: &'static str } =
+            "the Gmsh file is partitioned (section {section}), and groups of its parts are not read; save the mesh \
+            before it is partitioned (gmsh.model.mesh.unpartition), and cut it with Decomposition::boxes or \
+            from_parts";
+        NoTetrahedra =
+            "the Gmsh file has no tetrahedra: mesh in three dimensions (gmsh -3); if that was done, add a physical \
+            volume, or set Mesh.SaveAll = 1, since Gmsh saves only what is in physical groups as soon as there are \
+            some";
+        UnknownName { what: &'static str, name: String, known: Vec<String> } =
+            "the Gmsh file has no physical {what} named {name:?}; {}", listed(what, known);
+        Unsupported { kind: i32, name: &'static str } =
+            "the Gmsh file has elements of type {kind} ({name}); only linear triangles and tetrahedra are read, so \
+            mesh with order 1 and without recombination";
+        RepeatedNode { tag: u64 } = "the Gmsh file defines node {tag} twice; export the mesh again";
+        UnknownNode { element: u64, node: u64 } =
+            "element {element} of the Gmsh file uses node {node}, which the file does not define; export the mesh \
+            again";
+        SeveralGroups { what: &'static str, entity: i32, groups: Vec<i32> } =
+            "{what} {entity} of the Gmsh file is in the physical groups {groups:?}; a part of the mesh has one tag, \
+            so keep one group";
+        RepeatedName { name: String, groups: [u32; 2] } =
+            "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one", groups[0], groups[1];
+        Mesh(#[from] MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}";
+    }
 }
 
 /// The names that there are, in words.

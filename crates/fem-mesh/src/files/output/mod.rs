@@ -8,8 +8,6 @@ mod vtu;
 
 use std::path::PathBuf;
 
-use thiserror::Error;
-
 pub use pvd::PvdSeries;
 pub use vtu::{write_surface_vtu, write_vtu, write_vtu_pieces};
 
@@ -79,108 +77,28 @@ impl Field {
     }
 }
 
-/// A file that cannot be written.
-#[derive(Error)]
-#[non_exhaustive]
-pub enum OutputError {
-    /// A field has the wrong number of values.
-    #[error(
-        "field {name:?} has {given} values; {expected} are needed ({components} for each of the {what})"
-    )]
-    FieldLength {
-        /// Name of the field.
-        name: String,
-        /// `"nodes"` or `"cells"`.
-        what: &'static str,
-        /// Values given.
-        given: usize,
-        /// Values needed.
-        expected: usize,
-        /// Components of a value.
-        components: usize,
-    },
-    /// A field has no name.
-    #[error("a field on the {what} has an empty name; ParaView selects fields by name")]
-    Unnamed {
-        /// `"nodes"` or `"cells"`.
-        what: &'static str,
-    },
-    /// Two fields have the same name.
-    #[error("two fields on the {what} are named {name:?}; rename one")]
-    RepeatedName {
-        /// The name.
-        name: String,
-        /// `"nodes"` or `"cells"`.
-        what: &'static str,
-    },
-    /// A value is NaN or infinite.
-    #[error("field {name:?} is {value} at number {index} of the {what}; values must be finite")]
-    NotFinite {
-        /// Name of the field.
-        name: String,
-        /// `"nodes"` or `"cells"`.
-        what: &'static str,
-        /// Node or cell number.
-        index: usize,
-        /// The value.
-        value: f64,
-    },
-    /// The decomposition or surface belongs to another mesh.
-    #[error(
-        "the {what} does not belong to this mesh; write it with the mesh that it was made from"
-    )]
-    Foreign {
-        /// `"decomposition"` or `"surface"`.
-        what: &'static str,
-    },
-    /// The name of a series has a path separator or is empty.
-    #[error("{name:?} cannot name a series; use a plain file name without folders")]
-    SeriesName {
-        /// The name.
-        name: String,
-    },
-    /// The time of a step is not later than the one before.
-    #[error(
-        "time {time} of the series does not follow {before}; times must be finite and increase"
-    )]
-    Time {
-        /// The time given.
-        time: f64,
-        /// The time before, minus infinity at the start.
-        before: f64,
-    },
-    /// The list of a series to continue cannot be read.
-    #[error(
-        "cannot read {}: {source}; to continue a series its list must be there, PvdSeries::create starts a new one",
-        path.display()
-    )]
-    NoSeries {
-        /// The list.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// The list of a series to continue is not as [`PvdSeries`] writes it.
-    #[error(
-        "line {line} of {} is {found:?}, but {expected} is needed; only lists written by PvdSeries under their name can be continued, so restore the file or start a new series with PvdSeries::create",
-        path.display()
-    )]
-    BrokenSeries {
-        /// The list.
-        path: PathBuf,
-        /// Number of the line, from 1.
-        line: usize,
-        /// The line, empty beyond the end of the file.
-        found: String,
-        /// What should be there.
-        expected: String,
-    },
-    /// The file system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+errors! {
+    /// A file that cannot be written.
+    OutputError {
+        FieldLength { name: String, what: &'static str, given: usize, expected: usize, components: usize } =
+            "field {name:?} has {given} values; {expected} are needed ({components} for each of the {what})";
+        Unnamed { what: &'static str } =
+            "a field on the {what} has an empty name; ParaView selects fields by name";
+        RepeatedName { name: String, what: &'static str } =
+            "two fields on the {what} are named {name:?}; rename one";
+        NotFinite { name: String, what: &'static str, index: usize, value: f64 } =
+            "field {name:?} is {value} at number {index} of the {what}; values must be finite";
+        Foreign { what: &'static str } =
+            "the {what} does not belong to this mesh; write it with the mesh that it was made from";
+        SeriesName { name: String } = "{name:?} cannot name a series; use a plain file name without folders";
+        Time { time: f64, before: f64 } =
+            "time {time} of the series does not follow {before}; times must be finite and increase";
+        NoSeries { path: PathBuf, source: std::io::Error } =
+            "cannot read {}: {source}; to continue a series its list must be there, PvdSeries::create starts a new \
+            one", path.display();
+        BrokenSeries { path: PathBuf, line: usize, found: String, expected: String } =
+            "line {line} of {} is {found:?}, but {expected} is needed; only lists written by PvdSeries under their \
+            name can be continued, so restore the file or start a new series with PvdSeries::create", path.display();
+        Io { path: PathBuf, source: std::io::Error } = "cannot write {}: {source}", path.display();
+    }
 }
