@@ -1,7 +1,7 @@
 //! How errors are written down: once.
 
-/// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the remedy; it is
-/// the documentation of the variant, too, and what a `main` that returns the error prints.
+/// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the
+/// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! errors {

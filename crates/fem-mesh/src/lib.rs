@@ -7,7 +7,8 @@
 //!
 //! | you want | you use |
 //! |---|---|
-//! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`); [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
+//! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`) |
+//! | another mesh of it | [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`Element`] |
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
@@ -59,11 +60,11 @@
 //!
 //! # What can go wrong
 //!
-//! Every type checks its input on construction and answers with a typed error that names the
-//! place and a remedy: [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`],
-//! [`AssemblyError`], [`DecompositionError`], [`SurfaceError`], [`LoadError`], [`HistoryError`],
-//! [`FieldError`]. They print their sentence with `{:?}`, too, which is what a `main` that returns
-//! one shows. Later steps rely on those checks and do not repeat them. Accessors that take an index panic if it is out of range, like a slice, and say so.
+//! Every type checks its input on construction and answers with a typed error that names the place and a remedy:
+//! [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
+//! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. They print their sentence with `{:?}`, too,
+//! which is what a `main` that returns one shows. Later steps rely on those checks and do not repeat them. Accessors
+//! that take an index panic if it is out of range, like a slice, and say so.
 //!
 //! # Parallelism
 //!

@@ -2,8 +2,8 @@
 
 // Meshes
 
-/// Six times the volume over the cube of the longest edge, below which a tetrahedron is flat. Coordinates carry about 16
-/// digits, so less than this is mostly rounding.
+/// Six times the volume over the cube of the longest edge, below which a tetrahedron is flat. Coordinates carry about
+/// 16 digits, so less than this is mostly rounding.
 pub(crate) const FLAT: f64 = 1e-10;
 /// Distance over the diagonal of the mesh below which two nodes are one.
 pub(crate) const COINCIDENT: f64 = 1e-12;
@@ -23,7 +23,8 @@ pub(crate) const ELLIPTICITY: f64 = 1e-12;
 
 // Parts made compact
 
-/// Most sweeps, and the share of tetrahedra that a sweep has to move for another one. What moves last is at plane interfaces.
+/// Most sweeps, and the share of tetrahedra that a sweep has to move for another one. What moves last is at plane
+/// interfaces.
 pub(crate) const SWEEPS: usize = 40;
 pub(crate) const SETTLED: f64 = 1e-3;
 

@@ -1,7 +1,7 @@
 //! What can be wrong with the input, and how a solver can break down.
 
-/// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the remedy; it is
-/// the documentation of the variant, too, and what a `main` that returns the error prints.
+/// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the
+/// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints.
 macro_rules! errors {
     (
         $(#[$about:meta])*

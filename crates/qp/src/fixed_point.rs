@@ -1,8 +1,8 @@
 //! The method of successive approximations, `x <- map(x)`, and what can be said of the contraction of the map.
 //!
-//! The ratio of successive changes tells whether the map is contractive; [`Contraction`] watches it. In contact with Coulomb
-//! friction the map takes the normal forces that define the slip bounds to those of the problem with these bounds, (3.17) of
-//! the paper; it is contractive for small coefficients only.
+//! The ratio of successive changes tells whether the map is contractive; [`Contraction`] watches it. In contact with
+//! Coulomb friction the map takes the normal forces that define the slip bounds to those of the problem with these
+//! bounds, (3.17) of the paper; it is contractive for small coefficients only.
 
 use crate::tolerances::{MAP_PATIENCE, NO_CONTRACTION, PROGRESS, RATE_WINDOW};
 use crate::vector;
@@ -84,8 +84,8 @@ pub struct FixedPointReport {
     pub rate: Option<f64>,
 }
 
-/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance` (0/0 counts
-/// as converged). `least` is the norm below which `x` is taken to vanish.
+/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance`
+/// (0/0 counts as converged). `least` is the norm below which `x` is taken to vanish.
 ///
 /// `map(x, change)` overwrites `x` and returns whether it evaluated with full accuracy; `change` is the last relative
 /// change, 1 at first, and tells how accurate the evaluation needs to be. Only an evaluation with full accuracy can end

@@ -1,10 +1,10 @@
 //! Quadratic programming with bounds, discs and linear equalities.
 //!
-//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and `C x = e` with orthonormal
-//! rows of `C`.
+//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and `C x = e` with
+//! orthonormal rows of `C`.
 //!
-//! `A` is known only through products. Dual problems of T-FETI with contact and friction have this form (normal forces are
-//! bounded, tangential ones lie in discs, equilibrium is the equality), but the crate knows no mechanics.
+//! `A` is known only through products. Dual problems of T-FETI with contact and friction have this form (normal
+//! forces are bounded, tangential ones lie in discs, equilibrium is the equality), but the crate knows no mechanics.
 //!
 //! # Methods
 //!
@@ -12,21 +12,22 @@
 //! |---|---|---|---|
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
-//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted active sets; no penalty | see [`ActiveSetWorkspace`] |
+//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted active sets; no penalty | 6 |
 //! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
-//! Solvers take the start in `x` and leave the result there, report counts by cause, and put all vectors into a workspace that
-//! is created once: an iteration allocates nothing. Not reaching a tolerance is a [`Status`] in an `Ok` report; errors are wrong
-//! input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems whose set follows the solution.
+//! Solvers take the start in `x` and leave the result there, report counts by cause, and put all vectors into a
+//! workspace that is created once: an iteration allocates nothing. Not reaching a tolerance is a [`Status`] in an
+//! `Ok` report; errors are wrong input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems
+//! whose set follows the solution.
 //!
 //! # Parts of a problem
 //!
 //! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices.
 //! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`].
-//! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and [`DenseProjector`]
-//!   for small matrices.
+//! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and
+//!   [`DenseProjector`] for small matrices.
 //! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
 //! - [`laws`] has checkers for own implementations of the three traits.
 //!
@@ -77,13 +78,14 @@
 //!
 //! # Settings
 //!
-//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`] tells meaning, scale, range,
-//! default and the letter in the paper. All are dimensionless: a problem in other units takes the same steps.
+//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`] tells meaning,
+//! scale, range, default and the letter in the paper. All are dimensionless: a problem in other units takes the same
+//! steps.
 //!
 //! # Determinism
 //!
-//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads changes no bit of a
-//! result. Loops over the set are serial.
+//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads changes no
+//! bit of a result. Loops over the set are serial.
 
 mod active_set;
 mod check;

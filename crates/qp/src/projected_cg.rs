@@ -85,11 +85,11 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> CgWorkspace<A, C, 
 
 /// Minimises `1/2 x·Ax - b·x` with `C x = e`, from the point of the equality nearest to `x`.
 ///
-/// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none).
-/// `Tolerance::Relative` refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that acts
-/// through the equality alone). If both are below 1e-12 of `|b|`, they are rounding errors, and the solution is one of them:
-/// a projected gradient of 1e-14 of `|b|` is enough then, also with `Tolerance::Error`. A semidefinite `A` is allowed as long
-/// as the load does no work along its kernel within that of `C`.
+/// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none). `Tolerance::Relative`
+/// refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that acts through the
+/// equality alone). If both are below 1e-12 of `|b|`, they are rounding errors, and the solution is one of them: a
+/// projected gradient of 1e-14 of `|b|` is enough then, also with `Tolerance::Error`. A semidefinite `A` is allowed
+/// as long as the load does no work along its kernel within that of `C`.
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths or NaN; when something becomes NaN; when `A` is indefinite, or singular

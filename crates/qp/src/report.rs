@@ -31,11 +31,11 @@ impl Status {
 pub enum Tolerance {
     /// At most this value, in the units of the gradient.
     Absolute(f64),
-    /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient if `b` is zero),
-    /// `|P (b - A C'e)|` for SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
+    /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient if `b` is
+    /// zero), `|P (b - A C'e)|` for SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
     Relative(f64),
-    /// [`projected_cg`](crate::projected_cg()): the preconditioned gradient, which estimates the error of `x`, is at most this
-    /// multiple of `|x|`. Solvers without preconditioner take it as [`Relative`](Self::Relative).
+    /// [`projected_cg`](crate::projected_cg()): the preconditioned gradient, which estimates the error of `x`, is at
+    /// most this multiple of `|x|`. Solvers without preconditioner take it as [`Relative`](Self::Relative).
     Error {
         /// Dimensionless factor.
         factor: f64,

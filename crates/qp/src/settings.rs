@@ -1,11 +1,12 @@
-//! Settings: one table a struct, with meaning, setter, default and range; the range is what is documented, checked and named in errors.
+//! Settings: one table a struct, with meaning, setter, default and range; the range is what is documented, checked
+//! and named in errors.
 
 use crate::error::QpError;
 
 /// Defines a struct of settings with its setters, defaults and checks.
 ///
-/// A line is `field, setter: type = default, in "range";` after its meaning. A range is an interval like `"(0, 1]"` or `"[1, inf)"`.
-/// Settings inside of settings, which check themselves, are listed after `and`.
+/// A line is `field, setter: type = default, in "range";` after its meaning. A range is an interval like `"(0, 1]"`
+/// or `"[1, inf)"`. Settings inside of settings, which check themselves, are listed after `and`.
 macro_rules! settings {
     (
         $(#[$about:meta])*

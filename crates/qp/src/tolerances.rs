@@ -6,7 +6,8 @@
 
 /// A measure below this part of the smallest so far is progress: less is noise of conjugate gradients.
 pub(crate) const PROGRESS: f64 = 0.9;
-/// Curvature `p·Ap` below minus this part of the norm of the operator times `p·p` makes it indefinite; above it is rounding.
+/// Curvature `p·Ap` below minus this part of the norm of the operator times `p·p` makes it indefinite; above it is
+/// rounding.
 pub(crate) const NEGATIVE_CURVATURE: f64 = 1e-10;
 
 // Data of a problem
@@ -15,7 +16,8 @@ pub(crate) const NEGATIVE_CURVATURE: f64 = 1e-10;
 pub(crate) const ON_CIRCLE: f64 = 1e-12;
 /// Difference of transposed entries over the largest entry that makes a matrix not symmetric.
 pub(crate) const ASYMMETRY: f64 = 1e-12;
-/// Part of a row orthogonal to the rows before, over its norm, below which it depends on them. Gram-Schmidt is done twice.
+/// Part of a row orthogonal to the rows before, over its norm, below which it depends on them. Gram-Schmidt is done
+/// twice.
 pub(crate) const DEPENDENT_ROW: f64 = 1e-10;
 /// Pivot of `G W Gᵀ` over its largest diagonal entry that counts as zero.
 pub(crate) const SINGULAR_PIVOT: f64 = 1e-12;
@@ -28,7 +30,8 @@ pub(crate) const EXHAUSTED: f64 = 1e-14;
 pub(crate) const KKT_ON_BOUND: f64 = 1e-10;
 /// Distance from a circle, over its radius, at which the independent check counts a point as on it.
 pub(crate) const KKT_ON_CIRCLE: f64 = 1e-9;
-/// Rounding allowed in the laws of a set, relative to the vectors; wider where a point next to a circle counts as on it.
+/// Rounding allowed in the laws of a set, relative to the vectors; wider where a point next to a circle counts as on
+/// it.
 pub(crate) const LAW: f64 = 1e-10;
 pub(crate) const LAW_ON_CIRCLE: f64 = 1e-6;
 
@@ -71,7 +74,8 @@ pub(crate) const CG_ROUNDING: f64 = 1e-8;
 
 // Active set: the point
 
-/// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round more.
+/// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round
+/// more.
 pub(crate) const MAY_SLIDE: f64 = 1e-9;
 /// Least size of the constrained part, over `|x|`, that its errors are relative to.
 pub(crate) const SMALL_PART: f64 = 1e-4;

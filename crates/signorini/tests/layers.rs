@@ -1,7 +1,8 @@
 //! Arrows between the rooms of the crates, read from their sources: each goes downward, so that none closes a circle.
 //!
-//! A room is a folder of `src`, or a file that stands in `src` itself. A room may use those of the rows below its own in
-//! [`CRATES`], and no other one; a crate those after it in the list, but `fem-mesh` and `qp` know nothing of one another.
+//! A room is a folder of `src`, or a file that stands in `src` itself. A room may use those of the rows below its own
+//! in [`CRATES`], and no other one; a crate those after it in the list, but `fem-mesh` and `qp` know nothing of one
+//! another.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,7 +1,8 @@
 //! Parts made compact: ragged, elongated and scattered ones become round cells of similar size.
 //!
-//! The method is that of Lloyd for centroidal Voronoi cells: S. Lloyd, *Least squares quantization in PCM*, IEEE Trans. Inform.
-//! Theory 28, 1982; Q. Du, V. Faber, M. Gunzburger, *Centroidal Voronoi tessellations*, SIAM Review 41, 1999.
+//! The method is that of Lloyd for centroidal Voronoi cells: S. Lloyd, *Least squares quantization in PCM*, IEEE
+//! Trans. Inform. Theory 28, 1982; Q. Du, V. Faber, M. Gunzburger, *Centroidal Voronoi tessellations*, SIAM Review
+//! 41, 1999.
 
 use rayon::prelude::*;
 
@@ -13,16 +14,19 @@ use crate::vec3::{self, Vec3};
 use super::parts::{expect_parts, renumbered, split_by};
 use super::subdomains::DecompositionError;
 
-/// Makes parts compact, those of a graph partitioner for instance: solvers on subdomains take the fewer steps the rounder the
-/// subdomains and the smoother the interfaces between them are. A partitioner keeps the number of cut faces small, not the shape.
+/// Makes parts compact, those of a graph partitioner for instance: solvers on subdomains take the fewer steps the
+/// rounder the subdomains and the smoother the interfaces between them are. A partitioner keeps the number of cut
+/// faces small, not the shape.
 ///
-/// Each tetrahedron goes to the part whose centre is nearest, out of its own part and those that touch it, centres are computed
-/// anew, and so on until next to nothing moves. A centre is the mean over tetrahedra, not over volume, so that parts keep similar
-/// numbers of them in graded meshes. What a part does not reach through faces goes to the neighbour that shares most with it.
+/// Each tetrahedron goes to the part whose centre is nearest, out of its own part and those that touch it, centres
+/// are computed anew, and so on until next to nothing moves. A centre is the mean over tetrahedra, not over volume,
+/// so that parts keep similar numbers of them in graded meshes. What a part does not reach through faces goes to the
+/// neighbour that shares most with it.
 ///
 /// Parts do not reach from one body into another; regions of materials are no obstacle. The result is accepted by
-/// [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and numbered without gaps in the
-/// order of their first tetrahedra. There may be fewer than before, and more where a part lay in several bodies.
+/// [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and numbered without
+/// gaps in the order of their first tetrahedra. There may be fewer than before, and more where a part lay in several
+/// bodies.
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one number for each tetrahedron.

@@ -1,7 +1,7 @@
 //! Subdomains of a mesh, and where each node went.
 //!
-//! `subdomains` is the decomposition; `boxes` cuts it by a grid, `parts` takes numbers of a partitioner, `compact` makes ragged
-//! parts round. A graph partitioner has its place beside them.
+//! `subdomains` is the decomposition; `boxes` cuts it by a grid, `parts` takes numbers of a partitioner, `compact`
+//! makes ragged parts round. A graph partitioner has its place beside them.
 //!
 //! Uses: `mesh`, `tables`, `vec3`. In: a mesh, and a grid or part numbers. Out: subdomains connected through faces.
 

@@ -1,7 +1,7 @@
 //! Elements and their quadrature.
 //!
-//! `p1` is the linear tetrahedron: gradients of its shape functions, strain, blocks of stiffness. A quadratic one has its place beside it.
-//! `quadrature` has rules of degree 5 on tetrahedron and triangle.
+//! `p1` is the linear tetrahedron: gradients of its shape functions, strain, blocks of stiffness. A quadratic one has
+//! its place beside it. `quadrature` has rules of degree 5 on tetrahedron and triangle.
 //!
 //! Uses: `mesh`, `vec3`. In: the points of an element. Out: gradients, blocks of stiffness, integrals.
 

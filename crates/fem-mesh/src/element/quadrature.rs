@@ -50,8 +50,8 @@ pub(crate) fn at<const N: usize>(nodes: &[[f64; 3]; N], barycentric: &[f64; N]) 
     std::array::from_fn(|d| (0..N).map(|a| barycentric[a] * nodes[a][d]).sum())
 }
 
-/// Integrates over a mesh the function that `of_tet` makes of each tetrahedron, at barycentric coordinates. The sum runs in
-/// the order of the tetrahedra, whatever the threads do.
+/// Integrates over a mesh the function that `of_tet` makes of each tetrahedron, at barycentric coordinates. The sum
+/// runs in the order of the tetrahedra, whatever the threads do.
 pub(crate) fn integral<F: Fn(&[f64; 4]) -> f64>(
     mesh: &TetMesh,
     of_tet: impl Fn(usize) -> F + Sync,

@@ -55,8 +55,8 @@ pub fn h1_seminorm_error(
     Ok(square.sqrt())
 }
 
-/// Energy of the difference between a displacement of the mesh and a given one, half of error stress times error strain, by
-/// quadrature of degree 5. `exact_gradient(x)[i][j]` = d u_i / d x_j.
+/// Energy of the difference between a displacement of the mesh and a given one, half of error stress times error
+/// strain, by quadrature of degree 5. `exact_gradient(x)[i][j]` = d u_i / d x_j.
 ///
 /// # Errors
 /// [`FieldError`] if the displacement has the wrong length or is not finite, or a region has no material.

@@ -4,9 +4,9 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a file that is complete at any moment: to `PATH.tmp` beside it, then to the disk, and only then in the place of what
-/// was there. After a failure, a full disk or a kill in between, the old file is as it was; a kill may leave `PATH.tmp`, which
-/// the next write takes over.
+/// Writes a file that is complete at any moment: to `PATH.tmp` beside it, then to the disk, and only then in the
+/// place of what was there. After a failure, a full disk or a kill in between, the old file is as it was; a kill may
+/// leave `PATH.tmp`, which the next write takes over.
 ///
 /// ```
 /// # let directory = tempfile::tempdir()?;

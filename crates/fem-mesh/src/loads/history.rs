@@ -100,8 +100,8 @@ impl History {
     }
 }
 
-/// Straight lines through points of ascending first numbers, constant before the first and after the last; NaN without any.
-/// At the points it is exactly the value given.
+/// Straight lines through points of ascending first numbers, constant before the first and after the last; NaN
+/// without any. At the points it is exactly the value given.
 #[must_use]
 pub fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
     let after = points.partition_point(|p| p.0 <= x);

@@ -1,8 +1,10 @@
 //! Loads: in space, in time, and as nodal forces of the subdomains.
 //!
-//! `density` says where a load acts, `history` how it changes in time, `assemble` turns it into consistent nodal forces.
+//! `density` says where a load acts, `history` how it changes in time, `assemble` turns it into consistent nodal
+//! forces.
 //!
-//! Uses: `decomposition`, `element`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force vector a subdomain.
+//! Uses: `decomposition`, `element`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force vector a
+//! subdomain.
 
 mod assemble;
 mod density;

@@ -95,12 +95,12 @@ pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
     turned
 }
 
-/// Makes one node of nodes that are no farther apart than `distance` (m; those that coincide, with 0), for parts that were
-/// meshed apart but are to be one body, and returns how many are gone. Tetrahedra and facets then use the first
+/// Makes one node of nodes that are no farther apart than `distance` (m; those that coincide, with 0), for parts that
+/// were meshed apart but are to be one body, and returns how many are gone. Tetrahedra and facets then use the first
 /// of them; the others stay in the table for [`drop_unused_nodes`].
 ///
-/// Meshes of the parts have to match where they meet. Facets there, which are inside now, have to be left out. Bodies that are to
-/// slide on one another must not be merged.
+/// Meshes of the parts have to match where they meet. Facets there, which are inside now, have to be left out. Bodies
+/// that are to slide on one another must not be merged.
 ///
 /// ```
 /// use signorini_fem_mesh::{Brick, TetMesh, drop_unused_nodes, merge_nodes};

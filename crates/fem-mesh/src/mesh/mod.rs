@@ -1,7 +1,8 @@
 //! Meshes of tetrahedra with tagged boundary facets, and the surfaces that contact needs of them.
 //!
-//! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `edit` meshes made
-//! from meshes, `brick` a box of cells, `surface` nodal normals, frames and areas, `error` what can be wrong.
+//! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `edit`
+//! meshes made from meshes, `brick` a box of cells, `surface` nodal normals, frames and areas, `error` what can be
+//! wrong.
 //!
 //! Uses: `tables`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
 

@@ -37,8 +37,9 @@ impl DiscretisationError {
         self.elastic
     }
 
-    /// Error relative to the displacement, both in the energy norm; 0 without elastic energy. Of a body that is at rest but
-    /// for rounding it is noise over noise, about one: compare [`energy`](Self::energy) with a scale of your own.
+    /// Error relative to the displacement, both in the energy norm; 0 without elastic energy. Of a body that is at
+    /// rest but for rounding it is noise over noise, about one: compare [`energy`](Self::energy) with a scale of your
+    /// own.
     #[must_use]
     pub fn relative(&self) -> f64 {
         if self.elastic > 0.0 {

@@ -1,7 +1,7 @@
 //! The recovered strain: linear in each tetrahedron, continuous inside a region of equal material.
 //!
-//! A linear polynomial is fitted to the strains at the centroids of the tetrahedra around a node (its patch) and evaluated
-//! there. Where a patch is too small for a fit, at corners and edges, the patches of its neighbours join.
+//! A linear polynomial is fitted to the strains at the centroids of the tetrahedra around a node (its patch) and
+//! evaluated there. Where a patch is too small for a fit, at corners and edges, the patches of its neighbours join.
 
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
@@ -147,8 +147,8 @@ impl StrainRecovery {
     /// Estimates the discretisation error of a displacement of the mesh for which this was made.
     ///
     /// # Errors
-    /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another number of
-    /// tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
+    /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another
+    /// number of tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
     pub fn error(
         &self,
         mesh: &TetMesh,

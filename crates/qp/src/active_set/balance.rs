@@ -1,15 +1,16 @@
 //! The point of the set next to a given one that balances.
 //!
-//! Where constraints alone stop a mode, a point that is projected on the set leaves `G x = e`, and one that is put back to
-//! `G x = e` leaves the set. The closest point that satisfies both has few unknowns, one amplitude for each mode that no
-//! unconstrained component stops. With the rows `c` of these modes it is
+//! Where constraints alone stop a mode, a point that is projected on the set leaves `G x = e`, and one that is put
+//! back to `G x = e` leaves the set. The closest point that satisfies both has few unknowns, one amplitude for each
+//! mode that no unconstrained component stops. With the rows `c` of these modes it is
 //!
 //! ```text
 //! x(b) = P(y - a c b),     cᵀ x(b) = f
 //! ```
 //!
-//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. `f - cᵀ x(b)` is the
-//! gradient of a convex function of `b`, whose minimum Newton's method with a line search finds without operator products.
+//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. `f - cᵀ x(b)` is
+//! the gradient of a convex function of `b`, whose minimum Newton's method with a line search finds without operator
+//! products.
 //!
 //! | local | meaning |
 //! |---|---|

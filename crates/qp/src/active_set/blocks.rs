@@ -38,8 +38,8 @@ pub(crate) struct ActiveSet {
     pub(crate) discs: Vec<Disc>,
     /// Blocks that stopped a step at their boundary, bounds first, then discs; empty for none. They stay there.
     pub(crate) blocked: Vec<bool>,
-    /// Bounds that are active in the next classification, then discs that slide, see [`foresee`](Self::foresee); empty where
-    /// its own residual tells.
+    /// Bounds that are active in the next classification, then discs that slide, see [`foresee`](Self::foresee);
+    /// empty where its own residual tells.
     pub(crate) foreseen: Vec<bool>,
     /// Whether they stay where they are inside of their boundary, too.
     pub(crate) near: bool,
@@ -114,8 +114,8 @@ impl ActiveSet {
         !sliding.is_empty()
     }
 
-    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it; with a `reach`
-    /// also those that this part of the step takes across. Whether there are more than before.
+    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it; with a
+    /// `reach` also those that this part of the step takes across. Whether there are more than before.
     pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64], reach: f64) -> bool {
         let (bounds, discs) = (self.free.len(), self.discs.len());
         let blocked = &mut self.blocked;
@@ -193,11 +193,11 @@ impl ActiveSet {
 
     /// Adds what the preconditioner has on sliding components besides the damped one: `v += own r`.
     ///
-    /// Let `M` approximate the inverse of `A`. The inverse of `A + kappa` is then the parallel sum of `M` and `1/kappa`,
-    /// `rᵀ X r = min over y of (r - y)ᵀ M (r - y) + yᵀ y / kappa`. The minimum for a diagonal `M`, `y = kappa m damp r`,
-    /// bounds it from above for every `M`, and gives `damp M damp + own`: exact for small and for large curvatures.
-    /// Scaling `M` by the square root of `damp` on both sides has the right diagonal only, and puts small
-    /// eigenvalues where the curvature is large.
+    /// Let `M` approximate the inverse of `A`. The inverse of `A + kappa` is then the parallel sum of `M` and
+    /// `1/kappa`, `rᵀ X r = min over y of (r - y)ᵀ M (r - y) + yᵀ y / kappa`. The minimum for a diagonal `M`, `y =
+    /// kappa m damp r`, bounds it from above for every `M`, and gives `damp M damp + own`: exact for small and for
+    /// large curvatures. Scaling `M` by the square root of `damp` on both sides has the right diagonal only, and puts
+    /// small eigenvalues where the curvature is large.
     pub(crate) fn add_own(&self, set: &ProductSet, r: &[f64], v: &mut [f64]) {
         for_discs(set, |i, k, _| {
             if let Disc::Sliding { own, .. } = self.discs[k] {
@@ -212,8 +212,8 @@ impl ActiveSet {
         for_discs(set, |_, k, radius| out[k] = radius);
     }
 
-    /// Whether a disc on whose circle a point slides, or which fixes it, has grown by more than `limit` since its radius was
-    /// noted.
+    /// Whether a disc on whose circle a point slides, or which fixes it, has grown by more than `limit` since its
+    /// radius was noted.
     pub(crate) fn grew(&self, set: &ProductSet, radii: &[f64], limit: f64) -> bool {
         let mut found = false;
         for_discs(set, |_, k, radius| {

@@ -8,9 +8,10 @@
 //! |---|---|
 //! | `residual` | `P_Wᵀ (A x - b + kappa s)`, `s` the steps so far |
 //! | `restricted` | its constrained part, restricted to the active set |
-//! | `z` | `P_W R (D M D + T) R` of the residual on the set; `R` restricts, `D = 1 / (1 + kappa m)` (`D²` in `docs/theory.md`) and `T` account for the curvature |
+//! | `z` | `P_W R (D M D + T) R` of the residual on the set; `R` restricts |
+//! | `D`, `T` | account for the curvature, `D = 1 / (1 + kappa m)` (`D²` in `docs/theory.md`) |
 //! | `p`, `ap` | direction, and `A p + kappa p`, then `P_Wᵀ` of it, then restricted |
-//! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`coupling`](crate::coupling)) |
+//! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`coupling`](super::coupling)) |
 //! | `rho` | residual on the set times `z` |
 
 use crate::error::QpError;
@@ -32,8 +33,8 @@ pub(crate) struct Goal {
 }
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
-    /// Runs until the goal is reached; `z` is ready, with `rho`. Returns the length of the last step if another one is worth
-    /// while; its direction is then `p`.
+    /// Runs until the goal is reached; `z` is ready, with `rho`. Returns the length of the last step if another one
+    /// is worth while; its direction is then `p`.
     pub(crate) fn conjugate_gradients(&mut self, rho: f64, goal: &Goal) -> Result<f64, QpError> {
         let first = self.errors();
         let start = first.zip(goal.expected, f64::min);

@@ -1,11 +1,11 @@
 //! Radii that follow other components, inside conjugate gradients.
 //!
 //! A hook moves the radii between active sets. Where the caller tells how (Coulomb friction: the radius of a disc is
-//! a coefficient times the normal force), conjugate gradients take it along: a step `p` on the set becomes `q = E p`, in
-//! which a sliding disc also grows along its normal by `slope * p`, and unconstrained components restore `G q = 0`. The
-//! matrix is then `A E` instead of `A`, not symmetric, but by a small part only: lengths of steps
-//! are those that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière).
-//! What is left for the move to the next set is of second order, so that nearly nothing is lost by it.
+//! a coefficient times the normal force), conjugate gradients take it along: a step `p` on the set becomes `q = E p`,
+//! in which a sliding disc also grows along its normal by `slope * p`, and unconstrained components restore `G q =
+//! 0`. The matrix is then `A E` instead of `A`, not symmetric, but by a small part only: lengths of steps are those
+//! that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière). What is
+//! left for the move to the next set is of second order, so that nearly nothing is lost by it.
 
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, for_discs};
 use crate::tolerances::{

@@ -2,13 +2,14 @@
 //!
 //! The natural map is a Newton step on a piecewise linear problem and can run in circles. Where it does, each move to
 //! a predicted set has to lower the cost `q(x) = 1/2 xᵀ A x - xᵀ b` from the last feasible point; where it does not,
-//! the step of conjugate gradients is shortened and projected until it does (Bertsekas 1982: the projected step descends
-//! as long as components that the gradient presses against their bound are active). Costs are compared by their difference,
-//! which keeps its digits near the solution.
+//! the step of conjugate gradients is shortened and projected until it does (Bertsekas 1982: the projected step
+//! descends as long as components that the gradient presses against their bound are active). Costs are compared by
+//! their difference, which keeps its digits near the solution.
 //!
-//! Blocks that a shortened step takes across their boundary are held (*blocked*), also those a little inside of it. Where no
-//! length descends, the point stays and more blocks are held. They are released when the problem with them is solved. All
-//! this holds between feasible points only: where set and equality hardly meet, moves that do not descend are taken, too.
+//! Blocks that a shortened step takes across their boundary are held (*blocked*), also those a little inside of it.
+//! Where no length descends, the point stays and more blocks are held. They are released when the problem with them
+//! is solved. All this holds between feasible points only: where set and equality hardly meet, moves that do not
+//! descend are taken, too.
 
 use crate::problem::{ConvexSet, ProductSet};
 use crate::tolerances::{INSIDE, KEPT_DECREASE, PROGRESS, REACH, RELEASE, SHORT};

@@ -144,8 +144,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         rho
     }
 
-    /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained components
-    /// have moved; where set and equality do not meet, this does not fall.
+    /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained
+    /// components have moved; where set and equality do not meet, this does not fall.
     pub(crate) fn restore(&mut self) -> f64 {
         let (rhs, constrained) = (self.problem.rhs, self.constrained());
         if self.projector.loose().is_empty() {
@@ -162,8 +162,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         jump
     }
 
-    /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in the metric
-    /// of the preconditioner. Where there is none, which is returned as false, the equality comes first.
+    /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in
+    /// the metric of the preconditioner. Where there is none, which is returned as false, the equality comes first.
     pub(crate) fn project(&mut self) -> bool {
         let constrained = self.constrained();
         let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
@@ -177,8 +177,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         balances
     }
 
-    /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on them.
-    /// Leaves `x` alone and returns false if the others do not suffice.
+    /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on
+    /// them. Leaves `x` alone and returns false if the others do not suffice.
     pub(crate) fn project_start(&mut self) -> bool {
         let constrained = self.constrained();
         let mut y = self.x[..constrained].to_vec();

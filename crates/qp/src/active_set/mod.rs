@@ -1,12 +1,13 @@
-//! The active-set method: conjugate gradients for a choice of active, free and sliding blocks, and a natural map that predicts
-//! the next choice.
+//! The active-set method: conjugate gradients for a choice of active, free and sliding blocks, and a natural map that
+//! predicts the next choice.
 //!
-//! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent` (safeguard
-//! where predictions run in circles), `cg` and `weights` (the linear problem), `iterate` (the point), `balance` (modes that
-//! constraints alone stop), `coupling` (radii that follow), `natural_map`, `blocks` (states); `problem`, `settings`, `view`.
+//! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent`
+//! (safeguard where predictions run in circles), `cg` and `weights` (the linear problem), `iterate` (the point),
+//! `balance` (modes that constraints alone stop), `coupling` (radii that follow), `natural_map`, `blocks` (states);
+//! `problem`, `settings`, `view`.
 //!
-//! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector, set, load,
-//! a start. Out: the minimiser and its product, a report.
+//! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector,
+//! set, load, a start. Out: the minimiser and its product, a report.
 
 mod balance;
 mod blocks;

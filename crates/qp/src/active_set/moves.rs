@@ -11,8 +11,9 @@ use super::run::{Place, Run};
 use super::view::ActiveSetPreconditioner;
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
-    /// Moves `x` to the next active set, with the next step of conjugate gradients, of this `length`, on top. The set follows
-    /// where the active set has settled. Then set, equality and product are in order again, and a safeguard has its say.
+    /// Moves `x` to the next active set, with the next step of conjugate gradients, of this `length`, on top. The set
+    /// follows where the active set has settled. Then set, equality and product are in order again, and a safeguard
+    /// has its say.
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         self.at.mark();
@@ -83,8 +84,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         Ok(())
     }
 
-    /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no move,
-    /// and with a safeguard only what descends is taken. Whether there is one.
+    /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no
+    /// move, and with a safeguard only what descends is taken. Whether there is one.
     fn joint_step(&mut self, length: f64) -> bool {
         let at = &mut self.at;
         if at.constrained() == 0 || self.safeguard.is_some() {

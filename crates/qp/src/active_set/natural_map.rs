@@ -78,8 +78,8 @@ impl ActiveSet {
         self.free_bounds = free_bounds;
     }
 
-    /// Notes the bounds that the natural map makes active at `x`, the solution on this set, and the discs that slide: those
-    /// and no others are so in the next [`classify`](Self::classify).
+    /// Notes the bounds that the natural map makes active at `x`, the solution on this set, and the discs that slide:
+    /// those and no others are so in the next [`classify`](Self::classify).
     pub(crate) fn foresee(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
         let (foreseen, discs) = (&mut self.foreseen, &self.discs);
         foreseen.clear();
@@ -126,8 +126,8 @@ impl ActiveSet {
         });
     }
 
-    /// Where `x` goes before it is projected on the set: as far outside as the natural map says, else it stays. Along circles
-    /// the gradient is balanced by the curvature already.
+    /// Where `x` goes before it is projected on the set: as far outside as the natural map says, else it stays. Along
+    /// circles the gradient is balanced by the curvature already.
     pub(crate) fn aim(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
         for_bounds(set, |i, _, lo, hi| {
             let s = map.of(x, i);

@@ -172,8 +172,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         at.work.active.guess(at.set, at.x);
     }
 
-    /// Classifies the blocks by the natural map, and enters the active set with projector and preconditioner. `None` if no
-    /// choice of blocks allows for the equality.
+    /// Classifies the blocks by the natural map, and enters the active set with projector and preconditioner. `None`
+    /// if no choice of blocks allows for the equality.
     pub(crate) fn enter(&mut self) -> Result<Option<Place>, QpError> {
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
@@ -191,7 +191,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         at.start_residual();
         let rho = at.precondition();
         let errors = at.errors();
-        // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at least
+        // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at
+        // least
         let x_norm = vector::norm(at.x);
         let all = x_norm.max(settings.error_floor);
         let part = vector::norm(&at.x[..at.constrained()]);
@@ -242,8 +243,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         releases
     }
 
-    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and active bounds,
-    /// judged by the residual on this set, which the last classification did not have, stay active.
+    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and active
+    /// bounds, judged by the residual on this set, which the last classification did not have, stay active.
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
         let current = self
@@ -340,7 +341,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         limit.then_some(Status::IterationLimit)
     }
 
-    /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth while.
+    /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth
+    /// while.
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {

@@ -1,22 +1,24 @@
 //! The loop of the active-set method.
 //!
-//! Minimises `1/2 xᵀ A x - xᵀ b` over `x` in a [`ProductSet`] with `G x = e`, without a penalty. For fixed sets of active, free
-//! and sliding blocks the problem is linear: active components drop out, a point on its circle keeps one component along the
-//! tangent with the curvature of the circle, and the rest is solved by conjugate gradients with the projector `P_W`, `W` marking
-//! the free components. The active set is left as soon as the estimated error has fallen by `forcing`; then `x - a g` tells which
-//! blocks are active next (a primal-dual active-set step), `x` is moved there, made to satisfy `G x = e` again, and one product
-//! keeps `A x` exact. That product is shared with the next step of conjugate gradients, of the length of the last one.
+//! Minimises `1/2 xᵀ A x - xᵀ b` over `x` in a [`ProductSet`] with `G x = e`, without a penalty. For fixed sets of
+//! active, free and sliding blocks the problem is linear: active components drop out, a point on its circle keeps one
+//! component along the tangent with the curvature of the circle, and the rest is solved by conjugate gradients with
+//! the projector `P_W`, `W` marking the free components. The active set is left as soon as the estimated error has
+//! fallen by `forcing`; then `x - a g` tells which blocks are active next (a primal-dual active-set step), `x` is
+//! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
+//! next step of conjugate gradients, of the length of the last one.
 //!
-//! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved more
-//! accurately, every move has to lower the cost, and the set follows the solution only where the problem with the present set is
-//! solved. [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) is proved to converge.
+//! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved
+//! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
+//! the present set is solved. [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse())
+//! is proved to converge.
 //!
 //! | local | meaning |
 //! |---|---|
 //! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a set |
 //! | `residual`, `restricted` | `P_Wᵀ (A x - b)`, and its constrained part on the active set |
 //! | `z` | preconditioned residual on the active set |
-//! | `constrained` | components up to the last constrained one; only these differ between a vector and its part on the set |
+//! | `constrained` | components up to the last constrained one; only these differ on the set |
 
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, SymmetricOperator};

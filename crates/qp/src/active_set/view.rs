@@ -51,11 +51,11 @@ impl<'a> ActiveSetView<'a> {
 
 /// A preconditioner of the active-set method.
 ///
-/// What approximates the inverse of `A` on one active set need not do so on another: active components drop out of the matrix
-/// that is inverted. A preconditioner that can follow is told every active set before it is used there.
+/// What approximates the inverse of `A` on one active set need not do so on another: active components drop out of
+/// the matrix that is inverted. A preconditioner that can follow is told every active set before it is used there.
 pub trait ActiveSetPreconditioner: SymmetricOperator {
-    /// The next products are on this set: they start from vectors that vanish where it is active, and only the free part of
-    /// their result counts. Stays symmetric on such vectors.
+    /// The next products are on this set: they start from vectors that vanish where it is active, and only the free
+    /// part of their result counts. Stays symmetric on such vectors.
     fn enter(&self, _active: &ActiveSetView<'_>, _s: &mut Self::Scratch) {}
 }
 

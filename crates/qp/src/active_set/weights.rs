@@ -6,10 +6,11 @@ use crate::problem::{EqualityProjector, SymmetricOperator};
 use super::iterate::Iterate;
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
-    /// Hands the weights of the active set to the projector; whether it factored anew, `None` if they do not hold every mode.
+    /// Hands the weights of the active set to the projector; whether it factored anew, `None` if they do not hold
+    /// every mode.
     ///
-    /// The directions of points that slide belong to them, too. Where predictions run in circles, they are left out as long
-    /// as the other components suffice (`sparing`): measured, not proved, to need fewer sets there.
+    /// The directions of points that slide belong to them, too. Where predictions run in circles, they are left out
+    /// as long as the other components suffice (`sparing`): measured, not proved, to need fewer sets there.
     pub(crate) fn set_weights(&mut self, sparing: bool) -> Result<Option<bool>, QpError> {
         match self.weigh(sparing) {
             Ok(factored) => Ok(Some(factored)),
@@ -40,9 +41,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         Ok(factored)
     }
 
-    /// As [`set_weights`](Iterate::set_weights); where the free components, and the points that slide along their circles, do
-    /// not hold every mode, those that slide least are taken for sticking, as many as it needs, and in the end every component
-    /// for free.
+    /// As [`set_weights`](Iterate::set_weights); where the free components, and the points that slide along their
+    /// circles, do not hold every mode, those that slide least are taken for sticking, as many as it needs, and in
+    /// the end every component for free.
     pub(crate) fn hold_modes(&mut self, sparing: bool) -> Result<bool, QpError> {
         let mut factored = false;
         let mut sparing = sparing;

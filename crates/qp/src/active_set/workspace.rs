@@ -5,8 +5,8 @@ use crate::problem::{LineWeight, SymmetricOperator};
 use super::blocks::ActiveSet;
 use super::coupling::{Coupling, RadiusSlope};
 
-/// Vectors of the active-set method: six of the length of `x`, a seventh where radii follow other components, three of its
-/// constrained part and the classification of the blocks.
+/// Vectors of the active-set method: six of the length of `x`, a seventh where radii follow other components, three
+/// of its constrained part and the classification of the blocks.
 #[derive(Debug)]
 pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) operator: A::Scratch,
@@ -54,9 +54,9 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
         }
     }
 
-    /// Tells how the hook moves the radii, for the solves to come: conjugate gradients then take this along instead of
-    /// meeting it at each change of the active set. Optional; a disc without a slope is moved by the hook alone. The solution
-    /// does not depend on it. Slopes in the order of the discs are found fastest.
+    /// Tells how the hook moves the radii, for the solves to come: conjugate gradients then take this along instead
+    /// of meeting it at each change of the active set. Optional; a disc without a slope is moved by the hook alone.
+    /// The solution does not depend on it. Slopes in the order of the discs are found fastest.
     pub fn set_slopes(&mut self, slopes: &[RadiusSlope]) {
         self.coupling.set(slopes);
     }

@@ -42,9 +42,9 @@ pub struct Kkt {
 }
 
 impl Kkt {
-    /// The largest of the relative figures: infeasibility and equality over [`primal_size`](Self::primal_size), stationarity
-    /// over [`dual_size`](Self::dual_size), all without units. A distance of zero counts as zero. Not a number if one of them is
-    /// none.
+    /// The largest of the relative figures: infeasibility and equality over [`primal_size`](Self::primal_size),
+    /// stationarity over [`dual_size`](Self::dual_size), all without units. A distance of zero counts as zero. Not a
+    /// number if one of them is none.
     #[must_use]
     pub fn relative(&self) -> f64 {
         let over = |v: f64, size: f64| if v == 0.0 { 0.0 } else { v / size };
@@ -88,8 +88,8 @@ pub fn check<A: SymmetricOperator>(
 /// and turns gradients into steps. Allocates.
 ///
 /// # Errors
-/// [`QpError::Length`] for lengths that do not fit, [`QpError::Input`] for what is not finite, [`QpError::Setting`] for a scale
-/// that is not positive.
+/// [`QpError::Length`] for lengths that do not fit, [`QpError::Input`] for what is not finite, [`QpError::Setting`]
+/// for a scale that is not positive.
 pub fn check_with<A: SymmetricOperator, C: Equality>(
     a: &A,
     b: &[f64],

@@ -6,8 +6,8 @@ use crate::settings::settings;
 
 /// How the active set is enlarged when a conjugate gradient step leaves the set.
 ///
-/// All of them first go to the boundary along the conjugate direction. The long steps (all but the first) are kept only if
-/// they decrease the cost enough, else a fixed step is made instead, counted in [`Products::fallback`].
+/// All of them first go to the boundary along the conjugate direction. The long steps (all but the first) are kept
+/// only if they decrease the cost enough, else a fixed step is made instead, counted in [`Products::fallback`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[non_exhaustive]
 pub enum Expansion {
@@ -54,7 +54,8 @@ pub struct KprgpReport {
     pub projected_gradient: f64,
     /// The tolerance it was compared with.
     pub tolerance: f64,
-    /// How often the fixed step was halved because it raised the cost: above 0 the `norm` given to the solver was too small.
+    /// How often the fixed step was halved because it raised the cost: above 0 the `norm` given to the solver was too
+    /// small.
     pub halvings: usize,
     /// By how much the cost decreased since the (projected) start.
     pub decrease: f64,

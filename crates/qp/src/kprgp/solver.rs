@@ -234,8 +234,9 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
         vector::copy(&self.v.phi, &mut self.v.p);
     }
 
-    /// `t` minimising the cost along `-p` for slope `gp = g·p` and curvature `pap = p·Ap`. Infinite where the curvature is
-    /// below rounding; but where the slope is, too, the fixed step, which lowers the cost whatever the curvature is.
+    /// `t` minimising the cost along `-p` for slope `gp = g·p` and curvature `pap = p·Ap`. Infinite where the
+    /// curvature is below rounding; but where the slope is, too, the fixed step, which lowers the cost whatever the
+    /// curvature is.
     fn minimising(&self, p: &[f64], gp: f64, pap: f64) -> Result<f64, QpError> {
         let products = self.products.total();
         if !(gp.is_finite() && pap.is_finite()) {
@@ -315,7 +316,8 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
         self.v.stale += 1;
     }
 
-    /// From the boundary point `x` to a point with more active blocks. `rest` is what is left of the conjugate gradient step.
+    /// From the boundary point `x` to a point with more active blocks. `rest` is what is left of the conjugate
+    /// gradient step.
     fn expand(&mut self, rest: f64, pap: f64) -> Result<(), QpError> {
         // Barzilai-Borwein length of the conjugate direction, the shorter of the two: p·Ap / Ap·Ap
         let spectral = pap / vector::dot(&self.v.ap, &self.v.ap);
@@ -412,8 +414,8 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
         Ok(())
     }
 
-    /// Projected step `x = P(x - t (g - phi))` on the active blocks, the reduced chopped gradient. Its length is that of
-    /// Barzilai and Borwein of the last release: points that slide along their discs move at their own scale.
+    /// Projected step `x = P(x - t (g - phi))` on the active blocks, the reduced chopped gradient. Its length is that
+    /// of Barzilai and Borwein of the last release: points that slide along their discs move at their own scale.
     fn release(&mut self) {
         let long = self.spectral.is_finite() && self.spectral > self.fixed;
         let mut t = if long { self.spectral } else { self.fixed };

@@ -1,7 +1,7 @@
 //! The two things a solver asks of a problem: a symmetric product and an orthonormal constraint matrix.
 //!
-//! Operators are immutable and shared; what a product writes to is a typed scratch that the caller owns and creates once, so
-//! that a product allocates nothing.
+//! Operators are immutable and shared; what a product writes to is a typed scratch that the caller owns and creates
+//! once, so that a product allocates nothing.
 
 /// A symmetric linear operator `A` on vectors of length [`dim`](SymmetricOperator::dim).
 ///

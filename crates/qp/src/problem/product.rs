@@ -219,8 +219,8 @@ impl ProductSet {
     }
 }
 
-/// For every segment of a set: `free` on the range of its components if they are unconstrained, else `body` on the shape of
-/// each block and its first component.
+/// For every segment of a set: `free` on the range of its components if they are unconstrained, else `body` on the
+/// shape of each block and its first component.
 macro_rules! walk {
     ($set:expr, $range:ident => $free:expr, ($shape:ident, $at:ident) => $body:expr) => {
         for (segment, $range) in $set.parts() {

@@ -52,8 +52,8 @@ pub trait EqualityProjector {
 
     // Steps that round.
 
-    /// Whether the steps of an iteration are projected in less than working precision; `G x = e` then has to be restored
-    /// after many of them.
+    /// Whether the steps of an iteration are projected in less than working precision; `G x = e` then has to be
+    /// restored after many of them.
     #[doc(hidden)]
     fn rounds_steps(&self) -> bool {
         false
@@ -89,8 +89,8 @@ pub trait EqualityProjector {
         &[]
     }
 
-    /// Whether the components of weight zero, at their values in `x`, leave a balance that the others can complete: modes
-    /// that no component of positive weight stops must see no work of `e - G x`.
+    /// Whether the components of weight zero, at their values in `x`, leave a balance that the others can complete:
+    /// modes that no component of positive weight stops must see no work of `e - G x`.
     #[doc(hidden)]
     fn balances(&mut self, _x: &[f64], _e: &[f64]) -> bool {
         true
@@ -104,7 +104,8 @@ pub trait EqualityProjector {
     }
 }
 
-/// Weight `weight * c cᵀ` on the rows `row` and `row + 1` of `Gᵀ`, which are components of `x`; `c` is the unit `direction`.
+/// Weight `weight * c cᵀ` on the rows `row` and `row + 1` of `Gᵀ`, which are components of `x`; `c` is the unit
+/// `direction`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineWeight {
     /// First of the two rows.

@@ -13,8 +13,8 @@ settings! {
     SmalseSettings {
         /// Projected gradient at the end: `eps_1`.
         tolerance, with_tolerance: Tolerance = Tolerance::Relative(1e-6);
-        /// Residual `Cx - e` at the end, relative to the larger of `|x|` and `|e|` and to no less than what rounding errors of
-        /// `b` make of `x`: `eps_1 M_0`.
+        /// Residual `Cx - e` at the end, relative to the larger of `|x|` and `|e|` and to no less than what rounding
+        /// errors of `b` make of `x`: `eps_1 M_0`.
         equality, with_equality: f64 = 1e-6, in "(0, inf)";
         /// Penalty relative to the norm of `PAP`: `rho`.
         penalty, with_penalty: f64 = 3.0, in "(0, inf)";
@@ -150,8 +150,8 @@ impl<A: SymmetricOperator, C: Equality> SmalseWorkspace<A, C> {
         &self.residual
     }
 
-    /// Multiplier `mu` of `C x = e` in the original problem: `A y - b + Cᵀ mu` is the gradient of the Lagrangian. (The in/out
-    /// multiplier of [`smalse`](crate::smalse()) belongs to the projected problem.)
+    /// Multiplier `mu` of `C x = e` in the original problem: `A y - b + Cᵀ mu` is the gradient of the Lagrangian.
+    /// (The in/out multiplier of [`smalse`](crate::smalse()) belongs to the projected problem.)
     #[must_use]
     pub fn equality_multiplier(&self) -> &[f64] {
         &self.mu

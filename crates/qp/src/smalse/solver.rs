@@ -279,8 +279,9 @@ where
         }
     }
 
-    /// Whether the Lagrangian grew enough since the step before. Step 4 compares `L_k = L(x_k, beta_k)` with `L_{k-1}`: from
-    /// `x_{k-1}` with `beta_k` Step 1 went down by `decrease`, and the new multiplier had added `rho |C x_{k-1} - e|²` before.
+    /// Whether the Lagrangian grew enough since the step before. Step 4 compares `L_k = L(x_k, beta_k)` with
+    /// `L_{k-1}`: from `x_{k-1}` with `beta_k` Step 1 went down by `decrease`, and the new multiplier had added `rho
+    /// |C x_{k-1} - e|²` before.
     fn lagrangian_grew(&self, decrease: f64) -> bool {
         let (rho, equality) = (self.o.rho, self.o.equality());
         let enough = |c: f64| rho * c * c - decrease >= 0.5 * rho * equality * equality;
@@ -324,8 +325,8 @@ where
     }
 }
 
-/// Reference of the tolerance: `|P (b - A C'e)|`, or `|P b|` for an absolute tolerance; and what of it may be rounding errors
-/// of a load that the equality carries alone.
+/// Reference of the tolerance: `|P (b - A C'e)|`, or `|P b|` for an absolute tolerance; and what of it may be
+/// rounding errors of a load that the equality carries alone.
 fn reference<A: SymmetricOperator, C: Equality>(
     o: &mut Penalised<'_, A, C>,
     tolerance: Tolerance,

@@ -65,7 +65,8 @@ proptest! {
         for i in 0..3 { x[6 + 2 * i] = 0.2; }
         let mut work = KprgpWorkspace::new(&a);
         let settings = KprgpSettings::default();
-        let report = kprgp(&a, &b, &set, norm, Tolerance::Relative(1e-10), &settings, &mut x, &mut work).expect("solve");
+        let t = Tolerance::Relative(1e-10);
+        let report = kprgp(&a, &b, &set, norm, t, &settings, &mut x, &mut work).expect("solve");
         prop_assert!(report.status.converged(), "{report:?}");
         prop_assert!(kkt::check(&a, &b, &set, &x, norm).expect("lengths").relative() <= 1e-9);
     }
@@ -170,7 +171,8 @@ fn limits_and_rounding_are_statuses() {
     assert!(report.products.total() < 5_000, "{report:?}");
 }
 
-/// A direction so small that its curvature underflows, beside a disc so small that the gradient on it cannot be lowered.
+/// A direction so small that its curvature underflows, beside a disc so small that the gradient on it cannot be
+/// lowered.
 #[test]
 fn curvature_that_underflows_is_no_descent_for_ever() {
     let a = DenseOperator::new(3, vec![1e-9, 0.0, 0.0, 0.0, 1e-9, 0.0, 0.0, 0.0, 1e-9]);

@@ -62,7 +62,8 @@ proptest! {
         vector::subtract(&back, &mut y);
         let mut fresh = common::product(&p.a, &y);
         vector::subtract(&p.b, &mut fresh);
-        prop_assert!(vector::distance(&fresh, &residual) <= 1e-9 * size.max(1e-300), "{}", vector::distance(&fresh, &residual));
+        let off = vector::distance(&fresh, &residual);
+        prop_assert!(off <= 1e-9 * size.max(1e-300), "{off}");
     }
 
     #[test]

@@ -14,7 +14,8 @@ impl Quadratic {
         cx
     }
 
-    /// `1/2 y·Ay - b·y + beta·(Cx - e) + rho/2 |Cx - e|²` at `y = x - Cᵀ(Cx - e)`, the unshifted Lagrangian up to a constant.
+    /// `1/2 y·Ay - b·y + beta·(Cx - e) + rho/2 |Cx - e|²` at `y = x - Cᵀ(Cx - e)`, the unshifted Lagrangian up to a
+    /// constant.
     fn lagrangian(&self, x: &[f64], beta: &[f64], rho: f64) -> f64 {
         let cx = self.residual(x);
         let mut y = vec![0.0; x.len()];

@@ -1,9 +1,10 @@
 //! Mesh files of Gmsh, format 4.1, text or binary (feature `gmsh`).
 //!
-//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are skipped, and nodes that no tetrahedron
-//! uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron that of its volume; if
-//! the file has no physical groups of that dimension, the numbers of the geometric entities are used, and surfaces between two
-//! volumes are skipped. Entities outside of the groups, if there are any groups, leave triangles untagged and give region 0.
+//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are skipped, and nodes that no
+//! tetrahedron uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron
+//! that of its volume; if the file has no physical groups of that dimension, the numbers of the geometric entities
+//! are used, and surfaces between two volumes are skipped. Entities outside of the groups, if there are any groups,
+//! leave triangles untagged and give region 0.
 //!
 //! `reader` takes the file apart, `names` has the names of the groups.
 
@@ -119,7 +120,7 @@ pub fn parse_named_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError
     Ok((mesh, names))
 }
 
-fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<(i32, i32, String)>), GmshError> {
+fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshError> {
     let file = reader::read(bytes)?;
     let mut points = file.points;
     let mut number = HashMap::with_capacity(file.tags.len());
@@ -192,7 +193,7 @@ struct Tags {
 }
 
 impl Tags {
-    fn new(what: &'static str, entities: &[(i32, Vec<i32>)]) -> Result<Self, GmshError> {
+    fn new(what: &'static str, entities: &[reader::Entity]) -> Result<Self, GmshError> {
         let mut group_of = HashMap::new();
         for &(entity, ref groups) in entities {
             // The sign of a group is an orientation.

@@ -18,13 +18,18 @@ const TYPES: [(i32, usize, &str, bool); 12] = [
     (15, 1, "point", true),
 ];
 
+/// Dimension, number and name of a physical group.
+pub(super) type Name = (i32, i32, String);
+
+/// Number and physical groups of a surface or volume.
+pub(super) type Entity = (i32, Vec<i32>);
+
 /// What a file holds.
 #[derive(Default)]
 pub(super) struct Contents {
-    /// Dimension, number and name of each named physical group.
-    pub(super) names: Vec<(i32, i32, String)>,
-    /// Number and physical groups of the surfaces, and of the volumes.
-    pub(super) entities: [Vec<(i32, Vec<i32>)>; 2],
+    pub(super) names: Vec<Name>,
+    /// Surfaces, and volumes.
+    pub(super) entities: [Vec<Entity>; 2],
     /// Node numbers and coordinates.
     pub(super) tags: Vec<u64>,
     pub(super) points: Vec<[f64; 3]>,
@@ -239,7 +244,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Names of groups: text also in binary files.
-    fn names(&mut self) -> Result<Vec<(i32, i32, String)>, GmshError> {
+    fn names(&mut self) -> Result<Vec<Name>, GmshError> {
         let is_binary = std::mem::replace(&mut self.is_binary, false);
         let mut names = Vec::new();
         for _ in 0..self.count(3)? {
@@ -257,8 +262,8 @@ impl<'a> Reader<'a> {
         Ok(names)
     }
 
-    /// Number and physical groups of the surfaces and of the volumes.
-    fn entities(&mut self) -> Result<[Vec<(i32, Vec<i32>)>; 2], GmshError> {
+    /// Surfaces, and volumes.
+    fn entities(&mut self) -> Result<[Vec<Entity>; 2], GmshError> {
         let counts = [
             self.count(5)?,
             self.count(9)?,
