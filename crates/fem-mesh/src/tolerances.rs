@@ -38,4 +38,5 @@ pub(crate) const PIVOT: f64 = 1e-6;
 // Series of files
 
 /// Difference of times over the time below which a step of a series is the one asked for.
+#[cfg(feature = "vtu")]
 pub(crate) const SAME_TIME: f64 = 1e-9;
