@@ -101,8 +101,8 @@ mod tolerances;
 pub mod vector;
 
 pub use active_set::{
-    ActiveSetHook, ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings,
-    ActiveSetView, ActiveSetWorkspace, Freedom, RadiusSlope, active_set,
+    ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetView,
+    ActiveSetWorkspace, Freedom, RadiusSlope, active_set,
 };
 pub use check::{NormEstimate, NormSettings, kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
@@ -114,9 +114,7 @@ pub use problem::{
 };
 pub use projected_cg::{CgReport, CgWorkspace, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};
-pub use smalse::{
-    HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace, smalse,
-};
+pub use smalse::{SmalseReport, SmalseSettings, SmalseWorkspace, smalse};
 
 /// What the crates of this workspace share beyond the interface.
 #[doc(hidden)]

@@ -46,8 +46,7 @@ pub enum Tolerance {
 
 impl Tolerance {
     /// The tolerance in the units of the gradient; `own` is the reference of the solver.
-    #[must_use]
-    pub fn resolve(self, own: f64) -> f64 {
+    pub(crate) fn resolve(self, own: f64) -> f64 {
         match self {
             Self::Absolute(t) => t,
             Self::Relative(f) | Self::Error { factor: f, .. } => f * own,

@@ -26,7 +26,7 @@ mod weights;
 mod workspace;
 
 pub use coupling::RadiusSlope;
-pub use problem::{ActiveSetHook, ActiveSetProblem};
+pub use problem::ActiveSetProblem;
 pub use settings::{ActiveSetReport, ActiveSetSettings};
 pub use solver::active_set;
 pub use view::{ActiveSetPreconditioner, ActiveSetView, Freedom};

@@ -18,4 +18,4 @@ pub struct ActiveSetProblem<'a, A, M> {
 }
 
 /// Is told the iterate after each settled active set and may change bounds and radii of the set.
-pub type ActiveSetHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
+pub(crate) type ActiveSetHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;

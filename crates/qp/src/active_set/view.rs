@@ -61,9 +61,3 @@ pub trait ActiveSetPreconditioner: SymmetricOperator {
 
 impl ActiveSetPreconditioner for Identity {}
 impl ActiveSetPreconditioner for DenseOperator {}
-
-impl<T: ActiveSetPreconditioner + ?Sized> ActiveSetPreconditioner for &T {
-    fn enter(&self, active: &ActiveSetView<'_>, s: &mut Self::Scratch) {
-        (**self).enter(active, s);
-    }
-}

@@ -50,35 +50,3 @@ pub trait Equality: Sync {
     /// is overwritten.
     fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut Self::Scratch);
 }
-
-impl<T: SymmetricOperator + ?Sized> SymmetricOperator for &T {
-    type Scratch = T::Scratch;
-    fn dim(&self) -> usize {
-        (**self).dim()
-    }
-    fn scratch(&self) -> Self::Scratch {
-        (**self).scratch()
-    }
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut Self::Scratch) {
-        (**self).apply(x, y, s);
-    }
-}
-
-impl<T: Equality + ?Sized> Equality for &T {
-    type Scratch = T::Scratch;
-    fn dim(&self) -> usize {
-        (**self).dim()
-    }
-    fn rows(&self) -> usize {
-        (**self).rows()
-    }
-    fn scratch(&self) -> Self::Scratch {
-        (**self).scratch()
-    }
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut Self::Scratch) {
-        (**self).apply(x, y, s);
-    }
-    fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut Self::Scratch) {
-        (**self).apply_transpose(y, x, s);
-    }
-}

@@ -10,7 +10,5 @@ mod penalised;
 mod settings;
 mod solver;
 
-pub use settings::{
-    HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace,
-};
+pub use settings::{SmalseReport, SmalseSettings, SmalseWorkspace};
 pub use solver::smalse;

@@ -41,51 +41,9 @@ impl SmalseSettings {
     }
 }
 
-/// What a hook sees after Step 1 of an outer step.
-#[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
-pub struct OuterStep<'a> {
-    /// Number of the outer step, from 0.
-    pub index: usize,
-    /// Iterate, feasible for the set as it is before the hook.
-    pub x: &'a [f64],
-    /// Norm of the projected gradient.
-    pub projected_gradient: f64,
-    /// `|C x - e|`.
-    pub equality: f64,
-    /// Whether both are within their tolerances: the solve ends here if the hook changes nothing.
-    pub converged: bool,
-    /// Operator products so far.
-    pub products: usize,
-}
-
-/// What a hook did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HookAction {
-    /// Nothing, or nothing that matters: the solve may end.
-    Continue,
-    /// The set (radii, bounds) was changed: `x` is projected on it again and the solve goes on.
-    SetChanged,
-}
-
-/// Called after Step 1 of every outer step; may change the set. Closures of that form implement it, `()`
-/// does nothing.
-pub trait OuterHook<S: ?Sized> {
-    /// See [`OuterHook`].
-    fn after_step(&mut self, step: &OuterStep<'_>, set: &mut S) -> HookAction;
-}
-
-impl<S: ?Sized> OuterHook<S> for () {
-    fn after_step(&mut self, _step: &OuterStep<'_>, _set: &mut S) -> HookAction {
-        HookAction::Continue
-    }
-}
-
-impl<S: ?Sized, F: FnMut(&OuterStep<'_>, &mut S) -> HookAction> OuterHook<S> for F {
-    fn after_step(&mut self, step: &OuterStep<'_>, set: &mut S) -> HookAction {
-        self(step, set)
-    }
-}
+/// Is told the iterate, feasible for the set as it is, after Step 1 of every outer step, and may change the set; whether it
+/// did anything that matters. If it did, `x` is projected on the set again and the solve goes on.
+pub(crate) type OuterHook<'h, S> = dyn FnMut(&[f64], &mut S) -> bool + 'h;
 
 /// Result of [`smalse`](crate::smalse()).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -28,16 +28,14 @@ use crate::tolerances::{LEAST_PRECISION, PROJECTED_LOAD, STAGNATIONS};
 use crate::vector;
 
 use super::penalised::Penalised;
-use super::settings::{
-    HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace,
-};
+use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
 
 /// Minimises `1/2 x·Ax - b·x` over `set` with `C x = e`, from the given `x` and `multiplier` (zeros, the
 /// last solution or an extrapolation, [`vector::extrapolate`]), which are overwritten by the result.
 ///
 /// `norm` is an upper bound of the norm of `PAP` ([`norm_estimate`](crate::norm_estimate) of
-/// [`Projected`](crate::Projected)). `hook` is called in every outer step and may change the
-/// set; pass `&mut ()` for none. On return `x` is feasible for the set as the hook left it, and the workspace
+/// [`Projected`](crate::Projected)). `hook` is told the iterate after Step 1 of every outer
+/// step, may change the set, and says whether it did; pass `&mut |_, _| false` for none. On return `x` is feasible for the set as the hook left it, and the workspace
 /// holds the gradient, `A x - b` and the multiplier of the original problem.
 ///
 /// # Errors
@@ -57,7 +55,8 @@ use super::settings::{
 /// let mut work = SmalseWorkspace::new(&a, &c);
 /// let settings = SmalseSettings::default();
 /// let report = smalse(
-///     &a, &[2.0, 0.0, 0.0], &c, &e, &mut set, 1.0, &settings, &mut (), &mut x, &mut multiplier, &mut work,
+///     &a, &[2.0, 0.0, 0.0], &c, &e, &mut set, 1.0, &settings, &mut |_, _| false, &mut x,
+///     &mut multiplier, &mut work,
 /// )?;
 /// assert!(report.status.converged());
 /// assert!((x[0] - 1.0).abs() < 1e-5 && x[1].abs() < 1e-5);
@@ -71,7 +70,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     set: &mut S,
     norm: f64,
     settings: &SmalseSettings,
-    hook: &mut impl OuterHook<S>,
+    hook: &mut OuterHook<'_, S>,
     x: &mut [f64],
     multiplier: &mut [f64],
     work: &mut SmalseWorkspace<A, C>,
@@ -134,9 +133,9 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     let status = loop {
         // Step 1: x in the set with |g^K| <= min(M_k |C x - e|, eta)
         let inner = run.minimise()?;
-        let action = run.call_hook()?;
+        let changed = run.call_hook()?;
         // Step 2: done?
-        match run.judge(inner.status, action) {
+        match run.judge(inner.status, changed) {
             Verdict::End(status) => break status,
             Verdict::Again => continue,
             Verdict::Update => {}
@@ -147,7 +146,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         if !grew {
             run.shrink_precision();
         }
-        if action == HookAction::SetChanged {
+        if changed {
             run.follow_set();
         }
     };
@@ -157,11 +156,11 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
 }
 
 /// One solve.
-struct Run<'s, A: SymmetricOperator, C: Equality, S: ?Sized, H> {
+struct Run<'s, 'h, A: SymmetricOperator, C: Equality, S: ?Sized> {
     o: Penalised<'s, A, C>,
     set: &'s mut S,
     settings: &'s SmalseSettings,
-    hook: &'s mut H,
+    hook: &'s mut OuterHook<'h, S>,
     x: &'s mut [f64],
     v: &'s mut Vectors,
     /// What the equality is measured against if `x` is smaller: `|e|`, or what rounding errors of the load make of `x`.
@@ -186,13 +185,7 @@ enum Verdict {
     Update,
 }
 
-impl<A, C, S, H> Run<'_, A, C, S, H>
-where
-    A: SymmetricOperator,
-    C: Equality,
-    S: ConvexSet + ?Sized,
-    H: OuterHook<S>,
-{
+impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C, S> {
     /// Tolerances, and the first gradient.
     fn start(&mut self) -> Result<(), QpError> {
         let (o, settings) = (&mut self.o, self.settings);
@@ -235,28 +228,20 @@ where
     }
 
     /// The hook; if it changed the set, `x` is projected on it, and `v.p` keeps it as it was.
-    fn call_hook(&mut self) -> Result<HookAction, QpError> {
-        let step = OuterStep {
-            index: self.outer - 1,
-            x: self.x,
-            projected_gradient: self.gradient,
-            equality: self.o.equality(),
-            converged: self.within,
-            products: self.products.total(),
-        };
-        let action = self.hook.after_step(&step, self.set);
-        if action == HookAction::SetChanged {
+    fn call_hook(&mut self) -> Result<bool, QpError> {
+        let changed = (self.hook)(self.x, self.set);
+        if changed {
             self.set.validate()?;
             expect_length("the set after the hook", self.set.dim(), self.x.len())?;
             vector::copy(self.x, &mut self.v.p);
             self.set.project(self.x);
         }
-        Ok(action)
+        Ok(changed)
     }
 
     /// Step 2.
-    fn judge(&mut self, inner: Status, action: HookAction) -> Verdict {
-        let done = self.within && action == HookAction::Continue;
+    fn judge(&mut self, inner: Status, changed: bool) -> Verdict {
+        let done = self.within && !changed;
         if done {
             if !drifted(self.o.norm(), self.x, self.v.stale, self.o.floor) {
                 return Verdict::End(Status::Converged);

@@ -51,7 +51,7 @@ fn solves_allocate_nothing() {
             &mut set,
             norm,
             &settings,
-            &mut (),
+            &mut |_, _| false,
             &mut x,
             &mut beta,
             &mut work,

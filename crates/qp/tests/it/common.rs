@@ -1,10 +1,9 @@
 //! Random problems from a fixed sequence.
 use signorini_qp::{
-    ActiveSetHook, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace,
-    DenseEquality, DenseOperator, EqualityProjector, Identity, KprgpSettings, KprgpWorkspace,
-    OuterHook, ProductSet, Projected, QpError, RadiusSlope, Segment, SmalseReport, SmalseSettings,
-    SmalseWorkspace, Status, SymmetricOperator, Tolerance, active_set, kprgp, norm_estimate,
-    smalse, vector,
+    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseEquality,
+    DenseOperator, EqualityProjector, Identity, KprgpSettings, KprgpWorkspace, ProductSet,
+    Projected, QpError, RadiusSlope, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
+    Status, SymmetricOperator, Tolerance, active_set, kprgp, norm_estimate, smalse, vector,
 };
 
 /// Reproducible numbers.
@@ -195,7 +194,7 @@ impl Quadratic {
     pub(crate) fn smalse(
         &mut self,
         settings: &SmalseSettings,
-        hook: &mut impl OuterHook<ProductSet>,
+        hook: &mut dyn FnMut(&[f64], &mut ProductSet) -> bool,
         x: &mut [f64],
         beta: &mut [f64],
     ) -> (SmalseReport, Vec<f64>, Vec<f64>) {
@@ -233,7 +232,7 @@ pub(crate) fn from_zero(
     (linear, rhs): (&[f64], &[f64]),
     settings: &ActiveSetSettings,
     (ax_known, slopes): (bool, &[RadiusSlope]),
-    hook: &mut ActiveSetHook<'_>,
+    hook: &mut dyn FnMut(&[f64], &mut ProductSet),
 ) -> Result<Solved, QpError> {
     let n = a.dim();
     let identity = Identity(n);

@@ -163,7 +163,7 @@ fn equalities_agree_with_clarabel() {
             .with_equality(1e-10)
             .with_max_outer(20_000)
             .with_inner(KprgpSettings::default().with_max_products(500_000));
-        let (report, ..) = p.smalse(&settings, &mut (), &mut x, &mut beta);
+        let (report, ..) = p.smalse(&settings, &mut |_, _| false, &mut x, &mut beta);
         assert!(report.status.converged(), "seed {seed}: {report:?}");
         let y = reference(&p.a, &p.b, &p.set, Some((&p.c, &p.e)));
         let gap = vector::distance(&x, &y) / vector::norm(&x).max(1.0);

@@ -77,7 +77,7 @@ fn wrong_input_of_smalse_is_named() {
             &mut set,
             1.0,
             s,
-            &mut (),
+            &mut |_, _| false,
             &mut [0.0; 2],
             beta,
             &mut work,

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kkt::{EqualityPart, check_with};
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, HookAction, KprgpSettings, OuterStep,
-    ProductSet, Segment, SmalseSettings, Status, Tolerance, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment,
+    SmalseSettings, Status, Tolerance, vector,
 };
 
 fn config() -> ProptestConfig {
@@ -44,7 +44,7 @@ proptest! {
         let mut p = problem(seed);
         let n = p.set.dim();
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.c.rows()]);
-        let (report, residual, mu) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
+        let (report, residual, mu) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
         prop_assert!(report.status.converged(), "{report:?} {:?}", p.set);
         let part = EqualityPart { c: &p.c, e: &p.e, multiplier: &mu };
         let check = check_with(&p.a, &p.b, &p.set, Some(part), &x, p.norm).expect("lengths");
@@ -70,10 +70,10 @@ proptest! {
     fn a_warm_start_from_the_solution_needs_two_products(seed in any::<u64>()) {
         let mut p = problem(seed);
         let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
-        let (first, ..) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
+        let (first, ..) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
         prop_assert!(first.status.converged());
         let loose = tight().with_tolerance(Tolerance::Relative(2e-8)).with_equality(2e-8);
-        let (again, ..) = p.smalse(&loose, &mut (), &mut x, &mut beta);
+        let (again, ..) = p.smalse(&loose, &mut |_, _| false, &mut x, &mut beta);
         prop_assert!(again.status.converged());
         prop_assert!(again.products.total() <= 2 && again.outer == 1, "{again:?}");
     }
@@ -87,7 +87,12 @@ fn no_rows_no_outer_loop() {
     let c = DenseEquality::orthonormal(0, 8, &[]).expect("empty");
     let set = ProductSet::new(vec![Segment::lower(vec![0.0; 8])]).expect("set");
     let mut p = Quadratic::new(a, r.vector(8), (c, vec![]), set);
-    let (report, ..) = p.smalse(&SmalseSettings::default(), &mut (), &mut [0.0; 8], &mut []);
+    let (report, ..) = p.smalse(
+        &SmalseSettings::default(),
+        &mut |_, _| false,
+        &mut [0.0; 8],
+        &mut [],
+    );
     assert!(report.status.converged() && report.outer == 1);
 }
 
@@ -101,7 +106,7 @@ fn equalities_alone() {
     let equality = common::equality(n, 3, &set, &mut r);
     let mut p = Quadratic::new(a, r.vector(n), equality, set);
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; 3]);
-    let (report, _, mu) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
+    let (report, _, mu) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
     assert!(report.status.converged());
     // A x - b + C' mu = 0
     let mut g = common::product(&p.a, &x);
@@ -130,20 +135,18 @@ fn the_hook_may_change_radii() {
     let mut p = Quadratic::new(a, r.vector(n), (c, vec![0.1, -0.2]), start());
     let friction = 0.3;
     let mut changes = 0;
-    let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
+    let mut hook = |x: &[f64], set: &mut ProductSet| {
         let radii = set.radii_mut(1).expect("discs");
         let mut change: f64 = 0.0;
         for i in 0..m {
-            let new = -friction * step.x[i];
+            let new = -friction * x[i];
             change = change.max((new - radii[i]).abs());
             radii[i] = new;
         }
         if change > 1e-9 {
             changes += 1;
-            HookAction::SetChanged
-        } else {
-            HookAction::Continue
         }
+        change > 1e-9
     };
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; 2]);
     let (report, ..) = p.smalse(&tight(), &mut hook, &mut x, &mut beta);
@@ -156,7 +159,7 @@ fn the_hook_may_change_radii() {
         for i in 0..m {
             p.set.radii_mut(1).expect("discs")[i] = -friction * y[i];
         }
-        p.smalse(&tight(), &mut (), &mut y, &mut gamma);
+        p.smalse(&tight(), &mut |_, _| false, &mut y, &mut gamma);
     }
     assert!(
         vector::distance(&x, &y) <= 1e-6,
@@ -169,7 +172,7 @@ fn the_hook_may_change_radii() {
 fn outer_steps_cost_no_product() {
     let mut p = problem(77);
     let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
-    let (report, ..) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
+    let (report, ..) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
     assert!(report.outer > 2, "{report:?}");
     let q = report.products;
     assert_eq!(q.initial, 1);
@@ -187,7 +190,7 @@ fn infeasible_equalities_do_not_converge_and_do_not_hang() {
         ..Quadratic::new(a, vec![1.0], (c, vec![-1.0]), set)
     };
     let settings = SmalseSettings::default().with_max_outer(50);
-    let (report, ..) = p.smalse(&settings, &mut (), &mut [0.0], &mut [0.0]);
+    let (report, ..) = p.smalse(&settings, &mut |_, _| false, &mut [0.0], &mut [0.0]);
     assert_eq!(report.status, Status::IterationLimit);
 }
 
@@ -219,7 +222,12 @@ fn products_stay_within_a_band() {
     .expect("set");
     let mut p = Quadratic::new(a, b, (c, e), set);
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; rows]);
-    let (report, ..) = p.smalse(&SmalseSettings::default(), &mut (), &mut x, &mut beta);
+    let (report, ..) = p.smalse(
+        &SmalseSettings::default(),
+        &mut |_, _| false,
+        &mut x,
+        &mut beta,
+    );
     assert!(report.status.converged(), "{report:?}");
     let products = report.products.total();
     assert!((90..=135).contains(&products), "{products}");
@@ -230,6 +238,6 @@ fn products_stay_within_a_band() {
 fn two_projections_a_product() {
     let mut p = problem(77);
     let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
-    let (report, ..) = p.smalse(&tight(), &mut (), &mut x, &mut beta);
+    let (report, ..) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
     assert!(report.projections <= 2 * report.products.total());
 }

@@ -2,8 +2,7 @@
 
 use crate::common::{self, Quadratic, Random};
 use signorini_qp::{
-    ConvexSet, Equality, HookAction, KprgpSettings, OuterStep, ProductSet, SmalseReport,
-    SmalseSettings, Tolerance, vector,
+    ConvexSet, Equality, KprgpSettings, ProductSet, SmalseReport, SmalseSettings, Tolerance, vector,
 };
 
 impl Quadratic {
@@ -39,9 +38,9 @@ impl Quadratic {
             .with_inner(KprgpSettings::default().with_max_products(100_000));
         let (mut x, mut beta) = (vec![0.0; self.b.len()], vec![0.0; self.c.rows()]);
         let mut iterates = Vec::new();
-        let mut hook = |step: &OuterStep<'_>, _: &mut ProductSet| {
-            iterates.push(step.x.to_vec());
-            HookAction::Continue
+        let mut hook = |x: &[f64], _: &mut ProductSet| {
+            iterates.push(x.to_vec());
+            false
         };
         let (report, ..) = self.smalse(&settings, &mut hook, &mut x, &mut beta);
         (report, iterates)
