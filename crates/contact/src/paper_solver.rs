@@ -12,8 +12,8 @@ use crate::solver::{Iterate, is_coulomb, level_status};
 use signorini_qp::internal::Contraction;
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
-    HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
-    SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
+    NormSettings, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
+    Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
 
@@ -113,8 +113,13 @@ impl SmalseSolver {
         if !is_coulomb(model) {
             level.slip_bounds(model, &iterate.lambda, &mut self.set);
             report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
-            let qp =
-                self.given_friction(model, level, settings.tolerance * SAFETY, &mut (), iterate)?;
+            let qp = self.given_friction(
+                model,
+                level,
+                settings.tolerance * SAFETY,
+                &mut |_, _| false,
+                iterate,
+            )?;
             add(&mut report, &qp);
             report.iterations = 1;
             report.status = level_status(qp.status);
@@ -139,7 +144,7 @@ impl SmalseSolver {
         model: &Model,
         level: &StepProblem,
         tolerance: f64,
-        hook: &mut impl OuterHook<ProductSet>,
+        hook: &mut dyn FnMut(&[f64], &mut ProductSet) -> bool,
         iterate: &mut Iterate,
     ) -> Result<SmalseReport, ContactError> {
         let settings = self
@@ -213,7 +218,7 @@ impl SmalseSolver {
                 level.slip_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
                 let qp = self
-                    .given_friction(model, level, tolerance, &mut (), iterate)
+                    .given_friction(model, level, tolerance, &mut |_, _| false, iterate)
                     .map_err(Some)?;
                 inner = qp.status;
                 add(report, &qp);
@@ -264,9 +269,9 @@ impl SmalseSolver {
         // bounds of normal forces that vanish
         let coefficient = level.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
         let least = coefficient * level.least()[1];
-        let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
+        let mut hook = |x: &[f64], set: &mut ProductSet| {
             let old = radii(set);
-            level.slip_bounds(model, step.x, set);
+            level.slip_bounds(model, x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
@@ -276,11 +281,8 @@ impl SmalseSolver {
                 difference / vector::norm(&new).max(least)
             };
             contraction.record(difference);
-            if last_change < tolerance {
-                HookAction::Continue
-            } else {
-                HookAction::SetChanged
-            }
+            let settled = last_change < tolerance;
+            !settled
         };
         let qp = self.given_friction(model, level, tolerance, &mut hook, iterate)?;
         add(report, &qp);
