@@ -5,7 +5,9 @@ use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 use signorini::fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::internal::InverseKind;
-use signorini::tfeti::{ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
+use signorini::tfeti::{
+    ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError,
+};
 use std::time::Instant;
 
 /// Errors of all crates.

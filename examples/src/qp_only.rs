@@ -130,7 +130,7 @@ pub fn disc() -> Result<DiscResult, QpError> {
         &mut set,
         1.0,
         &settings,
-        &mut (),
+        &mut |_, _| false,
         &mut x,
         &mut multiplier,
         &mut work,

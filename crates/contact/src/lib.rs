@@ -92,8 +92,7 @@ pub use error::ContactError;
 pub use model::ConstrainedPoint;
 pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
 pub use report::{
-    AccumulatedError, AccuracyReport, AlgebraicError, Counters, FixedPointReport, RunReport,
-    StepReport, Verdict,
+    AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport,
 };
 pub use result::{
     Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant,
@@ -104,6 +103,7 @@ pub use scene::{
     Partition, Place, PlaceField, RateField, Scene, SlipBound, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
+pub use signorini_qp::{FixedPointReport, Verdict};
 pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
 pub use simulation::{Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError};

@@ -172,9 +172,6 @@ pub(crate) const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Singular values below this part of one count as zero.
 pub(crate) const NULL_RANK: f64 = 1e-9;
 
-/// Mean ratio of changes from which they count as not shrinking.
-pub(crate) const GROWTH: f64 = 0.98;
-
 // ---- points and accumulated errors (result, report) ----
 
 /// Part of all forces that a vanishing contact force is measured against.

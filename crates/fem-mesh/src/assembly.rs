@@ -4,40 +4,20 @@
 //! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
 //! no sum depends on their number, so the result is the same bit for bit for any thread count.
 
+use crate::element::{Element, nodal_stress, stiffness_block};
+use crate::material::Hooke;
+use crate::tables::{buckets, range};
 use rayon::prelude::*;
 use sprs::CsMat;
-use thiserror::Error;
 
-use crate::buckets::{buckets, range};
-use crate::decomposition::Subdomain;
-use crate::element::{Element, nodal_stress, stiffness_block};
-use crate::hooke::Hooke;
-use crate::materials::{MaterialError, Materials};
-use crate::mesh::TetMesh;
-
-/// A stiffness that cannot be assembled.
-#[derive(Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum AssemblyError {
-    /// A tetrahedron names a node that does not exist.
-    #[error(
-        "tetrahedron {tet} names node {node}, but there are only {nodes} nodes; give the nodes and tetrahedra of the same mesh or subdomain"
-    )]
-    NodeOutOfRange {
-        /// Tetrahedron number.
-        tet: usize,
-        /// The node that it names.
-        node: u32,
-        /// Number of nodes.
-        nodes: usize,
-    },
-    /// The subdomain names a tetrahedron or node that the mesh lacks, or its tables of tetrahedra
-    /// differ in length.
-    #[error("the subdomain does not belong to this mesh; decompose the mesh that is assembled")]
-    ForeignSubdomain,
-    /// A region has no material.
-    #[error(transparent)]
-    Material(#[from] MaterialError),
+errors! {
+    /// A stiffness that cannot be assembled.
+    #[derive(Clone, PartialEq, Eq)]
+    AssemblyError {
+        NodeOutOfRange { tet: usize, node: u32, nodes: usize } =
+            "tetrahedron {tet} names node {node}, but there are only {nodes} nodes; give the nodes and tetrahedra of \
+            the same mesh or subdomain";
+    }
 }
 
 /// Assembles the stiffness of linear tetrahedra.
@@ -101,28 +81,6 @@ pub fn assemble_stiffness<'h>(
         indices,
         data,
     ))
-}
-
-/// Assembles the stiffness of a subdomain with the materials of its regions.
-///
-/// # Errors
-/// [`AssemblyError`] if a region has no material or the subdomain is not one of this mesh.
-pub fn subdomain_stiffness(
-    mesh: &TetMesh,
-    subdomain: &Subdomain,
-    materials: &Materials,
-) -> Result<CsMat<f64>, AssemblyError> {
-    if subdomain.elements.len() != subdomain.tets.len() {
-        return Err(AssemblyError::ForeignSubdomain);
-    }
-    let region = |&tet: &u32| mesh.regions().get(tet as usize).copied();
-    let regions: Option<Vec<u32>> = subdomain.elements.iter().map(region).collect();
-    let regions = regions.ok_or(AssemblyError::ForeignSubdomain)?;
-    let point = |&node: &u32| mesh.points().get(node as usize).copied();
-    let points: Option<Vec<_>> = subdomain.nodes.iter().map(point).collect();
-    let points = points.ok_or(AssemblyError::ForeignSubdomain)?;
-    let laws = materials.of_tets(&regions)?;
-    assemble_stiffness(&points, &subdomain.tets, |tet| laws[tet])
 }
 
 type Block = [[f64; 3]; 3];

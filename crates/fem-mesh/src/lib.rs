@@ -7,9 +7,10 @@
 //!
 //! | you want | you use |
 //! |---|---|
-//! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`); [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
+//! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`) |
+//! | another mesh of it | [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
-//! | a stiffness | [`assemble_stiffness`], [`subdomain_stiffness`], [`element_stiffness`] |
+//! | a stiffness | [`assemble_stiffness`], [`Element`] |
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
 //! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`], [`compact_parts`] |
 //! | a contact surface | [`Surface`] with a [`SurfaceFrame`] and an area at each node |
@@ -24,16 +25,15 @@
 //!
 //! ```
 //! use signorini_fem_mesh::brick::{Brick, Z_MAX, Z_MIN};
-//! use signorini_fem_mesh::{
-//!     Decomposition, Hooke, LoadDensity, Materials, Surface, assemble_load, subdomain_stiffness,
-//! };
+//! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Surface, assemble_load, assemble_stiffness};
 //!
 //! let mesh = Brick::new([3.0, 1.0, 1.0], [15, 5, 5]).build()?;
-//! let steel = Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?);
+//! let steel = Hooke::isotropic(211.9e9, 0.277)?;
 //!
 //! let parts = Decomposition::boxes(&mesh, [3, 1, 1])?;
 //! assert_eq!(parts.torn_dofs(), 1944);
-//! let stiffness = subdomain_stiffness(&mesh, &parts.subdomains()[0], &steel)?;
+//! let first = &parts.subdomains()[0];
+//! let stiffness = assemble_stiffness(&first.points(&mesh), &first.tets, |_| &steel)?;
 //! assert_eq!(stiffness.shape(), (648, 648));
 //!
 //! let pressure = LoadDensity::pressure(Z_MAX, 1e6);
@@ -60,11 +60,11 @@
 //!
 //! # What can go wrong
 //!
-//! Every type checks its input on construction and answers with a typed error that names the
-//! place and a remedy: [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`],
-//! [`AssemblyError`], [`DecompositionError`], [`SurfaceError`], [`LoadError`], [`HistoryError`],
-//! [`FieldError`]. They print their sentence with `{:?}`, too, which is what a `main` that returns
-//! one shows. Later steps rely on those checks and do not repeat them. Accessors that take an index panic if it is out of range, like a slice, and say so.
+//! Every type checks its input on construction and answers with a typed error that names the place and a remedy:
+//! [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
+//! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. They print their sentence with `{:?}`, too,
+//! which is what a `main` that returns one shows. Later steps rely on those checks and do not repeat them. Accessors
+//! that take an index panic if it is out of range, like a slice, and say so.
 //!
 //! # Parallelism
 //!
@@ -73,7 +73,7 @@
 //!
 //! # Features
 //!
-//! None is on by default. `vtu` adds [`output`] (crate vtkio), `gmsh` adds [`gmsh`] (crate mshio), `serde` lets
+//! None is on by default. `vtu` adds [`output`] (crate flate2), `gmsh` adds [`gmsh`], `serde` lets
 //! [`FacetTag`], [`Facet`], [`SurfaceFrame`] and [`Brick`] be serialised (crate serde).
 
 #![cfg_attr(
@@ -81,79 +81,50 @@
     allow(rustdoc::broken_intra_doc_links)
 )]
 
-pub mod brick;
-pub mod fields;
-#[cfg(feature = "gmsh")]
-pub mod gmsh;
-#[cfg(feature = "vtu")]
-pub mod output;
-pub mod recovery;
+#[macro_use]
+mod errors;
 
 mod assembly;
-mod buckets;
-mod compact;
 mod decomposition;
-mod disjoint;
 mod element;
+pub mod fields;
 mod files;
-mod history;
-mod hooke;
-mod load;
-mod locate;
-mod materials;
+mod loads;
+mod material;
 mod mesh;
-mod norms;
-mod quadrature;
-mod surface;
-mod vec3;
+pub mod recovery;
+mod tables;
+mod tolerances;
+#[doc(hidden)]
+pub mod vec3;
 
-pub use assembly::{AssemblyError, assemble_stiffness, subdomain_stiffness};
-pub use brick::{Brick, BrickError};
-pub use buckets::buckets;
-pub use compact::compact_parts;
+pub use assembly::{AssemblyError, assemble_stiffness};
 pub use decomposition::{
-    Decomposition, DecompositionError, NodeCopy, Subdomain, split_disconnected,
+    Decomposition, DecompositionError, NodeCopy, Subdomain, compact_parts, split_disconnected,
 };
-pub use disjoint::DisjointSets;
-pub use element::{Element, element_stiffness};
-pub use fields::FieldError;
-pub use files::replace_file;
-pub use history::{History, HistoryError, interpolate};
-pub use hooke::{Hooke, HookeError};
-pub use load::{LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
-pub use locate::{Locator, energy_of_difference};
-pub use materials::{MaterialError, Materials};
-pub use mesh::{
-    BoundaryFacet, Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, merge_nodes, orient_tets,
+pub use element::Element;
+pub use fields::{
+    FieldError, Locator, energy_of_difference, energy_of_error, h1_seminorm_error, l2_error,
 };
-pub use norms::{h1_seminorm_error, l2_error};
-pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error, energy_of_error};
-pub use surface::{Surface, SurfaceError, SurfaceFrame};
-
-/// Errors print their sentence with `{:?}`, too: that is what a user sees of a `main` that returns one.
-macro_rules! debug_is_display {
-    ($($error:ty),+) => {$(
-        impl std::fmt::Debug for $error {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                std::fmt::Display::fmt(self, f)
-            }
-        }
-    )+};
-}
-
-debug_is_display!(
-    MeshError,
-    BrickError,
-    HookeError,
-    MaterialError,
-    AssemblyError,
-    DecompositionError,
-    SurfaceError,
-    LoadError,
-    HistoryError,
-    FieldError
-);
-#[cfg(feature = "vtu")]
-debug_is_display!(output::OutputError);
 #[cfg(feature = "gmsh")]
-debug_is_display!(gmsh::GmshError);
+pub use files::gmsh;
+#[cfg(feature = "vtu")]
+pub use files::output;
+pub use files::replace_file;
+pub use loads::{
+    History, HistoryError, LoadDensity, LoadError, PointField, SurfaceField, assemble_load,
+};
+pub use material::{Hooke, HookeError, MaterialError, Materials};
+pub use mesh::brick::{Brick, BrickError};
+pub use mesh::{
+    BoundaryFacet, Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, TetMesh, brick,
+    drop_unused_nodes, merge_nodes, orient_tets,
+};
+pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error};
+
+/// What the crates of this workspace share beyond the interface.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::loads::interpolate;
+    pub use crate::tables::{DisjointSets, buckets};
+}

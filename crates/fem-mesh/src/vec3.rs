@@ -1,24 +1,24 @@
-//! Arithmetic of `[f64; 3]`, the few operations that the crate needs.
+//! Arithmetic of `[f64; 3]`: the few operations that the crates need.
 
-pub(crate) type Vec3 = [f64; 3];
+pub type Vec3 = [f64; 3];
 
-pub(crate) fn add(a: Vec3, b: Vec3) -> Vec3 {
+pub fn add(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
+pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(crate) fn scale(s: f64, a: Vec3) -> Vec3 {
+pub fn scale(s: f64, a: Vec3) -> Vec3 {
     [s * a[0], s * a[1], s * a[2]]
 }
 
-pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
+pub fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
+pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -26,27 +26,27 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     ]
 }
 
-pub(crate) fn norm(a: Vec3) -> f64 {
+pub fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
-pub(crate) fn is_finite(a: Vec3) -> bool {
+pub fn is_finite(a: Vec3) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
 /// Signed volume of a tetrahedron, positive if the nodes 1, 2, 3 turn counter-clockwise seen from
 /// outside, opposite to node 0.
-pub(crate) fn tet_volume(p: &[Vec3; 4]) -> f64 {
+pub fn tet_volume(p: &[Vec3; 4]) -> f64 {
     dot(sub(p[1], p[0]), cross(sub(p[2], p[0]), sub(p[3], p[0]))) / 6.0
 }
 
 /// Half the cross product of two edges: the normal of a triangle times its area.
-pub(crate) fn area_vector(p: &[Vec3; 3]) -> Vec3 {
+pub fn area_vector(p: &[Vec3; 3]) -> Vec3 {
     scale(0.5, cross(sub(p[1], p[0]), sub(p[2], p[0])))
 }
 
 /// Mean of the points.
-pub(crate) fn centroid<const N: usize>(p: &[Vec3; N]) -> Vec3 {
+pub fn centroid<const N: usize>(p: &[Vec3; N]) -> Vec3 {
     let sum = p.iter().fold([0.0; 3], |s, &x| add(s, x));
     scale(1.0 / N as f64, sum)
 }

@@ -1,11 +1,10 @@
 //! Quadratic programming with bounds, discs and linear equalities.
 //!
-//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and
-//! `C x = e` with orthonormal rows of `C`.
+//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and `C x = e` with
+//! orthonormal rows of `C`.
 //!
-//! `A` is known only through products. This is the form of the dual problems of T-FETI with contact and
-//! friction (normal forces are bounded, tangential ones lie in discs, rigid-body equilibrium is the equality),
-//! but the crate knows no mechanics and serves any problem of this form.
+//! `A` is known only through products. Dual problems of T-FETI with contact and friction have this form (normal
+//! forces are bounded, tangential ones lie in discs, equilibrium is the equality), but the crate knows no mechanics.
 //!
 //! # Methods
 //!
@@ -13,21 +12,22 @@
 //! |---|---|---|---|
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
-//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted faces; no penalty | see [`ActiveSetWorkspace`] |
+//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted active sets; no penalty | 6 |
 //! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
-//! Solvers take the start in `x` and leave the result there, write reports with counts by cause, and put all
-//! vectors into a workspace that is created once: an iteration allocates nothing. Not reaching a tolerance is
-//! a [`Status`] in an `Ok` report; errors are wrong input or a breakdown ([`QpError`]).
+//! Solvers take the start in `x` and leave the result there, report counts by cause, and put all vectors into a
+//! workspace that is created once: an iteration allocates nothing. Not reaching a tolerance is a [`Status`] in an
+//! `Ok` report; errors are wrong input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems
+//! whose set follows the solution.
 //!
 //! # Parts of a problem
 //!
 //! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices.
 //! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`].
-//! - The equality: any [`Equality`]; [`DenseEquality::orthonormal`] makes the rows of a matrix orthonormal
-//!   and names a dependent row.
+//! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and
+//!   [`DenseProjector`] for small matrices.
 //! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
 //! - [`laws`] has checkers for own implementations of the three traits.
 //!
@@ -78,72 +78,47 @@
 //!
 //! # Settings
 //!
-//! The tables are with [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`]: meaning, scale, range,
-//! default and the letter in the paper. All are dimensionless: a problem in other units needs the same
-//! settings and takes the same steps.
+//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`] tells meaning,
+//! scale, range, default and the letter in the paper. All are dimensionless: a problem in other units takes the same
+//! steps.
 //!
 //! # Determinism
 //!
-//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads
-//! changes no bit of a result. Loops over the set are serial.
+//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads changes no
+//! bit of a result. Loops over the set are serial.
 
-pub mod active_set;
-mod balanced;
-mod block;
-mod coarse_space;
-pub mod dense;
-mod dense_coarse;
+mod active_set;
+mod check;
 mod error;
-mod face_cg;
-mod face_coupling;
-mod face_hold;
-mod face_iterate;
-mod face_move;
-mod face_run;
-mod face_settings;
-mod face_state;
-mod face_view;
-mod guard;
-pub mod kkt;
-pub mod kprgp;
-mod kprgp_settings;
-pub mod laws;
-mod natural_map;
-mod objective;
-pub mod operator;
-mod penalised;
-mod product;
-mod projected;
+mod fixed_point;
+mod kprgp;
+mod problem;
 mod projected_cg;
 mod report;
-pub mod set;
-pub mod smalse;
-mod smalse_settings;
-pub mod spectrum;
+mod settings;
+mod smalse;
+mod tolerances;
 pub mod vector;
 
-pub use active_set::{ActiveSetHook, ActiveSetProblem, active_set};
-pub use balanced::LooseMode;
-pub use coarse_space::{EqualityProjector, Line, NoEquality};
-pub use dense::{DenseEquality, DenseOperator};
-pub use dense_coarse::DenseProjector;
+pub use active_set::{
+    ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetView,
+    ActiveSetWorkspace, Freedom, RadiusSlope, active_set,
+};
+pub use check::{NormEstimate, NormSettings, kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
-pub use face_coupling::RadiusSlope;
-pub use face_settings::{ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace};
-pub use face_view::{ActiveSetPreconditioner, ActiveSetView, Freedom};
-pub use kkt::Kkt;
-pub use kprgp::kprgp;
-pub use kprgp_settings::{
-    Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Measure, Release, Verification,
+pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
+pub use kprgp::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, kprgp};
+pub use problem::{
+    Block, BlockState, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality,
+    EqualityProjector, GradientNorms, Identity, ProductSet, Projected, Segment, SymmetricOperator,
 };
-pub use operator::{Equality, SymmetricOperator};
-pub use product::{ProductSet, Segment};
-pub use projected::{Projected, ProjectedScratch};
-pub use projected_cg::{CgReport, CgWorkspace, Identity, projected_cg};
+pub use projected_cg::{CgReport, CgWorkspace, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};
-pub use set::{Block, BlockKind, BlockState, ConvexSet, GradientNorms};
-pub use smalse::smalse;
-pub use smalse_settings::{
-    HookAction, OuterHook, OuterStep, SmalseReport, SmalseSettings, SmalseWorkspace, Update,
-};
-pub use spectrum::{NormEstimate, NormSettings, norm_estimate};
+pub use smalse::{SmalseReport, SmalseSettings, SmalseWorkspace, smalse};
+
+/// What the crates of this workspace share beyond the interface.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::fixed_point::Contraction;
+    pub use crate::problem::{LineWeight, LooseMode};
+}

@@ -13,44 +13,13 @@
 //! All iterates satisfy the equality. One iteration costs one product with `A`, one projection, and with a
 //! preconditioner one product with it and a second projection.
 
-use crate::error::{QpError, expect_finite, expect_length};
-use crate::operator::{Equality, SymmetricOperator};
+use crate::error::{QpError, expect_finite, expect_lengths};
+use crate::problem::{Equality, Identity, SymmetricOperator};
 use crate::report::{Status, Tolerance, usable};
+use crate::tolerances::{
+    CG_PATIENCE, CG_ROUNDING, NEGLIGIBLE_LOAD, PROGRESS, SOLVED_BY_EQUALITY, VANISHED_LOAD,
+};
 use crate::vector;
-
-/// Part of a load that is rounding once it is projected, and the projected gradient that suffices then.
-const VANISHED: f64 = 1e-12;
-const ROUNDED: f64 = 1e-14;
-
-/// `|P b|` below this fraction of `|P A x|` is no reference.
-const NEGLIGIBLE: f64 = 1e-10;
-
-/// Iterations without a smaller residual after which the solve ends.
-const PATIENCE: usize = 300;
-
-/// Residual, over the smallest so far, that counts as smaller.
-const LESS: f64 = 0.9;
-
-/// Residual, relative to the first, below which a curvature that is not positive is put down to rounding.
-const ROUNDING: f64 = 1e-8;
-
-/// The identity as operator: no preconditioner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Identity(
-    /// Dimension.
-    pub usize,
-);
-
-impl SymmetricOperator for Identity {
-    type Scratch = ();
-    fn dim(&self) -> usize {
-        self.0
-    }
-    fn scratch(&self) -> Self::Scratch {}
-    fn apply(&self, x: &[f64], y: &mut [f64], _s: &mut ()) {
-        vector::copy(x, y);
-    }
-}
 
 /// Result of [`projected_cg`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,11 +85,11 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> CgWorkspace<A, C, 
 
 /// Minimises `1/2 x·Ax - b·x` with `C x = e`, from the point of the equality nearest to `x`.
 ///
-/// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none).
-/// `Tolerance::Relative` refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that
-/// acts through the equality alone). If both are below 1e-12 of `|b|`, they are rounding errors, and the solution is one of them:
-/// a projected gradient of 1e-14 of `|b|` is enough then, also with `Tolerance::Error`. A semidefinite `A` is allowed as long as the load does no work
-/// along its kernel within that of `C`.
+/// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none). `Tolerance::Relative`
+/// refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that acts through the
+/// equality alone). If both are below 1e-12 of `|b|`, they are rounding errors, and the solution is one of them: a
+/// projected gradient of 1e-14 of `|b|` is enough then, also with `Tolerance::Error`. A semidefinite `A` is allowed
+/// as long as the load does no work along its kernel within that of `C`.
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths or NaN; when something becomes NaN; when `A` is indefinite, or singular
@@ -137,7 +106,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
     work: &mut CgWorkspace<A, C, M>,
 ) -> Result<CgReport, QpError> {
     let n = a.dim();
-    for (what, found, expected) in [
+    expect_lengths([
         ("the right side b", b.len(), n),
         ("the start x", x.len(), n),
         ("the equality matrix", c.dim(), n),
@@ -149,9 +118,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
             work.coarse.len(),
             c.rows(),
         ),
-    ] {
-        expect_length(what, found, expected)?;
-    }
+    ])?;
     expect_finite("the right side b", b)?;
     expect_finite("the right side e", e)?;
     expect_finite("the start x", x)?;
@@ -225,7 +192,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         self.report.products += 1;
         // the load may sit in the equality alone
         let product = self.project_gradient();
-        let reference = if load > NEGLIGIBLE * product {
+        let reference = if load > NEGLIGIBLE_LOAD * product {
             load
         } else {
             product
@@ -233,8 +200,10 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         let size = vector::norm(b);
         let tolerance = usable(match tolerance {
             // what the projector leaves of the load is rounding, and nothing else acts
-            Tolerance::Relative(_) | Tolerance::Error { .. } if reference <= VANISHED * size => {
-                ROUNDED * size
+            Tolerance::Relative(_) | Tolerance::Error { .. }
+                if reference <= VANISHED_LOAD * size =>
+            {
+                SOLVED_BY_EQUALITY * size
             }
             Tolerance::Error { factor, least } => {
                 self.error = Some((usable(factor)?, usable(least)?));
@@ -275,7 +244,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         }
         Ok(if report.projected_gradient <= report.tolerance {
             Some(Status::Converged)
-        } else if self.waited >= PATIENCE {
+        } else if self.waited >= CG_PATIENCE {
             Some(Status::Stagnated)
         } else if report.products >= max_products {
             Some(Status::IterationLimit)
@@ -325,7 +294,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
             });
         }
         // with a positive curvature the preconditioned residual is no longer one
-        if pap > 0.0 || self.report.projected_gradient <= ROUNDING * self.start {
+        if pap > 0.0 || self.report.projected_gradient <= CG_ROUNDING * self.start {
             return Ok(None);
         }
         let curvature = pap / vector::dot(&w.p, &w.p);
@@ -342,7 +311,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         vector::axpy(-length, &w.ap, &mut w.g);
         let found = self.project_gradient();
         self.report.projected_gradient = found;
-        if found < LESS * self.best {
+        if found < PROGRESS * self.best {
             (self.best, self.waited) = (found, 0);
         } else {
             self.waited += 1;

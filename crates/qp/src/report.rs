@@ -1,6 +1,7 @@
 //! What the solvers have in common: tolerance, status, counts.
 
-use crate::error::{QpError, expect_setting};
+use crate::error::QpError;
+use crate::settings::expect_setting;
 
 /// How a solve ended. All of these are in an `Ok` report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -14,8 +15,6 @@ pub enum Status {
     Stagnated,
     /// The set, as it follows the solution, holds no point that satisfies the equality.
     Infeasible,
-    /// The caller's hook asked to stop.
-    Stopped,
 }
 
 impl Status {
@@ -32,19 +31,11 @@ impl Status {
 pub enum Tolerance {
     /// At most this value, in the units of the gradient.
     Absolute(f64),
-    /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient
-    /// if `b` is zero), `|P (b - A C'e)|` for
-    /// SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
+    /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient if `b` is
+    /// zero), `|P (b - A C'e)|` for SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
     Relative(f64),
-    /// At most `factor * reference`, the reference being known to the caller.
-    RelativeTo {
-        /// Dimensionless factor.
-        factor: f64,
-        /// In the units of the gradient.
-        reference: f64,
-    },
-    /// [`projected_cg`](crate::projected_cg()): the preconditioned gradient, which estimates the error of `x`, is at most this multiple of
-    /// `|x|`. Solvers without preconditioner take it as [`Relative`](Self::Relative).
+    /// [`projected_cg`](crate::projected_cg()): the preconditioned gradient, which estimates the error of `x`, is at
+    /// most this multiple of `|x|`. Solvers without preconditioner take it as [`Relative`](Self::Relative).
     Error {
         /// Dimensionless factor.
         factor: f64,
@@ -55,20 +46,17 @@ pub enum Tolerance {
 
 impl Tolerance {
     /// The tolerance in the units of the gradient; `own` is the reference of the solver.
-    #[must_use]
-    pub fn resolve(self, own: f64) -> f64 {
+    pub(crate) fn resolve(self, own: f64) -> f64 {
         match self {
             Self::Absolute(t) => t,
             Self::Relative(f) | Self::Error { factor: f, .. } => f * own,
-            Self::RelativeTo { factor, reference } => factor * reference,
         }
     }
 }
 
 /// A resolved tolerance, if it is usable.
 pub(crate) fn usable(tolerance: f64) -> Result<f64, QpError> {
-    let good = tolerance >= 0.0 && tolerance.is_finite();
-    expect_setting("tolerance", tolerance, ">= 0, finite", good)?;
+    expect_setting("tolerance", tolerance, "[0, inf)")?;
     Ok(tolerance)
 }
 
@@ -78,74 +66,59 @@ impl Default for Tolerance {
     }
 }
 
-/// Steps by kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub struct Steps {
-    /// Conjugate gradient steps that stayed inside the set.
-    pub cg: usize,
-    /// Expansions of the active set.
-    pub expansion: usize,
-    /// Releases from the active set.
-    pub proportioning: usize,
+/// Numbers that add up, field by field.
+macro_rules! counts {
+    ($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $field:ident,)* }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+        pub struct $name {
+            $($(#[$meaning])* pub $field: usize,)*
+        }
+
+        impl $name {
+            /// All together.
+            #[must_use]
+            pub fn total(&self) -> usize {
+                [$(self.$field),*].iter().sum()
+            }
+        }
+
+        impl std::ops::AddAssign for $name {
+            fn add_assign(&mut self, other: Self) {
+                $(self.$field += other.$field;)*
+            }
+        }
+    };
 }
 
-impl Steps {
-    /// All steps.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.cg + self.expansion + self.proportioning
+counts! {
+    /// Steps by kind.
+    Steps {
+        /// Conjugate gradient steps that stayed inside the set.
+        cg,
+        /// Expansions of the active set.
+        expansion,
+        /// Releases from the active set.
+        proportioning,
     }
 }
 
-impl std::ops::AddAssign for Steps {
-    fn add_assign(&mut self, o: Self) {
-        self.cg += o.cg;
-        self.expansion += o.expansion;
-        self.proportioning += o.proportioning;
-    }
-}
-
-/// Operator products by cause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub struct Products {
-    /// Gradient at the start.
-    pub initial: usize,
-    /// Along conjugate gradient directions, those that end in an expansion included.
-    pub cg: usize,
-    /// Gradients after expansions.
-    pub expansion: usize,
-    /// Products of proportioning steps.
-    pub proportioning: usize,
-    /// Repeated steps after a long step that did not decrease the cost.
-    pub fallback: usize,
-    /// Gradients computed afresh: against drift, and after the caller changed the set.
-    pub restart: usize,
-    /// For the reference of a relative tolerance.
-    pub reference: usize,
-}
-
-impl Products {
-    /// All products.
-    #[must_use]
-    pub fn total(&self) -> usize {
-        self.initial
-            + self.cg
-            + self.expansion
-            + self.proportioning
-            + self.fallback
-            + self.restart
-            + self.reference
-    }
-}
-
-impl std::ops::AddAssign for Products {
-    fn add_assign(&mut self, o: Self) {
-        self.initial += o.initial;
-        self.cg += o.cg;
-        self.expansion += o.expansion;
-        self.proportioning += o.proportioning;
-        self.fallback += o.fallback;
-        self.restart += o.restart;
-        self.reference += o.reference;
+counts! {
+    /// Operator products by cause.
+    Products {
+        /// Gradient at the start.
+        initial,
+        /// Along conjugate gradient directions, those that end in an expansion included.
+        cg,
+        /// Gradients after expansions.
+        expansion,
+        /// Products of proportioning steps.
+        proportioning,
+        /// Repeated steps after a long step that did not decrease the cost.
+        fallback,
+        /// Gradients computed afresh: against drift, and after the caller changed the set.
+        restart,
+        /// For the reference of a relative tolerance.
+        reference,
     }
 }

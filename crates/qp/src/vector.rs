@@ -1,6 +1,6 @@
 //! Vector kernels: the one place of every dot product and norm of a solver.
 //!
-//! A sum is taken over chunks of [`CHUNK`] entries, each with eight interleaved partial sums, and the
+//! A sum is taken over chunks of 8192 entries, each with eight interleaved partial sums, and the
 //! chunks are added along a fixed binary tree. The tree depends only on the length, so a result has
 //! the same bits for any number of threads. Vectors shorter than [`PARALLEL`] are handled by the
 //! calling thread; nothing here allocates.
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Entries summed by one leaf of the reduction tree.
-pub const CHUNK: usize = 8192;
+const CHUNK: usize = 8192;
 
 /// Length from which kernels use the rayon pool.
 pub const PARALLEL: usize = 8 * CHUNK;
@@ -44,8 +44,7 @@ pub fn norm(x: &[f64]) -> f64 {
 }
 
 /// `|x - y|²` without a temporary.
-#[must_use]
-pub fn distance_squared(x: &[f64], y: &[f64]) -> f64 {
+pub(crate) fn distance_squared(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len().min(y.len());
     reduce(0..n, n >= PARALLEL, &|r| {
         leaf(&x[r.clone()], &y[r], |a, b| (a - b) * (a - b))
@@ -54,15 +53,14 @@ pub fn distance_squared(x: &[f64], y: &[f64]) -> f64 {
 
 /// Decrease of a quadratic cost between two points from their gradients, free of cancellation:
 /// `q(x0) - q(x1) = (x0 - x1) · (g0 + g1) / 2`.
-#[must_use]
-pub fn decrease(x0: &[f64], g0: &[f64], x1: &[f64], g1: &[f64]) -> f64 {
+pub(crate) fn decrease(x0: &[f64], g0: &[f64], x1: &[f64], g1: &[f64]) -> f64 {
     let n = x0.len().min(g0.len()).min(x1.len()).min(g1.len());
     let sum = reduce(0..n, n >= PARALLEL, &|r| {
         let mut acc = [0.0; LANES];
         for (k, i) in r.enumerate() {
             acc[k % LANES] += (x0[i] - x1[i]) * (g0[i] + g1[i]);
         }
-        ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
+        folded(acc)
     });
     0.5 * sum
 }
@@ -84,12 +82,6 @@ pub fn max_abs(x: &[f64]) -> f64 {
         m = m.max(v.abs());
     }
     m
-}
-
-/// Whether every entry is finite.
-#[must_use]
-pub fn is_finite(x: &[f64]) -> bool {
-    x.iter().all(|v| v.is_finite())
 }
 
 /// `y += a x`.
@@ -218,6 +210,11 @@ fn leaf(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     for (k, (&a, &b)) in xr.iter().zip(yr).enumerate() {
         acc[k] += f(a, b);
     }
+    folded(acc)
+}
+
+/// The partial sums of a leaf together.
+fn folded(acc: [f64; LANES]) -> f64 {
     ((acc[0] + acc[4]) + (acc[2] + acc[6])) + ((acc[1] + acc[5]) + (acc[3] + acc[7]))
 }
 

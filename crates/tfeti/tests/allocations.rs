@@ -42,7 +42,7 @@ fn products_and_projectors_allocate_nothing() {
             let count = measure(|| {
                 space.project(&mut y);
                 space.project_transpose(&mut y);
-                space.multiplier(&x, &mut beta);
+                space.amplitudes(&x, &mut beta);
                 space.repair(&mut y, &beta);
                 space.compensate(&x, &x[..contact], &mut y);
             });

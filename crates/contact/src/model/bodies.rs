@@ -5,7 +5,7 @@
 //! would let the heaviest alone decide when the others are done.
 
 use crate::discrete::DiscreteScene;
-use signorini_fem_mesh::DisjointSets;
+use signorini_fem_mesh::internal::DisjointSets;
 use signorini_tfeti::Tfeti;
 
 /// To which body rows and subdomains belong. With one body there are no tables.

@@ -7,14 +7,12 @@
 
 mod counters;
 mod errors;
-mod fixed_point;
 mod run;
 mod step;
 
 pub use counters::Counters;
 pub(crate) use errors::relative;
 pub use errors::{AccumulatedError, AccuracyReport, AlgebraicError};
-pub use fixed_point::{FixedPointReport, Verdict};
 pub use run::RunReport;
 pub(crate) use run::require;
 pub use step::StepReport;

@@ -2,9 +2,8 @@
 
 use super::counters::Counters;
 use super::errors::AccuracyReport;
-use super::fixed_point::FixedPointReport;
 use crate::status::StepStatus;
-use signorini_qp::Steps;
+use signorini_qp::{FixedPointReport, Steps};
 
 /// Report of one step's solve.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! Friction laws: none, given (Tresca), and Coulomb with a coefficient that may depend on place and slip rate.
 
 use crate::error::ContactError;
-use signorini_fem_mesh::interpolate;
+use signorini_fem_mesh::internal::interpolate;
 use std::fmt;
 use std::sync::Arc;
 

@@ -150,11 +150,11 @@ impl ActiveSetSolver {
             );
             let status = match outcome {
                 Ok(outcome) => {
-                    report.iterations += outcome.faces;
+                    report.iterations += outcome.active_sets;
                     report.counters.products += outcome.products();
                     report.counters.preconditionings += outcome.preconditionings;
                     report.counters.coarse_factorisations += outcome.factorisations;
-                    report.counters.active_sets += outcome.faces;
+                    report.counters.active_sets += outcome.active_sets;
                     report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
                     outcome.status
                 }

@@ -35,7 +35,7 @@ pub(crate) fn step_status(status: Status) -> StepStatus {
     match status {
         Status::Converged => StepStatus::Converged,
         Status::Infeasible => StepStatus::NotHeld,
-        Status::Stagnated | Status::Stopped => StepStatus::Stagnated,
+        Status::Stagnated => StepStatus::Stagnated,
         _ => StepStatus::IterationLimit,
     }
 }

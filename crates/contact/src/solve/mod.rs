@@ -15,7 +15,6 @@ mod release;
 mod scaling;
 mod smalse;
 mod solver;
-mod successive;
 
 pub(crate) use iterate::{Iterate, Task};
 pub(crate) use solver::Solver;

@@ -3,17 +3,18 @@
 
 use super::coarse::OrthonormalRows;
 use super::iterate::{Iterate, Task, is_coulomb, step_status};
-use super::successive::{Contraction, successive_approximations};
 use crate::error::ContactError;
 use crate::model::{DISCS, INTERVALS, Model};
-use crate::report::{FixedPointReport, StepReport, Verdict};
+use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::status::StepStatus;
 use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
+use signorini_qp::internal::Contraction;
+use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
-    HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
-    SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
+    NormSettings, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
+    Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
@@ -116,7 +117,7 @@ impl SmalseSolver {
             .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
         let tolerance = task.settings.tolerance * SMALSE_SAFETY;
-        let qp = self.given_friction(task, tolerance, &mut (), iterate)?;
+        let qp = self.given_friction(task, tolerance, &mut |_, _| false, iterate)?;
         add(report, &qp);
         report.iterations = 1;
         report.status = step_status(qp.status);
@@ -128,14 +129,14 @@ impl SmalseSolver {
         &mut self,
         task: Task<'_>,
         tolerance: f64,
-        hook: &mut impl OuterHook<ProductSet>,
+        hook: &mut dyn FnMut(&[f64], &mut ProductSet) -> bool,
         iterate: &mut Iterate,
     ) -> Result<SmalseReport, ContactError> {
-        let mut settings = self
+        let settings = self
             .settings
             .with_tolerance(Tolerance::Relative(tolerance))
-            .with_equality(tolerance);
-        settings.inner.max_products = settings.inner.max_products.min(self.left).max(1);
+            .with_equality(tolerance)
+            .limited_to(self.left);
         let report = smalse(
             task.model.tfeti.dual(),
             &task.problem.linear,
@@ -204,7 +205,7 @@ impl SmalseSolver {
                 problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
                 let qp = self
-                    .given_friction(task, tolerance, &mut (), iterate)
+                    .given_friction(task, tolerance, &mut |_, _| false, iterate)
                     .map_err(Some)?;
                 inner = qp.status;
                 add(report, &qp);
@@ -254,9 +255,9 @@ impl SmalseSolver {
         // bounds of normal forces that vanish
         let coefficient = problem.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
         let least = coefficient * problem.least()[1];
-        let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
+        let mut hook = |x: &[f64], set: &mut ProductSet| {
             let old = radii(set);
-            problem.write_slip_bounds(model, step.x, set);
+            problem.write_slip_bounds(model, x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
@@ -266,11 +267,8 @@ impl SmalseSolver {
                 difference / vector::norm(&new).max(least)
             };
             contraction.record(difference);
-            if last_change < tolerance {
-                HookAction::Continue
-            } else {
-                HookAction::SetChanged
-            }
+            let settled = last_change < tolerance;
+            !settled
         };
         let qp = self.given_friction(task, tolerance, &mut hook, iterate)?;
         add(report, &qp);

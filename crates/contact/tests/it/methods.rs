@@ -216,7 +216,7 @@ const JUMPS: [(f64, f64, usize); 6] = [
 #[test]
 fn the_fall_back_is_bounded() {
     let limit = 50;
-    let few = Method::ActiveSet(ActiveSetSettings::default().with_max_faces(1));
+    let few = Method::ActiveSet(ActiveSetSettings::default().with_max_active_sets(1));
     let settings = by(few).with_max_fallback_products(limit);
     let scene = soft_part(1e6, Friction::coulomb(0.3));
     let mut simulation = Simulation::new(scene, settings).expect("set-up");

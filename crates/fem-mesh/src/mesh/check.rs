@@ -1,19 +1,14 @@
 //! The checks that a table of nodes and tetrahedra must pass before it becomes a mesh.
 
-use crate::disjoint::DisjointSets;
 use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::MeshError;
+use crate::tables::DisjointSets;
+use crate::tolerances::{COINCIDENT, FLAT};
 use crate::vec3::{self, Vec3};
 
-/// Six times the volume over the cube of the longest edge, below which a tetrahedron counts as
-/// flat. Coordinates carry about 16 digits, so less than this is mostly rounding.
-const FLAT: f64 = 1e-10;
-
-/// Distance below which two nodes count as one, relative to the diagonal of the mesh.
-const COINCIDENT: f64 = 1e-12;
+use super::error::MeshError;
 
 /// 32-bit tables also number faces (four each tetrahedron) and unknowns (three each node).
 const LIMIT: usize = (u32::MAX / 4) as usize;

@@ -1,8 +1,12 @@
 //! Meshes from meshes: tagging, moving and joining, and repair of raw tables.
 
-use super::{Facet, FacetTag, MeshError, TetMesh};
-use crate::disjoint::DisjointSets;
+use crate::tables::DisjointSets;
 use crate::vec3;
+
+use super::check;
+use super::error::MeshError;
+use super::faces::NONE;
+use super::tet_mesh::{Facet, FacetTag, TetMesh};
 
 impl TetMesh {
     /// Replaces all facets: every triangle of the boundary for which `tag(centroid, normal)` gives
@@ -57,7 +61,7 @@ impl TetMesh {
     pub fn append(&self, other: &Self) -> Result<Self, MeshError> {
         let nodes = self.points.len() + other.points.len();
         let tets = self.tets.len() + other.tets.len();
-        super::check::sizes(nodes, tets)?;
+        check::sizes(nodes, tets)?;
         let (by_node, by_tet) = (self.points.len() as u32, self.tets.len() as u32);
         let mut sum = self.clone();
         sum.points.extend(&other.points);
@@ -69,7 +73,7 @@ impl TetMesh {
         }));
         sum.owners.extend(other.owners.iter().map(|t| t + by_tet));
         sum.regions.extend(&other.regions);
-        let shift = |n: u32| if n == super::NONE { n } else { n + by_tet };
+        let shift = |n: u32| if n == NONE { n } else { n + by_tet };
         sum.neighbours
             .extend(other.neighbours.iter().map(|t| t.map(shift)));
         Ok(sum)
@@ -91,12 +95,12 @@ pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
     turned
 }
 
-/// Makes one node of nodes that are no farther apart than `distance` (m; those that coincide, with 0), for parts that were
-/// meshed apart but are to be one body, and returns how many are gone. Tetrahedra and facets then use the first
+/// Makes one node of nodes that are no farther apart than `distance` (m; those that coincide, with 0), for parts that
+/// were meshed apart but are to be one body, and returns how many are gone. Tetrahedra and facets then use the first
 /// of them; the others stay in the table for [`drop_unused_nodes`].
 ///
-/// Meshes of the parts have to match where they meet. Facets there, which are inside now, have to be left out. Bodies that are to
-/// slide on one another must not be merged.
+/// Meshes of the parts have to match where they meet. Facets there, which are inside now, have to be left out. Bodies
+/// that are to slide on one another must not be merged.
 ///
 /// ```
 /// use signorini_fem_mesh::{Brick, TetMesh, drop_unused_nodes, merge_nodes};
@@ -119,7 +123,7 @@ pub fn merge_nodes(
     facets: &mut [Facet],
     distance: f64,
 ) -> usize {
-    let pairs = super::check::close_pairs(points, distance);
+    let pairs = check::close_pairs(points, distance);
     let mut sets = DisjointSets::new(points.len());
     for (a, b) in pairs {
         sets.join(a, b);

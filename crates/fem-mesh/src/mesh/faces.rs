@@ -1,7 +1,8 @@
 //! Which tetrahedra meet at which face, in linear time.
 
-use super::MeshError;
-use crate::buckets::{buckets, range};
+use crate::tables::{buckets, range};
+
+use super::error::MeshError;
 
 /// Faces of a tetrahedron, each opposite to the node of its number and numbered counter-clockwise
 /// seen from outside.

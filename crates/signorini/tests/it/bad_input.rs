@@ -295,7 +295,7 @@ fn times_and_settings() {
             smalse: SmalseSettings::default(), accuracy
         })) => Error::Contact(ContactError::Setting { .. }), "accuracy.factor";
         "a forcing term of one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(1.0)))) => Error::Qp(QpError::Setting { .. }), "forcing";
-        "no faces": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_faces(0)))) => Error::Qp(QpError::Setting { .. }), "max_faces";
+        "no faces": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_active_sets(0)))) => Error::Qp(QpError::Setting { .. }), "max_active_sets";
         "no patience": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_patience(0)))) => Error::Qp(QpError::Setting { .. }), "patience";
         "a settled share above one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_settled_fraction(1.5)))) => Error::Qp(QpError::Setting { .. }), "settled";
         "no products expected, before any work": made(Plan::new(&good(), &no_products)) => Error::Tfeti(TfetiError::Setting { .. }), "expected_products";

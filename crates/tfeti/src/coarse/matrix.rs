@@ -7,7 +7,7 @@ use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::matrices::{ClassBase, Subdomains};
 use rayon::prelude::*;
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 
 /// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
 #[derive(Debug)]
@@ -214,8 +214,8 @@ impl CoarseMatrix {
         for line in weights.iter().flat_map(|w| &w.lines) {
             row.clear();
             // Pairs of tangential rows stand before the interface, where row and number among nodal rows agree.
-            modes.row(gluing, line.first, line.direction[0], &mut row);
-            modes.row(gluing, line.first + 1, line.direction[1], &mut row);
+            modes.row(gluing, line.row, line.direction[0], &mut row);
+            modes.row(gluing, line.row + 1, line.direction[1], &mut row);
             self.add_row(&row, line.weight, values);
         }
         matrix

@@ -13,7 +13,7 @@ use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{FREE, MOVING};
 use nalgebra::{DMatrix, SymmetricEigen};
-use signorini_fem_mesh::DisjointSets;
+use signorini_fem_mesh::internal::DisjointSets;
 use std::fmt;
 use std::sync::Arc;
 

@@ -11,7 +11,7 @@ use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::SUPPORTED;
-use signorini_qp::LooseMode;
+use signorini_qp::internal::LooseMode;
 use std::sync::Arc;
 
 /// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.
@@ -248,7 +248,7 @@ impl CoarseData {
             let mut out = Vec::new();
             for k in 0..2 {
                 self.mobility.act(
-                    gluing.nodal(line.first + k),
+                    gluing.nodal(line.row + k),
                     line.weight.sqrt() * line.direction[k],
                     &mut out,
                 );

@@ -3,7 +3,7 @@
 use crate::error::TfetiError;
 use crate::rows::kinds::RowRanges;
 use crate::tolerances::UNIT;
-use signorini_qp::Line;
+use signorini_qp::internal::LineWeight;
 
 /// Weights `W` of the rows of `B` in `G W G^T`: a diagonal, and for chosen pairs of tangential rows a single direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,11 +11,11 @@ pub struct RowWeights {
     /// One non-negative weight per row.
     pub diagonal: Vec<f64>,
     /// Pairs of tangential rows of which one combination counts; they replace the diagonal there. Ascending by row.
-    pub lines: Vec<Line>,
+    pub lines: Vec<LineWeight>,
 }
 
 /// `weight * c c^T` of a line times a pair.
-pub(crate) fn along(line: &Line, pair: [f64; 2]) -> [f64; 2] {
+pub(crate) fn along(line: &LineWeight, pair: [f64; 2]) -> [f64; 2] {
     let [c, d] = line.direction;
     let value = line.weight * (c * pair[0] + d * pair[1]);
     [value * c, value * d]
@@ -30,8 +30,8 @@ impl RowWeights {
     }
 
     pub(crate) fn in_line(&self, row: usize) -> bool {
-        let next = self.lines.partition_point(|l| l.first <= row);
-        next > 0 && row - self.lines[next - 1].first < 2
+        let next = self.lines.partition_point(|l| l.row <= row);
+        next > 0 && row - self.lines[next - 1].row < 2
     }
 
     /// Checks lengths, signs, and order and directions of the lines against the rows of `B`.
@@ -46,10 +46,10 @@ impl RowWeights {
             return refuse("row weight", value, "finite and not negative");
         }
         for (k, line) in self.lines.iter().enumerate() {
-            let inside = ranges.discs.contains(&line.first) && line.first < ranges.discs.end - 1;
-            if !inside || k > 0 && self.lines[k - 1].first + 1 >= line.first {
+            let inside = ranges.discs.contains(&line.row) && line.row < ranges.discs.end - 1;
+            if !inside || k > 0 && self.lines[k - 1].row + 1 >= line.row {
                 let range = "a pair of tangential rows, each pair once, ascending";
-                return refuse("line row", line.first as f64, range);
+                return refuse("line row", line.row as f64, range);
             }
             let length = line.direction[0].hypot(line.direction[1]);
             if length.is_nan() || (length - 1.0).abs() > UNIT {
@@ -63,8 +63,8 @@ impl RowWeights {
     pub(crate) fn apply(&self, x: &mut [f64]) {
         x.iter_mut().zip(&self.diagonal).for_each(|(x, w)| *x *= w);
         for line in &self.lines {
-            let pair = along(line, [x[line.first], x[line.first + 1]]);
-            x[line.first..line.first + 2].copy_from_slice(&pair);
+            let pair = along(line, [x[line.row], x[line.row + 1]]);
+            x[line.row..line.row + 2].copy_from_slice(&pair);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
 use crate::tolerances::PANEL;
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 use std::ops::Range;
 
 /// For each class: place of each node on the boundary, first panel, and first member of each panel.

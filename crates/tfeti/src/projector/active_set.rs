@@ -8,8 +8,9 @@ use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
 use crate::tolerances::{ROUNDED_STEP, WORK};
+use signorini_qp::internal::{LineWeight, LooseMode};
 use signorini_qp::vector::{dot, norm};
-use signorini_qp::{EqualityProjector, Line, LooseMode, QpError};
+use signorini_qp::{EqualityProjector, QpError};
 use std::sync::Arc;
 
 /// How `G W G^T` is factored when the active set changes.
@@ -41,7 +42,7 @@ pub struct ActiveSetProjector {
     active: CoarseFactor,
     weights: Vec<f64>,
     /// Directions of the last active set besides its weights.
-    lines: Vec<Line>,
+    lines: Vec<LineWeight>,
     parts: SplitParts,
     /// Memory of the last but one factor.
     spare: Option<SplitFactor>,
@@ -242,7 +243,7 @@ impl EqualityProjector for ActiveSetProjector {
         self.set_weights_and_lines(w, &[])
     }
 
-    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[Line]) -> Result<bool, QpError> {
+    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[LineWeight]) -> Result<bool, QpError> {
         if w == self.weights && lines == self.lines {
             return self.check(&self.active).map(|()| false);
         }
@@ -262,7 +263,7 @@ impl EqualityProjector for ActiveSetProjector {
         };
         weights.lines.extend_from_slice(lines);
         for line in &mut weights.lines {
-            line.weight *= metric(line.first);
+            line.weight *= metric(line.row);
         }
         let fixed = w[self.parts.contact_rows..].iter().all(|w| *w == 1.0);
         let factor = match fixed {
@@ -315,10 +316,6 @@ impl EqualityProjector for ActiveSetProjector {
 
     fn project_step_transpose(&mut self, g: &mut [f64]) {
         self.step(|factor, alpha, scratch| factor.project_transpose(g, alpha, scratch));
-    }
-
-    fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
-        self.active.amplitudes(g, out, &mut self.scratch);
     }
 
     fn loose(&self) -> &[LooseMode] {

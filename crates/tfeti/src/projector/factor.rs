@@ -10,7 +10,7 @@ use crate::linalg::sparse::{FactorError, SparseCholesky};
 use crate::linalg::tiles::Digits;
 use crate::projector::split::factor::{SplitBase, SplitFactor};
 use crate::projector::split::tree::cheapest_tree;
-use signorini_qp::Line;
+use signorini_qp::internal::LineWeight;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -122,7 +122,7 @@ impl CoarseFactor {
             // products count these rows in full and are corrected by what the lines leave out
             lines
                 .iter()
-                .for_each(|l| diagonal[l.first..l.first + 2].fill(1.0));
+                .for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
         }
         let all = |range: Range<usize>, of: fn(&f64) -> bool| {
             weights
@@ -225,7 +225,7 @@ impl CoarseFactor {
         signorini_qp::vector::distance(&found, &side) / signorini_qp::vector::norm(&side)
     }
 
-    fn lines(&self) -> &[Line] {
+    fn lines(&self) -> &[LineWeight] {
         self.0.weights.as_ref().map_or(&[], |w| &w.lines)
     }
 
@@ -291,7 +291,7 @@ impl CoarseFactor {
             |row, x, v| *x -= weight(row) * v,
         );
         for (line, old) in self.lines().iter().zip(&s.pairs) {
-            let (k, l) = (line.first, line.first + 1);
+            let (k, l) = (line.row, line.row + 1);
             let change = along(line, [old[0] - x[k], old[1] - x[l]]);
             (x[k], x[l]) = (old[0] - change[0], old[1] - change[1]);
         }
@@ -303,11 +303,11 @@ impl CoarseFactor {
         if self.0.plain {
             keep(self.lines(), r, &mut s.pairs);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
-                r[line.first..line.first + 2].copy_from_slice(&along(line, *old));
+                r[line.row..line.row + 2].copy_from_slice(&along(line, *old));
             }
             self.plain_amplitudes(r, alpha, s);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
-                r[line.first..line.first + 2].copy_from_slice(old);
+                r[line.row..line.row + 2].copy_from_slice(old);
             }
         } else {
             self.amplitudes(r, alpha, s);
@@ -363,7 +363,7 @@ impl CoarseFactor {
 }
 
 /// Remembers the entries of the rows in lines.
-fn keep(lines: &[Line], x: &[f64], pairs: &mut Vec<[f64; 2]>) {
+fn keep(lines: &[LineWeight], x: &[f64], pairs: &mut Vec<[f64; 2]>) {
     pairs.clear();
-    pairs.extend(lines.iter().map(|l| [x[l.first], x[l.first + 1]]));
+    pairs.extend(lines.iter().map(|l| [x[l.row], x[l.row + 1]]));
 }

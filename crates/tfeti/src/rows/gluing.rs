@@ -12,7 +12,8 @@ use crate::rows::kinds::{RemovedRow, RowRanges};
 use crate::rows::side::{ContactConstraint, ContactConstraints};
 use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
-use signorini_fem_mesh::{Decomposition, DisjointSets};
+use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::internal::DisjointSets;
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -61,7 +61,7 @@ fn results(system: &Tfeti, space: &mut Space) -> Vec<Vec<f64>> {
     let mut alpha = e.clone();
     space.project(&mut p);
     space.project_transpose(&mut t);
-    space.multiplier(&x, &mut alpha);
+    space.amplitudes(&x, &mut alpha);
     if !space.loose().is_empty() {
         // what repairs cannot do is not compared
         return vec![p, t, alpha];

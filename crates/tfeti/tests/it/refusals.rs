@@ -2,7 +2,8 @@
 
 use crate::common::Brick;
 use signorini_fem_mesh::Decomposition;
-use signorini_qp::{EqualityProjector, Line, QpError};
+use signorini_qp::internal::LineWeight;
+use signorini_qp::{EqualityProjector, QpError};
 use signorini_tfeti::internal::{ActiveSetFactor, CopyStiffness};
 use signorini_tfeti::{ActiveSetProjector, Gluing, Motion, NodeSupport, RowWeights, TfetiError};
 
@@ -34,8 +35,8 @@ fn face_spaces_check_their_arguments() {
             let error = space.set_weights(&vec![1.0; length]).unwrap_err();
             assert!(matches!(error, QpError::Length { .. }), "{error}");
         }
-        let line = |first, direction| Line {
-            first,
+        let line = |row, direction| LineWeight {
+            row,
             direction,
             weight: 1.0,
         };
@@ -59,8 +60,8 @@ fn line_directions_are_unit_vectors() {
         let mut weights = RowWeights::diagonal(vec![1.0; system.dual_dim()]);
         let row = system.gluing().ranges().discs.start;
         let weight = 1.0;
-        weights.lines.push(Line {
-            first: row,
+        weights.lines.push(LineWeight {
+            row: row,
             direction,
             weight,
         });

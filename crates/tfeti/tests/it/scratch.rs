@@ -1,7 +1,8 @@
 //! Work memory carries nothing from one product to the next.
 
 use crate::common::{Brick, build, noise};
-use signorini_qp::{Equality, Line, SymmetricOperator};
+use signorini_qp::internal::LineWeight;
+use signorini_qp::{Equality, SymmetricOperator};
 use signorini_tfeti::RowWeights;
 use signorini_tfeti::internal::InverseKind;
 
@@ -38,13 +39,13 @@ fn line_weights_act_like_a_rotated_diagonal() {
     let (row, other) = (ranges.discs.start, ranges.discs.start + 4);
     let mut lines = RowWeights::diagonal(diagonal.clone());
     lines.lines = vec![
-        Line {
-            first: row,
+        LineWeight {
+            row: row,
             direction: [1.0, 0.0],
             weight: 0.7,
         },
-        Line {
-            first: other,
+        LineWeight {
+            row: other,
             direction: [0.0, -1.0],
             weight: 0.3,
         },
@@ -63,8 +64,8 @@ fn line_weights_act_like_a_rotated_diagonal() {
             < 1e-11 * crate::common::norm(&results[0])
     );
     let mut crossed = RowWeights::diagonal(vec![1.0; coarse.dim()]);
-    crossed.lines = vec![Line {
-        first: ranges.normal.start,
+    crossed.lines = vec![LineWeight {
+        row: ranges.normal.start,
         direction: [1.0, 0.0],
         weight: 1.0,
     }];

@@ -9,7 +9,7 @@ use crate::rows::gluing::{Glob, Gluing};
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::{GLOB_TASK, PARTS};
 use pulp::{Arch, Simd, WithSimd};
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::ops::Range;

@@ -10,7 +10,7 @@ use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{PARTS, SUBDOMAIN_TASK};
-use signorini_fem_mesh::buckets;
+use signorini_fem_mesh::internal::buckets;
 use std::ops::Range;
 use std::sync::Arc;
 

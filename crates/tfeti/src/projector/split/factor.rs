@@ -15,7 +15,7 @@ use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
 use crate::rows::gluing::Gluing;
 use crate::tolerances::{OPERATIONS, READ, SINGULAR, SOLVES, SPARSE};
-use signorini_qp::Line;
+use signorini_qp::internal::LineWeight;
 
 /// What does not depend on the weights of contact rows.
 #[derive(Debug)]
@@ -141,7 +141,7 @@ impl SplitBase {
     }
 
     /// Whether pairs of contact rows may stand in these lines.
-    pub(crate) fn allows(&self, lines: &[Line]) -> bool {
+    pub(crate) fn allows(&self, lines: &[LineWeight]) -> bool {
         self.contact.allow(lines)
     }
 

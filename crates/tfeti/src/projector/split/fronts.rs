@@ -3,7 +3,7 @@
 use crate::coarse::matrix::ModeTable;
 use crate::projector::split::tree::CoarseTree;
 use crate::rows::gluing::Gluing;
-use signorini_qp::Line;
+use signorini_qp::internal::LineWeight;
 
 /// The terms `w_r g_r g_r^T` of the contact rows `r`, by the node to whose columns they belong.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct ContactWeights {
 }
 
 impl ContactWeights {
-    pub(crate) fn set(&mut self, diagonal: &[f64], lines: &[Line]) {
+    pub(crate) fn set(&mut self, diagonal: &[f64], lines: &[LineWeight]) {
         self.diagonal.clear();
         self.diagonal.extend_from_slice(diagonal);
         self.lines.clear();
@@ -35,8 +35,8 @@ impl ContactWeights {
         }
         self.lines.resize(diagonal.len(), [0.0; 2]);
         for line in lines {
-            self.diagonal[line.first..line.first + 2].fill(0.0);
-            self.lines[line.first] = line.direction.map(|c| c * line.weight.sqrt());
+            self.diagonal[line.row..line.row + 2].fill(0.0);
+            self.lines[line.row] = line.direction.map(|c| c * line.weight.sqrt());
         }
     }
 }
@@ -102,10 +102,8 @@ impl ContactFronts {
     }
 
     /// Whether pairs of rows may stand in these lines.
-    pub(crate) fn allow(&self, lines: &[Line]) -> bool {
-        lines
-            .iter()
-            .all(|l| self.paired.get(l.first) == Some(&true))
+    pub(crate) fn allow(&self, lines: &[LineWeight]) -> bool {
+        lines.iter().all(|l| self.paired.get(l.row) == Some(&true))
     }
 
     /// Adds the terms of one node to its columns of the given height.

@@ -1,0 +1,172 @@
+//! Parts made compact: ragged, elongated and scattered ones become round cells of similar size.
+//!
+//! The method is that of Lloyd for centroidal Voronoi cells: S. Lloyd, *Least squares quantization in PCM*, IEEE
+//! Trans. Inform. Theory 28, 1982; Q. Du, V. Faber, M. Gunzburger, *Centroidal Voronoi tessellations*, SIAM Review
+//! 41, 1999.
+
+use rayon::prelude::*;
+
+use crate::mesh::TetMesh;
+use crate::tables::{buckets, range};
+use crate::tolerances::{SETTLED, SWEEPS};
+use crate::vec3::{self, Vec3};
+
+use super::parts::{expect_parts, renumbered, split_by};
+use super::subdomains::DecompositionError;
+
+/// Makes parts compact, those of a graph partitioner for instance: solvers on subdomains take the fewer steps the
+/// rounder the subdomains and the smoother the interfaces between them are. A partitioner keeps the number of cut
+/// faces small, not the shape.
+///
+/// Each tetrahedron goes to the part whose centre is nearest, out of its own part and those that touch it, centres
+/// are computed anew, and so on until next to nothing moves. A centre is the mean over tetrahedra, not over volume,
+/// so that parts keep similar numbers of them in graded meshes. What a part does not reach through faces goes to the
+/// neighbour that shares most with it.
+///
+/// Parts do not reach from one body into another; regions of materials are no obstacle. The result is accepted by
+/// [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and numbered without
+/// gaps in the order of their first tetrahedra. There may be fewer than before, and more where a part lay in several
+/// bodies.
+///
+/// # Errors
+/// [`DecompositionError::PartCount`] if there is not one number for each tetrahedron.
+pub fn compact_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
+    let tets = mesh.tets().len();
+    expect_parts(mesh, parts)?;
+    let centres: Vec<Vec3> = (0..tets)
+        .map(|tet| vec3::centroid(&mesh.tet_points(tet)))
+        .collect();
+    let bodies = mesh.components();
+    let mut parts = within_bodies(&bodies, parts);
+    for _ in 0..SWEEPS {
+        let next = sweep(mesh, &bodies, &centres, &parts);
+        let moved = next.iter().zip(&parts).filter(|(a, b)| a != b).count();
+        parts = next;
+        if moved as f64 <= SETTLED * tets as f64 {
+            break;
+        }
+    }
+    join_pieces(mesh, &mut parts);
+    Ok(renumbered(&parts))
+}
+
+/// One number for each part of a body, without gaps.
+fn within_bodies(bodies: &[u32], parts: &[u32]) -> Vec<u32> {
+    let mut pairs: Vec<(u32, u32)> = bodies.iter().copied().zip(parts.iter().copied()).collect();
+    let all = pairs.clone();
+    pairs.sort_unstable();
+    pairs.dedup();
+    let place = |pair| pairs.partition_point(|p| *p < pair) as u32;
+    all.into_iter().map(place).collect()
+}
+
+/// The nearest of the own part and those of the same body that touch it, for every tetrahedron.
+fn sweep(mesh: &TetMesh, bodies: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec<u32> {
+    let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
+    let mut sums = vec![([0.0; 3], 0.0); count];
+    let mut body = vec![0; count];
+    for (tet, (&part, &centre)) in parts.iter().zip(centres).enumerate() {
+        let (sum, number) = &mut sums[part as usize];
+        *sum = vec3::add(*sum, centre);
+        *number += 1.0;
+        body[part as usize] = bodies[tet];
+    }
+    let means: Vec<Vec3> = sums
+        .iter()
+        .map(|(sum, number)| vec3::scale(1.0 / f64::max(*number, 1.0), *sum))
+        .collect();
+    let touching = touching(mesh, parts, count, &body);
+    let distance = |part: u32, centre: Vec3| {
+        let off = vec3::sub(means[part as usize], centre);
+        vec3::dot(off, off)
+    };
+    (0..parts.len())
+        .into_par_iter()
+        .map(|tet| {
+            let (own, centre) = (parts[tet], centres[tet]);
+            let start = (distance(own, centre), own);
+            let others = touching[own as usize].iter();
+            let nearer = |best: (f64, u32), &part: &u32| {
+                let found = distance(part, centre);
+                if found < best.0 { (found, part) } else { best }
+            };
+            others.fold(start, nearer).1
+        })
+        .collect()
+}
+
+/// The parts of the same body that share a node with each part, ascending.
+fn touching(mesh: &TetMesh, parts: &[u32], count: usize, body: &[u32]) -> Vec<Vec<u32>> {
+    let (starts, corners) = buckets(mesh.points().len(), mesh.tets().as_flattened());
+    let mut out = vec![Vec::new(); count];
+    let mut here: Vec<u32> = Vec::new();
+    for node in 0..mesh.points().len() {
+        here.clear();
+        let around = corners[range(&starts, node)].iter();
+        here.extend(around.map(|&corner| parts[corner as usize / 4]));
+        here.sort_unstable();
+        here.dedup();
+        for &a in &here {
+            let same = |b: &&u32| **b != a && body[a as usize] == body[**b as usize];
+            out[a as usize].extend(here.iter().filter(same));
+        }
+    }
+    for list in &mut out {
+        list.sort_unstable();
+        list.dedup();
+    }
+    out
+}
+
+/// Gives all but the largest piece of each part to the neighbours that share most faces with them.
+fn join_pieces(mesh: &TetMesh, parts: &mut [u32]) {
+    let pieces = split_by(mesh, parts);
+    let count = pieces.iter().max().map_or(0, |&p| p as usize + 1);
+    let (starts, tets) = buckets(count, &pieces);
+    let size = |piece: usize| range(&starts, piece).len();
+    let parts_before = parts.iter().max().map_or(0, |&p| p as usize + 1);
+    let mut largest = vec![usize::MAX; parts_before];
+    for piece in 0..count {
+        let part = parts[tets[range(&starts, piece)][0] as usize] as usize;
+        if largest[part] == usize::MAX || size(piece) > size(largest[part]) {
+            largest[part] = piece;
+        }
+    }
+    let mut loose: Vec<bool> = vec![true; count];
+    largest
+        .iter()
+        .filter(|piece| **piece != usize::MAX)
+        .for_each(|&piece| loose[piece] = false);
+    // each round joins at least the pieces next to what is fixed already: a body is connected
+    let mut waiting: Vec<usize> = (0..count).filter(|&piece| loose[piece]).collect();
+    while !waiting.is_empty() {
+        let found: Vec<Option<u32>> = waiting
+            .iter()
+            .map(|&piece| {
+                let own = tets[range(&starts, piece)].iter();
+                let around = own.flat_map(|&tet| mesh.neighbours(tet as usize));
+                let mut fixed: Vec<u32> = around
+                    .flatten()
+                    .filter(|&tet| !loose[pieces[tet] as usize])
+                    .map(|tet| parts[tet])
+                    .collect();
+                fixed.sort_unstable();
+                let runs = fixed.chunk_by(|a, b| a == b);
+                runs.max_by_key(|run| (run.len(), std::cmp::Reverse(run[0])))
+                    .map(|run| run[0])
+            })
+            .collect();
+        let before = waiting.len();
+        for (&piece, part) in waiting.iter().zip(&found) {
+            if let Some(part) = part {
+                let own = tets[range(&starts, piece)].iter();
+                own.for_each(|&tet| parts[tet as usize] = *part);
+                loose[piece] = false;
+            }
+        }
+        waiting.retain(|&piece| loose[piece]);
+        if waiting.len() == before {
+            return;
+        }
+    }
+}

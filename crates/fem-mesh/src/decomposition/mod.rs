@@ -1,0 +1,15 @@
+//! Subdomains of a mesh, and where each node went.
+//!
+//! `subdomains` is the decomposition; `boxes` cuts it by a grid, `parts` takes numbers of a partitioner, `compact`
+//! makes ragged parts round. A graph partitioner has its place beside them.
+//!
+//! Uses: `mesh`, `tables`, `vec3`. In: a mesh, and a grid or part numbers. Out: subdomains connected through faces.
+
+mod boxes;
+mod compact;
+mod parts;
+mod subdomains;
+
+pub use compact::compact_parts;
+pub use parts::split_disconnected;
+pub use subdomains::{Decomposition, DecompositionError, NodeCopy, Subdomain};

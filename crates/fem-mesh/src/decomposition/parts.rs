@@ -1,0 +1,106 @@
+//! Subdomains by part numbers of the tetrahedra.
+
+use crate::mesh::{NONE, TetMesh, connected_sets};
+
+use super::subdomains::{Decomposition, DecompositionError};
+
+impl Decomposition {
+    /// Takes the part number of each tetrahedron, from a graph partitioner for instance. The
+    /// numbers run from 0 without gaps.
+    ///
+    /// # Errors
+    /// [`DecompositionError`] if there is not one number for each tetrahedron, a part is empty, or
+    /// a part is not connected (see [`split_disconnected`]).
+    pub fn from_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Self, DecompositionError> {
+        expect_parts(mesh, parts)?;
+        let tets = parts.len();
+        let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
+        if count > tets {
+            let part = first_gap(parts, tets);
+            return Err(DecompositionError::EmptyPart { part, parts: count });
+        }
+        Self::checked(mesh, parts.to_vec(), count)
+    }
+
+    fn checked(
+        mesh: &TetMesh,
+        part_of: Vec<u32>,
+        parts: usize,
+    ) -> Result<Self, DecompositionError> {
+        let part = first_gap(&part_of, parts);
+        if part < parts {
+            return Err(DecompositionError::EmptyPart { part, parts });
+        }
+        let pieces = split_by(mesh, &part_of);
+        // The piece in which each part starts; a second piece is an error.
+        let mut start = vec![(NONE, 0); parts];
+        for (tet, (&part, &piece)) in part_of.iter().zip(&pieces).enumerate() {
+            let (begun, first) = start[part as usize];
+            if begun == NONE {
+                start[part as usize] = (piece, tet);
+            } else if begun != piece {
+                let of_part = pieces.iter().zip(&part_of).filter(|(_, p)| **p == part);
+                let mut distinct: Vec<u32> = of_part.map(|(piece, _)| *piece).collect();
+                distinct.sort_unstable();
+                distinct.dedup();
+                return Err(DecompositionError::DisconnectedPart {
+                    part: part as usize,
+                    pieces: distinct.len(),
+                    first,
+                    second: tet,
+                });
+            }
+        }
+        Ok(Self::build(mesh, part_of))
+    }
+}
+
+/// Gives every piece of a part that is not connected through faces a part number of its own. The
+/// pieces are numbered anew, by the smallest tetrahedron of each; the result has no gaps, so
+/// [`Decomposition::from_parts`] accepts it.
+///
+/// # Errors
+/// [`DecompositionError::PartCount`] if there is not one number for each tetrahedron.
+pub fn split_disconnected(mesh: &TetMesh, parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
+    expect_parts(mesh, parts)?;
+    Ok(split_by(mesh, parts))
+}
+
+pub(super) fn split_by(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
+    connected_sets(mesh.neighbour_table(), |a, b| parts[a] == parts[b])
+}
+
+/// The same parts, numbered without gaps by their first tetrahedra.
+pub(super) fn renumbered(parts: &[u32]) -> Vec<u32> {
+    let mut number = vec![NONE; parts.iter().max().map_or(0, |&p| p as usize + 1)];
+    let mut next = 0;
+    let new = |&part: &u32| {
+        let number = &mut number[part as usize];
+        if *number == NONE {
+            *number = next;
+            next += 1;
+        }
+        *number
+    };
+    parts.iter().map(new).collect()
+}
+
+/// The first number below `limit` that is not among the parts, else `limit`.
+fn first_gap(parts: &[u32], limit: usize) -> usize {
+    let mut found = vec![false; limit];
+    for &part in parts {
+        if let Some(f) = found.get_mut(part as usize) {
+            *f = true;
+        }
+    }
+    found.iter().position(|&f| !f).unwrap_or(limit)
+}
+
+/// Checks that there is one number for each tetrahedron.
+pub(super) fn expect_parts(mesh: &TetMesh, parts: &[u32]) -> Result<(), DecompositionError> {
+    let (given, tets) = (parts.len(), mesh.tets().len());
+    if given != tets {
+        return Err(DecompositionError::PartCount { given, tets });
+    }
+    Ok(())
+}

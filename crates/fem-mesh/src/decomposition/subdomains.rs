@@ -1,0 +1,178 @@
+//! Decomposition into subdomains that are torn apart at their common nodes.
+
+use crate::mesh::TetMesh;
+use crate::tables::{buckets, range};
+
+/// A part of the mesh with its own numbering of nodes and tetrahedra.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Subdomain {
+    /// Global number of each local node, ascending. Local numbers therefore follow the global
+    /// order, and translates of a regular mesh have the same local tables.
+    pub nodes: Vec<u32>,
+    /// Tetrahedra in local node numbers, in the order of `elements`.
+    pub tets: Vec<[u32; 4]>,
+    /// Global number of each tetrahedron, ascending.
+    pub elements: Vec<u32>,
+}
+
+impl Subdomain {
+    /// Number of displacement unknowns, three for each local node.
+    #[must_use]
+    pub fn dofs(&self) -> usize {
+        3 * self.nodes.len()
+    }
+
+    /// Local number of a global node, if it is here.
+    #[must_use]
+    pub fn local(&self, node: u32) -> Option<usize> {
+        self.nodes.binary_search(&node).ok()
+    }
+
+    /// Coordinates of the local nodes.
+    ///
+    /// # Panics
+    /// If the subdomain belongs to another, larger mesh.
+    #[must_use]
+    pub fn points(&self, mesh: &TetMesh) -> Vec<[f64; 3]> {
+        self.nodes
+            .iter()
+            .map(|&n| mesh.points()[n as usize])
+            .collect()
+    }
+}
+
+/// A copy of a global node in a subdomain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct NodeCopy {
+    /// Number of the subdomain.
+    pub subdomain: u32,
+    /// Local number of the node there.
+    pub local: u32,
+}
+
+errors! {
+    /// A decomposition that cannot be used.
+    #[derive(Clone, PartialEq, Eq)]
+    DecompositionError {
+        PartCount { given: usize, tets: usize } =
+            "{given} part numbers for {tets} tetrahedra; give exactly one each";
+        NoBoxes { boxes: [usize; 3], axis: &'static str } =
+            "the grid of boxes {boxes:?} has none along {axis}; give at least 1 each";
+        EmptyPart { part: usize, parts: usize } =
+            "part {part} of {parts} has no tetrahedron; number the parts without gaps from 0, or use fewer of them";
+        DisconnectedPart { part: usize, pieces: usize, first: usize, second: usize } =
+            "part {part} consists of {pieces} pieces that share no face (tetrahedra {first} and {second} are in \
+            different ones), so it would have more than six rigid motions; pass the parts through split_disconnected";
+    }
+}
+
+/// The subdomains of a mesh, and where each node went.
+///
+/// Every subdomain is connected through faces, so that its rigid motions are the six of a body.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Decomposition {
+    subdomains: Vec<Subdomain>,
+    part_of: Vec<u32>,
+    /// Copies of node n: `copies[copy_start[n]..copy_start[n + 1]]`, by ascending subdomain.
+    copy_start: Vec<u32>,
+    copies: Vec<NodeCopy>,
+}
+
+impl Decomposition {
+    /// No decomposition: each body of the mesh is one subdomain.
+    #[must_use]
+    pub fn whole(mesh: &TetMesh) -> Self {
+        Self::build(mesh, mesh.components())
+    }
+
+    /// Expects part numbers without gaps.
+    pub(super) fn build(mesh: &TetMesh, part_of: Vec<u32>) -> Self {
+        let parts = part_of.iter().max().map_or(0, |&p| p as usize + 1);
+        let (starts, tets) = buckets(parts, &part_of);
+        let nodes = mesh.points().len();
+        let mut local = vec![0u32; nodes];
+        let subdomains: Vec<_> = (0..parts)
+            .map(|part| {
+                let elements = tets[range(&starts, part)].to_vec();
+                let global = |&tet: &u32| mesh.tets()[tet as usize];
+                let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
+                nodes.sort_unstable();
+                nodes.dedup();
+                for (number, &node) in nodes.iter().enumerate() {
+                    local[node as usize] = number as u32;
+                }
+                let to_local = |tet: &u32| global(tet).map(|n| local[n as usize]);
+                let tets = elements.iter().map(to_local).collect();
+                Subdomain {
+                    nodes,
+                    tets,
+                    elements,
+                }
+            })
+            .collect();
+        let (copy_start, copies) = collect_copies(nodes, &subdomains);
+        Self {
+            subdomains,
+            part_of,
+            copy_start,
+            copies,
+        }
+    }
+
+    /// The subdomains, by part number.
+    #[must_use]
+    pub fn subdomains(&self) -> &[Subdomain] {
+        &self.subdomains
+    }
+
+    /// The copies of a global node, by ascending subdomain.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    #[must_use]
+    pub fn copies(&self, node: usize) -> &[NodeCopy] {
+        &self.copies[range(&self.copy_start, node)]
+    }
+
+    /// The subdomain that owns a tetrahedron.
+    ///
+    /// # Panics
+    /// If there is no such tetrahedron.
+    #[must_use]
+    pub fn part_of(&self, tet: usize) -> u32 {
+        self.part_of[tet]
+    }
+
+    /// The subdomain of every tetrahedron.
+    #[must_use]
+    pub fn parts(&self) -> &[u32] {
+        &self.part_of
+    }
+
+    /// Number of global nodes.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.copy_start.len() - 1
+    }
+
+    /// Number of displacement unknowns of all subdomains together, the paper's n_p.
+    #[must_use]
+    pub fn torn_dofs(&self) -> usize {
+        3 * self.copies.len()
+    }
+}
+
+fn collect_copies(nodes: usize, subdomains: &[Subdomain]) -> (Vec<u32>, Vec<NodeCopy>) {
+    let (mut torn, mut node_of) = (Vec::new(), Vec::new());
+    for (number, subdomain) in subdomains.iter().enumerate() {
+        torn.extend((0..subdomain.nodes.len()).map(|local| NodeCopy {
+            subdomain: number as u32,
+            local: local as u32,
+        }));
+        node_of.extend_from_slice(&subdomain.nodes);
+    }
+    let (start, positions) = buckets(nodes, &node_of);
+    let copies = positions.iter().map(|&k| torn[k as usize]).collect();
+    (start, copies)
+}

@@ -1,0 +1,127 @@
+//! Strain, stress and energy of a displacement of the mesh.
+
+use crate::element::Element;
+use crate::material::{MaterialError, Materials};
+use crate::mesh::TetMesh;
+use rayon::prelude::*;
+
+errors! {
+    /// A field that cannot be evaluated.
+    #[derive(Clone, PartialEq)]
+    FieldError {
+        Length { what: &'static str, given: usize, expected: usize } =
+            "the {what} has {given} entries; the mesh needs {expected}";
+        NotFinite { node: usize, value: [f64; 3] } =
+            "the displacement of node {node} is {value:?}; it must be finite, so look at the solver that computed it";
+        Material(#[from] MaterialError) = "{0}";
+    }
+}
+
+/// Checks the length of a table.
+pub(crate) fn expect_entries(
+    what: &'static str,
+    given: usize,
+    expected: usize,
+) -> Result<(), FieldError> {
+    if given == expected {
+        return Ok(());
+    }
+    Err(FieldError::Length {
+        what,
+        given,
+        expected,
+    })
+}
+
+/// The displacement of each node as a vector.
+pub(super) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, FieldError> {
+    expect_entries("displacement", u.len(), 3 * mesh.points().len())?;
+    let vectors: Vec<_> = u.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect();
+    match vectors
+        .iter()
+        .position(|v| v.iter().any(|x| !x.is_finite()))
+    {
+        Some(node) => Err(FieldError::NotFinite {
+            node,
+            value: vectors[node],
+        }),
+        None => Ok(vectors),
+    }
+}
+
+/// Strain of each tetrahedron.
+///
+/// # Errors
+/// [`FieldError`] if the displacement has the wrong length or is not finite.
+pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
+    let u = nodal_vectors(mesh, u)?;
+    let strain = |tet: usize| {
+        let nodal = mesh.tets()[tet].map(|n| u[n as usize]);
+        Element::new(&mesh.tet_points(tet)).strain(&nodal)
+    };
+    Ok((0..mesh.tets().len()).into_par_iter().map(strain).collect())
+}
+
+/// Stress of each tetrahedron.
+///
+/// # Errors
+/// [`FieldError`] as [`strains`], and if a region has no material.
+pub fn stresses(
+    mesh: &TetMesh,
+    materials: &Materials,
+    u: &[f64],
+) -> Result<Vec<[f64; 6]>, FieldError> {
+    let laws = materials.of_tets(mesh.regions())?;
+    let strains = strains(mesh, u)?;
+    Ok(strains
+        .par_iter()
+        .zip(laws)
+        .map(|(strain, law)| law.stress(strain))
+        .collect())
+}
+
+/// Elastic energy, half of stress times strain integrated over the mesh.
+///
+/// # Errors
+/// [`FieldError`] as [`stresses`].
+pub fn strain_energy(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<f64, FieldError> {
+    let laws = materials.of_tets(mesh.regions())?;
+    let strains = strains(mesh, u)?;
+    let energy = |tet: usize| mesh.volume(tet) * laws[tet].energy_density(&strains[tet]);
+    Ok((0..strains.len()).map(energy).sum())
+}
+
+/// The von Mises stress sqrt(3/2 s : s), with s the stress deviator.
+#[must_use]
+pub fn von_mises(stress: &[f64; 6]) -> f64 {
+    let [xx, yy, zz, yz, xz, xy] = *stress;
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
+}
+
+/// Recovers values at the nodes as the mean of the tetrahedra around each, weighted by volume.
+/// Where two materials meet the mean blurs the jump of the stress.
+///
+/// # Errors
+/// [`FieldError::Length`] unless there is one value for each tetrahedron.
+pub fn nodal_average<const N: usize>(
+    mesh: &TetMesh,
+    values: &[[f64; N]],
+) -> Result<Vec<[f64; N]>, FieldError> {
+    expect_entries("table of tetrahedra", values.len(), mesh.tets().len())?;
+    let mut sums = vec![[0.0; N]; mesh.points().len()];
+    let mut volumes = vec![0.0; mesh.points().len()];
+    for (tet, value) in values.iter().enumerate() {
+        let volume = mesh.volume(tet);
+        for &node in &mesh.tets()[tet] {
+            volumes[node as usize] += volume;
+            let sum = &mut sums[node as usize];
+            (0..N).for_each(|i| sum[i] += volume * value[i]);
+        }
+    }
+    Ok(sums
+        .iter()
+        .zip(&volumes)
+        .map(|(sum, volume)| sum.map(|s| s / volume))
+        .collect())
+}

@@ -1,0 +1,229 @@
+//! Mesh files of Gmsh, format 4.1, text or binary (feature `gmsh`).
+//!
+//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are skipped, and nodes that no
+//! tetrahedron uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron
+//! that of its volume; if the file has no physical groups of that dimension, the numbers of the geometric entities
+//! are used, and surfaces between two volumes are skipped. Entities outside of the groups, if there are any groups,
+//! leave triangles untagged and give region 0.
+//!
+//! `reader` takes the file apart, `names` has the names of the groups.
+
+mod names;
+mod reader;
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+pub use names::GroupNames;
+
+use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
+
+errors! {
+    /// A Gmsh file that cannot be read.
+    GmshError {
+        Io { path: PathBuf, source: std::io::Error } = "cannot read {}: {source}", path.display();
+        NotGmsh = "this is no Gmsh mesh: it does not start with a $MeshFormat section";
+        Version { found: String } =
+            "the file has Gmsh format {found:?}; only 4.1 is read, so save it with Mesh.MshFileVersion = 4.1 (gmsh \
+            -format msh41)";
+        Damaged { section: &'static str, offset: usize, what: &'static str } =
+            "section {section} of the Gmsh file is damaged at byte {offset}: {what}; export the mesh again";
+        MissingSection { section: &'static str } =
+            "the Gmsh file has no section {section}; export the mesh, not only the geometry";
+        Partitioned { section: &'static str } =
+            "the Gmsh file is partitioned (section {section}), and groups of its parts are not read; save the mesh \
+            before it is partitioned (gmsh.model.mesh.unpartition), and cut it with Decomposition::boxes or \
+            from_parts";
+        NoTetrahedra =
+            "the Gmsh file has no tetrahedra: mesh in three dimensions (gmsh -3); if that was done, add a physical \
+            volume, or set Mesh.SaveAll = 1, since Gmsh saves only what is in physical groups as soon as there are \
+            some";
+        UnknownName { what: &'static str, name: String, known: Vec<String> } =
+            "the Gmsh file has no physical {what} named {name:?}; {}", listed(what, known);
+        Unsupported { kind: i32, name: &'static str } =
+            "the Gmsh file has elements of type {kind} ({name}); only linear triangles and tetrahedra are read, so \
+            mesh with order 1 and without recombination";
+        RepeatedNode { tag: u64 } = "the Gmsh file defines node {tag} twice; export the mesh again";
+        UnknownNode { element: u64, node: u64 } =
+            "element {element} of the Gmsh file uses node {node}, which the file does not define; export the mesh \
+            again";
+        SeveralGroups { what: &'static str, entity: i32, groups: Vec<i32> } =
+            "{what} {entity} of the Gmsh file is in the physical groups {groups:?}; a part of the mesh has one tag, \
+            so keep one group";
+        RepeatedName { name: String, groups: [u32; 2] } =
+            "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one", groups[0], groups[1];
+        Mesh(#[from] MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}";
+    }
+}
+
+/// The names that there are, in words.
+fn listed(what: &str, known: &[String]) -> String {
+    if known.is_empty() {
+        return format!(
+            "no {what} in it has a name, so name one (Physical Surface, Physical Volume)"
+        );
+    }
+    let names: Vec<String> = known.iter().map(|name| format!("{name:?}")).collect();
+    format!("the {what}s in it are {}", names.join(", "))
+}
+
+/// Reads a mesh with its tags and regions from a file.
+///
+/// # Errors
+/// [`GmshError`] if the file cannot be read or understood, or its mesh is not valid.
+pub fn read_gmsh(path: impl AsRef<Path>) -> Result<TetMesh, GmshError> {
+    parse_gmsh(&read(path.as_ref())?)
+}
+
+/// As [`read_gmsh`], with the names of the physical groups.
+///
+/// ```no_run
+/// use signorini_fem_mesh::gmsh::read_named_gmsh;
+///
+/// let (mesh, names) = read_named_gmsh("block.msh")?;
+/// let floor = names.surface("foundation")?;
+/// println!("{} nodes can touch", mesh.nodes_on(floor).len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`read_gmsh`], and if two groups have the same name.
+pub fn read_named_gmsh(path: impl AsRef<Path>) -> Result<(TetMesh, GroupNames), GmshError> {
+    parse_named_gmsh(&read(path.as_ref())?)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, GmshError> {
+    std::fs::read(path).map_err(|source| GmshError::Io {
+        path: path.into(),
+        source,
+    })
+}
+
+/// Reads a mesh with its tags and regions from the contents of a file.
+///
+/// # Errors
+/// [`GmshError`] if the contents cannot be understood or the mesh is not valid.
+pub fn parse_gmsh(bytes: &[u8]) -> Result<TetMesh, GmshError> {
+    Ok(parse_contents(bytes)?.0)
+}
+
+/// As [`parse_gmsh`], with the names of the physical groups.
+///
+/// # Errors
+/// As [`parse_gmsh`], and if two groups have the same name.
+pub fn parse_named_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError> {
+    let (mesh, list) = parse_contents(bytes)?;
+    let mut names = GroupNames::default();
+    for (dimension, group, name) in list {
+        names.insert(dimension, group, name)?;
+    }
+    Ok((mesh, names))
+}
+
+fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshError> {
+    let file = reader::read(bytes)?;
+    let mut points = file.points;
+    let mut number = HashMap::with_capacity(file.tags.len());
+    for (place, &tag) in file.tags.iter().enumerate() {
+        if number.insert(tag, place as u32).is_some() {
+            return Err(GmshError::RepeatedNode { tag });
+        }
+    }
+    let surfaces = Tags::new("surface", &file.entities[0])?;
+    let volumes = Tags::new("volume", &file.entities[1])?;
+    let (mut tets, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new());
+    for element in &file.elements {
+        let node = |place: usize| {
+            let (element, node) = (element.tag, element.nodes[place]);
+            number
+                .get(&node)
+                .copied()
+                .ok_or(GmshError::UnknownNode { element, node })
+        };
+        if element.is_tet {
+            tets.push([node(0)?, node(1)?, node(2)?, node(3)?]);
+            regions.push(volumes.of(element.entity).unwrap_or(0));
+        } else if let Some(tag) = surfaces.of(element.entity) {
+            facets.push(Facet {
+                nodes: [node(0)?, node(1)?, node(2)?],
+                tag: FacetTag(tag),
+            });
+        }
+    }
+    if tets.is_empty() {
+        return Err(GmshError::NoTetrahedra);
+    }
+    orient_tets(&points, &mut tets);
+    drop_unused_nodes(&mut points, &mut tets, &mut facets);
+    if !surfaces.grouped {
+        // Nobody asked for these surfaces by name, and some may lie between two volumes.
+        facets = on_boundary(&points, &tets, facets)?;
+    }
+    let mesh = TetMesh::new(points, tets, facets)?.with_regions(regions)?;
+    Ok((mesh, file.names))
+}
+
+/// The facets that lie on the boundary of the mesh.
+fn on_boundary(
+    points: &[[f64; 3]],
+    tets: &[[u32; 4]],
+    facets: Vec<Facet>,
+) -> Result<Vec<Facet>, GmshError> {
+    let sorted = |mut nodes: [u32; 3]| {
+        nodes.sort_unstable();
+        nodes
+    };
+    let bare = TetMesh::new(points.to_vec(), tets.to_vec(), Vec::new())?;
+    let boundary: HashSet<_> = bare
+        .boundary_facets()
+        .iter()
+        .map(|f| sorted(f.nodes))
+        .collect();
+    Ok(facets
+        .into_iter()
+        .filter(|f| boundary.contains(&sorted(f.nodes)))
+        .collect())
+}
+
+/// From entities to tags, for one dimension.
+struct Tags {
+    group_of: HashMap<i32, u32>,
+    /// Whether the file has physical groups of this dimension.
+    grouped: bool,
+}
+
+impl Tags {
+    fn new(what: &'static str, entities: &[reader::Entity]) -> Result<Self, GmshError> {
+        let mut group_of = HashMap::new();
+        for &(entity, ref groups) in entities {
+            // The sign of a group is an orientation.
+            let mut distinct: Vec<u32> = groups.iter().map(|g| g.unsigned_abs()).collect();
+            distinct.sort_unstable();
+            distinct.dedup();
+            match distinct[..] {
+                [] => {}
+                [group] => {
+                    group_of.insert(entity, group);
+                }
+                _ => {
+                    let groups = groups.clone();
+                    return Err(GmshError::SeveralGroups {
+                        what,
+                        entity,
+                        groups,
+                    });
+                }
+            }
+        }
+        let grouped = !group_of.is_empty();
+        Ok(Self { group_of, grouped })
+    }
+
+    fn of(&self, entity: i32) -> Option<u32> {
+        if self.grouped {
+            self.group_of.get(&entity).copied()
+        } else {
+            Some(entity.unsigned_abs())
+        }
+    }
+}

@@ -1,0 +1,371 @@
+//! A reader of Gmsh 4.1 files. Every count is checked against the bytes that are there before it is believed.
+
+use super::GmshError;
+
+/// Nodes and name of the element types, and whether they are read or skipped; others are refused.
+const TYPES: [(i32, usize, &str, bool); 12] = [
+    (1, 2, "2-node line", true),
+    (2, 3, "3-node triangle", true),
+    (3, 4, "4-node quadrangle", false),
+    (4, 4, "4-node tetrahedron", true),
+    (5, 8, "8-node hexahedron", false),
+    (6, 6, "6-node prism", false),
+    (7, 5, "5-node pyramid", false),
+    (8, 3, "3-node line of second order", false),
+    (9, 6, "6-node triangle of second order", false),
+    (10, 9, "9-node quadrangle of second order", false),
+    (11, 10, "10-node tetrahedron of second order", false),
+    (15, 1, "point", true),
+];
+
+/// Dimension, number and name of a physical group.
+pub(super) type Name = (i32, i32, String);
+
+/// Number and physical groups of a surface or volume.
+pub(super) type Entity = (i32, Vec<i32>);
+
+/// What a file holds.
+#[derive(Default)]
+pub(super) struct Contents {
+    pub(super) names: Vec<Name>,
+    /// Surfaces, and volumes.
+    pub(super) entities: [Vec<Entity>; 2],
+    /// Node numbers and coordinates.
+    pub(super) tags: Vec<u64>,
+    pub(super) points: Vec<[f64; 3]>,
+    /// Triangles and tetrahedra in the order of the file.
+    pub(super) elements: Vec<Element>,
+}
+
+/// A triangle or a tetrahedron.
+pub(super) struct Element {
+    pub(super) tag: u64,
+    /// The surface or volume that it belongs to.
+    pub(super) entity: i32,
+    /// Node numbers; four only for a tetrahedron.
+    pub(super) nodes: [u64; 4],
+    pub(super) is_tet: bool,
+}
+
+/// Reads the contents of a file.
+pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
+    let mut reader = Reader {
+        bytes,
+        at: 0,
+        section: "$MeshFormat",
+        is_big: false,
+        is_binary: false,
+    };
+    if reader.line() != b"$MeshFormat" {
+        return Err(GmshError::NotGmsh);
+    }
+    reader.format()?;
+    let mut out = Contents::default();
+    let (mut nodes, mut elements) = (false, false);
+    while reader.skip_blanks() {
+        match reader.line() {
+            b"$PhysicalNames" => {
+                reader.section = "$PhysicalNames";
+                out.names = reader.names()?;
+                reader.end(b"$EndPhysicalNames")?;
+            }
+            b"$Entities" => {
+                reader.section = "$Entities";
+                out.entities = reader.entities()?;
+                reader.end(b"$EndEntities")?;
+            }
+            b"$Nodes" => {
+                reader.section = "$Nodes";
+                (out.tags, out.points) = reader.nodes()?;
+                reader.end(b"$EndNodes")?;
+                nodes = true;
+            }
+            b"$Elements" => {
+                reader.section = "$Elements";
+                out.elements = reader.elements()?;
+                reader.end(b"$EndElements")?;
+                elements = true;
+            }
+            b"$PartitionedEntities" => {
+                return Err(GmshError::Partitioned {
+                    section: "$PartitionedEntities",
+                });
+            }
+            other => reader.skip_section(other)?,
+        }
+    }
+    for (found, section) in [(elements, "$Elements"), (nodes, "$Nodes")] {
+        if !found {
+            return Err(GmshError::MissingSection { section });
+        }
+    }
+    Ok(out)
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    section: &'static str,
+    /// Byte order of a binary file.
+    is_big: bool,
+    is_binary: bool,
+}
+
+impl<'a> Reader<'a> {
+    fn damaged<T>(&self, what: &'static str) -> Result<T, GmshError> {
+        Err(GmshError::Damaged {
+            section: self.section,
+            offset: self.at,
+            what,
+        })
+    }
+
+    fn rest(&self) -> &'a [u8] {
+        self.bytes.get(self.at..).unwrap_or(&[])
+    }
+
+    /// Skips blanks and says whether something is left.
+    fn skip_blanks(&mut self) -> bool {
+        let blanks = self
+            .rest()
+            .iter()
+            .take_while(|b| b.is_ascii_whitespace())
+            .count();
+        self.at += blanks;
+        self.at < self.bytes.len()
+    }
+
+    /// The rest of the line, without its end.
+    fn line(&mut self) -> &'a [u8] {
+        let rest = self.rest();
+        let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+        self.at += (length + 1).min(rest.len());
+        rest[..length].trim_ascii_end()
+    }
+
+    fn word(&mut self) -> Result<&'a [u8], GmshError> {
+        self.skip_blanks();
+        let rest = self.rest();
+        let length = rest.iter().take_while(|b| !b.is_ascii_whitespace()).count();
+        if length == 0 || rest[0] == b'$' {
+            return self.damaged("a number is missing");
+        }
+        self.at += length;
+        Ok(&rest[..length])
+    }
+
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], GmshError> {
+        match self.rest().first_chunk::<N>() {
+            Some(chunk) => {
+                self.at += N;
+                Ok(*chunk)
+            }
+            None => self.damaged("the file ends inside of a number"),
+        }
+    }
+
+    /// A number in text, or by its bytes, most significant first.
+    fn number<T: std::str::FromStr, const N: usize>(
+        &mut self,
+        of: fn([u8; N]) -> T,
+        wanted: &'static str,
+    ) -> Result<T, GmshError> {
+        if self.is_binary {
+            let mut bytes = self.take::<N>()?;
+            if !self.is_big {
+                bytes.reverse();
+            }
+            return Ok(of(bytes));
+        }
+        let word = self.word()?;
+        let number = std::str::from_utf8(word).ok().and_then(|w| w.parse().ok());
+        number.map_or_else(|| self.damaged(wanted), Ok)
+    }
+
+    /// An unsigned number, `size_t` of Gmsh.
+    fn size(&mut self) -> Result<u64, GmshError> {
+        self.number(u64::from_be_bytes, "a whole number from 0 is expected")
+    }
+
+    fn int(&mut self) -> Result<i32, GmshError> {
+        self.number(i32::from_be_bytes, "a whole number is expected")
+    }
+
+    fn float(&mut self) -> Result<f64, GmshError> {
+        self.number(f64::from_be_bytes, "a number is expected")
+    }
+
+    /// A count of things that take at least so many numbers each, believed only if the rest of the
+    /// file can hold them.
+    fn count(&mut self, numbers: usize) -> Result<usize, GmshError> {
+        let count = self.size()?;
+        // A number takes two characters with its blank, or four bytes.
+        let smallest = numbers * if self.is_binary { 4 } else { 2 };
+        // The last number of a file may lack its blank.
+        let room = (self.rest().len() + 1) / smallest.max(1);
+        match usize::try_from(count) {
+            Ok(count) if count <= room => Ok(count),
+            _ => self.damaged("the count before exceeds what the file can hold"),
+        }
+    }
+
+    fn end(&mut self, name: &[u8]) -> Result<(), GmshError> {
+        self.skip_blanks();
+        if self.line() == name {
+            Ok(())
+        } else {
+            self.damaged("the end of the section is expected")
+        }
+    }
+
+    fn format(&mut self) -> Result<(), GmshError> {
+        let version = self.word()?;
+        if version != b"4.1" {
+            let found = String::from_utf8_lossy(version).chars().take(20).collect();
+            return Err(GmshError::Version { found });
+        }
+        self.is_binary = match self.word()? {
+            b"0" => false,
+            b"1" => true,
+            _ => return self.damaged("the file type must be 0 (text) or 1 (binary)"),
+        };
+        if self.word()? != b"8" {
+            return self.damaged("only a data size of 8 bytes is read");
+        }
+        if self.is_binary {
+            self.line();
+            self.is_big = match self.take::<4>()? {
+                [1, 0, 0, 0] => false,
+                [0, 0, 0, 1] => true,
+                _ => return self.damaged("the number 1 is expected, which tells the byte order"),
+            };
+        }
+        self.end(b"$EndMeshFormat")
+    }
+
+    /// Names of groups: text also in binary files.
+    fn names(&mut self) -> Result<Vec<Name>, GmshError> {
+        let is_binary = std::mem::replace(&mut self.is_binary, false);
+        let mut names = Vec::new();
+        for _ in 0..self.count(3)? {
+            let (dimension, group) = (self.int()?, self.int()?);
+            let quoted = self.line().trim_ascii();
+            let inside = quoted
+                .strip_prefix(b"\"")
+                .and_then(|n| n.strip_suffix(b"\""));
+            let Some(name) = inside else {
+                return self.damaged("a name in quotes is expected");
+            };
+            names.push((dimension, group, String::from_utf8_lossy(name).into_owned()));
+        }
+        self.is_binary = is_binary;
+        Ok(names)
+    }
+
+    /// Surfaces, and volumes.
+    fn entities(&mut self) -> Result<[Vec<Entity>; 2], GmshError> {
+        let counts = [
+            self.count(5)?,
+            self.count(9)?,
+            self.count(9)?,
+            self.count(9)?,
+        ];
+        let mut out = [Vec::new(), Vec::new()];
+        for (dimension, count) in counts.into_iter().enumerate() {
+            for _ in 0..count {
+                let entity = self.int()?;
+                for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                    self.float()?;
+                }
+                let groups = self.ints()?;
+                if dimension > 0 {
+                    // the entities that bound it
+                    self.ints()?;
+                }
+                if dimension > 1 {
+                    out[dimension - 2].push((entity, groups));
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    fn ints(&mut self) -> Result<Vec<i32>, GmshError> {
+        (0..self.count(1)?).map(|_| self.int()).collect()
+    }
+
+    /// The header of the nodes or elements: the number of blocks, after checks.
+    fn header(&mut self) -> Result<usize, GmshError> {
+        let blocks = self.count(4)?;
+        let (things, smallest, largest) = (self.count(1)?, self.size()?, self.size()?);
+        if things == 0 || blocks == 0 {
+            return self.damaged("the section is empty");
+        }
+        if smallest == 0 || largest < smallest {
+            return self.damaged("the range of numbers in the header is wrong");
+        }
+        Ok(blocks)
+    }
+
+    fn nodes(&mut self) -> Result<(Vec<u64>, Vec<[f64; 3]>), GmshError> {
+        let (mut tags, mut points) = (Vec::new(), Vec::new());
+        for _ in 0..self.header()? {
+            let (_dimension, _entity, parametric) = (self.int()?, self.int()?, self.int()?);
+            if parametric != 0 {
+                return self.damaged("parametric nodes are not read (Mesh.SaveParametric = 0)");
+            }
+            let count = self.count(4)?;
+            for _ in 0..count {
+                tags.push(self.size()?);
+            }
+            for _ in 0..count {
+                points.push([self.float()?, self.float()?, self.float()?]);
+            }
+        }
+        Ok((tags, points))
+    }
+
+    fn elements(&mut self) -> Result<Vec<Element>, GmshError> {
+        let mut out = Vec::new();
+        for _ in 0..self.header()? {
+            let (_dimension, entity, kind) = (self.int()?, self.int()?, self.int()?);
+            let name = match TYPES.iter().find(|t| t.0 == kind) {
+                Some(&(_, count, _, true)) => Ok(count),
+                Some(&(_, _, name, false)) => Err(name),
+                None => Err("unknown"),
+            };
+            let count = name.map_err(|name| GmshError::Unsupported { kind, name })?;
+            for _ in 0..self.count(1 + count)? {
+                let (tag, mut nodes) = (self.size()?, [0; 4]);
+                for node in &mut nodes[..count] {
+                    *node = self.size()?;
+                }
+                if count > 2 {
+                    out.push(Element {
+                        tag,
+                        entity,
+                        nodes,
+                        is_tet: count == 4,
+                    });
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// Skips a section of another kind, up to and with its end.
+    fn skip_section(&mut self, name: &[u8]) -> Result<(), GmshError> {
+        self.section = "(other)";
+        let Some(name) = name.strip_prefix(b"$").filter(|n| !n.is_empty()) else {
+            return self.damaged("a section is expected, starting with $");
+        };
+        let end = [b"$End", name].concat();
+        match self.rest().windows(end.len()).position(|w| w == end) {
+            Some(place) => {
+                self.at += place + end.len();
+                Ok(())
+            }
+            None => self.damaged("a section without an end"),
+        }
+    }
+}

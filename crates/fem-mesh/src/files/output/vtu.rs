@@ -1,0 +1,268 @@
+//! One VTU file.
+
+use std::io::Read;
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::read::ZlibEncoder;
+
+use crate::decomposition::Decomposition;
+use crate::files::replace::replace;
+use crate::mesh::{Surface, TetMesh};
+
+use super::pvd::escape;
+use super::{Field, OutputError};
+
+/// Writes the mesh as one piece with fields at its nodes and in its tetrahedra.
+///
+/// # Errors
+/// [`OutputError`] if a field does not fit the mesh or the file cannot be written.
+pub fn write_vtu(
+    path: impl AsRef<Path>,
+    mesh: &TetMesh,
+    point_fields: &[Field],
+    cell_fields: &[Field],
+) -> Result<(), OutputError> {
+    check(point_fields, mesh.points().len(), "nodes")?;
+    check(cell_fields, mesh.tets().len(), "cells")?;
+    let mut file = File::new();
+    let all = (0..mesh.points().len(), 0..mesh.tets().len());
+    file.piece(
+        mesh.points(),
+        mesh.tets(),
+        (point_fields, all.0),
+        (cell_fields, all.1),
+    );
+    file.write(path.as_ref())
+}
+
+/// Writes each subdomain as a piece. The fields are those of the mesh, as for [`write_vtu`]; a
+/// cell field `part` with the number of the subdomain is added.
+///
+/// # Errors
+/// [`OutputError`] if a field or the decomposition does not fit the mesh, a cell field is already
+/// named `part`, or the file cannot be written.
+pub fn write_vtu_pieces(
+    path: impl AsRef<Path>,
+    mesh: &TetMesh,
+    decomposition: &Decomposition,
+    point_fields: &[Field],
+    cell_fields: &[Field],
+) -> Result<(), OutputError> {
+    if decomposition.nodes() != mesh.points().len()
+        || decomposition.parts().len() != mesh.tets().len()
+    {
+        return Err(OutputError::Foreign {
+            what: "decomposition",
+        });
+    }
+    let part = Field::scalar(
+        "part",
+        decomposition.parts().iter().map(|&p| p.into()).collect(),
+    );
+    let cell_fields = [cell_fields, &[part]].concat();
+    check(point_fields, mesh.points().len(), "nodes")?;
+    check(&cell_fields, mesh.tets().len(), "cells")?;
+    let mut file = File::new();
+    for subdomain in decomposition.subdomains() {
+        let nodes = subdomain.nodes.iter().map(|&n| n as usize);
+        let elements = subdomain.elements.iter().map(|&e| e as usize);
+        let points = subdomain.points(mesh);
+        file.piece(
+            &points,
+            &subdomain.tets,
+            (point_fields, nodes),
+            (&cell_fields, elements),
+        );
+    }
+    file.write(path.as_ref())
+}
+
+/// Writes a surface as triangles. The fields have one value for each of [`Surface::nodes`] and
+/// [`Surface::triangles`].
+///
+/// # Errors
+/// [`OutputError`] if a field or the surface does not fit, or the file cannot be written.
+pub fn write_surface_vtu(
+    path: impl AsRef<Path>,
+    mesh: &TetMesh,
+    surface: &Surface,
+    point_fields: &[Field],
+    cell_fields: &[Field],
+) -> Result<(), OutputError> {
+    let (nodes, triangles) = (surface.nodes(), surface.triangles());
+    check(point_fields, nodes.len(), "nodes")?;
+    check(cell_fields, triangles.len(), "cells")?;
+    let point = |&n: &u32| mesh.points().get(n as usize).copied();
+    let points: Option<Vec<_>> = nodes.iter().map(point).collect();
+    let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
+    let mut file = File::new();
+    let all = (0..nodes.len(), 0..triangles.len());
+    file.piece(
+        &points,
+        triangles,
+        (point_fields, all.0),
+        (cell_fields, all.1),
+    );
+    file.write(path.as_ref())
+}
+
+fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), OutputError> {
+    for (number, field) in fields.iter().enumerate() {
+        let (name, components) = (field.name.clone(), field.components);
+        if name.is_empty() {
+            return Err(OutputError::Unnamed { what });
+        }
+        if fields[..number].iter().any(|f| f.name == name) {
+            return Err(OutputError::RepeatedName { name, what });
+        }
+        let (given, expected) = (field.values.len(), components * count);
+        if given != expected {
+            return Err(OutputError::FieldLength {
+                name,
+                what,
+                given,
+                expected,
+                components,
+            });
+        }
+        if let Some(place) = field.values.iter().position(|v| !v.is_finite()) {
+            let (index, value) = (place / components, field.values[place]);
+            return Err(OutputError::NotFinite {
+                name,
+                what,
+                index,
+                value,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A file of unstructured grids: XML with binary arrays.
+struct File(String);
+
+impl File {
+    fn new() -> Self {
+        let head = "<?xml version=\"1.0\"?>\n\
+            <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+            compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+        Self(head.into())
+    }
+
+    /// Cells of `N` nodes, and of each field the chosen values.
+    fn piece<const N: usize>(
+        &mut self,
+        points: &[[f64; 3]],
+        cells: &[[u32; N]],
+        (point_fields, nodes): (&[Field], impl Iterator<Item = usize> + Clone),
+        (cell_fields, chosen): (&[Field], impl Iterator<Item = usize> + Clone),
+    ) {
+        let numbers = |n: u64| n.to_le_bytes();
+        let counts = [points.len(), cells.len()];
+        self.open(
+            "Piece",
+            &format!(
+                "NumberOfPoints=\"{}\" NumberOfCells=\"{}\"",
+                counts[0], counts[1]
+            ),
+        );
+        self.open("PointData", "");
+        point_fields
+            .iter()
+            .for_each(|field| self.field(field, nodes.clone()));
+        self.close("PointData");
+        self.open("CellData", "");
+        cell_fields
+            .iter()
+            .for_each(|field| self.field(field, chosen.clone()));
+        self.close("CellData");
+        self.open("Points", "");
+        let coordinates = points.iter().flatten().flat_map(|x| x.to_le_bytes());
+        self.array("Float64", "Points", 3, coordinates.collect());
+        self.close("Points");
+        self.open("Cells", "");
+        let connectivity = cells.iter().flatten().flat_map(|&n| numbers(n.into()));
+        self.array("UInt64", "connectivity", 1, connectivity.collect());
+        let offsets = (1..=cells.len()).flat_map(|n| numbers((N * n) as u64));
+        self.array("UInt64", "offsets", 1, offsets.collect());
+        // triangle or tetrahedron
+        let kind = if N == 3 { 5 } else { 10 };
+        self.array("UInt8", "types", 1, vec![kind; cells.len()]);
+        self.close("Cells");
+        self.close("Piece");
+    }
+
+    fn field(&mut self, field: &Field, chosen: impl Iterator<Item = usize>) {
+        let n = field.components;
+        let values = chosen.flat_map(|i| &field.values[n * i..n * (i + 1)]);
+        let bytes = values.flat_map(|x| x.to_le_bytes()).collect();
+        self.array("Float64", &escape(&field.name), n, bytes);
+    }
+
+    fn open(&mut self, tag: &str, attributes: &str) {
+        let blank = if attributes.is_empty() { "" } else { " " };
+        self.0 += &format!("<{tag}{blank}{attributes}>\n");
+    }
+
+    fn close(&mut self, tag: &str) {
+        self.0 += &format!("</{tag}>\n");
+    }
+
+    /// Blocks of zlib behind a header: numbers of blocks and of bytes in the first and the last, compressed sizes.
+    fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
+        let attributes = format!(
+            "type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\""
+        );
+        self.open("DataArray", &attributes);
+        let last = bytes.chunks(BLOCK).last().map_or(0, <[u8]>::len);
+        let mut header = vec![bytes.len().div_ceil(BLOCK), BLOCK, last];
+        let mut data = Vec::new();
+        for block in bytes.chunks(BLOCK) {
+            let before = data.len();
+            data.extend(compressed(block));
+            header.push(data.len() - before);
+        }
+        let header: Vec<u8> = header
+            .iter()
+            .flat_map(|&n| (n as u64).to_le_bytes())
+            .collect();
+        base64(&header, &mut self.0);
+        base64(&data, &mut self.0);
+        self.0.push('\n');
+        self.close("DataArray");
+    }
+
+    fn write(mut self, path: &Path) -> Result<(), OutputError> {
+        self.close("UnstructuredGrid");
+        self.close("VTKFile");
+        replace(path, self.0.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })
+    }
+}
+
+/// Bytes that are compressed together.
+const BLOCK: usize = 32768;
+
+fn compressed(block: &[u8]) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut encoder = ZlibEncoder::new(block, Compression::fast());
+    // reading from memory into memory cannot fail
+    let _ = encoder.read_to_end(&mut out);
+    out
+}
+
+fn base64(bytes: &[u8], out: &mut String) {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for three in bytes.chunks(3) {
+        let mut bits = 0;
+        (0..3).for_each(|k| bits = bits << 8 | usize::from(three.get(k).copied().unwrap_or(0)));
+        for k in 0..4 {
+            let digit = DIGITS[bits >> (18 - 6 * k) & 63];
+            out.push(if k <= three.len() {
+                char::from(digit)
+            } else {
+                '='
+            });
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Body forces, surface tractions and nodal forces as consistent nodal loads.
+
+use rayon::prelude::*;
+
+use crate::decomposition::{Decomposition, Subdomain};
+use crate::element::quadrature;
+use crate::mesh::{FacetTag, TetMesh, facet_area_vector};
+use crate::vec3::{add, is_finite, norm, scale};
+
+use super::density::{LoadDensity, LoadError};
+
+/// Turns a load into nodal forces of the subdomains, one vector each with component i of local
+/// node n at 3 n + i.
+///
+/// The forces are consistent: the work of the load on the piecewise linear displacements. A
+/// constant load gives a third of each triangle's force, a quarter of each tetrahedron's, to its
+/// nodes; functions are integrated by rules of degree 5. Each facet and tetrahedron loads only the
+/// subdomain that owns it, a nodal force only the first copy of its node.
+///
+/// # Errors
+/// [`LoadError`] if the tag or node is unknown, a load is not finite, or the decomposition belongs
+/// to another mesh.
+pub fn assemble_load(
+    mesh: &TetMesh,
+    decomposition: &Decomposition,
+    load: &LoadDensity,
+) -> Result<Vec<Vec<f64>>, LoadError> {
+    let (decomposed, meshed) = (decomposition.parts().len(), mesh.tets().len());
+    if decomposed != meshed || decomposition.nodes() != mesh.points().len() {
+        return Err(LoadError::ForeignDecomposition { decomposed, meshed });
+    }
+    match load {
+        LoadDensity::Body(value) => body(mesh, decomposition, Density::Constant(*value)),
+        LoadDensity::BodyField(value) => {
+            body(mesh, decomposition, Density::Varying(&|x, _| value(x)))
+        }
+        LoadDensity::Traction { tag, value } => {
+            traction(mesh, decomposition, *tag, |_| Density::Constant(*value))
+        }
+        LoadDensity::TractionField { tag, value } => {
+            traction(mesh, decomposition, *tag, |_| Density::Varying(&**value))
+        }
+        LoadDensity::Pressure { tag, value } => traction(mesh, decomposition, *tag, |n| {
+            Density::Constant(scale(-value, n))
+        }),
+        LoadDensity::NodalForces(forces) => nodal(mesh, decomposition, forces),
+    }
+}
+
+/// A density as a function of point and normal (the latter zero inside the body).
+enum Density<'a> {
+    Constant([f64; 3]),
+    Varying(&'a (dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Sync)),
+}
+
+impl Density<'_> {
+    /// Forces of the nodes of a simplex of the given measure (area or volume).
+    fn nodal_forces<const N: usize>(
+        &self,
+        points: &[[f64; 3]; N],
+        normal: [f64; 3],
+        measure: f64,
+        rule: &[([f64; N], f64)],
+    ) -> Result<[[f64; 3]; N], LoadError> {
+        match self {
+            Self::Constant(value) => {
+                let place = quadrature::at(points, &[1.0 / N as f64; N]);
+                let value = finite(place, *value)?;
+                Ok([scale(measure / N as f64, value); N])
+            }
+            Self::Varying(density) => {
+                let mut forces = [[0.0; 3]; N];
+                for (barycentric, weight) in rule {
+                    let place = quadrature::at(points, barycentric);
+                    let value = finite(place, density(place, normal))?;
+                    for a in 0..N {
+                        let share = scale(measure * weight * barycentric[a], value);
+                        forces[a] = add(forces[a], share);
+                    }
+                }
+                Ok(forces)
+            }
+        }
+    }
+}
+
+fn finite(place: [f64; 3], value: [f64; 3]) -> Result<[f64; 3], LoadError> {
+    if is_finite(value) {
+        Ok(value)
+    } else {
+        Err(LoadError::NotFinite { place, value })
+    }
+}
+
+fn accumulate(vector: &mut [f64], node: u32, force: [f64; 3]) {
+    for i in 0..3 {
+        vector[3 * node as usize + i] += force[i];
+    }
+}
+
+fn body(
+    mesh: &TetMesh,
+    decomposition: &Decomposition,
+    density: Density<'_>,
+) -> Result<Vec<Vec<f64>>, LoadError> {
+    let rule = quadrature::tetrahedron();
+    let of_subdomain = |subdomain: &Subdomain| {
+        let mut vector = vec![0.0; subdomain.dofs()];
+        for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
+            let points = mesh.tet_points(element as usize);
+            let volume = mesh.volume(element as usize);
+            let forces = density.nodal_forces(&points, [0.0; 3], volume, &rule)?;
+            for (&node, force) in tet.iter().zip(forces) {
+                accumulate(&mut vector, node, force);
+            }
+        }
+        Ok(vector)
+    };
+    first_error(
+        decomposition
+            .subdomains()
+            .par_iter()
+            .map(of_subdomain)
+            .collect(),
+    )
+}
+
+fn traction<'a>(
+    mesh: &TetMesh,
+    decomposition: &Decomposition,
+    tag: FacetTag,
+    density: impl Fn([f64; 3]) -> Density<'a> + Sync,
+) -> Result<Vec<Vec<f64>>, LoadError> {
+    let mut facets = vec![Vec::new(); decomposition.subdomains().len()];
+    for (facet, _) in mesh
+        .facets()
+        .iter()
+        .enumerate()
+        .filter(|(_, f)| f.tag == tag)
+    {
+        facets[decomposition.part_of(mesh.facet_owner(facet)) as usize].push(facet);
+    }
+    if facets.iter().all(Vec::is_empty) {
+        return Err(LoadError::UnknownTag {
+            tag,
+            known: mesh.tags(),
+        });
+    }
+    let rule = quadrature::triangle();
+    let of_subdomain = |(subdomain, facets): (&Subdomain, &Vec<usize>)| {
+        let mut vector = vec![0.0; subdomain.dofs()];
+        for &facet in facets {
+            let points = mesh.facet_points(facet);
+            let vector_area = facet_area_vector(mesh, facet);
+            let area = norm(vector_area);
+            let normal = scale(1.0 / area, vector_area);
+            let forces = density(normal).nodal_forces(&points, normal, area, &rule)?;
+            for (&node, force) in mesh.facets()[facet].nodes.iter().zip(forces) {
+                if let Some(local) = subdomain.local(node) {
+                    accumulate(&mut vector, local as u32, force);
+                }
+            }
+        }
+        Ok(vector)
+    };
+    let pairs = decomposition.subdomains().par_iter().zip(&facets);
+    first_error(pairs.map(of_subdomain).collect())
+}
+
+fn nodal(
+    mesh: &TetMesh,
+    decomposition: &Decomposition,
+    forces: &[(u32, [f64; 3])],
+) -> Result<Vec<Vec<f64>>, LoadError> {
+    let nodes = mesh.points().len();
+    let zero = |s: &Subdomain| vec![0.0; s.dofs()];
+    let mut vectors: Vec<_> = decomposition.subdomains().iter().map(zero).collect();
+    for &(node, force) in forces {
+        let place = mesh.points().get(node as usize).copied();
+        let place = place.ok_or(LoadError::UnknownNode { node, nodes })?;
+        let force = finite(place, force)?;
+        if let Some(copy) = decomposition.copies(node as usize).first() {
+            accumulate(&mut vectors[copy.subdomain as usize], copy.local, force);
+        }
+    }
+    Ok(vectors)
+}
+
+/// The error of the lowest subdomain, whichever thread met one first.
+fn first_error(results: Vec<Result<Vec<f64>, LoadError>>) -> Result<Vec<Vec<f64>>, LoadError> {
+    results.into_iter().collect()
+}

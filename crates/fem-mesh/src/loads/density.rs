@@ -1,0 +1,127 @@
+//! Where a load acts, and how much.
+
+use std::sync::Arc;
+
+use crate::mesh::{FacetTag, tag_list};
+
+/// A vector that depends on the point.
+pub type PointField = Arc<dyn Fn([f64; 3]) -> [f64; 3] + Send + Sync>;
+
+/// A vector that depends on the point and the outward unit normal there.
+pub type SurfaceField = Arc<dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync>;
+
+/// A load in space; a [`History`](crate::History) says how it changes in time.
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum LoadDensity {
+    /// The same force per volume everywhere (F of the paper).
+    Body([f64; 3]),
+    /// Force per volume that depends on the point.
+    BodyField(PointField),
+    /// The same force per area on all facets of a tag (P of the paper).
+    Traction {
+        /// Loaded part of the boundary.
+        tag: FacetTag,
+        /// Force per area.
+        value: [f64; 3],
+    },
+    /// Force per area that depends on the point and the outward normal.
+    TractionField {
+        /// Loaded part of the boundary.
+        tag: FacetTag,
+        /// Force per area at (point, outward unit normal).
+        value: SurfaceField,
+    },
+    /// Pressure on all facets of a tag: the force per area is -value times the outward normal, so
+    /// a positive pressure pushes into the body.
+    Pressure {
+        /// Loaded part of the boundary.
+        tag: FacetTag,
+        /// Pressure, positive into the body.
+        value: f64,
+    },
+    /// Forces at single nodes (global numbers); forces at the same node add up.
+    NodalForces(Vec<(u32, [f64; 3])>),
+}
+
+impl LoadDensity {
+    /// The same force per volume everywhere.
+    #[must_use]
+    pub fn body(value: [f64; 3]) -> Self {
+        Self::Body(value)
+    }
+
+    /// Force per volume that depends on the point.
+    #[must_use]
+    pub fn body_field(value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
+        Self::BodyField(Arc::new(value))
+    }
+
+    /// The same force per area on all facets of a tag.
+    #[must_use]
+    pub fn traction(tag: FacetTag, value: [f64; 3]) -> Self {
+        Self::Traction { tag, value }
+    }
+
+    /// Force per area that depends on the point and the outward unit normal.
+    #[must_use]
+    pub fn traction_field(
+        tag: FacetTag,
+        value: impl Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync + 'static,
+    ) -> Self {
+        Self::TractionField {
+            tag,
+            value: Arc::new(value),
+        }
+    }
+
+    /// Pressure, positive into the body.
+    #[must_use]
+    pub fn pressure(tag: FacetTag, value: f64) -> Self {
+        Self::Pressure { tag, value }
+    }
+
+    /// Forces at single nodes.
+    #[must_use]
+    pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
+        Self::NodalForces(forces)
+    }
+}
+
+impl std::fmt::Debug for LoadDensity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Body(value) => f.debug_tuple("Body").field(value).finish(),
+            Self::BodyField(_) => f.write_str("BodyField(..)"),
+            Self::Traction { tag, value } => f
+                .debug_struct("Traction")
+                .field("tag", tag)
+                .field("value", value)
+                .finish(),
+            Self::TractionField { tag, .. } => f
+                .debug_struct("TractionField")
+                .field("tag", tag)
+                .finish_non_exhaustive(),
+            Self::Pressure { tag, value } => f
+                .debug_struct("Pressure")
+                .field("tag", tag)
+                .field("value", value)
+                .finish(),
+            Self::NodalForces(forces) => f.debug_tuple("NodalForces").field(forces).finish(),
+        }
+    }
+}
+
+errors! {
+    /// A load that cannot be applied.
+    #[derive(Clone, PartialEq)]
+    LoadError {
+        ForeignDecomposition { decomposed: usize, meshed: usize } =
+            "the decomposition has {decomposed} tetrahedra and the mesh {meshed}; decompose the mesh that is loaded";
+        UnknownTag { tag: FacetTag, known: Vec<FacetTag> } =
+            "a load is given on {tag}, but no facet has it; the mesh has {}", tag_list(known);
+        UnknownNode { node: u32, nodes: usize } =
+            "a force is given at node {node}, but there are only {nodes} nodes, numbered from 0";
+        NotFinite { place: [f64; 3], value: [f64; 3] } = "the load at {place:?} is {value:?}; it must be finite";
+    }
+}

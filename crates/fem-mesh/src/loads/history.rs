@@ -1,0 +1,134 @@
+//! How a load changes in time.
+
+use std::sync::Arc;
+
+errors! {
+    /// A history that cannot be used.
+    #[derive(Clone, PartialEq)]
+    HistoryError {
+        Empty = "the history has no points; give at least one (time, value)";
+        NotFinite { index: usize, time: f64, value: f64 } =
+            "point {index} of the history is ({time}, {value}); both must be finite";
+        NotIncreasing { index: usize, before: f64, time: f64 } =
+            "point {index} of the history has time {time}, not later than {before} of the point before; sort the \
+            points by time and give each time once (a jump needs a short ramp)";
+    }
+}
+
+/// A factor that depends on time.
+///
+/// ```
+/// use signorini_fem_mesh::History;
+///
+/// let phi_c = History::table(vec![(0.0, 0.0), (0.4, 1.0), (0.7, 0.0), (1.0, 1.0)])?;
+/// assert_eq!(phi_c.value(0.2), 0.5);
+/// assert_eq!(phi_c.breakpoints(), [0.0, 0.4, 0.7, 1.0]);
+/// # Ok::<(), signorini_fem_mesh::HistoryError>(())
+/// ```
+#[derive(Clone)]
+pub struct History(Kind);
+
+#[derive(Clone)]
+enum Kind {
+    Table(Vec<(f64, f64)>),
+    Function(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
+}
+
+impl History {
+    /// The same value at all times.
+    #[must_use]
+    pub fn constant(value: f64) -> Self {
+        Self(Kind::Table(vec![(0.0, value)]))
+    }
+
+    /// From 0 at time 0 along a straight line to `value` at time `duration`, constant after.
+    ///
+    /// # Errors
+    /// [`HistoryError`] unless 0 < duration and both numbers are finite.
+    pub fn ramp(duration: f64, value: f64) -> Result<Self, HistoryError> {
+        Self::table(vec![(0.0, 0.0), (duration, value)])
+    }
+
+    /// Straight lines through (time, value) points; constant before the first and after the last.
+    ///
+    /// # Errors
+    /// [`HistoryError`] if there is no point, a number is not finite, or the times do not
+    /// increase strictly.
+    pub fn table(points: Vec<(f64, f64)>) -> Result<Self, HistoryError> {
+        if points.is_empty() {
+            return Err(HistoryError::Empty);
+        }
+        for (index, &(time, value)) in points.iter().enumerate() {
+            if !(time.is_finite() && value.is_finite()) {
+                return Err(HistoryError::NotFinite { index, time, value });
+            }
+            if index > 0 && points[index - 1].0 >= time {
+                let before = points[index - 1].0;
+                return Err(HistoryError::NotIncreasing {
+                    index,
+                    before,
+                    time,
+                });
+            }
+        }
+        Ok(Self(Kind::Table(points)))
+    }
+
+    /// Any function of time. Whoever evaluates it must reject values that are not finite.
+    #[must_use]
+    pub fn function(value: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Kind::Function(Arc::new(value)))
+    }
+
+    /// The value at a time. At the points of a table it is exactly the value given.
+    #[must_use]
+    pub fn value(&self, time: f64) -> f64 {
+        match &self.0 {
+            Kind::Table(points) => interpolate(points, time),
+            Kind::Function(value) => value(time),
+        }
+    }
+
+    /// Times at which the slope may jump: the points of a table with more than one, none for a
+    /// constant or a function. Time steps should not stride over them.
+    #[must_use]
+    pub fn breakpoints(&self) -> Vec<f64> {
+        match &self.0 {
+            Kind::Table(points) if points.len() > 1 => points.iter().map(|p| p.0).collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Straight lines through points of ascending first numbers, constant before the first and after the last; NaN
+/// without any. At the points it is exactly the value given.
+#[must_use]
+pub fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
+    let after = points.partition_point(|p| p.0 <= x);
+    let before = after.checked_sub(1).and_then(|i| points.get(i));
+    match (before, points.get(after)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)),
+        (Some(p), None) | (None, Some(p)) => p.1,
+        (None, None) => f64::NAN,
+    }
+}
+
+/// Equal tables are equal; a function is equal to its clones only, since functions cannot be compared.
+impl PartialEq for History {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Kind::Table(a), Kind::Table(b)) => a == b,
+            (Kind::Function(a), Kind::Function(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+impl std::fmt::Debug for History {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.0 {
+            Kind::Table(points) => f.debug_tuple("Table").field(points).finish(),
+            Kind::Function(_) => f.write_str("Function(..)"),
+        }
+    }
+}

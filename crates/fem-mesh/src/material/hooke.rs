@@ -1,0 +1,207 @@
+//! Hooke's law with a general elasticity tensor.
+
+use crate::tolerances::{ASYMMETRY, ELLIPTICITY};
+use nalgebra::SMatrix;
+
+/// Position of the tensor indices (i, j) in the Voigt order xx, yy, zz, yz, xz, xy.
+const VOIGT: [[usize; 3]; 3] = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
+
+errors! {
+    /// An elastic law that is not admissible.
+    #[derive(Clone, PartialEq)]
+    HookeError {
+        Young(f64) = "Young's modulus is {0}; it must be positive and finite";
+        Poisson(f64) =
+            "Poisson's ratio is {0}; it must lie between -1 and 1/2, both excluded and not closer than about 1e-12 \
+            (nearly incompressible bodies need another element)";
+        NotFinite { row: usize, column: usize, value: f64 } =
+            "entry ({row}, {column}) of the elasticity matrix is {value}; all entries must be finite";
+        NotSymmetric { left: [usize; 4], left_value: f64, right: [usize; 4], right_value: f64 } =
+            "c{left:?} = {left_value} but c{right:?} = {right_value}; (2.8) asks for c_ijkl = c_jikl = c_klij \
+            (indices here from 0)";
+        NotElliptic { smallest: f64, largest: f64 } =
+            "the elasticity tensor is not elliptic: its smallest eigenvalue is {smallest:e}, its largest \
+            {largest:e}; (2.8) asks for a positive one, so check signs and moduli";
+    }
+}
+
+/// Hooke's law tau_ij = c_ijkl e_kl with the symmetries and the ellipticity of (2.8).
+///
+/// Stored as the 6 x 6 matrix that maps the strains (e_xx, e_yy, e_zz, 2 e_yz, 2 e_xz, 2 e_xy) to
+/// the stresses in the same order (Voigt with engineering shear). Units: those of stress.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hooke {
+    voigt: [[f64; 6]; 6],
+    smallest: f64,
+    largest: f64,
+}
+
+impl Hooke {
+    /// The isotropic law with Young's modulus and Poisson's ratio.
+    ///
+    /// # Errors
+    /// [`HookeError::Young`] unless 0 < young, [`HookeError::Poisson`] unless -1 < poisson < 1/2,
+    /// by more than about 1e-12.
+    pub fn isotropic(young: f64, poisson: f64) -> Result<Self, HookeError> {
+        if !(young > 0.0 && young.is_finite()) {
+            return Err(HookeError::Young(young));
+        }
+        if !(poisson > -1.0 && poisson < 0.5) {
+            return Err(HookeError::Poisson(poisson));
+        }
+        let shear = young / (2.0 * (1.0 + poisson));
+        let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        let mut c = [[0.0; 6]; 6];
+        for i in 0..3 {
+            for j in 0..3 {
+                c[i][j] = lambda;
+            }
+            c[i][i] += 2.0 * shear;
+            c[3 + i][3 + i] = shear;
+        }
+        // The eigenvalues are 2 mu and 3 K; their ratio tells whether Poisson's ratio is to blame.
+        let ratio = (1.0 - 2.0 * poisson) / (1.0 + poisson);
+        let extreme = ratio.min(1.0 / ratio) < 2.0 * ELLIPTICITY;
+        Self::from_voigt(&c).map_err(|error| {
+            if extreme {
+                HookeError::Poisson(poisson)
+            } else {
+                error
+            }
+        })
+    }
+
+    /// A general law from c_ijkl; see (2.8) for the conditions.
+    ///
+    /// # Errors
+    /// [`HookeError`] if an entry is not finite, a symmetry is missing by more than 1e-9 of the
+    /// largest entry, or the tensor is not elliptic.
+    pub fn from_tensor(c: &[[[[f64; 3]; 3]; 3]; 3]) -> Result<Self, HookeError> {
+        let at = |[i, j, k, l]: [usize; 4]| c[i][j][k][l];
+        let mut voigt = [[0.0; 6]; 6];
+        let mut largest: f64 = 0.0;
+        for_all_indices(|index @ [i, j, k, l]| {
+            let (row, column, value) = (VOIGT[i][j], VOIGT[k][l], at(index));
+            if !value.is_finite() {
+                return Err(HookeError::NotFinite { row, column, value });
+            }
+            largest = largest.max(value.abs());
+            voigt[row][column] = value;
+            Ok(())
+        })?;
+        for_all_indices(|left @ [i, j, k, l]| {
+            for right in [[j, i, k, l], [k, l, i, j]] {
+                let (left_value, right_value) = (at(left), at(right));
+                if (left_value - right_value).abs() > ASYMMETRY * largest {
+                    return Err(HookeError::NotSymmetric {
+                        left,
+                        left_value,
+                        right,
+                        right_value,
+                    });
+                }
+            }
+            Ok(())
+        })?;
+        Self::from_voigt(&voigt)
+    }
+
+    /// A general law from its 6 x 6 matrix (Voigt order xx, yy, zz, yz, xz, xy with engineering
+    /// shear). Deviations from symmetry at rounding level are averaged away.
+    ///
+    /// # Errors
+    /// As [`Hooke::from_tensor`].
+    pub fn from_voigt(c: &[[f64; 6]; 6]) -> Result<Self, HookeError> {
+        let mut scale: f64 = 0.0;
+        for (row, entries) in c.iter().enumerate() {
+            for (column, &value) in entries.iter().enumerate() {
+                if !value.is_finite() {
+                    return Err(HookeError::NotFinite { row, column, value });
+                }
+                scale = scale.max(value.abs());
+            }
+        }
+        let mut voigt = *c;
+        for i in 0..6 {
+            for j in 0..i {
+                if (c[i][j] - c[j][i]).abs() > ASYMMETRY * scale {
+                    return Err(HookeError::NotSymmetric {
+                        left: tensor_indices(i, j),
+                        left_value: c[i][j],
+                        right: tensor_indices(j, i),
+                        right_value: c[j][i],
+                    });
+                }
+                voigt[i][j] = 0.5 * (c[i][j] + c[j][i]);
+                voigt[j][i] = voigt[i][j];
+            }
+        }
+        let (smallest, largest) = eigenvalue_range(&voigt);
+        if !(largest > 0.0 && smallest > ELLIPTICITY * largest) {
+            return Err(HookeError::NotElliptic { smallest, largest });
+        }
+        Ok(Self {
+            voigt,
+            smallest,
+            largest,
+        })
+    }
+
+    /// The 6 x 6 matrix in Voigt order xx, yy, zz, yz, xz, xy with engineering shear.
+    #[must_use]
+    pub fn voigt(&self) -> &[[f64; 6]; 6] {
+        &self.voigt
+    }
+
+    /// The constant of (2.8): the largest alpha with c_ijkl x_ij x_kl >= alpha x_ij x_ij.
+    #[must_use]
+    pub fn ellipticity(&self) -> f64 {
+        self.smallest
+    }
+
+    /// The counterpart from above: the smallest bound of c_ijkl x_ij x_kl / (x_ij x_ij). A scale
+    /// of the stiffness of the material.
+    #[must_use]
+    pub fn bound(&self) -> f64 {
+        self.largest
+    }
+
+    /// Stress of a strain, both in Voigt order, the strain with engineering shear.
+    #[must_use]
+    pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
+        // column by column: symmetric, and all six sums side by side
+        let mut stress = [0.0; 6];
+        for (column, e) in self.voigt.iter().zip(strain) {
+            stress = std::array::from_fn(|i| stress[i] + column[i] * e);
+        }
+        stress
+    }
+
+    /// Elastic energy per volume, half of stress times strain.
+    #[must_use]
+    pub fn energy_density(&self, strain: &[f64; 6]) -> f64 {
+        let stress = self.stress(strain);
+        0.5 * (0..6).map(|i| stress[i] * strain[i]).sum::<f64>()
+    }
+}
+
+fn for_all_indices(
+    mut visit: impl FnMut([usize; 4]) -> Result<(), HookeError>,
+) -> Result<(), HookeError> {
+    (0..81).try_for_each(|n| visit([n / 27, n / 9 % 3, n / 3 % 3, n % 3]))
+}
+
+/// Tensor indices of an entry of the 6 x 6 matrix.
+fn tensor_indices(row: usize, column: usize) -> [usize; 4] {
+    const PAIR: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
+    [PAIR[row][0], PAIR[row][1], PAIR[column][0], PAIR[column][1]]
+}
+
+/// Smallest and largest eigenvalue of the tensor on symmetric second-order tensors. The scaling
+/// by sqrt(2) of the shear rows and columns makes the 6-vectors carry the tensor norm.
+fn eigenvalue_range(voigt: &[[f64; 6]; 6]) -> (f64, f64) {
+    let weight = |i: usize| if i < 3 { 1.0 } else { std::f64::consts::SQRT_2 };
+    let matrix = SMatrix::<f64, 6, 6>::from_fn(|i, j| weight(i) * weight(j) * voigt[i][j]);
+    let eigenvalues = matrix.symmetric_eigenvalues();
+    (eigenvalues.min(), eigenvalues.max())
+}

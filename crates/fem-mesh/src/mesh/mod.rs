@@ -1,0 +1,23 @@
+//! Meshes of tetrahedra with tagged boundary facets, and the surfaces that contact needs of them.
+//!
+//! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `edit`
+//! meshes made from meshes, `brick` a box of cells, `surface` nodal normals, frames and areas, `error` what can be
+//! wrong.
+//!
+//! Uses: `tables`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
+
+pub mod brick;
+mod check;
+mod edit;
+mod error;
+mod faces;
+mod surface;
+mod tet_mesh;
+
+pub use edit::{drop_unused_nodes, merge_nodes, orient_tets};
+pub use error::MeshError;
+pub use surface::{Surface, SurfaceError, SurfaceFrame};
+pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
+
+pub(crate) use faces::{NONE, connected_sets};
+pub(crate) use tet_mesh::{facet_area_vector, tag_list};

@@ -1,0 +1,205 @@
+//! Surfaces with nodal normals, frames and areas, flat or curved.
+
+use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL};
+use crate::vec3::{self, add, cross, dot, norm, scale, sub};
+
+use super::tet_mesh::{FacetTag, TetMesh, facet_area_vector, tag_list};
+
+/// An orthonormal frame on a surface: the outward normal nu and two tangents T1, T2.
+///
+/// T1 is the x axis projected into the tangent plane (the y axis where the normal is within 0.6
+/// degrees of the x axis), and T2 = T1 x nu. So (T1, nu, T2) is right-handed, and the normal
+/// (0, 0, -1) has T1 = (1, 0, 0), T2 = (0, 1, 0), as the paper uses it on the brick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SurfaceFrame {
+    /// Outward unit normal.
+    pub normal: [f64; 3],
+    /// Unit tangents T1, T2.
+    pub tangents: [[f64; 3]; 2],
+}
+
+impl SurfaceFrame {
+    /// The frame of a normal of any length; `None` if it is zero or not finite.
+    #[must_use]
+    pub fn from_normal(normal: [f64; 3]) -> Option<Self> {
+        let normal = unit(normal)?;
+        let axis = if normal[1].hypot(normal[2]) > NEARLY_PARALLEL {
+            [1.0, 0.0, 0.0]
+        } else {
+            [0.0, 1.0, 0.0]
+        };
+        let first = unit(sub(axis, scale(dot(axis, normal), normal)))?;
+        let second = unit(cross(first, normal))?;
+        Some(Self {
+            normal,
+            tangents: [first, second],
+        })
+    }
+
+    /// Normal component of a vector.
+    #[must_use]
+    pub fn normal_part(&self, v: [f64; 3]) -> f64 {
+        dot(self.normal, v)
+    }
+
+    /// Components along T1 and T2.
+    #[must_use]
+    pub fn tangential_part(&self, v: [f64; 3]) -> [f64; 2] {
+        self.tangents.map(|t| dot(t, v))
+    }
+
+    /// The vector with the given components.
+    #[must_use]
+    pub fn vector(&self, normal: f64, tangential: [f64; 2]) -> [f64; 3] {
+        let [t1, t2] = self.tangents;
+        add(
+            scale(normal, self.normal),
+            add(scale(tangential[0], t1), scale(tangential[1], t2)),
+        )
+    }
+}
+
+/// The unit vector of a direction, with positive zeros.
+fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+    let largest = v.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    if !vec3::is_finite(v) || largest == 0.0 {
+        return None;
+    }
+    let v = v.map(|x| x / largest);
+    let length = norm(v);
+    Some(v.map(|x| x / length + 0.0))
+}
+
+errors! {
+    /// A surface that cannot be used.
+    #[derive(Clone, PartialEq, Eq)]
+    SurfaceError {
+        NoTags = "the surface has no tag; name at least one part of the boundary";
+        UnknownTag { tag: FacetTag, known: Vec<FacetTag> } =
+            "no facet has {tag}; the mesh has {}", tag_list(known);
+        RepeatedTag { tag: FacetTag } = "{tag} is named twice; name it once";
+        NoNormal { node: u32 } =
+            "node {node} has no normal: those of its triangles cancel, as on a blade tagged on both sides; tag one \
+            side only, or split the surface there";
+    }
+}
+
+/// A part of the boundary with what contact needs at its nodes.
+///
+/// The area of a node is a third of the triangles around it; its normal is the mean of theirs,
+/// weighted by area.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    facets: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    nodes: Vec<u32>,
+    areas: Vec<f64>,
+    frames: Vec<SurfaceFrame>,
+}
+
+impl Surface {
+    /// The surface of all facets with one of the tags.
+    ///
+    /// # Errors
+    /// [`SurfaceError`] if a tag is unknown or repeated, or a node has no normal.
+    pub fn new(mesh: &TetMesh, tags: &[FacetTag]) -> Result<Self, SurfaceError> {
+        check_tags(mesh, tags)?;
+        let facets: Vec<u32> = (0..mesh.facets().len() as u32)
+            .filter(|&f| tags.contains(&mesh.facets()[f as usize].tag))
+            .collect();
+        let global = |&f: &u32| mesh.facets()[f as usize].nodes;
+        let mut nodes: Vec<u32> = facets.iter().flat_map(global).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let local = |n: u32| nodes.partition_point(|&m| m < n) as u32;
+        let triangles: Vec<_> = facets.iter().map(|f| global(f).map(local)).collect();
+
+        let mut areas = vec![0.0; nodes.len()];
+        let mut normals = vec![[0.0; 3]; nodes.len()];
+        for (&facet, triangle) in facets.iter().zip(&triangles) {
+            let normal = facet_area_vector(mesh, facet as usize);
+            let area = norm(normal);
+            for &n in triangle {
+                areas[n as usize] += area / 3.0;
+                normals[n as usize] = add(normals[n as usize], normal);
+            }
+        }
+        let frame = |n: usize| {
+            let clear = norm(normals[n]) > NO_NORMAL * 3.0 * areas[n];
+            let frame = if clear {
+                SurfaceFrame::from_normal(normals[n])
+            } else {
+                None
+            };
+            frame.ok_or(SurfaceError::NoNormal { node: nodes[n] })
+        };
+        let frames = (0..nodes.len()).map(frame).collect::<Result<_, _>>()?;
+        Ok(Self {
+            facets,
+            triangles,
+            nodes,
+            areas,
+            frames,
+        })
+    }
+
+    /// Global numbers of the nodes, ascending.
+    #[must_use]
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
+    /// Place of a global node in [`Surface::nodes`], if it is there.
+    #[must_use]
+    pub fn local(&self, node: u32) -> Option<usize> {
+        self.nodes.binary_search(&node).ok()
+    }
+
+    /// Area of each node, a third of the triangles around it.
+    #[must_use]
+    pub fn areas(&self) -> &[f64] {
+        &self.areas
+    }
+
+    /// Frame of each node.
+    #[must_use]
+    pub fn frames(&self) -> &[SurfaceFrame] {
+        &self.frames
+    }
+
+    /// Numbers of the facets in the mesh, ascending.
+    #[must_use]
+    pub fn facets(&self) -> &[u32] {
+        &self.facets
+    }
+
+    /// The triangles by places in [`Surface::nodes`], outward, in the order of
+    /// [`Surface::facets`].
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Area of the whole surface.
+    #[must_use]
+    pub fn total_area(&self) -> f64 {
+        self.areas.iter().sum()
+    }
+}
+
+fn check_tags(mesh: &TetMesh, tags: &[FacetTag]) -> Result<(), SurfaceError> {
+    if tags.is_empty() {
+        return Err(SurfaceError::NoTags);
+    }
+    let known = mesh.tags();
+    for (i, &tag) in tags.iter().enumerate() {
+        if !known.contains(&tag) {
+            return Err(SurfaceError::UnknownTag { tag, known });
+        }
+        if tags[..i].contains(&tag) {
+            return Err(SurfaceError::RepeatedTag { tag });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,305 @@
+//! The mesh: tetrahedra with tagged boundary facets and material regions.
+
+use crate::vec3::{self, Vec3};
+
+use super::check;
+use super::error::MeshError;
+use super::faces::{FaceTable, NONE, Sides, connected_sets, face_nodes};
+
+/// Name of a part of the boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FacetTag(pub u32);
+
+impl std::fmt::Display for FacetTag {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "tag {}", self.0)
+    }
+}
+
+/// The tags of a mesh in the words of an error: "the tags 1, 2" or "no tags".
+pub(crate) fn tag_list(tags: &[FacetTag]) -> String {
+    if tags.is_empty() {
+        return "no tags".into();
+    }
+    let numbers: Vec<String> = tags.iter().map(|tag| tag.0.to_string()).collect();
+    format!("the tags {}", numbers.join(", "))
+}
+
+/// A tagged triangle of the boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Facet {
+    /// Nodes; in a [`TetMesh`] counter-clockwise seen from outside the body.
+    pub nodes: [u32; 3],
+    /// Part of the boundary that the triangle belongs to.
+    pub tag: FacetTag,
+}
+
+/// A triangle of the boundary, tagged or not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct BoundaryFacet {
+    /// Nodes, counter-clockwise seen from outside the body.
+    pub nodes: [u32; 3],
+    /// The tetrahedron that it bounds.
+    pub tet: u32,
+}
+
+/// A mesh of linear tetrahedra with tagged boundary facets and material regions.
+///
+/// A value of this type has passed all checks: finite coordinates, valid node numbers,
+/// tetrahedra of positive volume that do not overlap at faces, no unused nodes, no coinciding
+/// nodes inside one body, and facets that lie on the boundary, each listed once and oriented
+/// outward. It may hold several bodies; nodes of different bodies may coincide.
+///
+/// Tetrahedra are oriented so that det(p1 - p0, p2 - p0, p3 - p0) > 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TetMesh {
+    pub(super) points: Vec<[f64; 3]>,
+    pub(super) tets: Vec<[u32; 4]>,
+    pub(super) facets: Vec<Facet>,
+    pub(super) owners: Vec<u32>,
+    pub(super) regions: Vec<u32>,
+    pub(super) neighbours: Vec<[u32; 4]>,
+}
+
+impl TetMesh {
+    /// Builds and checks a mesh. Facets may be given in either orientation and are turned
+    /// outward; untagged parts of the boundary need no facets. All tetrahedra get region 0.
+    ///
+    /// # Errors
+    /// [`MeshError`] names the first fault and its remedy.
+    pub fn new(
+        points: Vec<[f64; 3]>,
+        tets: Vec<[u32; 4]>,
+        facets: Vec<Facet>,
+    ) -> Result<Self, MeshError> {
+        check::sizes(points.len(), tets.len())?;
+        check::coordinates(&points)?;
+        check::connectivity(points.len(), &tets)?;
+        check::shapes(&points, &tets)?;
+        check::no_dangling(points.len(), &tets)?;
+        let table = FaceTable::new(points.len(), &tets);
+        let neighbours = table.neighbours(tets.len())?;
+        check::no_coincident(&points, &tets)?;
+        let (facets, owners) = place_facets(points.len(), &tets, &table, facets)?;
+        let regions = vec![0; tets.len()];
+        Ok(Self {
+            points,
+            tets,
+            facets,
+            owners,
+            regions,
+            neighbours,
+        })
+    }
+
+    /// Sets the material region of each tetrahedron.
+    ///
+    /// # Errors
+    /// [`MeshError::RegionCount`] unless there is exactly one number for each tetrahedron.
+    pub fn with_regions(mut self, regions: Vec<u32>) -> Result<Self, MeshError> {
+        if regions.len() != self.tets.len() {
+            let (given, tets) = (regions.len(), self.tets.len());
+            return Err(MeshError::RegionCount { given, tets });
+        }
+        self.regions = regions;
+        Ok(self)
+    }
+
+    /// Coordinates of the nodes.
+    #[must_use]
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// Nodes of each tetrahedron.
+    #[must_use]
+    pub fn tets(&self) -> &[[u32; 4]] {
+        &self.tets
+    }
+
+    /// Tagged boundary facets, oriented outward, in the order given.
+    #[must_use]
+    pub fn facets(&self) -> &[Facet] {
+        &self.facets
+    }
+
+    /// Material region of each tetrahedron.
+    #[must_use]
+    pub fn regions(&self) -> &[u32] {
+        &self.regions
+    }
+
+    /// The tetrahedron that the tagged facet number `facet` bounds.
+    ///
+    /// # Panics
+    /// If there is no such facet.
+    #[must_use]
+    pub fn facet_owner(&self, facet: usize) -> usize {
+        self.owners[facet] as usize
+    }
+
+    /// The tags in use, ascending.
+    #[must_use]
+    pub fn tags(&self) -> Vec<FacetTag> {
+        let mut tags: Vec<_> = self.facets.iter().map(|f| f.tag).collect();
+        tags.sort_unstable();
+        tags.dedup();
+        tags
+    }
+
+    /// Nodes on the facets of a tag, ascending; empty if the tag is absent.
+    #[must_use]
+    pub fn nodes_on(&self, tag: FacetTag) -> Vec<u32> {
+        let on_tag = self.facets.iter().filter(|f| f.tag == tag);
+        let mut nodes: Vec<_> = on_tag.flat_map(|f| f.nodes).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// Coordinates of the four nodes of a tetrahedron.
+    ///
+    /// # Panics
+    /// If there is no such tetrahedron.
+    #[must_use]
+    pub fn tet_points(&self, tet: usize) -> [[f64; 3]; 4] {
+        self.tets[tet].map(|n| self.points[n as usize])
+    }
+
+    /// Coordinates of the three nodes of a tagged facet.
+    ///
+    /// # Panics
+    /// If there is no such facet.
+    #[must_use]
+    pub fn facet_points(&self, facet: usize) -> [[f64; 3]; 3] {
+        self.facets[facet].nodes.map(|n| self.points[n as usize])
+    }
+
+    /// Volume of a tetrahedron, positive.
+    ///
+    /// # Panics
+    /// If there is no such tetrahedron.
+    #[must_use]
+    pub fn volume(&self, tet: usize) -> f64 {
+        vec3::tet_volume(&self.tet_points(tet))
+    }
+
+    /// Volume of the whole mesh.
+    #[must_use]
+    pub fn total_volume(&self) -> f64 {
+        (0..self.tets.len()).map(|t| self.volume(t)).sum()
+    }
+
+    /// Smallest axis-parallel box around the mesh: its lowest and highest corner.
+    #[must_use]
+    pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
+        check::extent(&self.points)
+    }
+
+    /// The tetrahedra across the four faces of a tetrahedron, `None` at the boundary. Face number
+    /// i is opposite to node i.
+    ///
+    /// # Panics
+    /// If there is no such tetrahedron.
+    #[must_use]
+    pub fn neighbours(&self, tet: usize) -> [Option<usize>; 4] {
+        self.neighbours[tet].map(|n| (n != NONE).then_some(n as usize))
+    }
+
+    pub(crate) fn neighbour_table(&self) -> &[[u32; 4]] {
+        &self.neighbours
+    }
+
+    /// The body of each tetrahedron: 0, 1, ... in the order of the first tetrahedron of each.
+    /// Tetrahedra belong to the same body if a path through common faces joins them; a common
+    /// edge or node alone is a hinge and does not join.
+    #[must_use]
+    pub fn components(&self) -> Vec<u32> {
+        connected_sets(&self.neighbours, |_, _| true)
+    }
+
+    /// All triangles of the boundary, tagged or not, by ascending tetrahedron and face.
+    #[must_use]
+    pub fn boundary_facets(&self) -> Vec<BoundaryFacet> {
+        let mut facets = Vec::new();
+        for (t, (tet, neighbours)) in self.tets.iter().zip(&self.neighbours).enumerate() {
+            for face in (0..4).filter(|&f| neighbours[f] == NONE) {
+                let nodes = face_nodes(tet, face);
+                facets.push(BoundaryFacet {
+                    nodes,
+                    tet: t as u32,
+                });
+            }
+        }
+        facets
+    }
+}
+
+/// Turns facets outward and finds their tetrahedra.
+fn place_facets(
+    nodes: usize,
+    tets: &[[u32; 4]],
+    table: &FaceTable,
+    mut facets: Vec<Facet>,
+) -> Result<(Vec<Facet>, Vec<u32>), MeshError> {
+    let mut owners = Vec::with_capacity(facets.len());
+    let mut taken = std::collections::HashMap::with_capacity(facets.len());
+    for (number, facet) in facets.iter_mut().enumerate() {
+        let given = facet.nodes;
+        if let Some(&node) = given.iter().find(|&&n| n as usize >= nodes) {
+            return Err(MeshError::FacetNodeOutOfRange {
+                facet: number,
+                node,
+                nodes,
+            });
+        }
+        match table.sides(given) {
+            Sides::Nobody => {
+                return Err(MeshError::FacetUnknown {
+                    facet: number,
+                    nodes: given,
+                });
+            }
+            Sides::Two(first, second) => {
+                let facet = number;
+                return Err(MeshError::FacetInside {
+                    facet,
+                    nodes: given,
+                    first,
+                    second,
+                });
+            }
+            Sides::One(tet, face) => {
+                if let Some(first) = taken.insert((tet, face), number) {
+                    let second = number;
+                    return Err(MeshError::FacetRepeated {
+                        first,
+                        second,
+                        nodes: given,
+                    });
+                }
+                facet.nodes = outward(given, face_nodes(&tets[tet], face));
+                owners.push(tet as u32);
+            }
+        }
+    }
+    Ok((facets, owners))
+}
+
+/// The triangle as given if it is a rotation of the outward one, else with two nodes swapped.
+fn outward(given: [u32; 3], out: [u32; 3]) -> [u32; 3] {
+    let [a, b, c] = given;
+    let rotations = [out, [out[1], out[2], out[0]], [out[2], out[0], out[1]]];
+    if rotations.contains(&given) {
+        given
+    } else {
+        [a, c, b]
+    }
+}
+
+/// Area vector (normal times area) of a facet.
+pub(crate) fn facet_area_vector(mesh: &TetMesh, facet: usize) -> Vec3 {
+    vec3::area_vector(&mesh.facet_points(facet))
+}

@@ -1,0 +1,99 @@
+//! The estimate: the energy of the difference between the recovered and the constant strain.
+//!
+//! ```text
+//! error energy of tetrahedron T = 1/2 integral over T of (e* - e_h) : c : (e* - e_h)
+//! ```
+
+use crate::fields::{FieldError, expect_entries};
+use crate::material::Materials;
+use crate::mesh::TetMesh;
+
+use super::patches::StrainRecovery;
+
+/// Estimated discretisation error, tetrahedron by tetrahedron.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiscretisationError {
+    pub(super) energies: Vec<f64>,
+    pub(super) total: f64,
+    pub(super) elastic: f64,
+}
+
+impl DiscretisationError {
+    /// Error energy of each tetrahedron, half of error stress times error strain, J.
+    #[must_use]
+    pub fn energies(&self) -> &[f64] {
+        &self.energies
+    }
+
+    /// Their sum, J.
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.total
+    }
+
+    /// Elastic energy of the displacement, J.
+    #[must_use]
+    pub fn elastic_energy(&self) -> f64 {
+        self.elastic
+    }
+
+    /// Error relative to the displacement, both in the energy norm; 0 without elastic energy. Of a body that is at
+    /// rest but for rounding it is noise over noise, about one: compare [`energy`](Self::energy) with a scale of your
+    /// own.
+    #[must_use]
+    pub fn relative(&self) -> f64 {
+        if self.elastic > 0.0 {
+            (self.total / self.elastic).sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    /// The error stress of each tetrahedron in an energy norm, for pictures: the root of the error
+    /// energy per volume times 2 E with E the bound of the material's tensor. Pa.
+    ///
+    /// # Errors
+    /// [`FieldError::Length`] if the mesh has another number of tetrahedra, [`FieldError`] if a region
+    /// has no material.
+    pub fn stress_errors(
+        &self,
+        mesh: &TetMesh,
+        materials: &Materials,
+    ) -> Result<Vec<f64>, FieldError> {
+        expect_entries(
+            "table of tetrahedra",
+            self.energies.len(),
+            mesh.tets().len(),
+        )?;
+        let laws = materials.of_tets(mesh.regions())?;
+        let value = |(tet, energy): (usize, &f64)| {
+            (2.0 * laws[tet].bound() * energy / mesh.volume(tet)).sqrt()
+        };
+        Ok(self.energies.iter().enumerate().map(value).collect())
+    }
+}
+
+/// Estimates the discretisation error of a displacement; see the [module](super) for what it is worth.
+///
+/// ```
+/// use signorini_fem_mesh::{Brick, Hooke, Materials, discretisation_error};
+///
+/// let mesh = Brick::new([1.0; 3], [4; 3]).build()?;
+/// let materials = Materials::uniform(Hooke::isotropic(1e3, 0.3)?);
+/// // bending: the strain is linear, the tetrahedra see steps
+/// let u: Vec<f64> = mesh.points().iter().flat_map(|p| [p[0] * p[2], 0.0, -0.5 * p[0] * p[0]]).collect();
+/// let error = discretisation_error(&mesh, &materials, &u)?;
+/// assert!(error.relative() > 0.05 && error.relative() < 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`FieldError`] if the displacement has the wrong length or is not finite, or a region has no
+/// material.
+pub fn discretisation_error(
+    mesh: &TetMesh,
+    materials: &Materials,
+    u: &[f64],
+) -> Result<DiscretisationError, FieldError> {
+    StrainRecovery::new(mesh).error(mesh, materials, u)
+}

@@ -1,0 +1,231 @@
+//! The recovered strain: linear in each tetrahedron, continuous inside a region of equal material.
+//!
+//! A linear polynomial is fitted to the strains at the centroids of the tetrahedra around a node (its patch) and
+//! evaluated there. Where a patch is too small for a fit, at corners and edges, the patches of its neighbours join.
+
+use nalgebra::{Matrix4, Vector4};
+use rayon::prelude::*;
+
+use crate::fields::{FieldError, expect_entries, strains};
+use crate::material::Materials;
+use crate::mesh::TetMesh;
+use crate::tables::buckets;
+use crate::tolerances::{PIVOT, SMALL_PATCH};
+use crate::vec3::{centroid, sub};
+
+use super::estimate::DiscretisationError;
+
+/// The recovery of strains at the nodes of a mesh, to be used for many displacements: the fits
+/// depend on the mesh only, so that each recovered strain is a fixed combination of strains.
+#[derive(Debug, Clone)]
+pub struct StrainRecovery {
+    /// Where the patch of each (node, region) starts in `tets` and `weights`.
+    pointers: Vec<usize>,
+    tets: Vec<u32>,
+    weights: Vec<f64>,
+    /// Patches of the corners of each tetrahedron.
+    corners: Vec<[u32; 4]>,
+    /// Of each tetrahedron.
+    volumes: Vec<f64>,
+}
+
+/// What a fit needs of a tetrahedron.
+struct Cell {
+    centroid: [f64; 3],
+    volume: f64,
+}
+
+/// The tetrahedra around each node, those of each region apart.
+struct Around {
+    tets: Vec<u32>,
+    /// Start of each patch in `tets`, and the end of the last.
+    starts: Vec<u32>,
+    /// Node and region of each patch, ascending.
+    nodes: Vec<u32>,
+    regions: Vec<u32>,
+    /// First patch of each node, and the end of the last.
+    first: Vec<u32>,
+}
+
+impl Around {
+    fn new(mesh: &TetMesh) -> Self {
+        let corners = mesh.tets().as_flattened();
+        let (by_node, positions) = buckets(mesh.points().len(), corners);
+        let mut out = Self {
+            tets: positions.iter().map(|p| p / 4).collect(),
+            starts: Vec::new(),
+            nodes: Vec::new(),
+            regions: Vec::new(),
+            first: vec![0],
+        };
+        let region = |tet: u32| mesh.regions()[tet as usize];
+        for (node, range) in by_node.windows(2).enumerate() {
+            let own = &mut out.tets[range[0] as usize..range[1] as usize];
+            own.sort_by_key(|&tet| region(tet));
+            let mut start = range[0];
+            for patch in own.chunk_by(|&a, &b| region(a) == region(b)) {
+                out.starts.push(start);
+                out.nodes.push(node as u32);
+                out.regions.push(region(patch[0]));
+                start += patch.len() as u32;
+            }
+            out.first.push(out.nodes.len() as u32);
+        }
+        out.starts.push(out.tets.len() as u32);
+        out
+    }
+
+    fn patch(&self, k: usize) -> &[u32] {
+        &self.tets[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+
+    /// The patch around `node` that `tet`, one of its tetrahedra, belongs to.
+    fn place(&self, mesh: &TetMesh, node: u32, tet: u32) -> usize {
+        let own = self.first[node as usize] as usize..self.first[node as usize + 1] as usize;
+        let region = mesh.regions()[tet as usize];
+        let after = self.regions[own.clone()].partition_point(|&r| r < region);
+        own.start + after
+    }
+}
+
+impl StrainRecovery {
+    /// Fits all patches of a mesh.
+    #[must_use]
+    pub fn new(mesh: &TetMesh) -> Self {
+        let around = Around::new(mesh);
+        let cells: Vec<Cell> = (0..mesh.tets().len())
+            .into_par_iter()
+            .map(|tet| Cell {
+                centroid: centroid(&mesh.tet_points(tet)),
+                volume: mesh.volume(tet),
+            })
+            .collect();
+        let patch = |k: usize| -> (Vec<u32>, Vec<f64>) {
+            let own = around.patch(k);
+            let centre = mesh.points()[around.nodes[k] as usize];
+            if own.len() >= SMALL_PATCH
+                && let Some(weights) = fit(&cells, own, centre)
+            {
+                return (own.to_vec(), weights);
+            }
+            let mut wide: Vec<u32> = own
+                .iter()
+                .flat_map(|&tet| {
+                    mesh.tets()[tet as usize].map(|node| around.place(mesh, node, tet))
+                })
+                .flat_map(|k| around.patch(k))
+                .copied()
+                .collect();
+            wide.sort_unstable();
+            wide.dedup();
+            match fit(&cells, &wide, centre) {
+                Some(weights) => (wide, weights),
+                None => (own.to_vec(), mean(&cells, own)),
+            }
+        };
+        let patches: Vec<(Vec<u32>, Vec<f64>)> =
+            (0..around.nodes.len()).into_par_iter().map(patch).collect();
+        let mut pointers = vec![0];
+        let (mut tets, mut weights) = (Vec::new(), Vec::new());
+        for (t, w) in patches {
+            tets.extend(t);
+            weights.extend(w);
+            pointers.push(tets.len());
+        }
+        let corner = |(tet, nodes): (usize, &[u32; 4])| {
+            nodes.map(|node| around.place(mesh, node, tet as u32) as u32)
+        };
+        Self {
+            pointers,
+            tets,
+            weights,
+            corners: mesh.tets().iter().enumerate().map(corner).collect(),
+            volumes: cells.iter().map(|c| c.volume).collect(),
+        }
+    }
+
+    /// Estimates the discretisation error of a displacement of the mesh for which this was made.
+    ///
+    /// # Errors
+    /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another
+    /// number of tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
+    pub fn error(
+        &self,
+        mesh: &TetMesh,
+        materials: &Materials,
+        u: &[f64],
+    ) -> Result<DiscretisationError, FieldError> {
+        expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
+        let laws = materials.of_tets(mesh.regions())?;
+        let strains = strains(mesh, u)?;
+        let at = |k: usize| {
+            let mut sum = [0.0; 6];
+            for place in self.pointers[k]..self.pointers[k + 1] {
+                let strain = &strains[self.tets[place] as usize];
+                (0..6).for_each(|i| sum[i] += self.weights[place] * strain[i]);
+            }
+            sum
+        };
+        let patches = self.pointers.len() - 1;
+        let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
+        let energy = |tet: usize| {
+            let corners = self.corners[tet].map(|k| {
+                let recovered = &nodal[k as usize];
+                std::array::from_fn(|i| recovered[i] - strains[tet][i])
+            });
+            // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
+            let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
+            let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
+            self.volumes[tet] * (squares + laws[tet].energy_density(&sum)) / 20.0
+        };
+        let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
+        let elastic = (0..strains.len())
+            .map(|tet| self.volumes[tet] * laws[tet].energy_density(&strains[tet]))
+            .sum();
+        Ok(DiscretisationError {
+            total: energies.iter().sum(),
+            energies,
+            elastic,
+        })
+    }
+}
+
+/// Weights of the mean by volume.
+fn mean(cells: &[Cell], tets: &[u32]) -> Vec<f64> {
+    let volumes = || tets.iter().map(|&t| cells[t as usize].volume);
+    let total: f64 = volumes().sum();
+    volumes().map(|v| v / total).collect()
+}
+
+/// Weights of the value at `centre` of the linear polynomial that fits values at the centroids best
+/// (least squares, weighted by volume); `None` if the centroids do not determine it.
+fn fit(cells: &[Cell], tets: &[u32], centre: [f64; 3]) -> Option<Vec<f64>> {
+    let patch = || tets.iter().map(|&tet| &cells[tet as usize]);
+    let mut size = [0.0_f64; 3];
+    let mut volume = 0.0;
+    for cell in patch() {
+        let x = sub(cell.centroid, centre);
+        (0..3).for_each(|d| size[d] = size[d].max(x[d].abs()));
+        volume += cell.volume;
+    }
+    if size.contains(&0.0) {
+        return None;
+    }
+    let polynomial = |cell: &Cell| {
+        let x = sub(cell.centroid, centre);
+        Vector4::new(1.0, x[0] / size[0], x[1] / size[1], x[2] / size[2])
+    };
+    let mut normal = Matrix4::<f64>::zeros();
+    for cell in patch() {
+        let p = polynomial(cell);
+        normal.ger(cell.volume / volume, &p, &p, 1.0);
+    }
+    let factor = normal.cholesky()?;
+    let pivots = factor.l_dirty().diagonal();
+    if pivots.min().powi(2) < PIVOT * pivots.max().powi(2) {
+        return None;
+    }
+    let first = factor.solve(&Vector4::new(1.0, 0.0, 0.0, 0.0));
+    let weight = |cell: &Cell| cell.volume / volume * polynomial(cell).dot(&first);
+    Some(patch().map(weight).collect())
+}

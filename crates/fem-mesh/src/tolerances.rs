@@ -1,0 +1,42 @@
+//! The numerical judgements of this crate, in one table: what each is relative to, and why it has this value.
+
+// Meshes
+
+/// Six times the volume over the cube of the longest edge, below which a tetrahedron is flat. Coordinates carry about
+/// 16 digits, so less than this is mostly rounding.
+pub(crate) const FLAT: f64 = 1e-10;
+/// Distance over the diagonal of the mesh below which two nodes are one.
+pub(crate) const COINCIDENT: f64 = 1e-12;
+/// Sine of the angle between normal and x axis below which the y axis is projected for the first tangent.
+pub(crate) const NEARLY_PARALLEL: f64 = 0.01;
+/// Length of the mean normal of the triangles around a node, over one for a plane, below which it has no normal.
+pub(crate) const NO_NORMAL: f64 = 1e-6;
+/// How far outside of a tetrahedron a point may be, in barycentric coordinates, and still count.
+pub(crate) const OUTSIDE: f64 = 1e-9;
+
+// Materials
+
+/// Deviation from symmetry over the largest entry that is rounding.
+pub(crate) const ASYMMETRY: f64 = 1e-9;
+/// Smallest over largest eigenvalue below which a tensor is not elliptic.
+pub(crate) const ELLIPTICITY: f64 = 1e-12;
+
+// Parts made compact
+
+/// Most sweeps, and the share of tetrahedra that a sweep has to move for another one. What moves last is at plane
+/// interfaces.
+pub(crate) const SWEEPS: usize = 40;
+pub(crate) const SETTLED: f64 = 1e-3;
+
+// Recovered strains
+
+/// Tetrahedra below which a patch is joined with those of the neighbours: a linear polynomial has four coefficients.
+pub(crate) const SMALL_PATCH: usize = 8;
+/// Smallest over largest pivot below which a fit is not trusted.
+pub(crate) const PIVOT: f64 = 1e-6;
+
+// Series of files
+
+/// Difference of times over the time below which a step of a series is the one asked for.
+#[cfg(feature = "vtu")]
+pub(crate) const SAME_TIME: f64 = 1e-9;

@@ -1,0 +1,87 @@
+//! Stresses, recovery and error norms.
+
+use approx::assert_abs_diff_eq;
+use signorini_fem_mesh::fields::{nodal_average, strains, von_mises};
+use signorini_fem_mesh::{Brick, TetMesh, h1_seminorm_error, l2_error};
+
+fn interpolate(mesh: &TetMesh, u: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
+    mesh.points().iter().flat_map(|&p| u(p)).collect()
+}
+
+fn quadratic([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [x * x, x * y, z * z - y]
+}
+
+fn quadratic_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
+    [[2.0 * x, 0.0, 0.0], [y, x, 0.0], [0.0, -1.0, 2.0 * z]]
+}
+
+#[test]
+fn von_mises_of_plain_states() {
+    assert_abs_diff_eq!(
+        von_mises(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        5.0,
+        epsilon = 1e-14
+    );
+    assert_eq!(von_mises(&[-3.0, -3.0, -3.0, 0.0, 0.0, 0.0]), 0.0);
+    assert_abs_diff_eq!(
+        von_mises(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]),
+        12f64.sqrt(),
+        epsilon = 1e-14
+    );
+}
+
+#[test]
+fn norms_of_known_functions() {
+    let mesh = Brick::new([1.0; 3], [2; 3])
+        .perturbed(0.1, 1)
+        .build()
+        .unwrap();
+    let zero = vec![0.0; 3 * mesh.points().len()];
+    // Integrals of x^4 + x^2 y^2 + (z^2 - y)^2 and of the squared gradient over the unit cube.
+    let l2 = l2_error(&mesh, &zero, quadratic).unwrap();
+    let exact: f64 = 1.0 / 5.0 + 1.0 / 9.0 + 1.0 / 5.0 - 1.0 / 3.0 + 1.0 / 3.0;
+    assert_abs_diff_eq!(l2, exact.sqrt(), epsilon = 1e-13);
+    let h1 = h1_seminorm_error(&mesh, &zero, quadratic_gradient).unwrap();
+    let exact: f64 = 4.0 / 3.0 + 1.0 / 3.0 + 1.0 / 3.0 + 1.0 + 4.0 / 3.0;
+    assert_abs_diff_eq!(h1, exact.sqrt(), epsilon = 1e-13);
+}
+
+#[test]
+fn linear_functions_have_no_error() {
+    let mesh = Brick::new([1.0, 2.0, 3.0], [3; 3])
+        .perturbed(0.1, 1)
+        .build()
+        .unwrap();
+    let linear = |[x, y, z]: [f64; 3]| [x - y, 2.0 * z, 1.0 + x + y + z];
+    let gradient = |_| [[1.0, -1.0, 0.0], [0.0, 0.0, 2.0], [1.0, 1.0, 1.0]];
+    let u = interpolate(&mesh, linear);
+    assert!(l2_error(&mesh, &u, linear).unwrap() < 1e-13);
+    assert!(h1_seminorm_error(&mesh, &u, gradient).unwrap() < 1e-12);
+    let expected = [1.0, 0.0, 1.0, 3.0, 1.0, -1.0];
+    for strain in strains(&mesh, &u).unwrap() {
+        assert!((0..6).all(|i| (strain[i] - expected[i]).abs() < 1e-12));
+    }
+    let nodal = nodal_average(&mesh, &strains(&mesh, &u).unwrap()).unwrap();
+    assert!(
+        nodal
+            .iter()
+            .all(|s| (0..6).all(|i| (s[i] - expected[i]).abs() < 1e-12))
+    );
+}
+
+#[test]
+fn interpolation_converges_with_orders_two_and_one() {
+    let errors = |n: usize| {
+        let mesh = Brick::new([1.0; 3], [n; 3]).build().unwrap();
+        let u = interpolate(&mesh, quadratic);
+        let l2 = l2_error(&mesh, &u, quadratic).unwrap();
+        (
+            l2,
+            h1_seminorm_error(&mesh, &u, quadratic_gradient).unwrap(),
+        )
+    };
+    let (coarse, fine) = (errors(4), errors(8));
+    assert_abs_diff_eq!((coarse.0 / fine.0).log2(), 2.0, epsilon = 0.05);
+    assert_abs_diff_eq!((coarse.1 / fine.1).log2(), 1.0, epsilon = 0.05);
+}

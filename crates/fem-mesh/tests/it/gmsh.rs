@@ -1,0 +1,402 @@
+//! Gmsh files: good ones in text and binary, and many damaged ones.
+
+use approx::assert_abs_diff_eq;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use signorini_fem_mesh::gmsh::{
+    GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh,
+};
+use signorini_fem_mesh::{FacetTag, MeshError};
+
+/// Two tetrahedra in two volumes (groups 7 and 8) with a tagged face (group 3) of surface 1 and an
+/// untagged one of surface 2. Node numbers have no gaps but are not in order; node 6 is unused.
+const TEXT: &str = "$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+2 3 \"foundation\"
+$EndPhysicalNames
+$Entities
+1 0 2 2
+1 0 0 0 0
+1 0 0 0 1 1 0 1 3 0
+2 0 0 0 1 1 1 0 0
+1 0 0 0 1 1 1 1 7 1 -1
+2 0 0 0 2 2 2 1 8 0
+$EndEntities
+$Nodes
+2 6 1 6
+2 1 0 3
+3
+1
+2
+0 0 0
+1 0 0
+0 1 0
+3 1 0 3
+5
+4
+6
+0 0 1
+1 1 1
+9 9 9
+$EndNodes
+$Elements
+5 6 1 6
+0 1 15 1
+1 6
+2 1 2 1
+2 3 1 2
+2 2 2 1
+3 3 1 5
+3 1 4 1
+4 3 1 2 5
+3 2 4 1
+6 4 1 2 5
+$EndElements
+";
+
+fn damaged(from: &str, to: &str) -> GmshError {
+    assert!(TEXT.contains(from), "{from}");
+    parse_gmsh(TEXT.replacen(from, to, 1).as_bytes()).unwrap_err()
+}
+
+/// The same file in binary, in either byte order.
+fn binary(big: bool) -> Vec<u8> {
+    let int = |n: i32| {
+        if big {
+            n.to_be_bytes()
+        } else {
+            n.to_le_bytes()
+        }
+    };
+    let size = |n: u64| {
+        if big {
+            n.to_be_bytes()
+        } else {
+            n.to_le_bytes()
+        }
+    };
+    let real = |x: f64| {
+        if big {
+            x.to_be_bytes()
+        } else {
+            x.to_le_bytes()
+        }
+    };
+    let mut out = b"$MeshFormat\n4.1 1 8\n".to_vec();
+    out.extend(int(1));
+    out.extend(b"\n$EndMeshFormat\n");
+    let mut section = "";
+    for line in TEXT.lines().skip(3) {
+        if let Some(name) = line.strip_prefix('$') {
+            if name.starts_with("End") {
+                out.push(b'\n');
+            }
+            section = name;
+            out.extend(line.bytes());
+            out.push(b'\n');
+            continue;
+        }
+        let words: Vec<&str> = line.split(' ').collect();
+        // i: int, s: size_t, d: double, for each line of the section.
+        let kinds = match (section, words.len()) {
+            ("PhysicalNames", _) => {
+                out.extend(line.bytes());
+                out.push(b'\n');
+                continue;
+            }
+            ("Entities", 4) => "ssss",
+            ("Entities", 5) => "iddds",
+            ("Entities", 9) => "iddddddss",
+            ("Entities", 10) => "iddddddsis",
+            ("Entities", 11) => "iddddddsisi",
+            ("Nodes" | "Elements", 4) if section == "Nodes" && words[2] == "0" => "iiis",
+            ("Nodes", 4) => "ssss",
+            ("Nodes", 3) => "ddd",
+            ("Nodes", 1) => "s",
+            ("Elements", 4) if line == "5 6 1 6" => "ssss",
+            ("Elements", 4) if words[3] == "1" && ["15", "2", "4"].contains(&words[2]) => "iiis",
+            _ => "sssss",
+        };
+        for (kind, word) in kinds.chars().zip(words) {
+            match kind {
+                'i' => out.extend(int(word.parse().unwrap())),
+                's' => out.extend(size(word.parse().unwrap())),
+                _ => out.extend(real(word.parse().unwrap())),
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn text_and_binary() {
+    let mesh = parse_gmsh(TEXT.as_bytes()).unwrap();
+    assert_eq!(mesh.points()[..2], [[0.0; 3], [1.0, 0.0, 0.0]]);
+    assert_eq!(mesh.points().len(), 5);
+    assert_eq!(mesh.regions(), [7, 8]);
+    assert_abs_diff_eq!(mesh.total_volume(), 0.5, epsilon = 1e-15);
+    // Only the triangle in a group is tagged.
+    assert_eq!(mesh.facets().len(), 1);
+    assert_eq!(mesh.nodes_on(FacetTag(3)), [0, 1, 2]);
+    assert_eq!(parse_gmsh(&binary(false)).unwrap(), mesh);
+    assert_eq!(parse_gmsh(&binary(true)).unwrap(), mesh);
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), TEXT).unwrap();
+    assert_eq!(read_gmsh(file.path()).unwrap(), mesh);
+    let windows = TEXT.replace('\n', "\r\n");
+    assert_eq!(parse_gmsh(windows.as_bytes()).unwrap(), mesh);
+}
+
+#[test]
+fn names_of_groups() {
+    let more = TEXT.replace(
+        "1\n2 3 \"foundation\"\n",
+        "4\n1 3 \"an edge\"\n2 3 \"the foundation\"\n3 8 \"upper\"\n3 7 \"lower \\u{e9}\"\n",
+    );
+    let (mesh, names) = parse_named_gmsh(more.as_bytes()).unwrap();
+    assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap());
+    assert_eq!(names.surface("the foundation").unwrap(), FacetTag(3));
+    assert_eq!(names.volume("upper").unwrap(), 8);
+    for name in ["upper", "an edge", "Side"] {
+        let error = names.surface(name).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains(name) && text.contains("surfaces in it are \"the foundation\""));
+        assert!(matches!(
+            error,
+            GmshError::UnknownName {
+                what: "surface",
+                ..
+            }
+        ));
+    }
+    let text = names.volume("middle").unwrap_err().to_string();
+    assert!(text.contains("volumes in it are \"lower ") && text.contains(", \"upper\""));
+    assert_eq!(names.surfaces().count(), 1);
+    let volumes: Vec<_> = names.volumes().collect();
+    assert_eq!(volumes, [("lower \\u{e9}", 7), ("upper", 8)]);
+    // the section is text in binary files, too
+    for file in [TEXT.as_bytes(), &binary(false), &binary(true)] {
+        let (_, names) = parse_named_gmsh(file).unwrap();
+        let surfaces: Vec<_> = names.surfaces().collect();
+        assert_eq!(surfaces, [("foundation", FacetTag(3))]);
+        assert_eq!(names.volumes().count(), 0);
+        let text = names.volume("body").unwrap_err().to_string();
+        assert!(text.contains("no volume in it has a name"), "{text}");
+    }
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), TEXT).unwrap();
+    assert_eq!(read_named_gmsh(file.path()).unwrap().0, mesh);
+    let twice = TEXT.replace("1\n2 3 \"foundation\"\n", "2\n2 3 \"a\"\n2 4 \"a\"\n");
+    assert!(parse_gmsh(twice.as_bytes()).is_ok());
+    let error = parse_named_gmsh(twice.as_bytes()).unwrap_err();
+    assert!(matches!(
+        error,
+        GmshError::RepeatedName { groups: [3, 4], .. }
+    ));
+    for (from, to) in [
+        ("\"foundation\"", "foundation"),
+        ("2 3 \"f", "2 x \"f"),
+        ("1\n2 3", "9\n2 3"),
+    ] {
+        assert!(matches!(
+            damaged(from, to),
+            GmshError::Damaged {
+                section: "$PhysicalNames",
+                ..
+            }
+        ));
+    }
+}
+
+/// Gmsh saves no tetrahedra where surfaces are physical groups and volumes are not.
+#[test]
+fn a_file_without_tetrahedra_says_what_to_add() {
+    let surfaces = TEXT
+        .replace("5 6 1 6\n", "3 4 1 4\n")
+        .replace("3 1 4 1\n4 3 1 2 5\n3 2 4 1\n6 4 1 2 5\n", "");
+    let error = parse_gmsh(surfaces.as_bytes()).unwrap_err();
+    assert!(matches!(error, GmshError::NoTetrahedra), "{error}");
+    let text = error.to_string();
+    assert!(text.contains("physical volume") && text.contains("Mesh.SaveAll"));
+}
+
+/// Groups of a partitioned file stand in a section of their own.
+#[test]
+fn partitioned_files_are_refused_by_their_section() {
+    let section = "$PartitionedEntities
+2
+0
+0 0 0 1
+1 3 1 1 1 0 0 0 1 1 1 1 7 0
+$EndPartitionedEntities
+$Nodes";
+    let error = damaged("$Nodes", section);
+    assert!(matches!(error, GmshError::Partitioned { .. }), "{error}");
+    let text = error.to_string();
+    assert!(text.contains("$PartitionedEntities") && text.contains("unpartition"));
+}
+
+#[test]
+fn without_groups_the_entities_count() {
+    let text = TEXT
+        .replace("1 0 0 0 1 1 0 1 3 0\n", "1 0 0 0 1 1 0 0 0\n")
+        .replace("1 0 0 0 1 1 1 1 7 1 -1\n", "1 0 0 0 1 1 1 0 0\n")
+        .replace("2 0 0 0 2 2 2 1 8 0\n", "2 0 0 0 2 2 2 0 0\n");
+    let mesh = parse_gmsh(text.as_bytes()).unwrap();
+    assert_eq!(mesh.regions(), [1, 2]);
+    assert_eq!(mesh.tags(), [FacetTag(1), FacetTag(2)]);
+    // The same with the second surface between the two volumes.
+    let inside = text.replace("3 3 1 5\n", "3 1 2 5\n");
+    assert_eq!(parse_gmsh(inside.as_bytes()).unwrap().tags(), [FacetTag(1)]);
+}
+
+#[test]
+fn damaged_files() {
+    assert!(matches!(parse_gmsh(b""), Err(GmshError::NotGmsh)));
+    assert!(matches!(parse_gmsh(b"solid cube"), Err(GmshError::NotGmsh)));
+    assert!(matches!(
+        read_gmsh("/nowhere/at.msh"),
+        Err(GmshError::Io { .. })
+    ));
+    assert!(matches!(damaged("4.1 0", "2.2 0"), GmshError::Version { found } if found == "2.2"));
+    assert!(matches!(
+        damaged("4.1 0", "4.1 7"),
+        GmshError::Damaged { .. }
+    ));
+    assert!(matches!(
+        damaged("0 8\n", "0 99999999999999999999\n"),
+        GmshError::Damaged { .. }
+    ));
+    let huge = damaged("2 1 0 3\n", "2 1 0 18446744073709551615\n");
+    assert!(matches!(
+        huge,
+        GmshError::Damaged {
+            section: "$Nodes",
+            ..
+        }
+    ));
+    let huge = damaged("3 2 4 1\n", "3 2 4 4611686018427387904\n");
+    assert!(matches!(
+        huge,
+        GmshError::Damaged {
+            section: "$Elements",
+            ..
+        }
+    ));
+    assert!(matches!(
+        damaged("1 0 2 2\n", "1 0 2 2000000000\n"),
+        GmshError::Damaged { .. }
+    ));
+    let empty = damaged("2 6 1 6", "2 0 1 6");
+    assert!(matches!(
+        empty,
+        GmshError::Damaged {
+            section: "$Nodes",
+            ..
+        }
+    ));
+    assert!(matches!(
+        damaged("2 1 0 3\n", "2 1 1 3\n"),
+        GmshError::Damaged { .. }
+    ));
+    assert!(matches!(
+        damaged("$EndNodes", "$EndNods"),
+        GmshError::Damaged { .. }
+    ));
+    let hexahedron = damaged("3 1 4 1\n", "3 1 5 1\n");
+    assert!(matches!(hexahedron, GmshError::Unsupported { kind: 5, .. }));
+    assert!(matches!(
+        damaged("3 1 4 1\n", "3 1 999 1\n"),
+        GmshError::Unsupported { .. }
+    ));
+    let unknown = damaged("6 4 1 2 5", "6 4 1 2 77");
+    assert!(matches!(
+        unknown,
+        GmshError::UnknownNode {
+            element: 6,
+            node: 77
+        }
+    ));
+    assert!(matches!(
+        damaged("5\n4\n6\n", "5\n4\n1\n"),
+        GmshError::RepeatedNode { tag: 1 }
+    ));
+    let groups = damaged("1 0 0 0 1 1 1 1 7 1 -1\n", "1 0 0 0 1 1 1 2 7 9 1 -1\n");
+    assert!(matches!(
+        groups,
+        GmshError::SeveralGroups {
+            what: "volume",
+            entity: 1,
+            ..
+        }
+    ));
+    let flat = damaged("6 4 1 2 5", "6 3 1 2 2");
+    assert!(matches!(
+        flat,
+        GmshError::Mesh(MeshError::RepeatedNode { tet: 1, .. })
+    ));
+    let nan = damaged("1 1 1\n9", "nan 1 1\n9");
+    assert!(matches!(nan, GmshError::Mesh(MeshError::NotFinite { .. })));
+    assert!(matches!(
+        damaged("1 1 1\n9", "one 1 1\n9"),
+        GmshError::Damaged {
+            section: "$Nodes",
+            ..
+        }
+    ));
+    let inside = damaged("2 3 1 2\n", "2 1 2 5\n");
+    assert!(matches!(
+        inside,
+        GmshError::Mesh(MeshError::FacetInside { .. })
+    ));
+    let nodes = TEXT.split("$Elements").next().unwrap();
+    assert!(matches!(
+        parse_gmsh(nodes.as_bytes()),
+        Err(GmshError::MissingSection {
+            section: "$Elements"
+        })
+    ));
+}
+
+#[test]
+fn no_truncation_panics() {
+    for whole in [TEXT.as_bytes().to_vec(), binary(false), binary(true)] {
+        let end = whole.len() - "\n$EndElements\n".len();
+        for length in 0..end {
+            assert!(parse_gmsh(&whole[..length]).is_err(), "{length}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 2000,
+        rng_seed: RngSeed::Fixed(5),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// Whatever a few changed bytes do, the answer is a mesh or an error.
+    #[test]
+    fn no_change_of_bytes_panics(
+        kind in 0..3,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..4),
+    ) {
+        let mut bytes = match kind {
+            0 => TEXT.as_bytes().to_vec(),
+            other => binary(other == 2),
+        };
+        for (place, byte) in changes {
+            let length = bytes.len();
+            // In text, mostly digits.
+            let byte = if kind == 0 && byte < 200 { b'0' + byte % 10 } else { byte };
+            bytes[place.index(length)] = byte;
+        }
+        if let Err(error) = parse_gmsh(&bytes) {
+            prop_assert!(!error.to_string().is_empty());
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! The promises of this crate, one module each.
+
+mod compact;
+mod decomposition;
+mod fields;
+#[cfg(feature = "gmsh")]
+mod gmsh;
+mod loads;
+mod merge;
+mod mesh;
+#[cfg(feature = "vtu")]
+mod output;
+mod recovery;
+mod refusals;
+mod stiffness;
+mod surface;

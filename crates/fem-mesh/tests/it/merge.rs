@@ -1,0 +1,46 @@
+//! Parts that were meshed apart.
+
+use approx::assert_abs_diff_eq;
+use signorini_fem_mesh::brick::{Brick, Z_MAX};
+use signorini_fem_mesh::{Facet, MeshError, TetMesh, drop_unused_nodes, merge_nodes};
+
+/// A body whose parts were meshed apart, with rounding: cut open, or two bodies, until nodes are merged.
+#[test]
+fn parts_meshed_apart_become_one_body() {
+    let lower = Brick::new([1.0; 3], [2, 2, 2]).build().unwrap();
+    let upper = lower
+        .map_points(|[x, y, z]| [x + 1e-7, y, z + 1.0])
+        .unwrap();
+    let both = lower.append(&upper).unwrap();
+    let top = |facets: &[Facet]| facets.iter().copied().find(|f| f.tag == Z_MAX);
+    let merged = |distance: f64| {
+        let (mut points, mut tets) = (both.points().to_vec(), both.tets().to_vec());
+        let mut facets = vec![top(upper.facets()).unwrap()];
+        let shift = lower.points().len() as u32;
+        facets[0].nodes = facets[0].nodes.map(|n| n + shift);
+        let count = merge_nodes(&points, &mut tets, &mut facets, distance);
+        drop_unused_nodes(&mut points, &mut tets, &mut facets);
+        let mesh = TetMesh::new(points, tets, facets).unwrap();
+        (
+            count,
+            mesh.components().iter().max().copied(),
+            mesh.total_volume(),
+        )
+    };
+    for (distance, count, last) in [(0.0, 0, 1), (1e-9, 0, 1), (1e-6, 9, 0), (f64::NAN, 0, 1)] {
+        let (gone, body, volume) = merged(distance);
+        assert_eq!((gone, body), (count, Some(last)), "{distance}");
+        assert_abs_diff_eq!(volume, 2.0, epsilon = 1e-6);
+    }
+    // too far: tetrahedra lose nodes, which the mesh reports; wrong numbers are left to it, too
+    let (points, mut tets) = (lower.points().to_vec(), lower.tets().to_vec());
+    assert_eq!(merge_nodes(&points, &mut tets, &mut [], 0.6), 26);
+    let error = TetMesh::new(points.clone(), tets, vec![]).unwrap_err();
+    assert!(
+        matches!(error, MeshError::RepeatedNode { tet: 0, .. }),
+        "{error}"
+    );
+    let mut wrong = [[0, 1, 2, 99]];
+    assert_eq!(merge_nodes(&points, &mut wrong, &mut [], 0.0), 0);
+    assert_eq!(wrong[0][3], 99);
+}

@@ -1,0 +1,180 @@
+//! Effectivity of the estimated discretisation error: estimated over true error in the energy norm.
+
+use approx::assert_abs_diff_eq;
+use signorini_fem_mesh::{
+    Brick, Hooke, LoadDensity, Materials, TetMesh, discretisation_error, energy_of_difference,
+    energy_of_error,
+};
+
+/// u = s(x) (1, -1, 0.5) with s = sin x sin y sin z, interpolated at the nodes. The energy error of the
+/// interpolant is of the order of the finite element solution's.
+fn smooth(p: [f64; 3]) -> [f64; 3] {
+    let s: f64 = p.iter().map(|x| (2.0 * x).sin()).product();
+    [s, -s, 0.5 * s]
+}
+
+fn gradient(p: [f64; 3]) -> [[f64; 3]; 3] {
+    let g: [f64; 3] = std::array::from_fn(|d| {
+        let term = |k: usize| {
+            if k == d {
+                2.0 * (2.0 * p[k]).cos()
+            } else {
+                (2.0 * p[k]).sin()
+            }
+        };
+        (0..3).map(term).product()
+    });
+    [g, g.map(|v| -v), g.map(|v| 0.5 * v)]
+}
+
+fn material() -> Materials {
+    Materials::uniform(Hooke::isotropic(1000.0, 0.3).expect("Hooke"))
+}
+
+/// The finite element solution with prescribed boundary values and the body force of `smooth`, by
+/// plain conjugate gradients of the test's own.
+fn solve(mesh: &TetMesh) -> Vec<f64> {
+    let hooke = Hooke::isotropic(1000.0, 0.3).expect("Hooke");
+    let k = signorini_fem_mesh::assemble_stiffness(mesh.points(), mesh.tets(), |_| &hooke)
+        .expect("stiffness");
+    let whole = signorini_fem_mesh::Decomposition::whole(mesh);
+    let (shear, lame) = (1000.0 / 2.6, 300.0 / (1.3 * 0.4));
+    // f = -(mu lap u + (lambda + mu) grad div u), lap s = -12 s
+    let load = LoadDensity::body_field(move |p| {
+        let a = [1.0, -1.0, 0.5];
+        let (s, c) = (p.map(|x| (2.0 * x).sin()), p.map(|x| (2.0 * x).cos()));
+        let second = |i: usize, j: usize| {
+            if i == j {
+                -4.0 * s[0] * s[1] * s[2]
+            } else {
+                4.0 * c[i] * c[j] * s[3 - i - j]
+            }
+        };
+        std::array::from_fn(|i| {
+            let div: f64 = (0..3).map(|j| a[j] * second(i, j)).sum();
+            12.0 * shear * a[i] * s[0] * s[1] * s[2] - (lame + shear) * div
+        })
+    });
+    let f = signorini_fem_mesh::assemble_load(mesh, &whole, &load)
+        .expect("load")
+        .concat();
+    let fixed: Vec<bool> = mesh
+        .points()
+        .iter()
+        .flat_map(|p| [p.iter().any(|x| *x < 1e-9 || *x > 1.0 - 1e-9); 3])
+        .collect();
+    let mut u: Vec<f64> = mesh.points().iter().flat_map(|p| smooth(*p)).collect();
+    let times = |x: &[f64]| {
+        let mut y = vec![0.0; x.len()];
+        for (value, (row, column)) in k.iter() {
+            y[row] += value * x[column];
+        }
+        y
+    };
+    let mask = |v: &mut Vec<f64>| {
+        v.iter_mut().zip(&fixed).for_each(|(v, fixed)| {
+            if *fixed {
+                *v = 0.0
+            }
+        })
+    };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut r: Vec<f64> = times(&u).iter().zip(&f).map(|(k, f)| f - k).collect();
+    mask(&mut r);
+    let mut p = r.clone();
+    let mut rho = dot(&r, &r);
+    let start = rho;
+    while rho > 1e-20 * start {
+        let mut ap = times(&p);
+        mask(&mut ap);
+        let step = rho / dot(&p, &ap);
+        for i in 0..u.len() {
+            u[i] += step * p[i];
+            r[i] -= step * ap[i];
+        }
+        let next = dot(&r, &r);
+        for i in 0..p.len() {
+            p[i] = r[i] + next / rho * p[i];
+        }
+        rho = next;
+    }
+    u
+}
+
+#[test]
+fn the_index_of_a_manufactured_solution_is_near_one_and_errors_fall_with_h() {
+    let mut last = f64::INFINITY;
+    for cells in [4, 8, 12] {
+        let mesh = Brick::new([1.0; 3], [cells; 3])
+            .perturbed(0.1, 7)
+            .build()
+            .expect("brick");
+        let u = solve(&mesh);
+        let truth = energy_of_error(&mesh, &material(), &u, gradient).expect("error");
+        let estimate = discretisation_error(&mesh, &material(), &u).expect("estimate");
+        let index = (estimate.energy() / truth).sqrt();
+        println!(
+            "cells {cells}: true {:.4e}, index {index:.4}",
+            (truth / estimate.elastic_energy()).sqrt()
+        );
+        let band = if cells == 4 { 0.3 } else { 0.15 };
+        assert!((index - 1.0).abs() < band, "{cells}: {index}");
+        assert!(truth < last);
+        last = truth;
+        let sum: f64 = estimate.energies().iter().sum();
+        assert_abs_diff_eq!(sum, estimate.energy(), epsilon = 1e-12 * sum);
+    }
+}
+
+#[test]
+fn a_linear_displacement_has_no_error_and_regions_are_kept_apart() {
+    let mesh = Brick::new([2.0, 1.0, 1.0], [6, 3, 3])
+        .build()
+        .expect("brick");
+    let regions: Vec<u32> = (0..mesh.tets().len())
+        .map(|t| u32::from(mesh.tet_points(t).iter().map(|p| p[0]).sum::<f64>() > 4.0))
+        .collect();
+    let mesh = mesh.with_regions(regions).expect("regions");
+    let stiff = Hooke::isotropic(1e6, 0.3).expect("Hooke");
+    let soft = Hooke::isotropic(1e3, 0.3).expect("Hooke");
+    let materials = Materials::new(vec![(0, soft), (1, stiff)]).expect("materials");
+    // two different uniform strains meet at x = 1: continuous, with a jump of the gradient
+    let u: Vec<f64> = mesh
+        .points()
+        .iter()
+        .flat_map(|p| {
+            [
+                if p[0] > 1.0 {
+                    1.0 + 1e-3 * (p[0] - 1.0)
+                } else {
+                    p[0]
+                },
+                0.0,
+                0.0,
+            ]
+        })
+        .collect();
+    let estimate = discretisation_error(&mesh, &materials, &u).expect("estimate");
+    assert!(estimate.relative() < 1e-7, "{}", estimate.relative());
+    let rest = discretisation_error(&mesh, &materials, &vec![0.0; u.len()]).expect("estimate");
+    assert_eq!(rest.relative(), 0.0);
+    assert!(discretisation_error(&mesh, &materials, &u[1..]).is_err());
+}
+
+#[test]
+fn two_meshes_of_the_same_linear_field_do_not_differ() {
+    let field = |p: [f64; 3]| [2.0 * p[0] + p[1], p[2] - p[0], 0.3 * p[1]];
+    let make = |cells: [usize; 3], seed: u64| {
+        let mesh = Brick::new([3.0, 1.0, 1.0], cells)
+            .perturbed(0.1, seed)
+            .build()
+            .expect("brick");
+        let u: Vec<f64> = mesh.points().iter().flat_map(|p| field(*p)).collect();
+        (mesh, u)
+    };
+    let ((a, u), (b, v)) = (make([9, 3, 3], 1), make([6, 2, 2], 2));
+    let zero = energy_of_difference(&a, &material(), &u, &b, &v).expect("difference");
+    let all = energy_of_difference(&a, &material(), &u, &b, &vec![0.0; v.len()]).expect("energy");
+    let own = signorini_fem_mesh::fields::strain_energy(&a, &material(), &u).expect("energy");
+    assert!(zero < 1e-20 * own && (all - own).abs() < 1e-9 * own);
+}

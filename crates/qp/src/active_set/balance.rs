@@ -1,0 +1,332 @@
+//! The point of the set next to a given one that balances.
+//!
+//! Where constraints alone stop a mode, a point that is projected on the set leaves `G x = e`, and one that is put
+//! back to `G x = e` leaves the set. The closest point that satisfies both has few unknowns, one amplitude for each
+//! mode that no unconstrained component stops. With the rows `c` of these modes it is
+//!
+//! ```text
+//! x(b) = P(y - a c b),     cᵀ x(b) = f
+//! ```
+//!
+//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. `f - cᵀ x(b)` is
+//! the gradient of a convex function of `b`, whose minimum Newton's method with a line search finds without operator
+//! products.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `b` | amplitudes |
+//! | `c`, `f` | rows of the modes on constrained components, and their right sides |
+//! | `s` | `y - a c b` |
+
+use crate::problem::{
+    Constrained, LooseMode, ProductSet, for_constrained, for_discs, solve_cholesky,
+};
+use crate::tolerances::{BALANCED, HALVINGS, NEWTON_DECREASE, NEWTON_STEPS, NO_IMBALANCE, SHIFT};
+
+/// The search for the amplitudes.
+pub(crate) struct Search<'a> {
+    modes: &'a [LooseMode],
+    set: &'a ProductSet,
+    /// `y` on constrained components.
+    y: &'a [f64],
+    /// `a`, one value for both components of a disc.
+    a: Vec<f64>,
+    f: Vec<f64>,
+    b: Vec<f64>,
+    /// `P(s)`.
+    x: Vec<f64>,
+    value: f64,
+    gradient: Vec<f64>,
+    /// Largest imbalance, over the absolute values of its terms.
+    imbalance: f64,
+    /// Second derivatives, by rows.
+    second: Vec<f64>,
+}
+
+impl<'a> Search<'a> {
+    pub(crate) fn new(
+        modes: &'a [LooseMode],
+        set: &'a ProductSet,
+        e: &[f64],
+        (y, a): (&'a [f64], &[f64]),
+    ) -> Self {
+        let side = |m: &LooseMode| m.amplitudes.iter().zip(e).map(|(a, e)| a * e).sum();
+        let mut a = a.to_vec();
+        for_discs(set, |i, _, _| a[i + 1] = a[i]);
+        Self {
+            modes,
+            set,
+            y,
+            a,
+            f: modes.iter().map(side).collect(),
+            b: vec![0.0; modes.len()],
+            x: y.to_vec(),
+            value: 0.0,
+            gradient: vec![0.0; modes.len()],
+            imbalance: f64::INFINITY,
+            second: vec![0.0; modes.len() * modes.len()],
+        }
+    }
+
+    /// The point, and whether it balances; if not, the set holds no point that does.
+    pub(crate) fn run(mut self) -> (Vec<f64>, bool) {
+        self.evaluate();
+        for _ in 0..NEWTON_STEPS {
+            if self.imbalance <= NO_IMBALANCE {
+                break;
+            }
+            self.differentiate();
+            let Some(step) = self.newton_step() else {
+                break;
+            };
+            if !self.advance(&step) {
+                break;
+            }
+        }
+        (self.x, self.imbalance <= BALANCED)
+    }
+
+    /// Point, value, gradient and imbalance at `b`.
+    fn evaluate(&mut self) {
+        let Self {
+            modes,
+            set,
+            y,
+            a,
+            f,
+            b,
+            x,
+            ..
+        } = self;
+        x.copy_from_slice(y);
+        for (mode, b) in modes.iter().zip(&*b) {
+            let terms = x.iter_mut().zip(&*a).zip(&mode.row);
+            terms.for_each(|((x, a), c)| *x -= a * c * b);
+        }
+        let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
+        for_constrained(set, |block| match block {
+            Constrained::Bound {
+                i, lower, upper, ..
+            } => {
+                let s = x[i];
+                x[i] = s.max(lower).min(upper);
+                if a[i] > 0.0 {
+                    value += x[i] * (2.0 * s - x[i]) / (2.0 * a[i]);
+                }
+            }
+            Constrained::Disc { i, radius, .. } => {
+                let length = x[i].hypot(x[i + 1]);
+                let kept = length.min(radius);
+                let share = if length > radius {
+                    radius / length
+                } else {
+                    1.0
+                };
+                x[i] *= share;
+                x[i + 1] *= share;
+                value += kept * (2.0 * length - kept) / (2.0 * a[i]);
+            }
+        });
+        self.value = value;
+        self.imbalance = 0.0;
+        for ((mode, f), g) in modes.iter().zip(&*f).zip(&mut self.gradient) {
+            let (mut sum, mut size) = (*f, f.abs());
+            for (c, x) in mode.row.iter().zip(&*x) {
+                sum -= c * x;
+                size += (c * x).abs();
+            }
+            *g = sum;
+            let share = if size == 0.0 { 0.0 } else { sum.abs() / size };
+            // `max` drops what is not a number
+            if share > self.imbalance || share.is_nan() {
+                self.imbalance = share;
+            }
+        }
+    }
+
+    /// Second derivatives at the point of the last evaluation: `cᵀ P' a c`.
+    fn differentiate(&mut self) {
+        let Self {
+            modes,
+            set,
+            y,
+            a,
+            b,
+            second,
+            ..
+        } = self;
+        let k = modes.len();
+        second.fill(0.0);
+        let (mut along, mut across) = (vec![0.0; k], vec![0.0; k]);
+        let mut add = |weight: f64, c: &[f64]| {
+            for (r, cr) in c.iter().enumerate() {
+                for (s, cs) in second[r * k..(r + 1) * k].iter_mut().zip(c) {
+                    *s += weight * cr * cs;
+                }
+            }
+        };
+        let s = |i: usize| {
+            let moved: f64 = modes.iter().zip(&*b).map(|(m, b)| m.row[i] * b).sum();
+            y[i] - a[i] * moved
+        };
+        for_constrained(set, |block| match block {
+            Constrained::Bound {
+                i, lower, upper, ..
+            } => {
+                let s = s(i);
+                if s > lower && s < upper {
+                    modes
+                        .iter()
+                        .zip(&mut along)
+                        .for_each(|(m, c)| *c = m.row[i]);
+                    add(a[i], &along);
+                }
+            }
+            Constrained::Disc { i, radius, .. } => {
+                let s = [s(i), s(i + 1)];
+                let length = s[0].hypot(s[1]);
+                let n = if length > 0.0 {
+                    [s[0] / length, s[1] / length]
+                } else {
+                    [1.0, 0.0]
+                };
+                for ((m, along), across) in modes.iter().zip(&mut along).zip(&mut across) {
+                    let c = [m.row[i], m.row[i + 1]];
+                    *along = c[0] * n[0] + c[1] * n[1];
+                    *across = c[1] * n[0] - c[0] * n[1];
+                }
+                if length > radius {
+                    add(a[i] * radius / length, &across);
+                } else if radius > 0.0 {
+                    add(a[i], &across);
+                    add(a[i], &along);
+                }
+            }
+        });
+    }
+
+    /// Minus the shifted second derivatives' inverse times the gradient, by Cholesky; `None` if nothing holds any mode.
+    fn newton_step(&mut self) -> Option<Vec<f64>> {
+        let k = self.modes.len();
+        let largest = (0..k).map(|r| self.second[r * k + r]).fold(0.0, f64::max);
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        let l = &mut self.second;
+        for r in 0..k {
+            l[r * k + r] += SHIFT * largest;
+            for s in 0..=r {
+                let known: f64 = (0..s).map(|j| l[r * k + j] * l[s * k + j]).sum();
+                let value = l[r * k + s] - known;
+                l[r * k + s] = if r == s {
+                    value.max(SHIFT * largest).sqrt()
+                } else {
+                    value / l[s * k + s]
+                };
+            }
+        }
+        let mut step: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
+        solve_cholesky(k, l, &mut step);
+        step.iter().all(|s| s.is_finite()).then_some(step)
+    }
+
+    /// The longest of the halved steps that descends, or halves the imbalance; false if none does.
+    fn advance(&mut self, step: &[f64]) -> bool {
+        let slope: f64 = self.gradient.iter().zip(step).map(|(g, s)| g * s).sum();
+        let (start, value, imbalance) = (self.b.clone(), self.value, self.imbalance);
+        let mut t = 1.0;
+        for _ in 0..HALVINGS {
+            let both = start.iter().zip(step);
+            self.b = both.map(|(b, s)| b + t * s).collect();
+            self.evaluate();
+            let descends = self.value <= value + NEWTON_DECREASE * t * slope;
+            if self.imbalance.is_finite() && (descends || self.imbalance <= 0.5 * imbalance) {
+                return true;
+            }
+            t *= 0.5;
+        }
+        self.b = start;
+        self.evaluate();
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{ConvexSet, Segment};
+
+    /// Bounds and discs with modes that are sums of components, as translations are.
+    fn set() -> ProductSet {
+        ProductSet::new(vec![
+            Segment::upper(vec![0.0; 4]),
+            Segment::discs(vec![1.0, 2.0, 0.5]),
+        ])
+        .expect("a set")
+    }
+
+    fn modes() -> Vec<LooseMode> {
+        let sums = [
+            [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0],
+            [1.0, -1.0, 0.5, -0.5, 0.3, -0.2, 0.1, 0.6, -0.4, 0.2],
+        ];
+        let unit = |k: usize| (0..4).map(|j| f64::from(u8::from(j == k))).collect();
+        let mode = |(k, row): (usize, [f64; 10])| LooseMode::new(unit(k), row.to_vec());
+        sums.into_iter().enumerate().map(mode).collect()
+    }
+
+    fn project(y: &[f64; 10], e: &[f64; 4]) -> (Vec<f64>, bool) {
+        // of the lengths of a disc the first one counts
+        let a: Vec<f64> = (0..10)
+            .map(|k| 0.5 + 0.1 * f64::from(k / 2) + f64::from(k % 2) * f64::from(u8::from(k > 3)))
+            .collect();
+        Search::new(&modes(), &set(), e, (y, &a)).run()
+    }
+
+    #[test]
+    fn finds_the_closest_point_that_balances() {
+        let y = [-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6];
+        let e = [-4.0, 2.5, 0.6, 0.2];
+        let (x, balances) = project(&y, &e);
+        assert!(balances && set().violation(&x) <= 1e-15);
+        for (mode, e) in modes().iter().zip(e) {
+            let sum: f64 = mode.row.iter().zip(&x).map(|(c, x)| c * x).sum();
+            assert!((sum - e).abs() < 1e-12);
+        }
+        // no other feasible point that balances is closer: it is where alternating projections in this metric end
+        let distance = |p: &[f64]| -> f64 {
+            let term = |k: usize| (p[k] - y[k]).powi(2) / (0.5 + 0.1 * (k / 2) as f64);
+            (0..10).map(term).sum()
+        };
+        let best = distance(&x);
+        for k in 0..200_u32 {
+            let other: [f64; 10] = std::array::from_fn(|j| {
+                let angle = f64::from(k) * 0.37 + j as f64 * 1.3;
+                y[j] + 0.8 * (angle.sin() + (1.7 * angle).cos())
+            });
+            let (other, balances) = project(&other, &e);
+            assert!(balances && distance(&other) >= best * (1.0 - 1e-12));
+        }
+    }
+
+    #[test]
+    fn says_when_the_set_holds_no_balance() {
+        let far = [-4.0, 9.0, 0.0, 0.0];
+        let (x, balances) = project(&[0.0; 10], &far);
+        assert!(!balances && set().violation(&x) <= 1e-15);
+        assert!(x.iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn held_components_stay_and_modes_that_nothing_holds_do_no_harm() {
+        let set = ProductSet::new(vec![Segment::upper(vec![0.0; 2])]).expect("a set");
+        let modes = [
+            LooseMode::new(vec![1.0, 0.0], vec![1.0, 1.0]),
+            LooseMode::new(vec![0.0, 1.0], vec![0.0, 0.0]),
+        ];
+        let search = Search::new(&modes, &set, &[-3.0, 0.0], (&[0.0, -1.0], &[0.0, 1.0]));
+        assert_eq!(search.run(), (vec![0.0, -3.0], true));
+    }
+}

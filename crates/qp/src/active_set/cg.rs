@@ -1,0 +1,153 @@
+//! Projected preconditioned conjugate gradients on one active set.
+//!
+//! It restricts constrained components only. The residual on the active set is therefore the vector `residual` with its
+//! leading part replaced by `restricted`; no second long vector is kept. Curvature enters before the projection: the
+//! multiplier is fitted to the residual on the set, else the projected matrix is not symmetric.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `residual` | `P_Wᵀ (A x - b + kappa s)`, `s` the steps so far |
+//! | `restricted` | its constrained part, restricted to the active set |
+//! | `z` | `P_W R (D M D + T) R` of the residual on the set; `R` restricts |
+//! | `D`, `T` | account for the curvature, `D = 1 / (1 + kappa m)` (`D²` in `docs/theory.md`) |
+//! | `p`, `ap` | direction, and `A p + kappa p`, then `P_Wᵀ` of it, then restricted |
+//! | `q` | `E p`, what `x` moves by; `p` where radii are fixed ([`coupling`](super::coupling)) |
+//! | `rho` | residual on the set times `z` |
+
+use crate::error::QpError;
+use crate::problem::{EqualityProjector, SymmetricOperator};
+use crate::tolerances::{ENOUGH, MOST_STEPS, NEGATIVE_CURVATURE, ROUNDED_STEPS};
+use crate::vector;
+
+use super::iterate::{Iterate, Lengths};
+
+/// How far the errors are to fall on an active set.
+pub(crate) struct Goal {
+    /// By this factor from the smaller of their values at the start and those expected,
+    pub(crate) forcing: f64,
+    pub(crate) expected: Lengths,
+    /// or below these limits.
+    pub(crate) limits: Lengths,
+    /// No more products than that in the whole solve.
+    pub(crate) max_products: usize,
+}
+
+impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
+    /// Runs until the goal is reached; `z` is ready, with `rho`. Returns the length of the last step if another one
+    /// is worth while; its direction is then `p`.
+    pub(crate) fn conjugate_gradients(&mut self, rho: f64, goal: &Goal) -> Result<f64, QpError> {
+        let first = self.errors();
+        let start = first.zip(goal.expected, f64::min);
+        // further than that, steps that round move the equality more than the iterate
+        let digits = if self.projector.rounds_steps() {
+            ROUNDED_STEPS
+        } else {
+            0.0
+        };
+        let enough = start.zip(goal.limits, |start, limit| {
+            (goal.forcing * start)
+                .max(ENOUGH * limit)
+                .max(digits * first.all)
+        });
+        let last = goal.max_products.min(self.report.products() + MOST_STEPS);
+        self.first_direction();
+        let (mut rho, mut steps) = (rho, 0);
+        while self.report.products() < last && rho > 0.0 {
+            let coupled = self.multiply_direction();
+            steps += 1;
+            let Some(curvature) = self.curvature(coupled)? else {
+                break;
+            };
+            let length = rho / curvature;
+            self.advance(length, coupled);
+            let next = self.precondition();
+            let beta = if coupled {
+                vector::dot(&self.work.z, &self.work.ap) / curvature
+            } else {
+                next / rho
+            };
+            vector::axpby(-1.0, &self.work.z, beta, &mut self.work.p);
+            rho = next;
+            let errors = self.errors();
+            if errors.within(enough) {
+                let more = !errors.within(goal.limits);
+                return Ok(if more { length } else { 0.0 });
+            }
+            if self.work.coupling.too_strong(steps, first.all, errors.all) {
+                break;
+            }
+        }
+        Ok(0.0)
+    }
+
+    /// `p = -z`.
+    fn first_direction(&mut self) {
+        // not by a factor of zero: what an earlier solve has left need not be finite
+        vector::copy(&self.work.z, &mut self.work.p);
+        vector::scale(-1.0, &mut self.work.p);
+    }
+
+    /// `ap = A q`, with `q = E p` where the radii follow, which is returned, else `q = p`.
+    fn multiply_direction(&mut self) -> bool {
+        let work = &mut *self.work;
+        let coupled = work.coupling.on;
+        if coupled {
+            work.coupling
+                .extend(self.projector, self.set, &work.active, &work.p);
+        }
+        let q = if coupled {
+            &work.coupling.step
+        } else {
+            &work.p
+        };
+        let operator = self.problem.operator;
+        operator.apply(q, &mut work.ap, &mut work.operator);
+        self.report.cg_steps += 1;
+        coupled
+    }
+
+    /// `pᵀ (A q + kappa p)`; `None` where it is not positive, by rounding or because the coupling is too strong.
+    fn curvature(&mut self, coupled: bool) -> Result<Option<f64>, QpError> {
+        let work = &mut *self.work;
+        let plain = vector::dot(&work.p, &work.ap);
+        let curvature = plain + work.active.curvature(self.set, &work.p);
+        if !curvature.is_finite() {
+            return Err(self.not_finite("the curvature"));
+        }
+        if curvature > 0.0 {
+            return Ok(Some(curvature));
+        }
+        if coupled {
+            work.coupling.failed = true;
+            return Ok(None);
+        }
+        let pp = vector::dot(&work.p, &work.p);
+        if plain < -NEGATIVE_CURVATURE * vector::norm(&work.ap) * pp.sqrt() {
+            return Err(QpError::Indefinite {
+                curvature: curvature / pp,
+                products: self.report.products(),
+            });
+        }
+        Ok(None)
+    }
+
+    /// A step of this length: `x`, `ax` and both residuals; `ap` becomes that of the residual on the set.
+    fn advance(&mut self, length: f64, coupled: bool) {
+        let work = &mut *self.work;
+        let q = if coupled {
+            &work.coupling.step
+        } else {
+            &work.p
+        };
+        vector::axpy(length, q, self.x);
+        vector::axpy(length, &work.ap, self.ax);
+        let constrained = work.restricted.len();
+        work.active
+            .add_curvature(self.set, &work.p, &mut work.ap[..constrained]);
+        self.projector.project_step_transpose(&mut work.ap);
+        vector::axpy(length, &work.ap, &mut work.residual);
+        let part = &mut work.ap[..constrained];
+        work.active.restrict(self.set, part);
+        vector::axpy(length, part, &mut work.restricted);
+    }
+}

@@ -1,0 +1,242 @@
+//! The iterate on its present active set: what conjugate gradients, and the moves between sets, work on.
+
+use crate::error::QpError;
+use crate::problem::{
+    Constrained, ConvexSet, EqualityProjector, ProductSet, SymmetricOperator, for_constrained,
+};
+use crate::tolerances::MAY_SLIDE;
+use crate::vector;
+
+use super::balance::Search;
+use super::natural_map::NaturalMap;
+use super::problem::ActiveSetProblem;
+use super::settings::ActiveSetReport;
+use super::workspace::ActiveSetWorkspace;
+
+/// A length of a vector and that of its constrained part.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lengths {
+    pub(crate) all: f64,
+    pub(crate) constrained: f64,
+}
+
+impl Lengths {
+    pub(crate) const INFINITE: Self = Self {
+        all: f64::INFINITY,
+        constrained: f64::INFINITY,
+    };
+
+    /// Both lengths from their two values.
+    pub(crate) fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            all: f(self.all, other.all),
+            constrained: f(self.constrained, other.constrained),
+        }
+    }
+
+    /// Whether both are at most those of `limits`.
+    pub(crate) fn within(self, limits: Self) -> bool {
+        self.all <= limits.all && self.constrained <= limits.constrained
+    }
+}
+
+/// A problem, its iterate and the active set it is on. Between two methods `ax` is `A x` but for changes of `x` since
+/// [`mark`](Iterate::mark).
+pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
+    pub(crate) problem: &'s ActiveSetProblem<'s, A, M>,
+    pub(crate) projector: &'s mut C,
+    pub(crate) set: &'s mut ProductSet,
+    pub(crate) x: &'s mut [f64],
+    pub(crate) ax: &'s mut [f64],
+    pub(crate) work: &'s mut ActiveSetWorkspace<A, M>,
+    pub(crate) report: ActiveSetReport,
+}
+
+impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
+    /// Components up to the last constrained one.
+    pub(crate) fn constrained(&self) -> usize {
+        self.work.restricted.len()
+    }
+
+    /// Notes the point whose product is known: `t = x`.
+    pub(crate) fn mark(&mut self) {
+        vector::copy(self.x, &mut self.work.t);
+    }
+
+    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark).
+    pub(crate) fn correct(&mut self) {
+        let work = &mut *self.work;
+        for (t, v) in work.t.iter_mut().zip(&*self.x) {
+            *t = v - *t;
+        }
+        if work.t.iter().all(|t| *t == 0.0) {
+            return;
+        }
+        let operator = self.problem.operator;
+        operator.apply(&work.t, &mut work.ap, &mut work.operator);
+        vector::axpy(1.0, &work.ap, self.ax);
+        self.report.corrections += 1;
+    }
+
+    /// `ax = A x`.
+    pub(crate) fn multiply(&mut self) {
+        let operator = self.problem.operator;
+        operator.apply(self.x, self.ax, &mut self.work.operator);
+        self.report.corrections += 1;
+    }
+
+    /// `residual = P_Wᵀ (A x - b)`.
+    pub(crate) fn residual(&mut self) {
+        let residual = &mut self.work.residual;
+        vector::copy(self.ax, residual);
+        vector::axpy(-1.0, self.problem.linear, residual);
+        self.projector.project_transpose(residual);
+    }
+
+    /// Classifies the blocks by the natural map.
+    pub(crate) fn classify(&mut self, step: f64) {
+        let map = natural_map(self.problem, &self.work.residual, step);
+        self.work.active.classify(self.set, self.x, &map);
+    }
+
+    /// Tells the next classification what the natural map makes of the blocks here.
+    pub(crate) fn foresee(&mut self, step: f64) {
+        let map = natural_map(self.problem, &self.work.residual, step);
+        self.work.active.foresee(self.set, self.x, &map);
+    }
+
+    /// The residual on the active set from `residual`.
+    pub(crate) fn start_residual(&mut self) {
+        let work = &mut *self.work;
+        let constrained = work.restricted.len();
+        work.restricted
+            .copy_from_slice(&work.residual[..constrained]);
+        work.active.restrict(self.set, &mut work.restricted);
+    }
+
+    /// `z` from the residual on the active set, with its norm. Returns `rho`.
+    pub(crate) fn precondition(&mut self) -> f64 {
+        let ActiveSetWorkspace {
+            residual,
+            restricted,
+            saved,
+            z,
+            z_norm,
+            active,
+            preconditioner: scratch,
+            ..
+        } = &mut *self.work;
+        let (set, constrained) = (&*self.set, restricted.len());
+        saved.copy_from_slice(&residual[..constrained]);
+        residual[..constrained].copy_from_slice(restricted);
+        active.damp(set, &mut residual[..constrained]);
+        self.problem.preconditioner.apply(residual, z, scratch);
+        let part = &mut z[..constrained];
+        active.restrict(set, part);
+        active.damp(set, part);
+        active.add_own(set, restricted, part);
+        self.projector.project_step(z);
+        self.report.preconditionings += 1;
+        residual[..constrained].copy_from_slice(restricted);
+        let (rho, square) = vector::dot_and_square(residual, z);
+        residual[..constrained].copy_from_slice(saved);
+        *z_norm = square.sqrt();
+        rho
+    }
+
+    /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained
+    /// components have moved; where set and equality do not meet, this does not fall.
+    pub(crate) fn restore(&mut self) -> f64 {
+        let (rhs, constrained) = (self.problem.rhs, self.constrained());
+        if self.projector.loose().is_empty() {
+            self.set.project(self.x);
+            self.projector.balance(self.x, rhs);
+            self.set.project(self.x);
+        } else {
+            self.project();
+        }
+        self.projector.repair(self.x, rhs);
+        let moved = vector::distance(&self.x[..constrained], &self.work.t[..constrained]);
+        let jump = moved.max(self.set.violation(self.x));
+        self.correct();
+        jump
+    }
+
+    /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in
+    /// the metric of the preconditioner. Where there is none, which is returned as false, the equality comes first.
+    pub(crate) fn project(&mut self) -> bool {
+        let constrained = self.constrained();
+        let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
+        let point = self.balanced(y, lengths);
+        let balances = point.is_ok();
+        let (Ok(point) | Err(point)) = point;
+        self.x[..constrained].copy_from_slice(&point);
+        if !balances {
+            self.projector.balance(self.x, self.problem.rhs);
+        }
+        balances
+    }
+
+    /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on
+    /// them. Leaves `x` alone and returns false if the others do not suffice.
+    pub(crate) fn project_start(&mut self) -> bool {
+        let constrained = self.constrained();
+        let mut y = self.x[..constrained].to_vec();
+        let mut lengths = self.problem.scale[..constrained].to_vec();
+        for_constrained(self.set, |block| match block {
+            Constrained::Bound {
+                i, lower, upper, ..
+            } => {
+                if y[i] <= lower || y[i] >= upper {
+                    lengths[i] = 0.0;
+                }
+            }
+            Constrained::Disc { i, radius, .. } => {
+                if y[i].hypot(y[i + 1]) >= radius * (1.0 - MAY_SLIDE) {
+                    y[i..i + 2].iter_mut().for_each(|y| *y *= 2.0);
+                }
+            }
+        });
+        let point = self.balanced(&y, &lengths);
+        if let Ok(point) = &point {
+            self.x[..constrained].copy_from_slice(point);
+        }
+        point.is_ok()
+    }
+
+    fn balanced(&self, y: &[f64], lengths: &[f64]) -> Result<Vec<f64>, Vec<f64>> {
+        let (modes, rhs) = (self.projector.loose(), self.problem.rhs);
+        let (point, balances) = Search::new(modes, self.set, rhs, (y, lengths)).run();
+        if balances { Ok(point) } else { Err(point) }
+    }
+
+    /// Estimated errors: the lengths of `z`.
+    pub(crate) fn errors(&self) -> Lengths {
+        let constrained = &self.work.z[..self.constrained()];
+        Lengths {
+            all: self.work.z_norm,
+            constrained: vector::norm(constrained),
+        }
+    }
+
+    /// An error for something that is not a number.
+    pub(crate) fn not_finite(&self, quantity: &'static str) -> QpError {
+        QpError::NotFinite {
+            quantity,
+            products: self.report.products(),
+        }
+    }
+}
+
+/// The natural map with this gradient.
+pub(crate) fn natural_map<'a, A, M>(
+    problem: &ActiveSetProblem<'a, A, M>,
+    gradient: &'a [f64],
+    step: f64,
+) -> NaturalMap<'a> {
+    NaturalMap {
+        gradient,
+        scale: problem.scale,
+        step,
+    }
+}

@@ -1,0 +1,33 @@
+//! The active-set method: conjugate gradients for a choice of active, free and sliding blocks, and a natural map that
+//! predicts the next choice.
+//!
+//! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent`
+//! (safeguard where predictions run in circles), `cg` and `weights` (the linear problem), `iterate` (the point),
+//! `balance` (modes that constraints alone stop), `coupling` (radii that follow), `natural_map`, `blocks` (states);
+//! `problem`, `settings`, `view`.
+//!
+//! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector,
+//! set, load, a start. Out: the minimiser and its product, a report.
+
+mod balance;
+mod blocks;
+mod cg;
+mod coupling;
+mod descent;
+mod iterate;
+mod moves;
+mod natural_map;
+mod problem;
+mod run;
+mod settings;
+mod solver;
+mod view;
+mod weights;
+mod workspace;
+
+pub use coupling::RadiusSlope;
+pub use problem::ActiveSetProblem;
+pub use settings::{ActiveSetReport, ActiveSetSettings};
+pub use solver::active_set;
+pub use view::{ActiveSetPreconditioner, ActiveSetView, Freedom};
+pub use workspace::ActiveSetWorkspace;

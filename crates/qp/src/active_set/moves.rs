@@ -1,0 +1,163 @@
+//! The moves of the active-set method from a solved set to the next one.
+
+use crate::error::QpError;
+use crate::problem::{EqualityProjector, SymmetricOperator};
+use crate::tolerances::{BALANCE_ROUNDS, SHORT, SHORTEST, UNSURE, VERY_SHORT};
+use crate::vector;
+
+use super::iterate::natural_map;
+use super::natural_map::settle_bounds;
+use super::run::{Place, Run};
+use super::view::ActiveSetPreconditioner;
+
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+    /// Moves `x` to the next active set, with the next step of conjugate gradients, of this `length`, on top. The set
+    /// follows where the active set has settled. Then set, equality and product are in order again, and a safeguard
+    /// has its say.
+    pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
+        let constrained = self.at.constrained();
+        self.at.mark();
+        let joint = self.joint_step(length);
+        let at = &mut self.at;
+        at.work.before.copy_from_slice(&at.x[..constrained]);
+        if self.safeguard.is_none() && self.repairs_suffice && self.progress.waited >= UNSURE {
+            at.foresee(self.settings.natural_step);
+        }
+        self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
+        if self.repairs_suffice {
+            self.settle()?;
+        } else {
+            self.settle_loose(false, self.moved.followed)?;
+        }
+        let at = &mut self.at;
+        self.moved.jump = vector::distance(&at.x[..constrained], &at.work.before);
+        self.balance(joint);
+        self.descend();
+        Ok(())
+    }
+
+    /// Moves `x` into the set as the natural map says, and lets the set follow.
+    fn settle(&mut self) -> Result<(), QpError> {
+        self.settle_bounds();
+        if self.moved.followed {
+            self.follow()?;
+            // active components go with bounds that moved
+            self.settle_bounds();
+        }
+        let at = &mut self.at;
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        at.work.active.settle_discs(at.set, at.x, &map);
+        Ok(())
+    }
+
+    /// The same such that constrained components balance. At the `start` there is no natural map yet.
+    pub(crate) fn settle_loose(&mut self, start: bool, follow: bool) -> Result<(), QpError> {
+        let constrained = self.at.constrained();
+        let from = self.at.x[..constrained].to_vec();
+        let rounds = if follow { BALANCE_ROUNDS } else { 1 };
+        self.moved.unrest = 0.0;
+        for round in 1..=rounds {
+            let at = &mut self.at;
+            let last = at.x[..constrained].to_vec();
+            at.x[..constrained].copy_from_slice(&from);
+            if !start {
+                let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+                at.work.active.aim(at.set, at.x, &map);
+                let balances = at.project();
+                if round == rounds {
+                    self.moved.unbalanced = if balances {
+                        0
+                    } else {
+                        self.moved.unbalanced + 1
+                    };
+                }
+            } else if !at.project_start() {
+                at.project();
+            }
+            if round > 1 {
+                self.moved.unrest = vector::distance(&at.x[..constrained], &last);
+            }
+            if round < rounds {
+                self.follow()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no
+    /// move, and with a safeguard only what descends is taken. Whether there is one.
+    fn joint_step(&mut self, length: f64) -> bool {
+        let at = &mut self.at;
+        if at.constrained() == 0 || self.safeguard.is_some() {
+            return false;
+        }
+        let joint = self.settings.joint_step_fraction * length;
+        if joint > 0.0 {
+            vector::axpy(joint, &at.work.p, at.x);
+        }
+        joint > 0.0
+    }
+
+    fn settle_bounds(&mut self) {
+        let at = &mut self.at;
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        settle_bounds(at.set, at.x, &map);
+    }
+
+    /// Whether few bounded components changed between free and active.
+    fn has_settled(&self) -> bool {
+        let active = &self.at.work.active;
+        let few = (self.settings.settled_fraction * active.free_bounds as f64).max(2.0);
+        active.changed as f64 <= few
+    }
+
+    /// Makes `G x = e` hold again, and the product exact.
+    fn balance(&mut self, joint: bool) {
+        let at = &mut self.at;
+        if let Some(safeguard) = &mut self.safeguard {
+            safeguard.current = self.moved.followed;
+        }
+        if self.moved.jump > 0.0 || joint && self.moved.drifted {
+            at.projector.repair(at.x, at.problem.rhs);
+            self.moved.drifted = false;
+        }
+        if self.moved.jump > 0.0 || joint {
+            at.correct();
+        }
+    }
+
+    /// With a safeguard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.
+    fn descend(&mut self) {
+        let at = &mut self.at;
+        let Some(safeguard) = &mut self.safeguard else {
+            return;
+        };
+        if safeguard.current {
+            safeguard.drift = self.moved.jump;
+            return;
+        }
+        let mut t = 1.0;
+        while t > SHORTEST && !safeguard.descends(at.x, at.ax, t) {
+            safeguard.shorten(t, at.x, at.ax);
+            at.mark();
+            self.moved.jump = at.restore();
+            t *= 0.5;
+        }
+        safeguard.held_up = if t > VERY_SHORT * SHORTEST {
+            0
+        } else {
+            safeguard.held_up + 1
+        };
+        let (rises, reach) = safeguard.judge(at.set, at.x, at.ax, t);
+        if t >= SHORT {
+            at.work.active.blocked.clear();
+            return;
+        }
+        let (from, step) = safeguard.path();
+        let more = at.work.active.block(at.set, from, step, reach);
+        if rises && more {
+            safeguard.back(at.x, at.ax);
+            self.moved.jump = f64::INFINITY;
+        }
+    }
+}

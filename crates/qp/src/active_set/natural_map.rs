@@ -1,0 +1,426 @@
+//! The natural map: which active set it predicts, and where it moves the point.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `x`, `g` | point, and gradient without its part in the image of `Gᵀ` |
+//! | `s` | `x - a g`, the natural map before projection; `a = natural_step * scale` |
+//! | `n`, `tau` | outward normal and tangent of a disc at `x` |
+//! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
+
+use crate::problem::{ProductSet, for_bounds, for_discs};
+use crate::tolerances::MAY_SLIDE;
+
+use super::blocks::{ActiveSet, Disc};
+
+/// Gradient and lengths of the natural map.
+#[derive(Clone, Copy)]
+pub(crate) struct NaturalMap<'a> {
+    /// `g`.
+    pub(crate) gradient: &'a [f64],
+    pub(crate) scale: &'a [f64],
+    /// `natural_step`.
+    pub(crate) step: f64,
+}
+
+impl NaturalMap<'_> {
+    /// Component `i` of `s`.
+    fn of(&self, x: &[f64], i: usize) -> f64 {
+        x[i] - self.step * self.scale[i] * self.gradient[i]
+    }
+
+    /// The gradient on the disc that begins with component `i`.
+    fn on_disc(&self, i: usize) -> [f64; 2] {
+        [self.gradient[i], self.gradient[i + 1]]
+    }
+}
+
+impl ActiveSet {
+    /// Classifies every block at the feasible point `x`; as [foreseen](Self::foresee), if it was.
+    pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let Self {
+            free,
+            discs,
+            blocked,
+            near,
+            foreseen,
+            ..
+        } = self;
+        let near = *near;
+        let bounds = free.len();
+        let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
+        let (mut changed, mut free_bounds) = (0, 0);
+        for_bounds(set, |i, k, lo, hi| {
+            let s = map.of(x, i);
+            // a component is active only if it also is at its bound
+            let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
+            let active = lo >= hi
+                || (x[i] <= lo && agrees(s <= lo))
+                || (x[i] >= hi && agrees(s >= hi))
+                || (near && stays(k));
+            changed += usize::from(free[k] == active);
+            free[k] = !active;
+            free_bounds += usize::from(!active);
+        });
+        for_discs(set, |i, k, radius| {
+            let at = [x[i], x[i + 1]];
+            let state = disc_state(at, map.on_disc(i), radius, map.scale[i]);
+            discs[k] = match (foreseen.get(bounds + k), state) {
+                (Some(true), Disc::Free) => along_circle(at, radius),
+                (Some(false), Disc::Sliding { .. }) => Disc::Free,
+                (None, Disc::Free) if stays(bounds + k) => {
+                    along_circle(at, if near { 0.0 } else { radius })
+                }
+                _ => state,
+            };
+        });
+        foreseen.clear();
+        self.changed = changed;
+        self.free_bounds = free_bounds;
+    }
+
+    /// Notes the bounds that the natural map makes active at `x`, the solution on this set, and the discs that slide:
+    /// those and no others are so in the next [`classify`](Self::classify).
+    pub(crate) fn foresee(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let (foreseen, discs) = (&mut self.foreseen, &self.discs);
+        foreseen.clear();
+        for_bounds(set, |i, _, lo, hi| {
+            let s = map.of(x, i);
+            foreseen.push(s <= lo || s >= hi);
+        });
+        for_discs(set, |i, k, radius| {
+            let g = map.on_disc(i);
+            foreseen.push(match discs[k] {
+                Disc::Sliding { .. } => g[0] * x[i] + g[1] * x[i + 1] < 0.0,
+                _ => map.of(x, i).hypot(map.of(x, i + 1)) > radius,
+            });
+        });
+    }
+
+    /// Whether the natural map would free an active bound, and move it by more than `limit`.
+    pub(crate) fn contradicted(
+        &self,
+        set: &ProductSet,
+        x: &[f64],
+        map: &NaturalMap<'_>,
+        limit: f64,
+    ) -> bool {
+        let mut found = false;
+        for_bounds(set, |i, k, lower, upper| {
+            if !self.free[k] && lower < upper {
+                let moved = map.of(x, i).clamp(lower, upper);
+                found |= (moved - x[i]).abs() > limit;
+            }
+        });
+        found
+    }
+
+    /// Moves the discs of `x` into their circles: sliding points are drawn back along the radius, others
+    /// go where the natural map predicts that they slide.
+    pub(crate) fn settle_discs(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+        for_discs(set, |i, k, radius| {
+            let sliding = matches!(self.discs[k], Disc::Sliding { .. });
+            let (at, a) = ([x[i], x[i + 1]], map.step * map.scale[i]);
+            let moved = settle_disc(at, map.on_disc(i), radius, a, sliding);
+            x[i] = moved[0];
+            x[i + 1] = moved[1];
+        });
+    }
+
+    /// Where `x` goes before it is projected on the set: as far outside as the natural map says, else it stays. Along
+    /// circles the gradient is balanced by the curvature already.
+    pub(crate) fn aim(&self, set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+        for_bounds(set, |i, _, lo, hi| {
+            let s = map.of(x, i);
+            if s <= lo || s >= hi {
+                x[i] = s;
+            }
+        });
+        for_discs(set, |i, k, radius| {
+            let (at, a, g) = ([x[i], x[i + 1]], map.step * map.scale[i], map.on_disc(i));
+            let moved = if let Disc::Sliding { tau, .. } = self.discs[k] {
+                let slip = (g[1] * tau[0] - g[0] * tau[1]).max(0.0);
+                let length = at[0].hypot(at[1]);
+                let share = if length > 0.0 {
+                    (radius + a * slip) / length
+                } else {
+                    1.0
+                };
+                [share * at[0], share * at[1]]
+            } else {
+                let s = [at[0] - a * g[0], at[1] - a * g[1]];
+                if s[0].hypot(s[1]) > radius { s } else { at }
+            };
+            x[i] = moved[0];
+            x[i + 1] = moved[1];
+        });
+    }
+}
+
+/// Moves the bounded components of `x` by the natural map: onto their bound where it predicts that
+/// they are active, else into the interval.
+pub(crate) fn settle_bounds(set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_>) {
+    for_bounds(set, |i, _, lo, hi| {
+        let s = map.of(x, i);
+        x[i] = if s <= lo {
+            lo
+        } else if s >= hi {
+            hi
+        } else {
+            x[i].clamp(lo.min(hi), hi)
+        };
+    });
+}
+
+/// Free along the circle, without curvature; free everywhere inside of it. With radius 0 along the circle through `x`.
+fn along_circle(x: [f64; 2], radius: f64) -> Disc {
+    let length = x[0].hypot(x[1]);
+    if length <= 0.0 || length < radius * (1.0 - MAY_SLIDE) {
+        return Disc::Free;
+    }
+    slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)
+}
+
+/// Sliding with outward normal `n`.
+fn slides(n: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
+    let kappa = slip / radius;
+    let damp = 1.0 / (1.0 + kappa * scale);
+    Disc::Sliding {
+        tau: [-n[1], n[0]],
+        kappa,
+        damp,
+        own: (kappa * scale * damp) * (scale * damp),
+        slip,
+    }
+}
+
+fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
+    if radius <= 0.0 {
+        return Disc::Fixed;
+    }
+    let length = x[0].hypot(x[1]);
+    if length < radius * (1.0 - MAY_SLIDE) {
+        return Disc::Free;
+    }
+    let n = [x[0] / length, x[1] / length];
+    let outward = g[0] * n[0] + g[1] * n[1];
+    if outward >= 0.0 {
+        return Disc::Free;
+    }
+    slides(n, -outward, radius, scale)
+}
+
+fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {
+    if radius <= 0.0 {
+        return [0.0; 2];
+    }
+    let to = |v: [f64; 2], length: f64| [v[0] * (radius / length), v[1] * (radius / length)];
+    let length = x[0].hypot(x[1]);
+    if sliding {
+        return if length > 0.0 { to(x, length) } else { x };
+    }
+    let s = [x[0] - a * g[0], x[1] - a * g[1]];
+    let reach = s[0].hypot(s[1]);
+    if reach > radius {
+        to(s, reach)
+    } else if length > radius {
+        to(x, length)
+    } else {
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Segment;
+
+    const STEP: f64 = 0.5;
+
+    /// The map of a set of one segment, with scale 2 and step 0.5: `s = x - g`.
+    fn with<T>(segment: Segment, g: &[f64], f: impl Fn(&ProductSet, &NaturalMap<'_>) -> T) -> T {
+        let set = ProductSet::new(vec![segment]).expect("set");
+        let map = NaturalMap {
+            gradient: g,
+            scale: &[2.0; 2],
+            step: STEP,
+        };
+        f(&set, &map)
+    }
+
+    fn active_set(set: &ProductSet, blocked: &[bool], near: bool) -> ActiveSet {
+        let mut own = ActiveSet::default();
+        own.resize(set);
+        own.blocked = blocked.to_vec();
+        own.near = near;
+        own
+    }
+
+    #[test]
+    fn components_are_active_where_they_are_and_would_be_so() {
+        // x, gradient, blocked, near: free?
+        for (x, g, blocked, near, free) in [
+            (0.0, 0.5, false, false, false),
+            (0.0, -0.5, false, false, true),
+            (1.0, -0.5, false, false, false),
+            (1.0, 0.5, false, false, true),
+            // predicted to be active, but not there
+            (0.5, 2.0, false, false, true),
+            (0.5, -2.0, false, false, true),
+            // a step was stopped there
+            (0.0, -0.5, true, false, false),
+            (1.0, 0.5, true, false, false),
+            (0.5, 0.1, true, false, true),
+            (0.5, 0.1, true, true, false),
+            (0.5, 0.1, false, true, true),
+        ] {
+            let what = format!("{x} {g} {blocked} {near}");
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut own = active_set(set, &[blocked], near);
+                own.classify(set, &[x], map);
+                assert_eq!(own.free, [free], "{what}");
+                let counts = (usize::from(free), usize::from(free));
+                assert_eq!((own.changed, own.free_bounds), counts, "{what}");
+                // again: nothing changes
+                own.classify(set, &[x], map);
+                assert_eq!((own.changed, own.free_bounds), (0, counts.1), "{what}");
+            });
+        }
+        with(
+            Segment::bounds(vec![1.0], vec![1.0]),
+            &[-3.0],
+            |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.classify(set, &[1.0], map);
+                assert_eq!(own.free, [false]);
+            },
+        );
+    }
+
+    #[test]
+    fn active_bounds_that_the_map_would_move_contradict() {
+        for (x, g, free, expected) in [
+            (0.0, -0.5, false, true),
+            (0.0, 0.5, false, false),
+            (0.0, -0.5, true, false),
+            (1.0, 0.5, false, true),
+            // by less than the limit
+            (0.0, -0.05, false, false),
+        ] {
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.free = vec![free];
+                assert_eq!(own.contradicted(set, &[x], map, 0.1), expected, "{x} {g}");
+            });
+        }
+        with(
+            Segment::bounds(vec![1.0], vec![1.0]),
+            &[-3.0],
+            |set, map| {
+                assert!(!active_set(set, &[], false).contradicted(set, &[1.0], map, 0.1));
+            },
+        );
+    }
+
+    #[test]
+    fn bounds_are_settled_where_the_map_goes() {
+        for (x, g, expected) in [
+            (0.2, 0.5, 0.0),
+            (0.8, -0.5, 1.0),
+            (0.4, 0.1, 0.4),
+            (1.5, 1.0, 1.0),
+            (-0.5, -1.0, 0.0),
+        ] {
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut v = [x];
+                settle_bounds(set, &mut v, map);
+                assert_eq!(v, [expected], "{x} {g}");
+            });
+        }
+    }
+
+    #[test]
+    fn discs_stick_inside_and_slide_on_the_circle() {
+        let (n, radius) = ([0.6, 0.8], 2.0);
+        let on = n.map(|c| radius * c);
+        let state = |radius: f64, x: [f64; 2], g: [f64; 2], blocked: bool, near: bool| {
+            with(Segment::discs(vec![radius]), &g, |set, map| {
+                let mut own = active_set(set, &[blocked], near);
+                own.classify(set, &x, map);
+                own.discs[0]
+            })
+        };
+        assert_eq!(state(0.0, [0.0; 2], [1.0; 2], false, false), Disc::Fixed);
+        assert_eq!(
+            state(radius, [0.6, 0.8], [-6.0, -8.0], false, false),
+            Disc::Free
+        );
+        // drawn inward
+        assert_eq!(state(radius, on, [0.6, 0.8], false, false), Disc::Free);
+        // pushed out with 3 N: curvature 3 / 2, scale 2
+        let pushed = state(radius, on, [-1.8, -2.4], false, false);
+        let Disc::Sliding {
+            tau,
+            kappa,
+            damp,
+            own,
+            slip,
+        } = pushed
+        else {
+            panic!("{pushed:?}");
+        };
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{pushed:?}");
+        near(tau[0], -0.8);
+        near(tau[1], 0.6);
+        near(slip, 3.0);
+        near(kappa, 1.5);
+        near(damp, 0.25);
+        near(own, 1.5 * (2.0 * 0.25_f64).powi(2));
+        // stopped there: along the circle without curvature; inside of it only if it is to stay where it is
+        for (x, near, slides) in [
+            (on, false, true),
+            ([0.6, 0.8], false, false),
+            ([0.6, 0.8], true, true),
+        ] {
+            let state = state(radius, x, [0.6, 0.8], true, near);
+            match state {
+                Disc::Sliding {
+                    tau,
+                    kappa,
+                    own,
+                    slip,
+                    ..
+                } if slides => {
+                    assert!((tau[0] + 0.8).abs() < 1e-14 && (tau[1] - 0.6).abs() < 1e-14);
+                    assert_eq!([kappa, own, slip], [0.0; 3]);
+                }
+                Disc::Free if !slides => {}
+                other => panic!("{x:?} {near}: {other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn discs_are_settled_on_their_circles() {
+        let sliding = slides([1.0, 0.0], 1.0, 2.0, 1.0);
+        for (state, x, g, radius, expected) in [
+            // sliding points are drawn along the radius
+            (sliding, [3.0, 4.0], [9.0, 9.0], 2.0, [1.2, 1.6]),
+            (sliding, [0.3, 0.4], [9.0, 9.0], 2.0, [1.2, 1.6]),
+            (sliding, [0.0, 0.0], [9.0, 9.0], 2.0, [0.0, 0.0]),
+            // others where the map goes, if that is outside
+            (Disc::Free, [0.0, 0.0], [-6.0, -8.0], 2.0, [1.2, 1.6]),
+            (Disc::Free, [0.3, 0.4], [0.1, 0.1], 2.0, [0.3, 0.4]),
+            (Disc::Free, [3.0, 4.0], [2.4, 3.2], 2.0, [1.2, 1.6]),
+            (Disc::Fixed, [3.0, 4.0], [1.0, 1.0], 0.0, [0.0, 0.0]),
+        ] {
+            with(Segment::discs(vec![radius]), &g, |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.discs = vec![state];
+                let mut v = x;
+                own.settle_discs(set, &mut v, map);
+                let off = (v[0] - expected[0]).hypot(v[1] - expected[1]);
+                assert!(off < 1e-14, "{state:?} {x:?}: {v:?}");
+            });
+        }
+    }
+}

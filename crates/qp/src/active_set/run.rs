@@ -1,0 +1,402 @@
+//! The steps of the active-set method: what happens on one active set. [`moves`](super::moves) lead to the next one.
+
+use std::mem::Discriminant;
+
+use crate::error::{QpError, SetError};
+use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
+use crate::report::Status;
+use crate::tolerances::{
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PROGRESS, SHRUNK, SMALL_PART,
+};
+use crate::vector;
+
+use super::cg::Goal;
+use super::descent::DescentSafeguard;
+use super::iterate::{Iterate, Lengths, natural_map};
+use super::problem::{ActiveSetHook, ActiveSetProblem};
+use super::settings::{ActiveSetReport, ActiveSetSettings};
+use super::view::{ActiveSetPreconditioner, ActiveSetView};
+use super::workspace::ActiveSetWorkspace;
+
+/// An active set as it is entered.
+pub(crate) struct Place {
+    /// Residual times `z`.
+    rho: f64,
+    /// Estimated distance to the solution on the set.
+    errors: Lengths,
+    /// What it is to fall below.
+    limits: Lengths,
+    x_norm: f64,
+    /// Whether the constrained part is so small that directions in it mean nothing.
+    vanishes: bool,
+    /// Whether the problem with the present set is solved, as far as the set moves.
+    pub(crate) solved: bool,
+}
+
+/// What the last move from one active set to the next did.
+pub(crate) struct LastMove {
+    /// Change of the constrained components.
+    pub(crate) jump: f64,
+    /// Change by the last of the rounds in which balance and set follow each other: they may run in circles.
+    pub(crate) unrest: f64,
+    /// Moves in a row at which the set held no balance.
+    pub(crate) unbalanced: usize,
+    /// Whether the hook was called.
+    pub(crate) followed: bool,
+    /// Whether steps that round have been made since `G x = e` was restored.
+    pub(crate) drifted: bool,
+}
+
+impl LastMove {
+    /// How far constrained components may still move.
+    fn length(&self) -> f64 {
+        self.jump.max(self.unrest)
+    }
+}
+
+/// The error, relative to its limit: the smallest so far, the last one, and active sets since the smallest.
+pub(crate) struct Progress {
+    best: f64,
+    last: f64,
+    pub(crate) waited: usize,
+}
+
+/// One solve: the iterate, and what it remembers of earlier active sets.
+pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
+    pub(crate) at: Iterate<'s, A, C, M>,
+    pub(crate) settings: &'s ActiveSetSettings,
+    hook: &'s mut ActiveSetHook<'h>,
+    /// Kind and length of each segment.
+    shape: Vec<(Discriminant<Segment>, usize)>,
+    /// Whether unconstrained components alone stop every mode of the equality.
+    pub(crate) repairs_suffice: bool,
+    forcing: f64,
+    /// Largest norm of `x` since `A x` was computed afresh.
+    peak: f64,
+    pub(crate) moved: LastMove,
+    pub(crate) progress: Progress,
+    /// Estimated errors when the last set was left, and that of the constrained part when it was entered.
+    left: Lengths,
+    first_error: f64,
+    /// Once predictions ran in circles.
+    pub(crate) safeguard: Option<DescentSafeguard>,
+}
+
+impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
+    Run<'s, 'h, A, C, M>
+{
+    pub(crate) fn new(
+        problem: &'s ActiveSetProblem<'s, A, M>,
+        projector: &'s mut C,
+        set: &'s mut ProductSet,
+        (x, ax): (&'s mut [f64], &'s mut [f64]),
+        settings: &'s ActiveSetSettings,
+        work: &'s mut ActiveSetWorkspace<A, M>,
+        hook: &'s mut ActiveSetHook<'h>,
+    ) -> Self {
+        let constrained = set.constrained();
+        work.resize(constrained);
+        work.coupling.start(set, constrained);
+        work.active.resize(set);
+        Self {
+            shape: set.shape().collect(),
+            repairs_suffice: projector.loose().is_empty(),
+            settings,
+            hook,
+            forcing: settings.forcing,
+            peak: 0.0,
+            moved: LastMove {
+                jump: f64::INFINITY,
+                unrest: 0.0,
+                unbalanced: 0,
+                followed: false,
+                drifted: false,
+            },
+            progress: Progress {
+                best: f64::INFINITY,
+                last: f64::INFINITY,
+                waited: 0,
+            },
+            left: Lengths::INFINITE,
+            first_error: f64::INFINITY,
+            safeguard: None,
+            at: Iterate {
+                problem,
+                projector,
+                set,
+                x,
+                ax,
+                work,
+                report: ActiveSetReport::new(),
+            },
+        }
+    }
+
+    /// A feasible point that satisfies `G x = e`, a first active set and the product with the point.
+    pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
+        self.at.mark();
+        self.guess();
+        let stopped = if self.repairs_suffice {
+            self.at.set_weights(false)?.is_some()
+        } else {
+            self.at.project_start()
+        };
+        if !stopped {
+            // only constraints stop a mode: a balance with all of them at work tells the first active set
+            self.at.set_all_free()?;
+            self.at.projector.balance(self.at.x, self.at.problem.rhs);
+            self.follow()?;
+            self.guess();
+        }
+        if !self.repairs_suffice {
+            self.settle_loose(true, true)?;
+            self.at.work.active.guess(self.at.set, self.at.x);
+        }
+        if !(stopped && self.repairs_suffice) && self.at.set_weights(false)?.is_none() {
+            self.at.set_all_free()?;
+        }
+        self.at.projector.repair(self.at.x, self.at.problem.rhs);
+        if ax_known {
+            self.at.correct();
+        } else {
+            self.at.multiply();
+        }
+        self.peak = vector::norm(self.at.x);
+        Ok(())
+    }
+
+    /// Projects `x` on the set and guesses the active set from it.
+    fn guess(&mut self) {
+        let at = &mut self.at;
+        at.set.project(at.x);
+        at.work.active.guess(at.set, at.x);
+    }
+
+    /// Classifies the blocks by the natural map, and enters the active set with projector and preconditioner. `None`
+    /// if no choice of blocks allows for the equality.
+    pub(crate) fn enter(&mut self) -> Result<Option<Place>, QpError> {
+        let (at, settings) = (&mut self.at, self.settings);
+        at.residual();
+        at.classify(settings.natural_step);
+        let sparing = self.safeguard.is_some() && self.repairs_suffice;
+        match at.hold_modes(sparing) {
+            Ok(true) => at.residual(),
+            Ok(false) => {}
+            Err(QpError::CoarseDeficient { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        }
+        let view = ActiveSetView::new(at.set, &at.work.active);
+        let preconditioner = at.problem.preconditioner;
+        preconditioner.enter(&view, &mut at.work.preconditioner);
+        at.start_residual();
+        let rho = at.precondition();
+        let errors = at.errors();
+        // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at
+        // least
+        let x_norm = vector::norm(at.x);
+        let all = x_norm.max(settings.error_floor);
+        let part = vector::norm(&at.x[..at.constrained()]);
+        let vanishes = part < settings.contact_error_floor;
+        let part = part.max(SMALL_PART * all).max(settings.contact_error_floor);
+        let limits = Lengths {
+            all: settings.tolerance * all,
+            constrained: settings.tolerance * part,
+        };
+        at.report.error = ratio(errors.all, limits.all / settings.tolerance);
+        at.report.constrained_error =
+            ratio(errors.constrained, limits.constrained / settings.tolerance);
+        if !(errors.all.is_finite() && x_norm.is_finite()) {
+            return Err(at.not_finite("the error estimate"));
+        }
+        let drift = self.safeguard.as_ref().map_or(f64::INFINITY, |g| g.drift);
+        Ok(Some(Place {
+            rho,
+            errors,
+            limits,
+            x_norm,
+            vanishes,
+            solved: errors.constrained <= (FOLLOW * drift).max(limits.constrained),
+        }))
+    }
+
+    /// Computes `A x` afresh if it still carries the rounding errors of a much larger `x`.
+    pub(crate) fn refreshes(&mut self, place: &Place) -> bool {
+        let stale = self.peak > SHRUNK * place.x_norm;
+        if stale {
+            self.peak = place.x_norm;
+            self.at.multiply();
+        }
+        self.peak = self.peak.max(place.x_norm);
+        stale
+    }
+
+    /// With a safeguard: releases blocked blocks once the problem with them is solved.
+    pub(crate) fn releases(&mut self, place: &Place) -> bool {
+        let blocked = &mut self.at.work.active.blocked;
+        let (error, limit) = (place.errors.constrained, place.limits.constrained);
+        let releases = self.safeguard.as_mut().is_some_and(|safeguard| {
+            safeguard.releases(!blocked.is_empty(), place.solved, error, limit)
+        });
+        if releases {
+            blocked.clear();
+        }
+        releases
+    }
+
+    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and active
+    /// bounds, judged by the residual on this set, which the last classification did not have, stay active.
+    pub(crate) fn is_solved(&self, place: &Place) -> bool {
+        let (at, limit) = (&self.at, place.limits.constrained);
+        let current = self
+            .safeguard
+            .as_ref()
+            .is_none_or(|safeguard| safeguard.current);
+        let moved = self.moved.length();
+        let settled =
+            at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
+        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        place.errors.within(place.limits)
+            && settled
+            && at.set.violation(at.x) <= limit
+            && !at.work.active.contradicted(at.set, at.x, &map, limit)
+    }
+
+    /// Whether `G x = e` holds as exactly as `x` is known, after steps that round. It does afterwards.
+    pub(crate) fn is_balanced(&mut self, place: &Place) -> bool {
+        if !self.moved.drifted {
+            return true;
+        }
+        self.moved.drifted = false;
+        let at = &mut self.at;
+        at.mark();
+        at.projector.repair(at.x, at.problem.rhs);
+        let drift = vector::distance(at.x, &at.work.t);
+        if drift <= OFF_EQUALITY * place.limits.all {
+            vector::copy(&at.work.t, at.x);
+            return true;
+        }
+        at.correct();
+        false
+    }
+
+    /// Whether the set agrees with the solution: it has followed at the last move, or does now and hardly changes.
+    pub(crate) fn set_agrees(&mut self, place: &Place) -> Result<bool, QpError> {
+        if self.moved.followed {
+            return Ok(true);
+        }
+        let work = &mut *self.at.work;
+        work.active.radii(self.at.set, &mut work.before);
+        self.follow()?;
+        self.moved.followed = true;
+        let (at, limit) = (&self.at, place.limits.constrained);
+        let moved =
+            at.set.violation(at.x) > limit || at.work.active.grew(at.set, &at.work.before, limit);
+        Ok(!moved)
+    }
+
+    /// Compares the error with the smallest so far.
+    pub(crate) fn note_progress(&mut self, place: &Place) {
+        let (errors, limits) = (place.errors, place.limits);
+        let moved = self.moved.length();
+        let constrained = errors.constrained.max(moved.min(f64::MAX));
+        let progress = &mut self.progress;
+        progress.last = (errors.all / limits.all).max(constrained / limits.constrained);
+        if progress.last < PROGRESS * progress.best {
+            progress.best = progress.last;
+            progress.waited = 0;
+        } else if self.at.report.active_sets > 0 {
+            progress.waited += 1;
+        }
+    }
+
+    /// Whether predictions without a safeguard have made no progress for too long.
+    pub(crate) fn in_circles(&self) -> bool {
+        self.progress.waited >= self.settings.patience && self.safeguard.is_none()
+    }
+
+    /// From now on the problem on a set is solved better, and moves have to descend.
+    pub(crate) fn start_safeguard(&mut self) {
+        self.safeguard = Some(DescentSafeguard::new(self.at.x.len()));
+        self.forcing *= FINER;
+        self.progress.best = self.progress.last;
+        self.progress.waited = 0;
+    }
+
+    /// Why the solve ends without a solution, if it does.
+    pub(crate) fn gives_up(&self) -> Option<Status> {
+        let (settings, report) = (self.settings, &self.at.report);
+        if self.moved.unbalanced >= settings.patience.saturating_mul(LONGER) {
+            return Some(Status::Infeasible);
+        }
+        let held_up = self
+            .safeguard
+            .as_ref()
+            .map_or(0, |safeguard| safeguard.held_up);
+        if self.progress.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
+            return Some(Status::Stagnated);
+        }
+        let longer = if self.safeguard.is_some() { LONGER } else { 1 };
+        let most = settings.max_active_sets.saturating_mul(longer);
+        let limit = report.active_sets >= most || report.products() >= settings.max_products;
+        limit.then_some(Status::IterationLimit)
+    }
+
+    /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth
+    /// while.
+    pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
+        let at = &mut self.at;
+        if let Some(safeguard) = &mut self.safeguard {
+            safeguard.enter(at.x, at.ax, &at.work.residual);
+        }
+        let steady = self.safeguard.is_none() && self.moved.unbalanced == 0;
+        let free = self.moved.followed && steady && !place.vanishes;
+        let error = at.report.constrained_error;
+        at.work.coupling.begin(free, error, self.progress.waited);
+        let goal = Goal {
+            forcing: at
+                .work
+                .coupling
+                .forcing(self.forcing, self.moved.jump, self.first_error),
+            expected: Lengths {
+                all: MAGNIFIED * (self.moved.jump + self.left.all),
+                constrained: MAGNIFIED * (self.moved.jump + self.left.constrained),
+            },
+            limits: place.limits,
+            max_products: self.settings.max_products,
+        };
+        self.first_error = place.errors.constrained;
+        let length = at.conjugate_gradients(place.rho, &goal)?;
+        self.moved.drifted = at.projector.rounds_steps();
+        self.left = at.errors();
+        at.report.active_sets += 1;
+        if let Some(safeguard) = &mut self.safeguard
+            && safeguard.leave(at.x, at.ax)
+        {
+            self.progress.waited = 0;
+        }
+        Ok(length)
+    }
+
+    /// Calls the hook, which may change the data of segments but not the segments.
+    pub(crate) fn follow(&mut self) -> Result<(), QpError> {
+        let at = &mut self.at;
+        (self.hook)(at.x, at.set);
+        at.report.hook_calls += 1;
+        at.set.validate()?;
+        if at.set.shape().eq(self.shape.iter().copied()) {
+            Ok(())
+        } else {
+            let wanted = "the segments that it had before the hook";
+            Err(SetError::Kind { segment: 0, wanted }.into())
+        }
+    }
+
+    pub(crate) fn finish(mut self, status: Status) -> ActiveSetReport {
+        self.at.report.status = status;
+        self.at.report
+    }
+}
+
+fn ratio(a: f64, b: f64) -> f64 {
+    if a == 0.0 { 0.0 } else { a / b }
+}

@@ -1,0 +1,78 @@
+//! Settings and report of [`active_set`](crate::active_set()).
+
+use crate::report::Status;
+use crate::settings::settings;
+
+settings! {
+    /// Settings of [`active_set`](crate::active_set()). All are dimensionless.
+    #[derive(Debug, Clone, PartialEq)]
+    ActiveSetSettings {
+        /// Estimated error of `x` relative to its norm, and of its constrained part relative to its own.
+        tolerance, with_tolerance: f64 = 1e-7, in "(0, 1)";
+        /// Norm of `x` that errors are at least relative to: what a vanishing solution is measured against.
+        error_floor, with_error_floor: f64 = 0.0, in "[0, inf)";
+        /// The same for the constrained part, which is measured against 1e-4 of the norm of `x` in any case.
+        contact_error_floor, with_contact_error_floor: f64 = 0.0, in "[0, inf)";
+        /// Decrease of the error on one active set before the set is looked at again.
+        forcing, with_forcing: f64 = 0.4, in "(0, 1)";
+        /// Step of the natural map that predicts the next active set, in units of the preconditioner's diagonal.
+        natural_step, with_natural_step: f64 = 0.4, in "(0, 1]";
+        /// Part of the next step of conjugate gradients that shares the product of the move to the next active set.
+        joint_step_fraction, with_joint_step_fraction: f64 = 1.0, in "[0, 1]";
+        /// Share of the free bounded components that may change for the hook to be called.
+        settled_fraction, with_settled_fraction: f64 = 0.3, in "[0, 1]";
+        /// Most active sets; five times as many once descent is enforced.
+        max_active_sets, with_max_active_sets: usize = 100, in "[1, inf)";
+        /// Most operator products.
+        max_products, with_max_products: usize = 10_000, in "[1, inf)";
+        /// Active sets without a better error before every move has to descend; five times as many before
+        /// [`Status::Stagnated`].
+        patience, with_patience: usize = 12, in "[1, inf)";
+    }
+}
+
+/// What [`active_set`](crate::active_set()) did.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ActiveSetReport {
+    /// How it ended.
+    pub status: Status,
+    /// Active sets on which conjugate gradients ran.
+    pub active_sets: usize,
+    /// Conjugate gradient steps, one product each.
+    pub cg_steps: usize,
+    /// Products after a change of the active set and at the start, to keep `A x` exact.
+    pub corrections: usize,
+    /// Applications of the preconditioner.
+    pub preconditionings: usize,
+    /// Factorisations of `G W Gᵀ`.
+    pub factorisations: usize,
+    /// Calls of the hook.
+    pub hook_calls: usize,
+    /// Last estimated error of `x`, relative to the norm of `x`.
+    pub error: f64,
+    /// Last estimated error of the constrained components, relative to their norm.
+    pub constrained_error: f64,
+}
+
+impl ActiveSetReport {
+    pub(crate) fn new() -> Self {
+        Self {
+            status: Status::IterationLimit,
+            active_sets: 0,
+            cg_steps: 0,
+            corrections: 0,
+            preconditionings: 0,
+            factorisations: 0,
+            hook_calls: 0,
+            error: f64::INFINITY,
+            constrained_error: f64::INFINITY,
+        }
+    }
+
+    /// All operator products.
+    #[must_use]
+    pub fn products(&self) -> usize {
+        self.cg_steps + self.corrections
+    }
+}

@@ -1,0 +1,113 @@
+//! The loop of the active-set method.
+//!
+//! Minimises `1/2 xᵀ A x - xᵀ b` over `x` in a [`ProductSet`] with `G x = e`, without a penalty. For fixed sets of
+//! active, free and sliding blocks the problem is linear: active components drop out, a point on its circle keeps one
+//! component along the tangent with the curvature of the circle, and the rest is solved by conjugate gradients with
+//! the projector `P_W`, `W` marking the free components. The active set is left as soon as the estimated error has
+//! fallen by `forcing`; then `x - a g` tells which blocks are active next (a primal-dual active-set step), `x` is
+//! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
+//! next step of conjugate gradients, of the length of the last one.
+//!
+//! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved
+//! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
+//! the present set is solved. [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse())
+//! is proved to converge.
+//!
+//! | local | meaning |
+//! |---|---|
+//! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a set |
+//! | `residual`, `restricted` | `P_Wᵀ (A x - b)`, and its constrained part on the active set |
+//! | `z` | preconditioned residual on the active set |
+//! | `constrained` | components up to the last constrained one; only these differ on the set |
+
+use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
+use crate::problem::{ConvexSet, EqualityProjector, ProductSet, SymmetricOperator};
+use crate::report::Status;
+
+use super::problem::{ActiveSetHook, ActiveSetProblem};
+use super::run::Run;
+use super::settings::{ActiveSetReport, ActiveSetSettings};
+use super::view::ActiveSetPreconditioner;
+use super::workspace::ActiveSetWorkspace;
+
+/// Solves the problem from the start `x`.
+///
+/// `ax` holds `A x` if `ax_known`, else it is computed. On return both belong to the last iterate, and
+/// [`ActiveSetWorkspace::residual`] holds `P_Wᵀ (A x - b)`. `hook` couples the set to the solution (Coulomb
+/// friction); pass `&mut |_, _| {}` for a fixed set.
+///
+/// # Errors
+/// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
+/// [`QpError::CoarseDeficient`] if not even all components together determine the multiplier of the equality.
+pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    problem: &ActiveSetProblem<'_, A, M>,
+    projector: &mut C,
+    set: &mut ProductSet,
+    x: &mut [f64],
+    ax: &mut [f64],
+    ax_known: bool,
+    settings: &ActiveSetSettings,
+    work: &mut ActiveSetWorkspace<A, M>,
+    hook: &mut ActiveSetHook<'_>,
+) -> Result<ActiveSetReport, QpError> {
+    settings.validate()?;
+    check(problem, projector, set, (x, ax), work)?;
+    let mut run = Run::new(problem, projector, set, (x, ax), settings, work, hook);
+    run.start(ax_known)?;
+    let status = loop {
+        // 1. the active set that the natural map predicts, and how far its solution is
+        let Some(place) = run.enter()? else {
+            break Status::Stagnated;
+        };
+        if run.refreshes(&place) || run.releases(&place) {
+            continue;
+        }
+        if run.is_solved(&place) {
+            if run.is_balanced(&place) && run.set_agrees(&place)? {
+                break Status::Converged;
+            }
+            continue;
+        }
+        run.note_progress(&place);
+        if run.in_circles() {
+            run.start_safeguard();
+        }
+        if let Some(status) = run.gives_up() {
+            break status;
+        }
+        // 2. conjugate gradients on it
+        let length = run.solve_on_set(&place)?;
+        // 3. the natural map moves x to the next active set, and the set follows the solution
+        run.move_on(length, &place)?;
+    };
+    Ok(run.finish(status))
+}
+
+fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    problem: &ActiveSetProblem<'_, A, M>,
+    projector: &C,
+    set: &ProductSet,
+    (x, ax): (&[f64], &[f64]),
+    work: &ActiveSetWorkspace<A, M>,
+) -> Result<(), QpError> {
+    let n = problem.operator.dim();
+    expect_lengths([
+        ("x", x.len(), n),
+        ("ax", ax.len(), n),
+        ("the linear term", problem.linear.len(), n),
+        ("the scale", problem.scale.len(), n),
+        ("the preconditioner", problem.preconditioner.dim(), n),
+        ("the set", set.dim(), n),
+        ("the projector", projector.dim(), n),
+        ("the workspace", work.z.len(), n),
+    ])?;
+    expect_length(
+        "the right side of the equality",
+        problem.rhs.len(),
+        projector.rows(),
+    )?;
+    set.validate()?;
+    expect_finite("x", x)?;
+    expect_finite("the linear term", problem.linear)?;
+    expect_finite("the right side of the equality", problem.rhs)
+}

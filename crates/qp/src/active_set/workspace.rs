@@ -1,0 +1,77 @@
+//! Work memory of the active-set method.
+
+use crate::problem::{LineWeight, SymmetricOperator};
+
+use super::blocks::ActiveSet;
+use super::coupling::{Coupling, RadiusSlope};
+
+/// Vectors of the active-set method: six of the length of `x`, a seventh where radii follow other components, three
+/// of its constrained part and the classification of the blocks.
+#[derive(Debug)]
+pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
+    pub(crate) operator: A::Scratch,
+    pub(crate) preconditioner: M::Scratch,
+    /// `A x - b` without its part in the image of `Gᵀ`.
+    pub(crate) residual: Vec<f64>,
+    /// Constrained part of the residual on the active set.
+    pub(crate) restricted: Vec<f64>,
+    /// Constrained part of `residual` while the restricted one stands in its place.
+    pub(crate) saved: Vec<f64>,
+    /// Constrained part of `x` before it moves to the next active set.
+    pub(crate) before: Vec<f64>,
+    pub(crate) z_norm: f64,
+    pub(crate) z: Vec<f64>,
+    pub(crate) p: Vec<f64>,
+    pub(crate) ap: Vec<f64>,
+    pub(crate) w: Vec<f64>,
+    pub(crate) lines: Vec<LineWeight>,
+    pub(crate) t: Vec<f64>,
+    pub(crate) active: ActiveSet,
+    pub(crate) coupling: Coupling,
+}
+
+impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
+    /// Allocates everything the method needs.
+    pub fn new(operator: &A, preconditioner: &M) -> Self {
+        let n = operator.dim();
+        let v = || vec![0.0; n];
+        Self {
+            operator: operator.scratch(),
+            preconditioner: preconditioner.scratch(),
+            residual: v(),
+            restricted: Vec::new(),
+            saved: Vec::new(),
+            before: Vec::new(),
+            z_norm: 0.0,
+            z: v(),
+            p: v(),
+            ap: v(),
+            w: v(),
+            lines: Vec::new(),
+            t: v(),
+            active: ActiveSet::default(),
+            coupling: Coupling::default(),
+        }
+    }
+
+    /// Tells how the hook moves the radii, for the solves to come: conjugate gradients then take this along instead
+    /// of meeting it at each change of the active set. Optional; a disc without a slope is moved by the hook alone.
+    /// The solution does not depend on it. Slopes in the order of the discs are found fastest.
+    pub fn set_slopes(&mut self, slopes: &[RadiusSlope]) {
+        self.coupling.set(slopes);
+    }
+
+    /// Makes room for `constrained` leading components with constraints.
+    pub(crate) fn resize(&mut self, constrained: usize) {
+        self.restricted.resize(constrained, 0.0);
+        self.saved.resize(constrained, 0.0);
+        self.before.resize(constrained, 0.0);
+    }
+
+    /// `P_Wᵀ (A x - b)` at the last iterate: the gradient without the part that the multiplier of
+    /// `G x = e` balances.
+    #[must_use]
+    pub fn residual(&self) -> &[f64] {
+        &self.residual
+    }
+}

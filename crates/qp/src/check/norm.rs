@@ -1,0 +1,214 @@
+//! A safe upper estimate of the norm of a positive semidefinite operator.
+//!
+//! Lanczos from a fixed start vector. After `k` products the largest Ritz value `theta` is below the norm;
+//! `theta` plus the norm of its residual is above an eigenvalue, in practice above all (Zhou and Li,
+//! "Bounding the spectrum of large Hermitian matrices", Linear Algebra Appl. 435, 2011), and a margin is
+//! added on top.
+//!
+//! | literature | here |
+//! |---|---|
+//! | `alpha_j`, `beta_j` | `diagonal`, `off`: entries of the tridiagonal matrix |
+//! | `theta` | `lower`: its largest eigenvalue |
+//! | last entry of the eigenvector | `weight` (squared) |
+
+use crate::error::QpError;
+use crate::problem::SymmetricOperator;
+use crate::settings::settings;
+use crate::tolerances::EXHAUSTED;
+use crate::vector;
+
+settings! {
+    /// Settings of [`norm_estimate`].
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    NormSettings {
+        /// Products spent at most.
+        max_products, with_max_products: usize = 20, in "[2, 200]";
+        /// Residual, relative to the Ritz value, at which the estimate stops.
+        accuracy, with_accuracy: f64 = 0.02, in "(0, 1)";
+        /// Factor on the upper value.
+        margin, with_margin: f64 = 1.02, in "[1, 2]";
+    }
+}
+
+/// Result of [`norm_estimate`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct NormEstimate {
+    /// Largest Ritz value: never above the norm.
+    pub lower: f64,
+    /// Safe upper value: `margin * (lower + residual)`. Use this one as step bound.
+    pub upper: f64,
+    /// Products spent.
+    pub products: usize,
+}
+
+/// Estimates the norm of a positive semidefinite `operator`.
+///
+/// The start vector is fixed (no randomness between runs). Allocates three vectors; meant to be called
+/// once an operator. Dimension 0 and the zero operator give 0.
+///
+/// # Errors
+/// Settings out of range; a product that is not finite.
+pub fn norm_estimate<A: SymmetricOperator>(
+    operator: &A,
+    settings: &NormSettings,
+) -> Result<NormEstimate, QpError> {
+    settings.validate()?;
+    let m = settings.max_products;
+    let n = operator.dim();
+    let mut scratch = operator.scratch();
+    let mut q: Vec<f64> = (0..n).map(start_entry).collect();
+    let length = vector::norm(&q);
+    vector::scale(if length > 0.0 { 1.0 / length } else { 0.0 }, &mut q);
+    let (mut before, mut w) = (vec![0.0; n], vec![0.0; n]);
+    let mut diagonal: Vec<f64> = Vec::with_capacity(m);
+    let mut off: Vec<f64> = Vec::with_capacity(m);
+    let mut estimate = NormEstimate {
+        lower: 0.0,
+        upper: 0.0,
+        products: 0,
+    };
+    for k in 0..m.min(n) {
+        operator.apply(&q, &mut w, &mut scratch);
+        estimate.products += 1;
+        if let Some(&beta) = off.last() {
+            vector::axpy(-beta, &before, &mut w);
+        }
+        let alpha = vector::dot(&q, &w);
+        vector::axpy(-alpha, &q, &mut w);
+        diagonal.push(alpha);
+        let beta = vector::norm(&w);
+        if !(alpha.is_finite() && beta.is_finite()) {
+            return Err(QpError::NotFinite {
+                quantity: "the norm estimate",
+                products: estimate.products,
+            });
+        }
+        let lower = largest_eigenvalue(&diagonal, &off);
+        let residual = beta * last_weight(&diagonal, &off, lower).sqrt().min(1.0);
+        estimate.lower = lower;
+        estimate.upper = settings.margin * (lower + residual);
+        if beta <= EXHAUSTED * lower.abs() || (k >= 4 && residual <= settings.accuracy * lower) {
+            break;
+        }
+        off.push(beta);
+        vector::copy(&q, &mut before);
+        vector::copy(&w, &mut q);
+        vector::scale(1.0 / beta, &mut q);
+    }
+    Ok(estimate)
+}
+
+/// Entries of the start vector: reproducible, without pattern, in [0.5, 1.5] up to sign.
+fn start_entry(i: usize) -> f64 {
+    // splitmix64
+    let mut z = (i as u64)
+        .wrapping_add(1)
+        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^= z >> 31;
+    let magnitude = 0.5 + (z >> 12) as f64 / (1u64 << 52) as f64;
+    if z & 1 == 0 { magnitude } else { -magnitude }
+}
+
+/// Whether `lambda` is above every eigenvalue: all pivots of `T - lambda` negative.
+fn is_above(diagonal: &[f64], off: &[f64], lambda: f64) -> bool {
+    let mut pivot = f64::INFINITY;
+    for (i, &a) in diagonal.iter().enumerate() {
+        let coupling = if i == 0 {
+            0.0
+        } else {
+            off[i - 1] * off[i - 1] / pivot
+        };
+        pivot = a - lambda - coupling;
+        if pivot >= 0.0 {
+            return false;
+        }
+    }
+    true
+}
+
+/// Largest eigenvalue of the tridiagonal matrix, by bisection between the Gershgorin bound and the
+/// largest diagonal entry.
+fn largest_eigenvalue(diagonal: &[f64], off: &[f64]) -> f64 {
+    let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for (i, &a) in diagonal.iter().enumerate() {
+        let left = if i == 0 { 0.0 } else { off[i - 1].abs() };
+        let right = if i + 1 < diagonal.len() {
+            off[i].abs()
+        } else {
+            0.0
+        };
+        lo = lo.max(a);
+        hi = hi.max(a + left + right);
+    }
+    for _ in 0..80 {
+        let mid = 0.5 * (lo + hi);
+        if mid <= lo || mid >= hi {
+            break;
+        }
+        if is_above(diagonal, off, mid) {
+            hi = mid;
+        } else {
+            lo = mid;
+        }
+    }
+    hi
+}
+
+/// Square of the last entry of the normalised eigenvector: `-1 / d'(lambda)`, `d` the last pivot.
+fn last_weight(diagonal: &[f64], off: &[f64], lambda: f64) -> f64 {
+    let (mut pivot, mut slope) = (f64::INFINITY, 0.0);
+    for (i, &a) in diagonal.iter().enumerate() {
+        let b2 = if i == 0 { 0.0 } else { off[i - 1] * off[i - 1] };
+        (pivot, slope) = (a - lambda - b2 / pivot, -1.0 + b2 * slope / (pivot * pivot));
+    }
+    if slope.is_finite() { -1.0 / slope } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::DenseOperator;
+
+    #[test]
+    fn tridiagonal_eigenvalue_is_known() {
+        let n = 12;
+        let lambda = largest_eigenvalue(&vec![2.0; n], &vec![-1.0; n - 1]);
+        let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
+        assert!((lambda - exact).abs() < 1e-13);
+        // eigenvector entries sin(j pi / (n + 1)), squares sum to (n + 1) / 2
+        let last =
+            (std::f64::consts::PI / (n as f64 + 1.0)).sin().powi(2) / (0.5 * (n as f64 + 1.0));
+        assert!((last_weight(&vec![2.0; n], &vec![-1.0; n - 1], lambda) - last).abs() < 1e-9);
+    }
+
+    #[test]
+    fn upper_is_above_lower_is_below() {
+        let n = 60;
+        let mut a = vec![0.0; n * n];
+        for i in 0..n {
+            a[i * n + i] = 2.0;
+            if i > 0 {
+                a[i * n + i - 1] = -1.0;
+                a[(i - 1) * n + i] = -1.0;
+            }
+        }
+        let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
+        let a = DenseOperator::new(n, a).expect("matrix");
+        let e = norm_estimate(&a, &NormSettings::default()).expect("estimate");
+        assert!(
+            e.lower <= exact * (1.0 + 1e-12) && e.upper >= exact,
+            "{e:?} {exact}"
+        );
+        assert!(e.upper <= 1.1 * exact && e.products <= 20);
+        let zero = DenseOperator::new(3, vec![0.0; 9]).expect("matrix");
+        assert_eq!(
+            norm_estimate(&zero, &NormSettings::default())
+                .expect("estimate")
+                .upper,
+            0.0
+        );
+    }
+}

@@ -1,0 +1,29 @@
+//! The parts of a problem: operator, set, equality; minimise `1/2 x·Ax - b·x` over `x` in a set with `C x = e`.
+//!
+//! `operator` has the two traits every solver asks for, `dense` matrices that implement them, `projected` the
+//! operator `P A P`. `set` is what a solver asks of a convex set, `product` the one set here: segments of blocks, of
+//! which `block` has one shape each (interval, disc). `projector` is the equality as the active-set method sees it,
+//! `dense_projector` one of a matrix.
+//!
+//! Uses: `vector`, `report`, `settings`, `error`, `tolerances`. In: what a caller owns. Out: products, projections,
+//! steps to the boundary. No solver is known here.
+
+mod block;
+mod dense;
+mod dense_projector;
+mod operator;
+mod product;
+mod projected;
+mod projector;
+mod set;
+
+pub(crate) use dense::solve_cholesky;
+pub use dense::{DenseEquality, DenseOperator, Identity};
+pub use dense_projector::DenseProjector;
+pub use operator::{Equality, SymmetricOperator};
+pub use product::{ProductSet, Segment};
+pub use projected::Projected;
+pub use projector::{EqualityProjector, LineWeight, LooseMode};
+pub use set::{Block, BlockState, ConvexSet, GradientNorms};
+
+pub(crate) use product::{Constrained, for_bounds, for_constrained, for_discs};

@@ -1,0 +1,156 @@
+//! The numerical judgements of this crate, in one table: what each is relative to, and why it has this value.
+//!
+//! A number that follows from an algorithm (a factor of a formula, a default of a setting) stands where it is used.
+
+// Common ideas
+
+/// A measure below this part of the smallest so far is progress: less is noise of conjugate gradients.
+pub(crate) const PROGRESS: f64 = 0.9;
+/// Curvature `p·Ap` below minus this part of the norm of the operator times `p·p` makes it indefinite; above it is
+/// rounding.
+pub(crate) const NEGATIVE_CURVATURE: f64 = 1e-10;
+
+// Data of a problem
+
+/// Distance of a point from its circle, over the radius, below which it lies on it. The sum of two squares has 1e-16.
+pub(crate) const ON_CIRCLE: f64 = 1e-12;
+/// Difference of transposed entries over the largest entry that makes a matrix not symmetric.
+pub(crate) const ASYMMETRY: f64 = 1e-12;
+/// Part of a row orthogonal to the rows before, over its norm, below which it depends on them. Gram-Schmidt is done
+/// twice.
+pub(crate) const DEPENDENT_ROW: f64 = 1e-10;
+/// Pivot of `G W Gᵀ` over its largest diagonal entry that counts as zero.
+pub(crate) const SINGULAR_PIVOT: f64 = 1e-12;
+
+// Checks
+
+/// Off-diagonal entry of Lanczos over the largest Ritz value at which the space is exhausted.
+pub(crate) const EXHAUSTED: f64 = 1e-14;
+/// Distance from a bound, over `|x|`, at which the independent check counts a component as on it.
+pub(crate) const KKT_ON_BOUND: f64 = 1e-10;
+/// Distance from a circle, over its radius, at which the independent check counts a point as on it.
+pub(crate) const KKT_ON_CIRCLE: f64 = 1e-9;
+/// Rounding allowed in the laws of a set, relative to the vectors; wider where a point next to a circle counts as on
+/// it.
+pub(crate) const LAW: f64 = 1e-10;
+pub(crate) const LAW_ON_CIRCLE: f64 = 1e-6;
+
+// KPRGP
+
+/// Share of the decrease of a small gradient step that a long step has to reach.
+pub(crate) const LONG_STEP: f64 = 1e-6;
+/// Gradient over `norm(A) |x|` that is rounding.
+pub(crate) const ROUNDED_GRADIENT: f64 = 1e3 * f64::EPSILON;
+/// Progress of the projected gradient; steps without it after which rounding is looked for.
+pub(crate) const KPRGP_PROGRESS: f64 = 0.99;
+pub(crate) const KPRGP_PATIENCE: usize = 60;
+/// Estimated drift of the recurrence, over the tolerance, above which the gradient is computed afresh.
+pub(crate) const DRIFTED: f64 = 0.1;
+/// Fresh gradients above the tolerance after which the recurrence is taken to be at the level of rounding.
+pub(crate) const FAILED_CHECKS: usize = 4;
+/// Rise of the cost by a fixed step, over `|step|² / length`, which only a norm that is too small explains.
+pub(crate) const COST_RISE: f64 = 0.01;
+
+// SMALSE
+
+/// Least precision control `M` over the norm: it need not fall below `sqrt(rho lambda_min)`.
+pub(crate) const LEAST_PRECISION: f64 = 1e-4;
+/// Least reference of the tolerance, over the unprojected load: below it the projected load is rounding.
+pub(crate) const PROJECTED_LOAD: f64 = 1e-7;
+/// Outer steps with a stagnating inner solver after which the solve ends.
+pub(crate) const STAGNATIONS: usize = 3;
+
+// Conjugate gradients on an equality
+
+/// Projected load, over the load, that is rounding, and the projected gradient, likewise, that suffices then.
+pub(crate) const VANISHED_LOAD: f64 = 1e-12;
+pub(crate) const SOLVED_BY_EQUALITY: f64 = 1e-14;
+/// Projected load over `|P A x|` below which it is no reference.
+pub(crate) const NEGLIGIBLE_LOAD: f64 = 1e-10;
+/// Iterations without progress after which the solve ends.
+pub(crate) const CG_PATIENCE: usize = 300;
+/// Residual over the first one below which a curvature that is not positive is rounding.
+pub(crate) const CG_ROUNDING: f64 = 1e-8;
+
+// Active set: the point
+
+/// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round
+/// more.
+pub(crate) const MAY_SLIDE: f64 = 1e-9;
+/// Least size of the constrained part, over `|x|`, that its errors are relative to.
+pub(crate) const SMALL_PART: f64 = 1e-4;
+/// Largest `|x|` so far over the present one from which on `A x` is computed afresh.
+pub(crate) const SHRUNK: f64 = 1e5;
+/// Part of the tolerance that `x` may be off the equality after steps that round.
+pub(crate) const OFF_EQUALITY: f64 = 0.03;
+
+// Active set: conjugate gradients on one set
+
+/// Most steps: where more are needed, rounding has taken over or the set is not worth it.
+pub(crate) const MOST_STEPS: usize = 500;
+/// Part of the tolerance below which further steps buy nothing.
+pub(crate) const ENOUGH: f64 = 0.3;
+/// Decrease of the error that steps which round can make.
+pub(crate) const ROUNDED_STEPS: f64 = 1e-5;
+/// Error over the jump and the error before it that comes from bad conditioning, and has to fall further.
+pub(crate) const MAGNIFIED: f64 = 10.0;
+
+// Active set: radii that follow
+
+/// Coupled steps on one set, and growth of the error, from which on the coupling is too strong.
+pub(crate) const COUPLED_STEPS: usize = 40;
+pub(crate) const COUPLED_GROWTH: f64 = 2.0;
+/// Largest error, over the constrained part, with which a coupled set begins: before, the active set changes too much.
+pub(crate) const COUPLED_NEAR: f64 = 0.1;
+/// Sets without progress after which coupling is tried far from the solution, or given up.
+pub(crate) const COUPLED_WAIT: usize = 4;
+/// Decrease on a coupled set: this many times the part of the last error that the move brought back, and the least.
+pub(crate) const COUPLED_LOST: f64 = 10.0;
+pub(crate) const COUPLED_LEAST: f64 = 0.03;
+
+// Active set: without progress
+
+/// Sets without progress after which the solved set tells what is active next, not the point moved to.
+pub(crate) const UNSURE: usize = 4;
+/// Times that a body which constraints alone hold is balanced with a set that follows.
+pub(crate) const BALANCE_ROUNDS: usize = 3;
+/// With the safeguard: factor on the forcing; factor on patience and sets; very short steps in a row that end it.
+pub(crate) const FINER: f64 = 0.05;
+pub(crate) const LONGER: usize = 5;
+pub(crate) const HELD_UP: usize = 20;
+/// With the safeguard: part of the last move of the set to which its problem is solved before it follows again.
+pub(crate) const FOLLOW: f64 = 0.1;
+/// Share of the decrease on the active set that a move has to keep.
+pub(crate) const KEPT_DECREASE: f64 = 1e-2;
+/// Part of its length below which a step is held up by blocks at their boundary, and the shortest that is tried.
+pub(crate) const SHORT: f64 = 0.3;
+pub(crate) const SHORTEST: f64 = 1e-3;
+/// Length in units of the shortest up to which a step counts as very short.
+pub(crate) const VERY_SHORT: f64 = 16.0;
+/// Lengths of a failed step within which blocks that it takes across their boundary are held.
+pub(crate) const REACH: f64 = 2.0;
+/// Part of the error without blocked blocks to which the problem with them is solved before they are released.
+pub(crate) const RELEASE: f64 = 0.01;
+/// Distance from the set over `|x|` up to which a point is feasible.
+pub(crate) const INSIDE: f64 = 1e-11;
+
+// Active set: the balance of modes that constraints alone hold
+
+/// Most Newton steps, and most halvings of one.
+pub(crate) const NEWTON_STEPS: usize = 50;
+pub(crate) const HALVINGS: usize = 30;
+/// Imbalance, over the absolute values of its terms, that is rounding, and up to which a point counts as balanced.
+pub(crate) const NO_IMBALANCE: f64 = 1e-14;
+pub(crate) const BALANCED: f64 = 1e-10;
+/// Share of the largest second derivative that is added to the diagonal, for modes that nothing holds.
+pub(crate) const SHIFT: f64 = 1e-12;
+/// Share of the linear decrease that a Newton step has to keep.
+pub(crate) const NEWTON_DECREASE: f64 = 1e-4;
+
+// Fixed points
+
+/// Ratios of changes that enter the estimate of the rate.
+pub(crate) const RATE_WINDOW: usize = 5;
+/// Evaluations without progress after which a map may be called not contractive, if the rate is above the other one.
+pub(crate) const MAP_PATIENCE: usize = 12;
+pub(crate) const NO_CONTRACTION: f64 = 0.98;

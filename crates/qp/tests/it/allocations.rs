@@ -1,0 +1,64 @@
+//! With a workspace made before, a solve allocates nothing.
+
+use crate::common::{self, Random};
+use allocation_counter::measure;
+use signorini_qp::{
+    Expansion, KprgpSettings, KprgpWorkspace, ProductSet, Segment, SmalseSettings, SmalseWorkspace,
+    Tolerance, kprgp, smalse,
+};
+
+#[test]
+fn solves_allocate_nothing() {
+    let mut r = Random::new(8);
+    let n = 40;
+    let (a, norm) = common::spd(n, 3.0, &mut r);
+    let mut set = ProductSet::new(vec![
+        Segment::upper(vec![0.0; 10]),
+        Segment::discs(vec![0.1; 10]),
+        Segment::Free(10),
+    ])
+    .expect("set");
+    let b = r.vector(n);
+    for expansion in [
+        Expansion::FixedStep,
+        Expansion::ProjectedCg,
+        Expansion::Optimal,
+        Expansion::BarzilaiBorwein,
+    ] {
+        let settings = KprgpSettings::default().with_expansion(expansion);
+        let mut work = KprgpWorkspace::new(&a);
+        let mut x = vec![0.0; n];
+        let mut products = 0;
+        let count = measure(|| {
+            let t = Tolerance::Relative(1e-8);
+            let report = kprgp(&a, &b, &set, norm, t, &settings, &mut x, &mut work).expect("solve");
+            products = report.products.total();
+        });
+        assert!(products > 10);
+        assert_eq!(count.count_total, 0, "{expansion:?}");
+    }
+    let (c, e) = common::equality(n, 5, &set, &mut r);
+    let mut work = SmalseWorkspace::new(&a, &c);
+    let (mut x, mut beta) = (vec![0.0; n], vec![0.0; 5]);
+    let mut outer = 0;
+    let count = measure(|| {
+        let settings = SmalseSettings::default();
+        let report = smalse(
+            &a,
+            &b,
+            &c,
+            &e,
+            &mut set,
+            norm,
+            &settings,
+            &mut |_, _| false,
+            &mut x,
+            &mut beta,
+            &mut work,
+        )
+        .expect("solve");
+        outer = report.outer;
+    });
+    assert!(outer > 1);
+    assert_eq!(count.count_total, 0);
+}

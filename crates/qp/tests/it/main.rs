@@ -1,0 +1,16 @@
+//! The promises of this crate, one module each.
+
+mod active_set;
+mod allocations;
+mod common;
+mod interior_point;
+mod kkt;
+mod kprgp;
+mod obstacle_string;
+mod projected_cg;
+mod radius_slopes;
+mod refusals;
+mod rounded_steps;
+mod sets;
+mod smalse;
+mod smalse_growth;
