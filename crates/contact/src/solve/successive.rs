@@ -1,7 +1,7 @@
 //! The method of successive approximations (3.17) and what can be said of its contraction.
 //!
 //! The map `Phi` of (3.15) takes the normal forces that define the slip bounds to the normal forces of the
-//! given-friction problem. Its fixed point solves the Coulomb problem (3.16). The discrete map is contractive for small
+//! Tresca problem. Its fixed point solves the Coulomb problem (3.16). The discrete map is contractive for small
 //! coefficients only; a [`Contraction`] watches the ratio of successive changes and says so when it is not.
 
 use crate::report::{FixedPointReport, Verdict};
