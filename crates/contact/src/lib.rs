@@ -104,7 +104,8 @@ pub use scene::{
     Partition, Place, PlaceField, RateField, Scene, SlipBound, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
-pub use signorini_tfeti::{Directions, Rate};
+pub use signorini_tfeti::Directions;
+pub use signorini_tfeti::internal::Rate;
 pub use simulation::{Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
 pub use status::{StepFailure, StepStatus};

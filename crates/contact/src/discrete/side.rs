@@ -1,22 +1,8 @@
-//! The two sides of a contact point, as short lists of nodes: all that is above asks here which nodes a point moves.
+//! The two sides of a contact point: all that is above asks here which nodes a point moves.
 
-/// One side: mesh nodes and their weights, whose sum is one. Where meshes match it is one node.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Side(Vec<(u32, f64)>);
+use signorini_tfeti::Side;
 
-impl Side {
-    /// A single node.
-    pub(crate) fn node(node: u32) -> Self {
-        Self(vec![(node, 1.0)])
-    }
-
-    /// The nodes and their weights.
-    pub(crate) fn nodes(&self) -> &[(u32, f64)] {
-        &self.0
-    }
-}
-
-/// Both sides of a contact point.
+/// Both sides of a contact point: short lists of nodes with weights, where meshes match of one node each.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sides {
     /// That of the body whose outward normal counts.

@@ -8,7 +8,8 @@ use crate::plan::Plan;
 use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
-use signorini_tfeti::{CopyStiffness, LoadResponse, Tfeti, TfetiBuilder};
+use signorini_tfeti::internal::CopyStiffness;
+use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder};
 use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
@@ -68,8 +69,7 @@ impl Model {
         let plan = Plan::of(&scene, &discrete, settings)?;
         let mut builder = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
             .with_supports(&discrete.supports.nodes)
-            .with_row_scaling(settings.row_scaling)
-            .with_sharing(settings.sharing)
+            .with_share_translates(settings.share_translates)
             .with_inverse(settings.inverse);
         if !scene.contacts.is_empty() {
             builder = builder.with_contact(&discrete.constraints);
@@ -102,15 +102,6 @@ impl Model {
             support_stiffness: OnceLock::new(),
             copies: OnceLock::new(),
         })
-    }
-
-    /// The direction that a support row fixes, times the scale of the row.
-    pub(crate) fn support_direction(&self, row: usize) -> [f64; 3] {
-        let mut direction = [0.0; 3];
-        for (_, dof, coefficient) in self.tfeti.gluing().row(row) {
-            direction[dof % 3] += coefficient;
-        }
-        direction
     }
 
     /// Friction law of a point.

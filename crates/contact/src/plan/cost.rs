@@ -9,7 +9,7 @@
 use super::plan::Plan;
 use crate::settings::{Accuracy, MethodKind, Settings};
 use crate::tolerances::LOOSEST;
-use signorini_tfeti::{Forecast, Rate};
+use signorini_tfeti::internal::{Forecast, Rate};
 
 /// Estimated cost of a run; made before any work.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -6,7 +6,8 @@ use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
-use signorini_tfeti::{Directions, Forecast, Rate};
+use signorini_tfeti::Directions;
+use signorini_tfeti::internal::{Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes of a scene and the method chosen for it.
@@ -122,7 +123,7 @@ impl Plan {
             &scene.mesh,
             decomposition,
             &scene.materials,
-            settings.sharing,
+            settings.share_translates,
             &settings.inverse,
             |node| fixed.contains_key(&node) || touching.contains(&node),
         )?;

@@ -10,7 +10,8 @@ use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
 use crate::tolerances::ROUNDING;
 use crate::vec3::dot;
-use signorini_tfeti::{NodeSupport, PrescribedDirection};
+use signorini_tfeti::NodeSupport;
+use signorini_tfeti::internal::PrescribedDirection;
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.

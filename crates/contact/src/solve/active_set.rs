@@ -110,7 +110,7 @@ impl ActiveSetSolver {
         let Task { model, problem, .. } = task;
         problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
         let mut updates = usize::from(model.any_law(Friction::is_some));
-        self.space.set_rhs(&problem.rhs);
+        self.space.set_coarse_rhs(&problem.rhs);
         let dual = ActiveSetProblem {
             operator: model.tfeti.dual(),
             preconditioner: &self.preconditioner,

@@ -2,7 +2,8 @@
 
 use crate::error::ContactError;
 use crate::model::Model;
-use signorini_tfeti::{CoarseScratch, OrthonormalCoarse};
+use signorini_tfeti::OrthonormalCoarse;
+use signorini_tfeti::internal::CoarseScratch;
 
 /// The rows with their right side and work memory.
 pub(super) struct OrthonormalRows {

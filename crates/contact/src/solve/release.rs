@@ -16,8 +16,8 @@ use super::iterate::Task;
 use crate::model::{ConstrainedPoint, Model};
 use crate::tolerances::{AT_BOUND, NULL_RANK};
 use nalgebra::{DMatrix, DVector};
-use signorini_tfeti::Dependency;
 use signorini_tfeti::TangentialRows;
+use signorini_tfeti::internal::Dependency;
 
 /// The dependencies of a model, with the points whose rows they hold.
 #[derive(Debug)]

@@ -139,10 +139,7 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
             std::iter::once(row as u64).chain(numbers)
         })
     });
-    let how = format!(
-        "{:?}",
-        (settings.row_scaling, settings.sharing, settings.inverse)
-    );
+    let how = format!("{:?}", (settings.share_translates, settings.inverse));
     let words = body.into_iter().chain(laws.map(|x| number(*x)));
     let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
     let words = words.chain(entries).chain(scales);
@@ -159,7 +156,7 @@ fn supports(model: &Model) -> u64 {
     let gluing = model.tfeti.gluing();
     let mut nodes: BTreeMap<u32, [f64; 6]> = BTreeMap::new();
     for row in gluing.ranges().dirichlet.clone() {
-        let d = model.support_direction(row);
+        let d = gluing.direction(row);
         let square = d.iter().map(|v| v * v).sum::<f64>();
         let Some(node) = gluing.node(row).filter(|_| square > 0.0) else {
             continue;

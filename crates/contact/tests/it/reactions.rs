@@ -1,7 +1,6 @@
 //! Forces, moments and dissipation in every step: reactions of supports, contact and loads are in balance.
 
 use crate::common::*;
-use signorini_tfeti::RowScaling;
 
 /// Forces that the displacement of a step exerts on the nodes: K u, summed over the copies.
 fn internal_forces(simulation: &Simulation, torn: &[f64]) -> Vec<[f64; 3]> {
@@ -289,7 +288,6 @@ fn partitions_rows_and_materials_change_no_reaction() {
                 assert_close(&field(cut(), settings), &whole, 1e-6, what);
             };
             same(tight(), "cut");
-            same(tight().with_row_scaling(RowScaling::Chained), "chained");
         }
     }
 }

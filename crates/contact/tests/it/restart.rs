@@ -2,7 +2,6 @@
 
 use crate::common::*;
 use signorini_fem_mesh::SurfaceFrame;
-use signorini_tfeti::RowScaling;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -165,11 +164,7 @@ fn what_may_change_between_steps_is_accepted() {
             assert!(result.report.status.converged(), "case {k}");
         }
     }
-    for settings in [
-        at(1e-8),
-        by(Method::paper()),
-        Settings::default().with_row_scaling(RowScaling::Chained),
-    ] {
+    for settings in [at(1e-8), by(Method::paper())] {
         let mut simulation = Parts::new().simulation_with(settings);
         simulation.resume(state.clone()).expect("resume");
     }
