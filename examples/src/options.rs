@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, ValueEnum};
+use signorini::contact::MethodKind;
 use signorini::prelude::{DifferenceFormula, Method, Settings};
 
 use crate::brick::{Benchmark, CELLS, Loading, PERTURBATION, STEPS};
@@ -37,6 +38,15 @@ impl MethodName {
             Self::Paper => "auxiliary problems",
             Self::OneLoop => "outer steps",
         }
+    }
+}
+
+/// A method as tables and files name it, since their first version: those of [`MethodName`], and `linear`.
+#[must_use]
+pub fn name_in_files(kind: MethodKind) -> String {
+    match kind {
+        MethodKind::ActiveSet => "face".to_owned(),
+        other => other.to_string(),
     }
 }
 

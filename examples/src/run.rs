@@ -128,7 +128,7 @@ fn collect(
     RunRecord {
         n: header.n,
         loading: header.loading.clone(),
-        method: simulation.plan().method.to_string(),
+        method: crate::options::name_in_files(simulation.plan().method),
         threads: rayon::current_num_threads(),
         n_s: simulation.plan().subdomains,
         n_p: simulation.plan().primal,

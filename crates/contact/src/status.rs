@@ -13,7 +13,7 @@ pub enum StepStatus {
     /// No further progress above the tolerance.
     Stagnated,
     /// The Coulomb map is not contractive here: successive approximations have no limit from this start. The result is
-    /// the last iterate, which solves the given-friction problem of the last slip bounds.
+    /// the last iterate, which solves the Tresca problem of the last slip bounds.
     NotContractive,
     /// With the normal forces of this step friction does not hold a body: slip bounds and normal forces that agree
     /// leave no balance with the loads. The set-up judges only whether any normal forces could.

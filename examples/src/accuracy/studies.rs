@@ -111,7 +111,7 @@ fn tolerance(short: bool) -> Result<Vec<Curve>, ExampleError> {
         };
         curves.push(along_tolerances(
             Study::Tolerance,
-            &kind.to_string(),
+            &crate::options::name_in_files(kind),
             &variant,
             &settings,
             &chosen,

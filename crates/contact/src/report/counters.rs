@@ -14,7 +14,7 @@ pub struct Counters {
     pub projections: usize,
     /// Factorisations of the coarse problem.
     pub coarse_factorisations: usize,
-    /// Quadratic programs (given-friction problems) solved by SMALSE.
+    /// Quadratic programs (Tresca problems) solved by SMALSE.
     pub quadratic_programs: usize,
     /// Active sets that were solved on.
     pub active_sets: usize,

@@ -6,15 +6,15 @@ use signorini_qp::{ActiveSetSettings, SmalseSettings};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
-    /// The default: faces predicted by the natural map, projected preconditioned conjugate gradients on
+    /// The default: active sets predicted by the natural map, projected preconditioned conjugate gradients on
     /// each, slip bounds following as soon as the contact set has settled. Falls back to
     /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) where the prediction makes no progress.
     ActiveSet(ActiveSetSettings),
-    /// The paper's method (3.17): given-friction problems by SMALSE and KPRGP, repeated with new slip bounds.
+    /// The paper's method (3.17): Tresca problems by SMALSE and KPRGP, repeated with new slip bounds.
     SuccessiveApproximations {
         /// Settings of SMALSE.
         smalse: SmalseSettings,
-        /// How accurately each given-friction problem is solved.
+        /// How accurately each Tresca problem is solved.
         accuracy: InnerAccuracy,
     },
     /// The paper's one inexact loop: the slip bounds follow the outer steps of SMALSE.
@@ -83,12 +83,12 @@ impl Default for Method {
     }
 }
 
-fn paper_smalse() -> SmalseSettings {
+pub(crate) fn paper_smalse() -> SmalseSettings {
     // a step that starts from nothing takes many short outer steps on large problems
     SmalseSettings::default().with_max_outer(5000)
 }
 
-/// Accuracy of the given-friction problems inside the fixed-point loop.
+/// Accuracy of the Tresca problems inside the fixed-point loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum InnerAccuracy {

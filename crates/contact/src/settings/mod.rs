@@ -10,5 +10,6 @@ mod method;
 mod settings;
 
 pub use accuracy::Accuracy;
+pub(crate) use method::paper_smalse;
 pub use method::{InnerAccuracy, Method, MethodKind};
 pub use settings::{Preconditioner, Settings};

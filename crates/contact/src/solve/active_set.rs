@@ -3,7 +3,7 @@
 //!
 //! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a
 //! limit was reached, from the start of the step where the active-set method stagnated. It is proved to solve every
-//! given-friction problem.
+//! Tresca problem.
 
 use super::iterate::{Iterate, Task, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;

@@ -69,9 +69,9 @@ impl SymmetricOperator for SelectedPreconditioner {
 }
 
 impl ActiveSetPreconditioner for SelectedPreconditioner {
-    fn enter(&self, face: &ActiveSetView<'_>, s: &mut Self::Scratch) {
+    fn enter(&self, set: &ActiveSetView<'_>, s: &mut Self::Scratch) {
         if let (Self::Stiffness(p), Some(s)) = (self, s) {
-            p.enter(face, s);
+            p.enter(set, s);
         }
     }
 }

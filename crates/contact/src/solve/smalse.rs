@@ -1,4 +1,4 @@
-//! The paper's methods: successive approximations (3.17) with given-friction problems by SMALSE and KPRGP
+//! The paper's methods: successive approximations (3.17) with Tresca problems by SMALSE and KPRGP
 //! (Algorithm 4.1), and the one inexact loop in which the slip bounds follow the outer steps of SMALSE.
 
 use super::coarse::OrthonormalRows;
@@ -7,7 +7,7 @@ use crate::error::ContactError;
 use crate::model::{DISCS, INTERVALS, Model};
 use crate::report::StepReport;
 use crate::scene::Friction;
-use crate::settings::{InnerAccuracy, Method, Settings};
+use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
 use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
@@ -48,10 +48,7 @@ impl SmalseSolver {
         let (smalse, accuracy, one_loop) = match &settings.method {
             Method::OneLoop { smalse } => (*smalse, InnerAccuracy::Fixed, true),
             Method::SuccessiveApproximations { smalse, accuracy } => (*smalse, *accuracy, false),
-            Method::ActiveSet(_) => match Method::paper() {
-                Method::SuccessiveApproximations { smalse, accuracy } => (smalse, accuracy, false),
-                _ => (SmalseSettings::default(), InnerAccuracy::default(), false),
-            },
+            Method::ActiveSet(_) => (paper_smalse(), InnerAccuracy::default(), false),
         };
         let rows = OrthonormalRows::new(model)?;
         let operator = model.tfeti.dual();
@@ -117,7 +114,7 @@ impl SmalseSolver {
             .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
         let tolerance = task.settings.tolerance * SMALSE_SAFETY;
-        let qp = self.given_friction(task, tolerance, &mut |_, _| false, iterate)?;
+        let qp = self.tresca_problem(task, tolerance, &mut |_, _| false, iterate)?;
         add(report, &qp);
         report.iterations = 1;
         report.status = step_status(qp.status);
@@ -125,7 +122,7 @@ impl SmalseSolver {
     }
 
     /// Problem (D(g)) with the slip bounds that are in the set.
-    fn given_friction(
+    fn tresca_problem(
         &mut self,
         task: Task<'_>,
         tolerance: f64,
@@ -172,49 +169,26 @@ impl SmalseSolver {
             .map(|v| v.min(0.0))
             .collect();
         let mut inner = Status::Converged;
-        let mut target = settings.tolerance * SMALSE_SAFETY;
-        let mut last = f64::INFINITY;
-        let mut tightenings = 0;
-        let mut exact = 0;
-        let outcome = successive_approximations(
-            &mut x,
-            settings.tolerance,
-            problem.least()[1],
-            settings.max_fixed_point,
-            |x, change| {
-                // Small contact forces under large loads: changes that stall above the tolerance are
-                // errors of the inner solve.
-                let stalls = exact > 2 && change > 0.5 * last && change < INNER_STALL;
-                if stalls && tightenings < MAX_TIGHTENINGS {
-                    target *= 0.1;
-                    tightenings += 1;
-                    exact = 1;
-                }
-                last = change;
-                if self.left == 0 {
-                    return Err(None);
-                }
-                let tolerance = match self.accuracy {
-                    InnerAccuracy::Adaptive { factor, loosest } if exact == 0 => {
-                        (factor * change).min(loosest).max(target)
-                    }
-                    // once at full accuracy, always: a looser solve would undo it
-                    _ => target,
-                };
-                iterate.lambda[normal.clone()].copy_from_slice(x);
-                problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
-                report.counters.slip_bound_updates += 1;
-                let qp = self
-                    .given_friction(task, tolerance, &mut |_, _| false, iterate)
-                    .map_err(Some)?;
-                inner = qp.status;
-                add(report, &qp);
-                x.copy_from_slice(&iterate.lambda[normal.clone()]);
-                exact += usize::from(tolerance <= target);
-                Ok(tolerance <= target)
-            },
-        );
-        let outcome = match outcome {
+        let mut tolerances = InnerTolerance::new(self.accuracy, settings.tolerance * SMALSE_SAFETY);
+        let map = |x: &mut [f64], change: f64| {
+            let tolerance = tolerances.next(change);
+            if self.left == 0 {
+                return Err(None);
+            }
+            iterate.lambda[normal.clone()].copy_from_slice(x);
+            problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
+            report.counters.slip_bound_updates += 1;
+            let qp = self
+                .tresca_problem(task, tolerance, &mut |_, _| false, iterate)
+                .map_err(Some)?;
+            inner = qp.status;
+            add(report, &qp);
+            x.copy_from_slice(&iterate.lambda[normal.clone()]);
+            Ok(tolerances.is_full(tolerance))
+        };
+        let (least, most) = (problem.least()[1], settings.max_fixed_point);
+        let outcome = successive_approximations(&mut x, settings.tolerance, least, most, map);
+        let mut outcome = match outcome {
             Ok(outcome) => outcome,
             // no products left
             Err(None) => {
@@ -230,9 +204,8 @@ impl SmalseSolver {
             Verdict::NotContractive => StepStatus::NotContractive,
             _ => StepStatus::IterationLimit,
         };
-        let mut outcome = outcome;
         if !inner.converged() && outcome.verdict == Verdict::Converged {
-            // the iterates agree, but the last given-friction problem is not solved
+            // the iterates agree, but the last Tresca problem is not solved
             outcome.verdict = Verdict::Unknown;
         }
         report.fixed_point = Some(outcome);
@@ -270,7 +243,7 @@ impl SmalseSolver {
             let settled = last_change < tolerance;
             !settled
         };
-        let qp = self.given_friction(task, tolerance, &mut hook, iterate)?;
+        let qp = self.tresca_problem(task, tolerance, &mut hook, iterate)?;
         add(report, &qp);
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;
@@ -287,6 +260,56 @@ impl SmalseSolver {
             rate: contraction.rate(),
         });
         Ok(())
+    }
+}
+
+/// Tolerances of the Tresca problems of a step.
+struct InnerTolerance {
+    accuracy: InnerAccuracy,
+    /// That of full accuracy.
+    full: f64,
+    /// Relative change before the last evaluation.
+    last: f64,
+    tightenings: usize,
+    /// Evaluations with full accuracy since it was last tightened.
+    exact: usize,
+}
+
+impl InnerTolerance {
+    fn new(accuracy: InnerAccuracy, full: f64) -> Self {
+        Self {
+            accuracy,
+            full,
+            last: f64::INFINITY,
+            tightenings: 0,
+            exact: 0,
+        }
+    }
+
+    /// After a relative change of the normal multipliers.
+    fn next(&mut self, change: f64) -> f64 {
+        // small contact forces under large loads: changes that stall above the tolerance are errors of the inner solve
+        let stalls = self.exact > 2 && change > 0.5 * self.last && change < INNER_STALL;
+        if stalls && self.tightenings < MAX_TIGHTENINGS {
+            self.full *= 0.1;
+            self.tightenings += 1;
+            self.exact = 1;
+        }
+        self.last = change;
+        match self.accuracy {
+            InnerAccuracy::Adaptive { factor, loosest } if self.exact == 0 => {
+                (factor * change).min(loosest).max(self.full)
+            }
+            // once at full accuracy, always: a looser solve would undo it
+            _ => self.full,
+        }
+    }
+
+    /// Whether an evaluation had full accuracy.
+    fn is_full(&mut self, tolerance: f64) -> bool {
+        let full = tolerance <= self.full;
+        self.exact += usize::from(full);
+        full
     }
 }
 

@@ -60,7 +60,7 @@ fn given_friction_is_one_quadratic_program_a_step() {
     assert!(simulation.counters().quadratic_programs > steps);
 }
 
-/// The face method writes given bounds once a step.
+/// The active-set method writes Tresca bounds once a step.
 fn set_by_hook(result: &Solved) -> usize {
     assert!(!result.report.fallback);
     1

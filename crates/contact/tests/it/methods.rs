@@ -17,10 +17,10 @@ fn is_near(found: usize, measured: usize, part: usize) -> bool {
 #[test]
 fn all_methods_agree_in_every_step() {
     for history in [ramp(), up_down_up()] {
-        let [face, paper, one_loop] =
+        let [default, paper, one_loop] =
             methods().map(|m| run(benchmark(history.clone(), 10), by(m)).1);
         for (name, other) in [("paper", &paper), ("one-loop", &one_loop)] {
-            for (k, (a, b)) in face.iter().zip(other).enumerate() {
+            for (k, (a, b)) in default.iter().zip(other).enumerate() {
                 let (x, y) = (&a.summary, &b.summary);
                 let parts = [
                     ("nodal forces", forces(&a.points), forces(&b.points)),
@@ -44,12 +44,13 @@ fn all_methods_agree_in_every_step() {
             }
         }
         assert!(
-            face.iter().any(|l| l.summary.stick > 0) && face.iter().any(|l| l.summary.slip > 0)
+            default.iter().any(|l| l.summary.stick > 0)
+                && default.iter().any(|l| l.summary.slip > 0)
         );
     }
 }
 
-/// Products of all 50 steps, and steps that the face method handed to the fall-back.
+/// Products of all 50 steps, and steps that the active-set method handed to the fall-back.
 fn products(history: History, method: Method) -> (usize, usize) {
     let (simulation, results) = run(benchmark(history, 50), by(method));
     let fallbacks = results.iter().filter(|l| l.report.fallback).count();

@@ -53,7 +53,7 @@ fn scene(k: u64, angle: f64) -> Result<Scene, Error> {
 }
 
 /// Six that ended at certificates of 1e-4 to 1e-2: points that stuck where the support moves them were put on their
-/// circles against their slip, whatever their forces were, and the next face took them back.
+/// circles against their slip, whatever their forces were, and the next active set took them back.
 #[test]
 fn points_that_a_support_moves_along_the_obstacle_slide() -> Result<(), Error> {
     for k in [26, 51, 211, 362, 531, 551] {
