@@ -12,26 +12,17 @@ use signorini_fem_mesh::{Decomposition, NodeCopy};
 
 impl Gluing {
     /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
-    /// orthonormal contact and support rows, its default all alike. `nodes` is the number of mesh nodes.
+    /// contact and support rows, its default all alike.
     ///
     /// # Errors
-    /// [`TfetiError`] for bad supports or contact points, and where `nodes` or `stiffness` belong to another
-    /// decomposition.
+    /// [`TfetiError`] for bad supports or contact points, and where `stiffness` belongs to another decomposition.
     pub fn new(
         decomposition: &Decomposition,
-        nodes: usize,
         supports: &[NodeSupport],
         contact: Option<&ContactConstraints>,
         stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
-        let (what, found, expected) = ("nodes", decomposition.nodes(), nodes);
-        if found != expected {
-            return Err(TfetiError::DecompositionMismatch {
-                what,
-                found,
-                expected,
-            });
-        }
+        let nodes = decomposition.nodes();
         stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
         let none = ContactConstraints::default();
@@ -47,7 +38,12 @@ impl Gluing {
             removed: [found.removed, merged.removed.clone()].concat(),
             ..Self::default()
         };
-        let mut builder = Builder::new(decomposition, stiffness, &mut gluing);
+        let mut builder = Builder {
+            decomposition,
+            stiffness,
+            shares: Vec::new(),
+            gluing: &mut gluing,
+        };
         builder.contact(contact, &found.rows);
         builder.interface(nodes);
         builder.dirichlet(&merged);
@@ -85,21 +81,7 @@ struct Builder<'a> {
     gluing: &'a mut Gluing,
 }
 
-impl<'a> Builder<'a> {
-    fn new(
-        decomposition: &'a Decomposition,
-        stiffness: &'a CopyStiffness,
-        gluing: &'a mut Gluing,
-    ) -> Self {
-        let shares = Vec::new();
-        Self {
-            decomposition,
-            stiffness,
-            shares,
-            gluing,
-        }
-    }
-
+impl Builder<'_> {
     /// Spreads a vector that multiplies the mean displacement of a node over its copies.
     fn spread(&mut self, node: u32, vector: [f64; 3]) {
         if vector == [0.0; 3] {
