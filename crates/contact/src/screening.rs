@@ -95,10 +95,8 @@ impl Screen {
         }
         let (supports, _) = supports(&model.scene)?;
         let nodes = contact_nodes(&model.scene, model.found.points.iter());
-        let mesh_nodes = model.scene.mesh.points().len();
         let gluing = Gluing::new(
             &model.decomposition,
-            mesh_nodes,
             &supports,
             Some(&nodes),
             model.tfeti.copy_stiffness(),
