@@ -204,10 +204,11 @@ fn reference(case: &Case, simulation: &Simulation) -> Vec<f64> {
 /// Nodal forces in space from multipliers.
 fn nodal_forces(lambda: &[f64], simulation: &Simulation) -> Vec<f64> {
     let mut out = Vec::new();
-    for info in simulation.tfeti().gluing().contact() {
+    let rows = simulation.tfeti().gluing().contact().iter();
+    for (info, point) in rows.zip(simulation.constrained_points()) {
         out.push(info.scale * lambda[info.row]);
         out.extend(match info.tangential {
-            TangentialRows::Disc { row, scale } => info
+            TangentialRows::Disc { row, scale } => point
                 .frame
                 .vector(0.0, [scale * lambda[row], scale * lambda[row + 1]]),
             TangentialRows::Interval {
