@@ -7,7 +7,7 @@ use signorini_tfeti::internal::{ActiveSetFactor, CopyStiffness};
 use signorini_tfeti::{ActiveSetProjector, Gluing, Motion, NodeSupport, RowWeights, TfetiError};
 
 #[test]
-fn face_spaces_check_their_arguments() {
+fn projectors_check_their_arguments() {
     let system = Brick::new(1, 2).system();
     let (coarse, dim) = (system.coarse(), system.dual_dim());
     let contact = system.gluing().ranges().contact().end;
