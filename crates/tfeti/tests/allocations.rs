@@ -51,9 +51,9 @@ fn products_and_projectors_allocate_nothing() {
     }
 }
 
-/// Conjugate gradients on one face: what a run allocates does not grow with its iterations.
+/// Conjugate gradients on one active set: what a run allocates does not grow with its iterations.
 #[test]
-fn iterations_of_the_face_method_allocate_nothing() {
+fn iterations_of_the_active_set_method_allocate_nothing() {
     let b = Brick::new(1, 3);
     let system = b.system();
     let (n, contact) = (system.dual_dim(), system.gluing().ranges().contact().end);

@@ -28,7 +28,7 @@ pub(crate) struct CoarseData {
     pub(crate) symbolic: Symbolic,
     pub(crate) mobility: Mobility,
     /// Whether the support rows alone hold all bodies.
-    held: bool,
+    supports_suffice: bool,
 }
 
 /// Work memory of all operations with `G` and its factors.
@@ -84,11 +84,11 @@ impl Coarse {
             matrix,
             symbolic,
             mobility,
-            held: false,
+            supports_suffice: false,
         };
         let mut supports = RowWeights::diagonal(vec![1.0; data.map.rows()]);
         supports.diagonal[data.gluing.ranges().contact()].fill(0.0);
-        data.held = data.free_motions(Some(&supports)).is_empty();
+        data.supports_suffice = data.free_motions(Some(&supports)).is_empty();
         Ok(Self(Arc::new(data)))
     }
 
@@ -229,7 +229,7 @@ impl CoarseData {
                 .iter()
                 .all(|w| *w >= SUPPORTED)
         };
-        if self.held && weights.is_none_or(supported) {
+        if self.supports_suffice && weights.is_none_or(supported) {
             return Vec::new();
         }
         let weight = |row: usize| weights.map_or(1.0, |w| w.diagonal[row]);

@@ -7,8 +7,8 @@
 //! half empty in between.
 
 use crate::linalg::tiles::{
-    LANES, PANEL, Stored, Tile, copy, eliminate, eliminate_alike, panel, substitute,
-    substitute_alike,
+    LANES, PANEL, Stored, Tile, add_unit, copy, eliminate, eliminate_alike, panel, substitute,
+    substitute_alike, unit,
 };
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -230,7 +230,6 @@ impl<T: Stored> Solve<'_, T> {
     #[inline(always)]
     fn forward<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
-        let first = x.len() / U;
         let mut nodes = &factor.nodes[..];
         while let Some(node) = nodes.first() {
             let run = nodes.iter().zip(1..);
@@ -270,15 +269,7 @@ impl<T: Stored> Solve<'_, T> {
             }
             copy::<U>(&t[..width], &mut x[node.columns.clone()]);
             for (&row, sum) in rows.iter().zip(t[width..].chunks_exact(U)) {
-                let row = row as usize;
-                let target = if row < first {
-                    &mut x[U * row..][..U]
-                } else {
-                    &mut self.behind[U * (row - first)..][..U]
-                };
-                for k in 0..U {
-                    target[k] += sum[k];
-                }
+                add_unit::<U>(x, self.behind, row, sum);
             }
         }
     }
@@ -286,7 +277,6 @@ impl<T: Stored> Solve<'_, T> {
     #[inline(always)]
     fn backward<S: Simd, const U: usize>(self, simd: S) {
         let (factor, x) = (self.factor, self.x);
-        let first = x.len() / U;
         let mut nodes = &factor.nodes[..];
         while let Some((node, before)) = nodes.split_last() {
             if node.alike > 0 {
@@ -298,7 +288,7 @@ impl<T: Stored> Solve<'_, T> {
                 let rows = &factor.rows[first.rows.start..node.rows.end];
                 let units = node.rows.len();
                 let t = &mut self.buffer[..];
-                let behind = &*self.behind;
+                let behind = &mut self.behind[..];
                 panel!(
                     substitute_alike,
                     simd,
@@ -314,13 +304,7 @@ impl<T: Stored> Solve<'_, T> {
             let t = &mut self.buffer[..height + LANES];
             copy::<U>(&x[node.columns.clone()], &mut t[..width]);
             for (&row, target) in rows.iter().zip(t[width..].chunks_exact_mut(U)) {
-                let row = row as usize;
-                let source = if row < first {
-                    &x[U * row..][..U]
-                } else {
-                    &self.behind[U * (row - first)..][..U]
-                };
-                target[..U].copy_from_slice(source);
+                target.copy_from_slice(unit::<U>(x, self.behind, row));
             }
             t[height..].fill(0.0);
             let mut tiles = &self.tiles[node.tiles.clone()];

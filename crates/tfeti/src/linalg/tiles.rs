@@ -87,36 +87,61 @@ pub(crate) fn copy<const U: usize>(from: &[f64], to: &mut [f64]) {
     }
 }
 
-/// Forward elimination of one panel; `t` holds its unknowns and the rows below.
+/// The unit of rows `row` among the unknowns `x`, of which there are `first`, and those behind them.
 #[inline(always)]
-pub(crate) fn eliminate<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+pub(crate) fn unit<'a, const U: usize>(x: &'a [f64], behind: &'a [f64], row: u32) -> &'a [f64] {
+    let (row, first) = (row as usize, x.len() / U);
+    if row < first {
+        &x[U * row..][..U]
+    } else {
+        &behind[U * (row - first)..][..U]
+    }
+}
+
+/// Adds to the unit of rows `row`.
+#[inline(always)]
+pub(crate) fn add_unit<const U: usize>(x: &mut [f64], behind: &mut [f64], row: u32, sum: &[f64]) {
+    let (row, first) = (row as usize, x.len() / U);
+    let target = if row < first {
+        &mut x[U * row..][..U]
+    } else {
+        &mut behind[U * (row - first)..][..U]
+    };
+    for k in 0..U {
+        target[k] += sum[k];
+    }
+}
+
+/// `t = A z`, added to `t` if `KEEP`, for the columns `A` of a panel.
+#[inline(always)]
+fn product<S: Simd, T: Stored, const N: usize, const V: usize, const KEEP: bool>(
     simd: S,
-    (tiles, t): (&[T], &mut [f64]),
+    tiles: &[T],
+    z: &[S::f64s; N],
+    t: &mut [f64],
 ) {
-    let x: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(t[k]));
-    t[..N].fill(0.0);
     for (chunk, t) in tiles.chunks_exact(N).zip(t.chunks_exact_mut(LANES)) {
         let (t, _) = S::as_mut_simd_f64s(t);
-        let mut sum: [S::f64s; V] = std::array::from_fn(|v| t[v]);
+        let start = |v: usize| if KEEP { t[v] } else { simd.splat_f64s(0.0) };
+        let mut sum: [S::f64s; V] = std::array::from_fn(start);
         for k in 0..N {
             let numbers = chunk[k].numbers();
             let (column, _) = S::as_simd_f64s(&numbers);
             for v in 0..V {
-                sum[v] = simd.mul_add_e_f64s(column[v], x[k], sum[v]);
+                sum[v] = simd.mul_add_e_f64s(column[v], z[k], sum[v]);
             }
         }
         t.copy_from_slice(&sum);
     }
 }
 
-/// Back substitution of one panel; `t` holds its unknowns and those of the rows below.
+/// `A^T t` for the columns `A` of a panel.
 #[inline(always)]
-pub(crate) fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+fn transposed<S: Simd, T: Stored, const N: usize, const V: usize>(
     simd: S,
-    (tiles, t): (&[T], &mut [f64]),
-) {
-    let own: [f64; N] = std::array::from_fn(|k| t[k]);
-    t[..N].fill(0.0);
+    tiles: &[T],
+    t: &[f64],
+) -> [f64; N] {
     let mut sums = [[simd.splat_f64s(0.0); V]; N];
     for (chunk, t) in tiles.chunks_exact(N).zip(t.chunks_exact(LANES)) {
         let (t, _) = S::as_simd_f64s(t);
@@ -129,23 +154,48 @@ pub(crate) fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, con
             }
         }
     }
-    for k in 0..N {
+    std::array::from_fn(|k| {
         let mut sum = sums[k][0];
         for v in 1..V {
             sum = simd.add_f64s(sum, sums[k][v]);
         }
-        t[k] = own[k] + simd.reduce_sum_f64s(sum);
+        simd.reduce_sum_f64s(sum)
+    })
+}
+
+/// Forward elimination of one panel; `t` holds its unknowns and the rows below.
+#[inline(always)]
+pub(crate) fn eliminate<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+    simd: S,
+    (tiles, t): (&[T], &mut [f64]),
+) {
+    let z: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(t[k]));
+    t[..N].fill(0.0);
+    product::<S, T, N, V, true>(simd, tiles, &z, t);
+}
+
+/// Back substitution of one panel; `t` holds its unknowns and those of the rows below.
+#[inline(always)]
+pub(crate) fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+    simd: S,
+    (tiles, t): (&[T], &mut [f64]),
+) {
+    let own: [f64; N] = std::array::from_fn(|k| t[k]);
+    t[..N].fill(0.0);
+    let sums = transposed::<S, T, N, V>(simd, tiles, t);
+    for k in 0..N {
+        t[k] = own[k] + sums[k];
     }
 }
 
 /// Tiles, rows, number of units of rows in each group, first column, unknowns, those behind, and a buffer.
-pub(crate) type Alike<'a, T, B> = (
+pub(crate) type Alike<'a, T> = (
     &'a [T],
     &'a [u32],
     usize,
     usize,
     &'a mut [f64],
-    B,
+    &'a mut [f64],
     &'a mut [f64],
 );
 
@@ -159,38 +209,17 @@ pub(crate) fn eliminate_alike<
     const U: usize,
 >(
     simd: S,
-    (tiles, rows, units, mut start, x, behind, buffer): Alike<'_, T, &mut [f64]>,
+    (tiles, rows, units, mut start, x, behind, t): Alike<'_, T>,
 ) {
-    let first = x.len() / U;
     let length = N * (N + U * units).div_ceil(LANES);
     for (tiles, rows) in tiles.chunks_exact(length).zip(rows.chunks_exact(units)) {
         let own = &mut x[start..][..N];
         let z: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(own[k]));
-        let t = &mut buffer[..];
-        for (chunk, t) in tiles.chunks_exact(N).zip(t.chunks_exact_mut(LANES)) {
-            let (t, _) = S::as_mut_simd_f64s(t);
-            let mut sum = [simd.splat_f64s(0.0); V];
-            for k in 0..N {
-                let numbers = chunk[k].numbers();
-                let (column, _) = S::as_simd_f64s(&numbers);
-                for v in 0..V {
-                    sum[v] = simd.mul_add_e_f64s(column[v], z[k], sum[v]);
-                }
-            }
-            t.copy_from_slice(&sum);
-        }
+        product::<S, T, N, V, false>(simd, tiles, &z, t);
         own.copy_from_slice(&t[..N]);
         start += N;
         for (&row, sum) in rows.iter().zip(t[N..].chunks_exact(U)) {
-            let row = row as usize;
-            let target = if row < first {
-                &mut x[U * row..][..U]
-            } else {
-                &mut behind[U * (row - first)..][..U]
-            };
-            for k in 0..U {
-                target[k] += sum[k];
-            }
+            add_unit::<U>(x, behind, row, sum);
         }
     }
 }
@@ -205,9 +234,8 @@ pub(crate) fn substitute_alike<
     const U: usize,
 >(
     simd: S,
-    (tiles, rows, units, start, x, behind, buffer): Alike<'_, T, &[f64]>,
+    (tiles, rows, units, start, x, behind, buffer): Alike<'_, T>,
 ) {
-    let first = x.len() / U;
     let height = N + U * units;
     let length = N * height.div_ceil(LANES);
     let t = &mut buffer[..height + LANES];
@@ -216,32 +244,12 @@ pub(crate) fn substitute_alike<
     let groups = tiles.chunks_exact(length).zip(rows.chunks_exact(units));
     for (g, (tiles, rows)) in groups.enumerate().rev() {
         for (&row, target) in rows.iter().zip(t[N..].chunks_exact_mut(U)) {
-            let row = row as usize;
-            let source = if row < first {
-                &x[U * row..][..U]
-            } else {
-                &behind[U * (row - first)..][..U]
-            };
-            target[..U].copy_from_slice(source);
+            target.copy_from_slice(unit::<U>(x, behind, row));
         }
-        let mut sums = [[simd.splat_f64s(0.0); V]; N];
-        for (chunk, t) in tiles.chunks_exact(N).zip(t.chunks_exact(LANES)) {
-            let (t, _) = S::as_simd_f64s(t);
-            for k in 0..N {
-                let numbers = chunk[k].numbers();
-                let (column, _) = S::as_simd_f64s(&numbers);
-                for v in 0..V {
-                    sums[k][v] = simd.mul_add_e_f64s(column[v], t[v], sums[k][v]);
-                }
-            }
-        }
+        let sums = transposed::<S, T, N, V>(simd, tiles, t);
         let own = &mut x[start + N * g..][..N];
         for k in 0..N {
-            let mut sum = sums[k][0];
-            for v in 1..V {
-                sum = simd.add_f64s(sum, sums[k][v]);
-            }
-            own[k] += simd.reduce_sum_f64s(sum);
+            own[k] += sums[k];
         }
     }
 }

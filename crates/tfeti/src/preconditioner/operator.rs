@@ -163,9 +163,9 @@ impl SymmetricOperator for DualPreconditioner {
 }
 
 impl ActiveSetPreconditioner for DualPreconditioner {
-    fn enter(&self, face: &ActiveSetView<'_>, s: &mut DualPreconditionerScratch) {
+    fn enter(&self, view: &ActiveSetView<'_>, s: &mut DualPreconditionerScratch) {
         if let Some(scaling) = &self.scaling {
-            scaling.on_face(face, &mut s.groups);
+            scaling.on_active_set(view, &mut s.groups);
         }
     }
 }

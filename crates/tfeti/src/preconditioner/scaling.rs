@@ -149,22 +149,22 @@ impl Scaling {
         &self.weights
     }
 
-    /// The matrices of the groups without the directions that a face holds: with `H` these directions, `N - N H (H^T N
-    /// H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and a soft
-    /// subdomain follows the soft one, but the stiff one where contact holds the mean of the copies. (Rows that weigh
-    /// the copies by stiffness do not need it, chained ones do.)
-    pub(crate) fn on_face(&self, face: &ActiveSetView<'_>, groups: &mut Vec<f64>) {
+    /// The matrices of the groups without the directions that an active set holds: with `H` these directions,
+    /// `N - N H (H^T N H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a
+    /// stiff and a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the
+    /// copies.
+    pub(crate) fn on_active_set(&self, view: &ActiveSetView<'_>, groups: &mut Vec<f64>) {
         groups.clear();
         groups.extend_from_slice(&self.groups.inverses);
-        let mut held = Vec::new();
-        face.for_each(|row, count, freedom| match freedom {
+        let mut image = Vec::new();
+        view.for_each(|row, count, freedom| match freedom {
             Freedom::Free => {}
             Freedom::Held => {
                 for row in row..row + count {
-                    self.drop_direction(groups, row, &[1.0], &mut held);
+                    self.drop_direction(groups, row, &[1.0], &mut image);
                 }
             }
-            Freedom::Along(tau) => self.drop_direction(groups, row, &[-tau[1], tau[0]], &mut held),
+            Freedom::Along(tau) => self.drop_direction(groups, row, &[-tau[1], tau[0]], &mut image),
         });
     }
 

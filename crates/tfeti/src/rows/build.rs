@@ -1,15 +1,79 @@
 //! Building the rows: contact rows, interface blocks glob by glob, support rows.
 
 use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows};
+use crate::error::TfetiError;
 use crate::linalg::vec3::dot;
-use crate::rows::contact::{ContactRow, PointRows};
+use crate::rows::contact::{ContactRow, PointRows, contact_rows};
 use crate::rows::side::{ContactConstraint, ContactConstraints};
-use crate::rows::supports::MergedSupports;
+use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::tolerances::SAME;
 use signorini_fem_mesh::{Decomposition, NodeCopy};
 
-pub(super) struct Builder<'a> {
+impl Gluing {
+    /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
+    /// contact and support rows, its default all alike.
+    ///
+    /// # Errors
+    /// [`TfetiError`] for bad supports or contact points, and where `stiffness` belongs to another decomposition.
+    pub fn new(
+        decomposition: &Decomposition,
+        supports: &[NodeSupport],
+        contact: Option<&ContactConstraints>,
+        stiffness: &CopyStiffness,
+    ) -> Result<Self, TfetiError> {
+        let nodes = decomposition.nodes();
+        stiffness.check(decomposition)?;
+        let merged = MergedSupports::new(supports, nodes)?;
+        let none = ContactConstraints::default();
+        let contact = contact.unwrap_or(&none);
+        let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
+        let found = contact_rows(contact, &merged, nodes, squares)?;
+        let mut gluing = Self {
+            block_pointers: vec![0],
+            row_pointers: vec![0],
+            prescribed: vec![Vec::new(); merged.cases],
+            orthonormal: stiffness.is_plain(),
+            aligned: stiffness.is_plain(),
+            removed: [found.removed, merged.removed.clone()].concat(),
+            ..Self::default()
+        };
+        let mut builder = Builder {
+            decomposition,
+            stiffness,
+            shares: Vec::new(),
+            gluing: &mut gluing,
+        };
+        builder.contact(contact, &found.rows);
+        builder.interface(nodes);
+        builder.dirichlet(&merged);
+        let supported = gluing.nodal_rows() - gluing.ranges.contact().len();
+        let interface = gluing.ranges.interface.start;
+        let supports = interface + 3 * gluing.blocks();
+        gluing.ranges.interface.end = supports;
+        gluing.ranges.dirichlet = supports..supports + supported;
+        for case in &mut gluing.prescribed {
+            let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
+            later.for_each(|v| v.0 += (supports - interface) as u32);
+            case.sort_by_key(|v| v.0);
+        }
+        let torn = decomposition.torn_dofs();
+        let of_contact = contact
+            .points
+            .iter()
+            .map(|p| if p.friction { 3 } else { 1 });
+        gluing.paper_rows =
+            torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
+        let count = gluing.block_entries.len().max(gluing.row_entries.len());
+        if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
+            let what = "entries of B";
+            return Err(TfetiError::TooLarge { what, count });
+        }
+        Ok(gluing)
+    }
+}
+
+struct Builder<'a> {
     decomposition: &'a Decomposition,
     stiffness: &'a CopyStiffness,
     /// Shares of the copies of a node.
@@ -17,21 +81,7 @@ pub(super) struct Builder<'a> {
     gluing: &'a mut Gluing,
 }
 
-impl<'a> Builder<'a> {
-    pub(super) fn new(
-        decomposition: &'a Decomposition,
-        stiffness: &'a CopyStiffness,
-        gluing: &'a mut Gluing,
-    ) -> Self {
-        let shares = Vec::new();
-        Self {
-            decomposition,
-            stiffness,
-            shares,
-            gluing,
-        }
-    }
-
+impl Builder<'_> {
     /// Spreads a vector that multiplies the mean displacement of a node over its copies.
     fn spread(&mut self, node: u32, vector: [f64; 3]) {
         if vector == [0.0; 3] {
@@ -75,7 +125,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Normal rows, then pairs of tangential rows, then single ones.
-    pub(super) fn contact(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
+    fn contact(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
         let of = |p: &PointRows| &contact.points[p.point];
         for p in points {
             let row = self.contact_row(of(p), &p.normal, &p.prescribed);
@@ -146,7 +196,7 @@ impl<'a> Builder<'a> {
         self.gluing.dependent.dedup();
     }
 
-    pub(super) fn interface(&mut self, nodes: usize) {
+    fn interface(&mut self, nodes: usize) {
         let decomposition = self.decomposition;
         let copies = |node: u32| decomposition.copies(node as usize);
         let sharers = |node: u32| copies(node).iter().map(|c| c.subdomain);
@@ -192,7 +242,7 @@ impl<'a> Builder<'a> {
         self.gluing.block_nodes.push(node);
     }
 
-    pub(super) fn dirichlet(&mut self, merged: &MergedSupports) {
+    fn dirichlet(&mut self, merged: &MergedSupports) {
         for fixed in &merged.nodes {
             let copies = self.decomposition.copies(fixed.node as usize);
             let scale = self.stiffness.squares(copies).sqrt().recip();

@@ -5,14 +5,8 @@
 //! the mean of the copies, the interface rows on its complement, so the rows are independent by construction, except at
 //! [dependent nodes](Gluing::dependent_nodes); what else would depend is reported in [`Gluing::removed`].
 
-use super::build::Builder;
-use crate::error::TfetiError;
-use crate::rows::contact::contact_rows;
 use crate::rows::kinds::{RemovedRow, RowRanges};
-use crate::rows::side::{ContactConstraint, ContactConstraints};
-use crate::rows::supports::{MergedSupports, NodeSupport};
-use crate::subdomain::copy_stiffness::CopyStiffness;
-use signorini_fem_mesh::Decomposition;
+use crate::rows::side::ContactConstraint;
 use signorini_fem_mesh::internal::DisjointSets;
 
 /// Tangential rows of a contact point.
@@ -111,71 +105,6 @@ pub struct Gluing {
 }
 
 impl Gluing {
-    /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
-    /// orthonormal contact and support rows, its default all alike. `nodes` is the number of mesh nodes.
-    ///
-    /// # Errors
-    /// [`TfetiError`] for bad supports or contact points, and where `nodes` or `stiffness` belong to another
-    /// decomposition.
-    pub fn new(
-        decomposition: &Decomposition,
-        nodes: usize,
-        supports: &[NodeSupport],
-        contact: Option<&ContactConstraints>,
-        stiffness: &CopyStiffness,
-    ) -> Result<Self, TfetiError> {
-        let (what, found, expected) = ("nodes", decomposition.nodes(), nodes);
-        if found != expected {
-            return Err(TfetiError::DecompositionMismatch {
-                what,
-                found,
-                expected,
-            });
-        }
-        stiffness.check(decomposition)?;
-        let merged = MergedSupports::new(supports, nodes)?;
-        let none = ContactConstraints::default();
-        let contact = contact.unwrap_or(&none);
-        let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
-        let found = contact_rows(contact, &merged, nodes, squares)?;
-        let mut gluing = Self {
-            block_pointers: vec![0],
-            row_pointers: vec![0],
-            prescribed: vec![Vec::new(); merged.cases],
-            orthonormal: stiffness.is_plain(),
-            aligned: stiffness.is_plain(),
-            removed: [found.removed, merged.removed.clone()].concat(),
-            ..Self::default()
-        };
-        let mut builder = Builder::new(decomposition, stiffness, &mut gluing);
-        builder.contact(contact, &found.rows);
-        builder.interface(nodes);
-        builder.dirichlet(&merged);
-        let supported = gluing.nodal_rows() - gluing.ranges.contact().len();
-        let interface = gluing.ranges.interface.start;
-        let supports = interface + 3 * gluing.blocks();
-        gluing.ranges.interface.end = supports;
-        gluing.ranges.dirichlet = supports..supports + supported;
-        for case in &mut gluing.prescribed {
-            let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
-            later.for_each(|v| v.0 += (supports - interface) as u32);
-            case.sort_by_key(|v| v.0);
-        }
-        let torn = decomposition.torn_dofs();
-        let of_contact = contact
-            .points
-            .iter()
-            .map(|p| if p.friction { 3 } else { 1 });
-        gluing.paper_rows =
-            torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
-        let count = gluing.block_entries.len().max(gluing.row_entries.len());
-        if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
-            let what = "entries of B";
-            return Err(TfetiError::TooLarge { what, count });
-        }
-        Ok(gluing)
-    }
-
     /// Where each kind of row stands.
     pub fn ranges(&self) -> &RowRanges {
         &self.ranges

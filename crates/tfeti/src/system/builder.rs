@@ -106,20 +106,14 @@ impl<'a> TfetiBuilder<'a> {
         if !has_several_laws(mesh, self.materials) {
             stiffness = stiffness.unless_alike(decomposition);
         }
-        let (nodes, supports) = (mesh.points().len(), self.supports);
-        let gluing = Gluing::new(decomposition, nodes, supports, self.contact, &stiffness)?;
+        let gluing = Gluing::new(decomposition, self.supports, self.contact, &stiffness)?;
         let gluing = Arc::new(gluing);
         let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing));
         let gluing_seconds = clock.lap();
         let points = mesh.points();
         let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
-        let centres = || {
-            decomposition
-                .subdomains()
-                .iter()
-                .map(|s| centre(&s.nodes))
-                .collect()
-        };
+        let all = decomposition.subdomains().iter();
+        let centres = all.map(|s| centre(&s.nodes)).collect();
         let ((inverses, inverse_seconds), coarse) = rayon::join(
             || {
                 let started = Instant::now();
@@ -128,7 +122,7 @@ impl<'a> TfetiBuilder<'a> {
             },
             || {
                 let (map, gluing) = (map.clone(), gluing.clone());
-                let coarse = Coarse::new(map, subdomains.clone(), gluing, centres())?;
+                let coarse = Coarse::new(map, subdomains.clone(), gluing, centres)?;
                 let factor = coarse.factor()?;
                 Ok::<_, TfetiError>((coarse, factor))
             },
@@ -136,6 +130,7 @@ impl<'a> TfetiBuilder<'a> {
         let inverses = Arc::new(inverses?);
         let (coarse, factor) = coarse?;
         let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
+        let motions = factor.free_motions().iter();
         let report = SetupReport {
             subdomains: subdomains.count(),
             classes: class_reports(&subdomains.classes, &map, &inverses),
@@ -147,11 +142,7 @@ impl<'a> TfetiBuilder<'a> {
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
             factorisations: 1 + subdomains.bases.len(),
-            free_motions: factor
-                .free_motions()
-                .iter()
-                .map(ToString::to_string)
-                .collect(),
+            free_motions: motions.map(ToString::to_string).collect(),
             classes_seconds,
             gluing_seconds,
             assembly_seconds,

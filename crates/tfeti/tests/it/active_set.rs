@@ -1,4 +1,4 @@
-//! The split coarse factor of the face space gives the projectors of the full one.
+//! The split coarse factor of the projector gives the projectors of the full one.
 
 use crate::common::{Brick, distance, noise, norm};
 use signorini_fem_mesh::Decomposition;
@@ -41,8 +41,8 @@ fn space(system: &Tfeti, kind: ActiveSetFactor, metric: Option<Vec<f64>>) -> Spa
     Space::new(system, system.gluing().ranges().contact().end, kind, metric)
 }
 
-/// Weights of a face: a share of the contact rows is free.
-fn face(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
+/// Weights of an active set: a share of the contact rows is free.
+fn active_set(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
     let contact = system.gluing().ranges().contact().end;
     let mut w = vec![1.0; system.dual_dim()];
     for (w, v) in w[..contact].iter_mut().zip(noise(contact, seed)) {
@@ -51,7 +51,7 @@ fn face(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
     w
 }
 
-/// All that a face space does, as one list of vectors.
+/// All that a projector does, as one list of vectors.
 fn results(system: &Tfeti, space: &mut Space) -> Vec<Vec<f64>> {
     let (x, e) = (
         noise(system.dual_dim(), 5),
@@ -104,13 +104,13 @@ fn projectors_agree_with_the_full_factor() {
         let mut sparse = space(&system, ActiveSetFactor::Sparse, None);
         compare(&system, &mut split, &mut sparse);
         for (share, seed) in [(0.5, 1), (0.5, 2), (0.02, 3), (1.0, 4), (0.0, 5)] {
-            let w = face(&system, share, seed);
+            let w = active_set(&system, share, seed);
             assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
-            assert_eq!(split.set_weights(&w), Ok(false), "the same face again");
+            assert_eq!(split.set_weights(&w), Ok(false), "the same set again");
             compare(&system, &mut split, &mut sparse);
         }
-        // Weights of rows that no face holds are served as well.
-        let mut w = face(&system, 0.3, 6);
+        // Weights of rows that no active set holds are served as well.
+        let mut w = active_set(&system, 0.3, 6);
         let last = w.len() - 1;
         w[last] = 0.5;
         w[last / 2] = 0.25;
@@ -169,7 +169,7 @@ fn a_metric_of_the_rows_is_kept() {
     let mut split = space(&system, ActiveSetFactor::Split, Some(metric.clone()));
     let mut sparse = space(&system, ActiveSetFactor::Sparse, Some(metric));
     for (share, seed) in [(0.5, 1), (0.1, 2)] {
-        let w = face(&system, share, seed);
+        let w = active_set(&system, share, seed);
         assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
         compare(&system, &mut split, &mut sparse);
     }
@@ -195,7 +195,7 @@ fn one_subdomain_and_no_or_only_contact() {
             compare(system, &mut split, &mut sparse);
             let w = match rows {
                 0 => vec![1.0; system.dual_dim()],
-                _ => face(system, 0.5, 4),
+                _ => active_set(system, 0.5, 4),
             };
             assert_eq!(split.set_weights(&w), sparse.set_weights(&w));
             compare(system, &mut split, &mut sparse);
@@ -204,14 +204,14 @@ fn one_subdomain_and_no_or_only_contact() {
 }
 
 #[test]
-fn the_last_face_leaves_no_trace() {
+fn the_last_set_leaves_no_trace() {
     let system = system(2, 3);
-    let w = face(&system, 0.4, 7);
+    let w = active_set(&system, 0.4, 7);
     let mut fresh = space(&system, ActiveSetFactor::Split, None);
     fresh.set_weights(&w).unwrap();
     let mut used = space(&system, ActiveSetFactor::Split, None);
     for seed in 10..14 {
-        used.set_weights(&face(&system, 0.7, seed)).unwrap();
+        used.set_weights(&active_set(&system, 0.7, seed)).unwrap();
     }
     used.set_weights(&w).unwrap();
     assert_eq!(results(&system, &mut fresh), results(&system, &mut used));
@@ -228,7 +228,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
             .unwrap();
         pool.install(|| {
             let mut space = space(&system, ActiveSetFactor::Split, None);
-            space.set_weights(&face(&system, 0.5, 3)).unwrap();
+            space.set_weights(&active_set(&system, 0.5, 3)).unwrap();
             // both sides of the first cut read enough for a thread each
             assert!(space.factor().stored() >= 8 * 25_000);
             results(&system, &mut space)
@@ -240,7 +240,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn a_body_held_by_contact_only_is_deficient_on_open_faces() {
+fn a_body_held_by_contact_only_is_deficient_on_open_sets() {
     let b = Brick::new(2, 3);
     for supports in [vec![], vec![NodeSupport::fixed(vec![b.fixed[0]])]] {
         let contact = b.contact(true);
@@ -252,8 +252,8 @@ fn a_body_held_by_contact_only_is_deficient_on_open_faces() {
         let mut split = space(&system, ActiveSetFactor::Split, None);
         let mut sparse = space(&system, ActiveSetFactor::Sparse, None);
         let e = noise(system.coarse().rows(), 3);
-        let closed = face(&system, 0.6, 1);
-        let open = face(&system, 0.0, 1);
+        let closed = active_set(&system, 0.6, 1);
+        let open = active_set(&system, 0.0, 1);
         for space in [&mut split, &mut sparse] {
             space.set_coarse_rhs(&e);
             assert_eq!(space.set_weights(&closed), Ok(true));
@@ -261,7 +261,7 @@ fn a_body_held_by_contact_only_is_deficient_on_open_faces() {
                 space.set_weights(&open),
                 Err(QpError::CoarseDeficient { .. })
             ));
-            assert_eq!(space.set_weights(&face(&system, 0.5, 2)), Ok(true));
+            assert_eq!(space.set_weights(&active_set(&system, 0.5, 2)), Ok(true));
         }
         compare(&system, &mut split, &mut sparse);
     }

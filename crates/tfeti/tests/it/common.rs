@@ -128,8 +128,8 @@ pub(crate) fn gluing(
     supports: &[NodeSupport],
     contact: Option<&ContactConstraints>,
 ) -> Result<Gluing, TfetiError> {
-    let (nodes, alike) = (b.mesh.points().len(), CopyStiffness::default());
-    Gluing::new(&b.decomposition, nodes, supports, contact, &alike)
+    let alike = CopyStiffness::default();
+    Gluing::new(&b.decomposition, supports, contact, &alike)
 }
 
 /// Row `row` of `G^T`: what the rigid motions of each subdomain do to it.

@@ -237,7 +237,6 @@ fn a_whole_body_has_no_interface_rows() {
     let contact = ContactConstraints::rigid(&b.bottom, &vec![frame; b.bottom.len()], true);
     let g = Gluing::new(
         &whole,
-        b.mesh.points().len(),
         &b.supports(),
         Some(&contact),
         &CopyStiffness::default(),

@@ -15,7 +15,7 @@ fn space(system: &Tfeti, kind: ActiveSetFactor) -> ActiveSetProjector {
 }
 
 /// Every third contact row is held.
-fn face(system: &Tfeti) -> Vec<f64> {
+fn active_set(system: &Tfeti) -> Vec<f64> {
     let contact = system.gluing().ranges().contact().end;
     let free = |row: usize| row >= contact || !row.is_multiple_of(3);
     (0..system.dual_dim())
@@ -32,7 +32,7 @@ fn steps_are_rounded_symmetric_and_close_to_the_projector() {
     let system = system(&Brick::new(3, 3));
     let mut space = space(&system, ActiveSetFactor::Split);
     assert!(space.rounds_steps());
-    space.set_weights(&face(&system)).unwrap();
+    space.set_weights(&active_set(&system)).unwrap();
     let (x, y) = (noise(system.dual_dim(), 1), noise(system.dual_dim(), 2));
     let (mut exact, mut step) = (x.clone(), x.clone());
     space.project(&mut exact);

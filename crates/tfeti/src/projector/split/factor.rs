@@ -46,7 +46,7 @@ pub(crate) struct Piece {
     pub(crate) work: usize,
     /// Numbers that a solve reads in the region and those within.
     pub(crate) reads: usize,
-    /// Operations of a change of the face in the region and those within.
+    /// Operations of a change of the active set in the region and those within.
     operations: f64,
 }
 

@@ -1,8 +1,8 @@
 //! Order of elimination of the coarse unknowns: nested dissection by the centres of the subdomains.
 //!
-//! The blocks whose matrix changes with the face are wanted late, yet not all at the very end, where they would form
-//! one large dense matrix. The first cuts divide all blocks; each piece that they leave then eliminates its steady
-//! blocks before the changing ones.
+//! The blocks whose matrix changes with the active set are wanted late, yet not all at the very end, where they
+//! would form one large dense matrix. The first cuts divide all blocks; each piece that they leave then
+//! eliminates its steady blocks before the changing ones.
 
 use crate::linalg::sparse::{FactorError, minimum_degree};
 use crate::tolerances::CUT;

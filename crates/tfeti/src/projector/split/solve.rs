@@ -1,4 +1,4 @@
-//! Solves with a [split factor](crate::split_factor), in double or in single precision.
+//! Solves with a split factor, in double or in single precision.
 //!
 //! A solve waits for the factor, which is read twice. Steps of an iteration, whose errors are relative to the step,
 //! read one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a
