@@ -37,8 +37,9 @@ const CRATES: [(&str, &[&str]); 5] = [
             "dual",
             "rows",
             "subdomain",
+            "error",
             "linalg",
-            "error tolerances",
+            "tolerances",
         ],
     ),
     (
