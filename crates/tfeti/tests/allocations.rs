@@ -83,7 +83,7 @@ fn iterations_of_the_face_method_allocate_nothing() {
             .with_max_products(products);
         let mut steps = 0;
         let count = measure(|| {
-            let report = face(
+            let report = active_set(
                 &problem,
                 &mut space,
                 &mut set,
