@@ -9,7 +9,7 @@ use allocation_counter::measure;
 use common::{Brick, build, noise};
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
-    ProductSet, Segment, SymmetricOperator, face,
+    ProductSet, Segment, SymmetricOperator, active_set,
 };
 use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, RowScaling, Sharing};
 
