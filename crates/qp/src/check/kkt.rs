@@ -138,6 +138,8 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     }
     let x_norm = root_of_squares(x);
     let mut sums = Sums {
+        scale,
+        near: KKT_ON_BOUND * x_norm,
         largest: -1.0,
         ..Sums::default()
     };
@@ -145,62 +147,20 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     for segment in set.segments() {
         match segment {
             Segment::Free(len) => {
-                for i in at..at + len {
-                    sums.add(i, 0.0, r[i] * r[i], r[i] * r[i], 0.0);
-                    sums.inside += x[i] * x[i];
-                }
-                at += len;
+                (at..at + len).for_each(|i| sums.free(i, x[i], r[i]));
             }
             Segment::Bounds { lower, upper } => {
-                for (&lo, &hi) in lower.iter().zip(upper) {
-                    let (xi, ri) = (x[at], r[at]);
-                    let outside = (lo - xi).max(xi - hi).max(0.0);
-                    sums.inside += xi.max(lo).min(hi).powi(2);
-                    let moved = (xi - ri / scale).max(lo).min(hi);
-                    let natural = scale * (xi - moved);
-                    let near = KKT_ON_BOUND * x_norm;
-                    let (low, high) = (xi - lo <= near, hi - xi <= near);
-                    let wrong = match (low, high) {
-                        (true, true) => 0.0,
-                        (true, false) => ri.min(0.0),
-                        (false, true) => ri.max(0.0),
-                        (false, false) => ri,
-                    };
-                    let sign = if low || high { wrong } else { 0.0 };
-                    sums.add(
-                        at,
-                        outside * outside,
-                        natural * natural,
-                        wrong * wrong,
-                        sign * sign,
-                    );
-                    at += 1;
+                for (i, (&lo, &hi)) in (at..).zip(lower.iter().zip(upper)) {
+                    sums.interval(i, x[i], r[i], (lo, hi));
                 }
             }
             Segment::Discs { radii } => {
-                for &radius in radii {
-                    let (x0, x1, r0, r1) = (x[at], x[at + 1], r[at], r[at + 1]);
-                    let length = (x0 * x0 + x1 * x1).sqrt();
-                    let outside = (length - radius).max(0.0);
-                    sums.inside += length.min(radius).powi(2);
-                    let (y0, y1) = (x0 - r0 / scale, x1 - r1 / scale);
-                    let reach = (y0 * y0 + y1 * y1).sqrt();
-                    let shrink = if reach > radius { radius / reach } else { 1.0 };
-                    let (d0, d1) = (scale * (x0 - shrink * y0), scale * (x1 - shrink * y1));
-                    let (mut dual, mut sign) = (r0 * r0 + r1 * r1, 0.0);
-                    if radius == 0.0 {
-                        dual = 0.0;
-                    } else if length >= radius * (1.0 - KKT_ON_CIRCLE) {
-                        let normal = (r0 * x0 + r1 * x1) / length;
-                        let along = (r1 * x0 - r0 * x1) / length;
-                        sign = normal.max(0.0).powi(2);
-                        dual = along * along + sign;
-                    }
-                    sums.add(at, outside * outside, d0 * d0 + d1 * d1, dual, sign);
-                    at += 2;
+                for (i, &radius) in (at..).step_by(2).zip(radii) {
+                    sums.disc(i, [x[i], x[i + 1]], [r[i], r[i + 1]], radius);
                 }
             }
         }
+        at += segment.len();
     }
     let infeasibility = sums.outside.sqrt();
     let dual_size = if b_norm > 0.0 {
@@ -226,6 +186,9 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
 
 #[derive(Default)]
 struct Sums {
+    scale: f64,
+    /// Distance from a bound that counts as none.
+    near: f64,
     outside: f64,
     natural: f64,
     dual: f64,
@@ -237,6 +200,54 @@ struct Sums {
 }
 
 impl Sums {
+    fn free(&mut self, at: usize, x: f64, r: f64) {
+        self.inside += x * x;
+        self.add(at, 0.0, r * r, r * r, 0.0);
+    }
+
+    fn interval(&mut self, at: usize, x: f64, r: f64, (lo, hi): (f64, f64)) {
+        let outside = (lo - x).max(x - hi).max(0.0);
+        self.inside += x.max(lo).min(hi).powi(2);
+        let moved = (x - r / self.scale).max(lo).min(hi);
+        let natural = self.scale * (x - moved);
+        let (low, high) = (x - lo <= self.near, hi - x <= self.near);
+        let wrong = match (low, high) {
+            (true, true) => 0.0,
+            (true, false) => r.min(0.0),
+            (false, true) => r.max(0.0),
+            (false, false) => r,
+        };
+        let sign = if low || high { wrong } else { 0.0 };
+        self.add(
+            at,
+            outside * outside,
+            natural * natural,
+            wrong * wrong,
+            sign * sign,
+        );
+    }
+
+    fn disc(&mut self, at: usize, [x0, x1]: [f64; 2], [r0, r1]: [f64; 2], radius: f64) {
+        let scale = self.scale;
+        let length = (x0 * x0 + x1 * x1).sqrt();
+        let outside = (length - radius).max(0.0);
+        self.inside += length.min(radius).powi(2);
+        let (y0, y1) = (x0 - r0 / scale, x1 - r1 / scale);
+        let reach = (y0 * y0 + y1 * y1).sqrt();
+        let shrink = if reach > radius { radius / reach } else { 1.0 };
+        let (d0, d1) = (scale * (x0 - shrink * y0), scale * (x1 - shrink * y1));
+        let (mut dual, mut sign) = (r0 * r0 + r1 * r1, 0.0);
+        if radius == 0.0 {
+            dual = 0.0;
+        } else if length >= radius * (1.0 - KKT_ON_CIRCLE) {
+            let normal = (r0 * x0 + r1 * x1) / length;
+            let along = (r1 * x0 - r0 * x1) / length;
+            sign = normal.max(0.0).powi(2);
+            dual = along * along + sign;
+        }
+        self.add(at, outside * outside, d0 * d0 + d1 * d1, dual, sign);
+    }
+
     fn add(&mut self, at: usize, outside: f64, natural: f64, dual: f64, sign: f64) {
         self.outside += outside;
         self.natural += natural;

@@ -11,7 +11,7 @@
 //! | `G`, `e` | `c`, `e` | equality with orthonormal rows |
 //! | `beta` | `multiplier` | multiplier of `C x = e` in the projected problem |
 //! | `rho`, `M_k`, `eta`, `eps_1` | `o.rho`, `o.precision`, `o.cap`, `o.floor` | in the units of the gradient |
-//! | `g^K` | `inner.projected_gradient()` | norm of the K-gradient |
+//! | `g^K` | `inner.projected_gradient` | norm of the K-gradient |
 //! | `beta > 1` | `1 / shrink` | how the precision control shrinks |
 //!
 //! The set is not shifted by `lambda_Im`: because `P Cᵀ = 0` and `Q lambda_Im = lambda_Im` the shift amounts
