@@ -3,15 +3,15 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
-use signorini::fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, TetMesh, brick};
+use signorini::fem_mesh::{Decomposition, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::{
     ContactConstraints, InverseKind, InverseSettings, NodeSupport, Sharing, Tfeti, TfetiBuilder,
     TfetiError,
 };
+use signorini_studies::brick::{Block, Loading, steel};
 use std::time::Instant;
 
-/// Errors of all crates.
-pub type Failure = Box<dyn std::error::Error>;
+pub use signorini_studies::Failure;
 
 /// The brick of the benchmark: `3n x n x n` subdomains of 5 x 5 x 5 cubes, clamped at one end, with a rough floor.
 #[derive(Debug)]
@@ -32,8 +32,9 @@ impl Body {
     /// # Errors
     /// Those of the mesh, for `n = 0`.
     pub fn new(n: usize) -> Result<Self, Failure> {
-        let mesh = brick::Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build()?;
-        let decomposition = Decomposition::boxes(&mesh, [3 * n, n, n])?;
+        let block = Block::benchmark(n, Loading::B);
+        let mesh = block.mesh()?;
+        let decomposition = Decomposition::boxes(&mesh, block.boxes)?;
         let bottom = mesh.nodes_on(brick::Z_MIN);
         let frame = SurfaceFrame {
             normal: [0.0, 0.0, -1.0],
@@ -42,7 +43,7 @@ impl Body {
         Ok(Self {
             supports: vec![NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))],
             contact: ContactConstraints::rigid(&bottom, &vec![frame; bottom.len()], true),
-            materials: Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?),
+            materials: steel()?,
             mesh,
             decomposition,
         })
