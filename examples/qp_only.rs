@@ -3,85 +3,61 @@
 //! A string over an obstacle (bounds) by KPRGP, and three unknowns with a disc and an equality by SMALSE. `kkt` checks the
 //! conditions of optimality with code that the solvers do not share.
 
-use signorini_qp::{
-    BlockState, ConvexSet, DenseEquality, DenseOperator, Expansion, KprgpSettings, KprgpWorkspace,
-    ProductSet, QpError, Segment, SmalseSettings, SmalseWorkspace, SymmetricOperator, Tolerance,
-    kkt, kprgp, smalse,
-};
+use std::f64::consts::PI;
 
-/// Nodes of the string, the two fixed ends included.
-const NODES: usize = 100;
+use signorini_qp::*;
 
-/// Stiffness of the string: -1, 2, -1 inside, unit rows at both ends.
+/// Stiffness of a string of 98 nodes between two fixed ends: -1, 2, -1.
 struct Stiffness;
 
 impl SymmetricOperator for Stiffness {
     type Scratch = ();
 
     fn dim(&self) -> usize {
-        NODES
+        98
     }
 
     fn scratch(&self) {}
 
     fn apply(&self, x: &[f64], y: &mut [f64], _: &mut ()) {
-        let inner = |i: usize| if i > 0 && i + 1 < NODES { x[i] } else { 0.0 };
-        for i in 0..NODES {
-            let end = i == 0 || i + 1 == NODES;
-            y[i] = if end {
-                x[i]
-            } else {
-                2.0 * x[i] - inner(i - 1) - inner(i + 1)
-            };
+        let at = |i: usize| x.get(i).unwrap_or(&0.0);
+        for i in 0..98 {
+            y[i] = 2.0 * x[i] - at(i.wrapping_sub(1)) - at(i + 1);
         }
     }
 }
 
 fn main() -> Result<(), QpError> {
     for expansion in [Expansion::FixedStep, Expansion::ProjectedCg] {
-        let (cost, resting, products, kkt) = string(expansion)?;
+        let (report, resting, kkt) = string(expansion)?;
+        let (products, cost) = (report.products.total(), report.cost);
         println!(
-            "string, {expansion:?}: {products} products, {resting} nodes rest, cost {cost:.9}, KKT {kkt:.1e}"
+            "{expansion:?}: {products} products, {resting} nodes rest, cost {cost:.9}, KKT {kkt:.0e}"
         );
     }
     let (x, multiplier, kkt) = disc()?;
-    println!("disc and equality: x = {x:.9?}, multiplier {multiplier:.9}, KKT {kkt:.1e}");
+    println!("disc and equality: {x:.9?}, multiplier {multiplier:.9}, KKT {kkt:.0e}");
     Ok(())
 }
 
-/// Solves the string to 1e-5: its cost, the nodes on the obstacle, products with the stiffness, distance from optimality.
-pub fn string(expansion: Expansion) -> Result<(f64, usize, usize, f64), QpError> {
-    let h = 1.0 / (NODES as f64 - 1.0);
-    let pi = std::f64::consts::PI;
-    let inside = |i: usize| i > 0 && i + 1 < NODES;
-    let obstacle = |i: usize| (4.0 * pi * i as f64 * h - pi / 6.0).sin() / 2.0 - 2.0;
-    let load: Vec<f64> = (0..NODES)
-        .map(|i| if inside(i) { -30.0 * h * h } else { 0.0 })
-        .collect();
-    let lower = (0..NODES)
-        .map(|i| if inside(i) { obstacle(i) } else { 0.0 })
-        .collect();
-    let set = ProductSet::new(vec![Segment::lower(lower)])?;
+/// Solves the string to 1e-5: the report, the nodes on the obstacle, the distance from optimality.
+pub fn string(expansion: Expansion) -> Result<(KprgpReport, usize, f64), QpError> {
+    let h = 1.0 / 99.0;
+    let load = [-30.0 * h * h; 98];
+    let obstacle = |i: usize| (4.0 * PI * i as f64 * h - PI / 6.0).sin() / 2.0 - 2.0;
+    let set = ProductSet::new(vec![Segment::lower((1..99).map(obstacle).collect())])?;
     // the largest eigenvalue is known here; `norm_estimate` finds it otherwise
-    let norm = 2.0 + 2.0 * (pi * h).cos();
+    let (norm, limit) = (2.0 + 2.0 * (PI * h).cos(), Tolerance::Relative(1e-5));
     let settings = KprgpSettings::default().with_expansion(expansion);
-    let (mut x, mut work) = (vec![0.0; NODES], KprgpWorkspace::new(&Stiffness));
-    let report = kprgp(
-        &Stiffness,
-        &load,
-        &set,
-        norm,
-        Tolerance::Relative(1e-5),
-        &settings,
-        &mut x,
-        &mut work,
-    )?;
+    let (mut x, mut work) = ([0.0; 98], KprgpWorkspace::new(&Stiffness));
+    let a = &Stiffness;
+    let report = kprgp(a, &load, &set, norm, limit, &settings, &mut x, &mut work)?;
     let mut resting = 0;
     set.for_each_block(&x, &mut |block| {
-        resting += usize::from(block.state == BlockState::AtLower)
+        resting += usize::from(block.state == BlockState::AtLower);
     });
-    let kkt = kkt::check(&Stiffness, &load, &set, &x, norm)?.relative();
-    Ok((report.cost, resting, report.products.total(), kkt))
+    let kkt = kkt::check(a, &load, &set, &x, norm)?.relative();
+    Ok((report, resting, kkt))
 }
 
 /// Minimises `|x|^2 / 2 - 1.8 x0 - 2.2 x1` with `|(x0, x1)| <= 1`, `x2` free and `x1 + x2 = 1`: exactly (0.6, 0.8, 0.2) with
@@ -95,26 +71,14 @@ pub fn disc() -> Result<([f64; 3], f64, f64), QpError> {
     let settings = SmalseSettings::default()
         .with_tolerance(Tolerance::Relative(1e-10))
         .with_equality(1e-10);
-    let (mut x, mut start, mut work) = ([0.0; 3], [0.0], SmalseWorkspace::new(&a, &c));
+    let (mut x, mut mu, mut work) = ([0.0; 3], [0.0], SmalseWorkspace::new(&a, &c));
+    let (s, hook) = (&settings, &mut ());
     smalse(
-        &a,
-        &b,
-        &c,
-        &e,
-        &mut set,
-        1.0,
-        &settings,
-        &mut (),
-        &mut x,
-        &mut start,
-        &mut work,
+        &a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work,
     )?;
     let multiplier = work.equality_multiplier();
-    let equality = kkt::EqualityPart {
-        c: &c,
-        e: &e,
-        multiplier,
-    };
+    let (c, e) = (&c, &e);
+    let equality = kkt::EqualityPart { c, e, multiplier };
     let kkt = kkt::check_with(&a, &b, &set, Some(equality), &x, 1.0)?.relative();
     Ok((x, c.original_multiplier(multiplier)?[0], kkt))
 }

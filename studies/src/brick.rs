@@ -34,7 +34,6 @@ pub const RAMP: &[(f64, f64)] = &[(0.0, 0.0), (1.0, 1.0)];
 pub const WAVES: &[(f64, f64)] = &[(0.0, 0.0), (0.4, 1.0), (0.7, 0.0), (1.0, 1.0)];
 
 /// The benchmark's friction: 0.3 at rest, 0.1 at high rate, the difference falls by e in 0.05 m/s.
-#[must_use]
 pub fn weakening() -> Friction {
     Friction::Coulomb(Coefficient::Exponential {
         fixed: 0.3,
@@ -44,9 +43,6 @@ pub fn weakening() -> Friction {
 }
 
 /// Steel of the benchmark.
-///
-/// # Errors
-/// None.
 pub fn steel() -> Result<Materials, Failure> {
     Ok(Materials::uniform(Hooke::isotropic(YOUNG, POISSON)?))
 }
@@ -65,7 +61,6 @@ impl Loading {
     pub const BOTH: [Self; 2] = [Self::B, Self::C];
 
     /// `"b"` or `"c"`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::B => "b",
@@ -74,7 +69,6 @@ impl Loading {
     }
 
     /// Points (time in s, factor) of the history.
-    #[must_use]
     pub fn table(self) -> Vec<(f64, f64)> {
         match self {
             Self::B => RAMP.to_vec(),
@@ -150,7 +144,6 @@ impl Default for Block {
 
 impl Block {
     /// The benchmark: `3n x n x n` subdomains.
-    #[must_use]
     pub fn benchmark(n: usize, loading: Loading) -> Self {
         Self {
             boxes: [n.saturating_mul(3), n, n],
@@ -164,9 +157,6 @@ impl Block {
     }
 
     /// The mesh, in the unit of length.
-    ///
-    /// # Errors
-    /// [`Failure`] for sizes that are 0 or too large.
     pub fn mesh(&self) -> Result<TetMesh, Failure> {
         let cells = std::array::from_fn(|d| self.boxes[d].saturating_mul(self.cells[d]));
         let brick = Brick::new(self.lengths.map(|l| l * self.metre), cells);
@@ -174,17 +164,11 @@ impl Block {
     }
 
     /// The material, in the unit of stress.
-    ///
-    /// # Errors
-    /// [`Failure`] for moduli that cannot be.
     pub fn material(&self) -> Result<Hooke, Failure> {
         Ok(Hooke::isotropic(self.young * self.pascal, self.poisson)?)
     }
 
     /// The tractions that are not zero, with their histories.
-    ///
-    /// # Errors
-    /// [`Failure`] for histories that cannot be.
     pub fn loads(&self) -> Result<Vec<(LoadDensity, History)>, Failure> {
         let top = (brick::Z_MAX, self.top, &self.top_history);
         let end = (brick::X_MAX, self.end, &self.end_history);
@@ -199,17 +183,11 @@ impl Block {
     }
 
     /// The scene.
-    ///
-    /// # Errors
-    /// As [`Block::mesh`], [`Block::material`] and [`Block::loads`].
     pub fn scene(&self) -> Result<Scene, Failure> {
         self.scene_on(self.mesh()?, Materials::uniform(self.material()?))
     }
 
     /// The scene on another mesh with the tags of the brick.
-    ///
-    /// # Errors
-    /// As [`Block::loads`].
     pub fn scene_on(&self, mesh: TetMesh, materials: Materials) -> Result<Scene, Failure> {
         let mut scene = Scene::new(mesh, materials).with_boxes(self.boxes);
         if self.clamped {
@@ -235,6 +213,28 @@ impl Block {
     }
 }
 
+/// A number for each tetrahedron of a mesh, from its centre: regions or parts.
+pub fn by_centre(mesh: &TetMesh, number: impl Fn([f64; 3]) -> u32) -> Vec<u32> {
+    let centre = |tet| {
+        let corners = mesh.tet_points(tet);
+        [0, 1, 2].map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / 4.0)
+    };
+    (0..mesh.tets().len())
+        .map(|tet| number(centre(tet)))
+        .collect()
+}
+
+/// Part numbers of the tetrahedra of a mesh: the nearest of some points.
+pub fn by_nearest(mesh: &TetMesh, points: &[[f64; 3]]) -> Vec<u32> {
+    by_centre(mesh, |centre| {
+        let square = |p: &[f64; 3]| (0..3).map(|d| (p[d] - centre[d]).powi(2)).sum::<f64>();
+        let distances = points.iter().map(square).enumerate();
+        distances
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map_or(0, |(k, _)| k as u32)
+    })
+}
+
 /// Sizes of a brick scene as Table 6.1 gives them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
@@ -249,9 +249,6 @@ pub struct Sizes {
 }
 
 /// Counts without setting anything up.
-///
-/// # Errors
-/// [`Failure`] if the scene or the settings are wrong.
 pub fn sizes(scene: &Scene, settings: &Settings) -> Result<Sizes, Failure> {
     let plan = Plan::new(scene, settings)?;
     let friction = scene.contacts().iter().any(|c| c.friction().is_some());

@@ -46,6 +46,10 @@ impl Curve {
             points,
         }
     }
+
+    fn colour(&self) -> RGBColor {
+        COLOURS[self.colour % COLOURS.len()]
+    }
 }
 
 /// Curves over two axes with their names.
@@ -66,54 +70,54 @@ pub struct Chart {
 }
 
 /// Charts in `rows` and `columns`. A heading that is not empty stands above, with the names of the first chart's curves.
-///
-/// # Errors
-/// [`Failure`] if the drawing library refuses.
 pub fn page(
     size: (u32, u32),
     [rows, columns]: [usize; 2],
     heading: &str,
     charts: &[Chart],
 ) -> Result<String, Failure> {
+    sheet(size, |root| {
+        let (above, below) = root.split_vertically(if heading.is_empty() { 0 } else { 46 });
+        if !heading.is_empty() {
+            above.draw_text(heading, &font(16), (12, 6))?;
+            let mut x = 12;
+            for curve in charts.iter().take(1).flat_map(|c| &c.curves) {
+                let colour = curve.colour();
+                let line = [(x, 36), (x + 20, 36)];
+                above.draw(&PathElement::new(line, colour.stroke_width(2)))?;
+                above.draw(&Circle::new((x + 10, 36), 3, colour.filled()))?;
+                above.draw_text(&curve.name, &font(13), (x + 26, 29))?;
+                x += 50 + 7 * curve.name.chars().count() as i32;
+            }
+        }
+        let areas = below.split_evenly((rows, columns));
+        areas
+            .iter()
+            .zip(charts)
+            .try_for_each(|(area, chart)| one(area, chart))
+    })
+}
+
+/// The text of a white page on which something is drawn.
+fn sheet(
+    size: (u32, u32),
+    draw: impl FnOnce(&Area<'_>) -> Result<(), Failure>,
+) -> Result<String, Failure> {
     let mut text = String::new();
-    draw(size, [rows, columns], heading, charts, &mut text)
-        .map_err(|e| format!("cannot draw a chart: {e}"))?;
+    {
+        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        root.fill(&WHITE)?;
+        draw(&root)?;
+        root.present()?;
+    }
     Ok(text)
 }
 
-fn draw(
-    size: (u32, u32),
-    shape: [usize; 2],
-    heading: &str,
-    charts: &[Chart],
-    text: &mut String,
-) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(text, size).into_drawing_area();
-    root.fill(&WHITE)?;
-    let (above, below) = root.split_vertically(if heading.is_empty() { 0 } else { 46 });
-    if !heading.is_empty() {
-        let style = |size: i32| TextStyle::from((FONT, size).into_font());
-        above.draw_text(heading, &style(16), (12, 6))?;
-        let mut x = 12;
-        for curve in charts.iter().take(1).flat_map(|c| &c.curves) {
-            let colour = COLOURS[curve.colour % COLOURS.len()];
-            above.draw(&PathElement::new(
-                [(x, 36), (x + 20, 36)],
-                colour.stroke_width(2),
-            ))?;
-            above.draw(&Circle::new((x + 10, 36), 3, colour.filled()))?;
-            above.draw_text(&curve.name, &style(13), (x + 26, 29))?;
-            x += 50 + 7 * curve.name.chars().count() as i32;
-        }
-    }
-    for (area, chart) in below.split_evenly((shape[0], shape[1])).iter().zip(charts) {
-        one(area, chart)?;
-    }
-    root.present()?;
-    Ok(())
+fn font(size: i32) -> TextStyle<'static> {
+    TextStyle::from((FONT, size).into_font())
 }
 
-fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Box<dyn std::error::Error>> {
+fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Failure> {
     let place = |value: f64, log: bool| if log { value.log10() } else { value };
     let curves: Vec<(&Curve, Vec<(f64, f64)>)> = chart
         .curves
@@ -165,7 +169,7 @@ fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Box<dyn std::error::Error>>
         .label_style((FONT, 12))
         .draw()?;
     for (curve, points) in &curves {
-        let colour = COLOURS[curve.colour % COLOURS.len()];
+        let colour = curve.colour();
         let line = LineSeries::new(points.iter().copied(), colour.stroke_width(2));
         let line = drawn.draw_series(line)?;
         if chart.legend {
@@ -190,59 +194,39 @@ fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Box<dyn std::error::Error>>
 }
 
 /// Groups of horizontal bars, each with its count: one group a name, in it one bar for each of `kinds` (or none).
-///
-/// # Errors
-/// [`Failure`] if the drawing library refuses.
 pub fn bars(
     title: &str,
     kinds: &[String],
     groups: &[(&str, Vec<Option<usize>>)],
 ) -> Result<String, Failure> {
-    let mut text = String::new();
-    draw_bars(title, kinds, groups, &mut text).map_err(|e| format!("cannot draw a chart: {e}"))?;
-    Ok(text)
-}
-
-fn draw_bars(
-    title: &str,
-    kinds: &[String],
-    groups: &[(&str, Vec<Option<usize>>)],
-    text: &mut String,
-) -> Result<(), Box<dyn std::error::Error>> {
     let (bar, top, left, right) = (12, 62, 430, 920);
     let group = bar * kinds.len() as i32 + 12;
-    let size = (1000, (top + group * groups.len() as i32 + 10) as u32);
-    let root = SVGBackend::with_string(text, size).into_drawing_area();
-    root.fill(&WHITE)?;
-    let style = |size: i32| TextStyle::from((FONT, size).into_font());
+    let bottom = top + group * groups.len() as i32;
     let fill = |k: usize| COLOURS[k % COLOURS.len()].filled();
-    root.draw_text(title, &style(16), (14, 8))?;
-    for (k, kind) in kinds.iter().enumerate() {
-        let x = 14 + 190 * k as i32;
-        root.draw(&Rectangle::new([(x, 36), (x + 12, 46)], fill(k)))?;
-        root.draw_text(kind, &style(12), (x + 18, 35))?;
-    }
     let most = groups.iter().flat_map(|g| g.1.iter().flatten()).max();
-    let most = (*most.unwrap_or(&1)).max(1) as f64;
-    for (row, (name, counts)) in groups.iter().enumerate() {
-        let y = top + group * row as i32;
-        root.draw_text(name, &style(12), (14, y + (group - 12) / 2 - 6))?;
-        for (k, count) in counts.iter().enumerate() {
-            let Some(count) = count else { continue };
-            let (y, end) = (
-                y + bar * k as i32,
-                left + (f64::from(right - left) * *count as f64 / most) as i32,
-            );
-            root.draw(&Rectangle::new([(left, y), (end, y + bar - 2)], fill(k)))?;
-            root.draw_text(&count.to_string(), &style(11), (end + 5, y - 1))?;
+    let scale = f64::from(right - left) / (*most.unwrap_or(&1)).max(1) as f64;
+    sheet((1000, (bottom + 10) as u32), |root| {
+        root.draw_text(title, &font(16), (14, 8))?;
+        for (k, kind) in kinds.iter().enumerate() {
+            let x = 14 + 190 * k as i32;
+            root.draw(&Rectangle::new([(x, 36), (x + 12, 46)], fill(k)))?;
+            root.draw_text(kind, &font(12), (x + 18, 35))?;
         }
-    }
-    root.draw(&PathElement::new(
-        [(left, top - 6), (left, top + group * groups.len() as i32)],
-        COLOURS[5],
-    ))?;
-    root.present()?;
-    Ok(())
+        for (row, (name, counts)) in groups.iter().enumerate() {
+            let y = top + group * row as i32;
+            root.draw_text(name, &font(12), (14, y + (group - 12) / 2 - 6))?;
+            for (k, count) in counts.iter().enumerate() {
+                let Some(count) = count else { continue };
+                let (y, end) = (y + bar * k as i32, left + (scale * *count as f64) as i32);
+                root.draw(&Rectangle::new([(left, y), (end, y + bar - 2)], fill(k)))?;
+                root.draw_text(&count.to_string(), &font(11), (end + 5, y - 1))?;
+            }
+        }
+        Ok(root.draw(&PathElement::new(
+            [(left, top - 6), (left, bottom)],
+            COLOURS[5],
+        ))?)
+    })
 }
 
 /// A range around the values; with `room` above them, as a part of it.

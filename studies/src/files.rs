@@ -23,7 +23,6 @@ pub struct RunFiles {
 impl RunFiles {
     /// Files in a folder, at every `every`-th step and at the last (0: none); with the reactions of the supports as a field of
     /// the body if asked for.
-    #[must_use]
     pub fn new(folder: &Path, every: usize, reactions: bool) -> Self {
         let folder = folder.to_path_buf();
         Self {
@@ -35,9 +34,6 @@ impl RunFiles {
     }
 
     /// Writes the last step solved, if it is due.
-    ///
-    /// # Errors
-    /// [`Failure`] if a file cannot be written.
     pub fn write(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         let Some(result) = simulation.frame() else {
             return Ok(());

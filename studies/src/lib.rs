@@ -31,9 +31,6 @@ pub mod svg;
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Writes a file, with the folders above it.
-///
-/// # Errors
-/// [`Failure`] with the path.
 pub fn save(path: &Path, text: &str) -> Result<(), Failure> {
     let folder = path.parent().map_or(Ok(()), std::fs::create_dir_all);
     let written = folder.and_then(|()| std::fs::write(path, text));
@@ -41,7 +38,6 @@ pub fn save(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// Prints an error, if there is one, and gives the exit code: 0, or 1 after an error.
-#[must_use]
 pub fn exit<T>(result: Result<T, Failure>) -> ExitCode {
     let Err(error) = result else {
         return ExitCode::SUCCESS;
@@ -56,7 +52,6 @@ pub fn exit<T>(result: Result<T, Failure>) -> ExitCode {
 }
 
 /// A table of text, columns right-aligned under heads of two lines; a head `["|", "|"]` is a bar between columns and takes no cell.
-#[must_use]
 pub fn aligned(heads: &[[&str; 2]], rows: &[Vec<String>]) -> String {
     let mut columns: Vec<Vec<&str>> = heads.iter().map(|h| h.to_vec()).collect();
     for row in rows {

@@ -22,7 +22,6 @@ pub enum MethodName {
 
 impl MethodName {
     /// The method with its default settings, and what its outer iterations are.
-    #[must_use]
     pub fn method(self) -> (Method, &'static str) {
         match self {
             Self::ActiveSet => (Method::default(), "faces"),
@@ -43,7 +42,6 @@ pub enum FormulaName {
 
 impl FormulaName {
     /// The formula, and its name on the command line.
-    #[must_use]
     pub fn formula(self) -> (DifferenceFormula, &'static str) {
         match self {
             Self::ThreeStep => (PAPER_FORMULA, "three-step"),
@@ -65,7 +63,6 @@ pub enum LoadingChoice {
 
 impl LoadingChoice {
     /// The loadings in order.
-    #[must_use]
     pub fn loadings(self) -> &'static [Loading] {
         match self {
             Self::B => &Loading::BOTH[..1],
@@ -106,7 +103,6 @@ pub struct Common {
 
 impl Common {
     /// Settings of the library.
-    #[must_use]
     pub fn settings(&self) -> Settings {
         Settings::default()
             .with_method(self.method.method().0)
@@ -115,7 +111,6 @@ impl Common {
     }
 
     /// The header of a run.
-    #[must_use]
     pub fn header(&self, n: usize, loading: &str, formula: &str) -> Header {
         Header {
             n,
@@ -129,9 +124,6 @@ impl Common {
 }
 
 /// A whole number from 1.
-///
-/// # Errors
-/// What is wrong with the text.
 pub fn positive(text: &str) -> Result<usize, String> {
     match text.trim().parse::<usize>() {
         Ok(0) => Err("must be at least 1".to_owned()),

@@ -19,7 +19,6 @@ pub struct PaperRow {
 
 impl PaperRow {
     /// Auxiliary problems, products with F and seconds for one loading.
-    #[must_use]
     pub fn costs(&self, loading: Loading) -> (usize, usize, f64) {
         self.costs[usize::from(loading == Loading::C)]
     }
@@ -73,7 +72,6 @@ pub const TABLE: [PaperRow; 5] = [
 ];
 
 /// The line for `n`, if the paper has it.
-#[must_use]
 pub fn row(n: usize) -> Option<&'static PaperRow> {
     TABLE.iter().find(|r| r.n == n)
 }

@@ -124,7 +124,6 @@ pub struct StepRecord {
 
 impl StepRecord {
     /// Reads a result.
-    #[must_use]
     pub fn new(result: &StepResult<'_>) -> Self {
         let (sum, report) = (result.summary(), result.report());
         Self {
@@ -156,7 +155,6 @@ impl StepRecord {
     }
 
     /// Whether the tolerance was reached.
-    #[must_use]
     pub fn converged(&self) -> bool {
         self.status == "converged"
     }
@@ -174,40 +172,42 @@ fn finite(value: f64) -> f64 {
 }
 
 /// Writes runs as a JSON array.
-///
-/// # Errors
-/// [`Failure`] if the file cannot be written.
 pub fn write_json(path: &Path, runs: &[&RunRecord]) -> Result<(), Failure> {
     save(path, &(serde_json::to_string_pretty(runs)? + "\n"))
 }
 
-/// Columns of [`csv`].
-const COLUMNS: &str = "step,t,it,n_m,active,stick,slip,normal_force,tangential_force_x,tangential_force_y,normal_norm,\
-                       tangential_norm,max_slip_rate,max_penetration,dissipation,dissipation_formula,certificate,status";
+/// Columns of [`csv`]: names, and where they are in a record if that is another place.
+const COLUMNS: &str = "step,t,it,n_m,active,stick,slip,normal_force,tangential_force_x=tangential_force/0,\
+                       tangential_force_y=tangential_force/1,normal_norm,tangential_norm,max_slip_rate,max_penetration,\
+                       dissipation,dissipation_formula,certificate,status";
 
 /// The steps as comma-separated values with a header line.
-///
-/// # Errors
-/// None.
 pub fn csv(record: &RunRecord) -> Result<String, Failure> {
-    let mut text = format!("{COLUMNS}\n");
-    for step in &record.steps {
-        let value = serde_json::to_value(step)?;
-        let cell = |name: &str| match name {
-            "tangential_force_x" => value["tangential_force"][0].to_string(),
-            "tangential_force_y" => value["tangential_force"][1].to_string(),
-            name => value[name].to_string().replace('"', ""),
+    let rows: Result<Vec<_>, _> = record.steps.iter().map(serde_json::to_value).collect();
+    Ok(columns(COLUMNS, &rows?))
+}
+
+/// Values of JSON records as comma-separated columns: `name` or `name=path/in/record` each; empty where there is none.
+pub fn columns(names: &str, rows: &[serde_json::Value]) -> String {
+    let columns: Vec<_> = names
+        .split(',')
+        .map(|c| c.split_once('=').unwrap_or((c, c)))
+        .collect();
+    let head: Vec<&str> = columns.iter().map(|c| c.0).collect();
+    let mut text = head.join(",") + "\n";
+    for row in rows {
+        let cell = |path: &str| match row.pointer(&format!("/{path}")) {
+            None | Some(serde_json::Value::Null) => String::new(),
+            Some(serde_json::Value::String(s)) if !s.contains([',', ' ']) => s.clone(),
+            Some(value) => value.to_string(),
         };
-        let cells: Vec<String> = COLUMNS.split(',').map(cell).collect();
+        let cells: Vec<String> = columns.iter().map(|c| cell(c.1)).collect();
         text += &(cells.join(",") + "\n");
     }
-    Ok(text)
+    text
 }
 
 /// What happened over time as four charts: nodes in contact, forces, cost and certificate of the steps.
-///
-/// # Errors
-/// [`Failure`] if the drawing library refuses.
 pub fn steps_chart(record: &RunRecord) -> Result<String, Failure> {
     let curve = |name: &str, colour, value: &dyn Fn(&StepRecord) -> f64| {
         Curve::new(name, colour, record.steps.iter().map(|s| (s.t, value(s))))

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write as _};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use signorini::prelude::{Scene, Settings, Simulation};
 
@@ -29,7 +29,6 @@ pub struct Header {
 
 impl Header {
     /// A name for files and progress.
-    #[must_use]
     pub fn label(&self) -> String {
         format!("n{}-{}", self.n, self.loading)
     }
@@ -45,9 +44,6 @@ pub struct Outcome {
 }
 
 /// Makes the pool in which runs take place; 0 threads means one a core.
-///
-/// # Errors
-/// [`Failure`] if the system refuses.
 pub fn pool(threads: usize) -> Result<rayon::ThreadPool, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let remedy = "use a smaller --threads";
@@ -57,53 +53,57 @@ pub fn pool(threads: usize) -> Result<rayon::ThreadPool, Failure> {
 /// Is called after each step, in which `simulation.frame()` has its result.
 pub type OnStep<'a> = dyn FnMut(&Simulation, &StepRecord) -> Result<(), Failure> + Send + 'a;
 
-/// [`run_with`], with nothing else to do.
-///
-/// # Errors
-/// [`Failure`] of the library.
+/// Solves all steps of a scene: the simulation at its end, its steps, and the seconds that they took, without `on_step`.
+/// Not converging is no error: see the records.
+pub fn solve(
+    scene: Scene,
+    settings: Settings,
+    on_step: &mut OnStep<'_>,
+) -> Result<(Simulation, Vec<StepRecord>, f64), Failure> {
+    let mut simulation = Simulation::new(scene, settings)?;
+    let (mut seconds, mut steps) = (0.0, Vec::new());
+    while !simulation.is_finished() {
+        let start = Instant::now();
+        let result = simulation.step()?;
+        seconds += start.elapsed().as_secs_f64();
+        steps.push(StepRecord::new(&result));
+        on_step(&simulation, &steps[steps.len() - 1])?;
+    }
+    Ok((simulation, steps, seconds))
+}
+
+/// Solves all steps of a scene and keeps what tables and pictures need.
 pub fn run(scene: Scene, settings: Settings, header: &Header) -> Result<Outcome, Failure> {
     run_with(scene, settings, header, &mut |_, _| Ok(()))
 }
 
-/// Sets a scene up and solves all its steps. Time spent in `on_step` is not counted.
-///
-/// # Errors
-/// [`Failure`] of the library or of `on_step`. Not converging is no error: see the record.
+/// [`run`], with something to do after each step.
 pub fn run_with(
     scene: Scene,
     settings: Settings,
     header: &Header,
     on_step: &mut OnStep<'_>,
 ) -> Result<Outcome, Failure> {
-    let mut simulation = Simulation::new(scene, settings)?;
-    let mut solve = Duration::ZERO;
-    let mut steps = Vec::new();
-    let mut products = 0;
-    while !simulation.is_finished() {
-        let start = Instant::now();
-        let result = simulation.step()?;
-        solve += start.elapsed();
-        let step = StepRecord::new(&result);
-        products += step.n_m;
-        on_step(&simulation, &step)?;
-        if header.progress && std::io::stderr().is_terminal() {
+    let (label, mut products) = (header.label(), 0);
+    let shown = header.progress && std::io::stderr().is_terminal();
+    let (simulation, steps, seconds) = solve(scene, settings, &mut |simulation, record| {
+        products += record.n_m;
+        if shown {
             let StepRecord {
                 step, active, slip, ..
-            } = step;
-            let label = header.label();
+            } = record;
             eprint!("\r{label}: step {step}, {active} touch, {slip} slide, {products} products ");
             std::io::stderr().flush()?;
         }
-        steps.push(step);
-    }
-    let record = collect(&simulation, header, solve, steps);
+        on_step(simulation, record)
+    })?;
+    let record = collect(&simulation, header, seconds, steps);
     if header.progress {
         let failed = match record.unconverged.len() {
             0 => String::new(),
             count => format!(", {count} NOT CONVERGED"),
         };
-        let (label, steps) = (header.label(), record.steps.len());
-        let seconds = record.solve_seconds;
+        let (steps, products) = (record.steps.len(), record.n_m);
         eprintln!(
             "\r{label}: {steps} steps, {products} products, {seconds:.2} s{failed}           "
         );
@@ -115,7 +115,7 @@ pub fn run_with(
 fn collect(
     simulation: &Simulation,
     header: &Header,
-    solve: Duration,
+    solve_seconds: f64,
     steps: Vec<StepRecord>,
 ) -> RunRecord {
     let (counters, plan) = (simulation.counters(), simulation.plan());
@@ -135,7 +135,7 @@ fn collect(
         n_m: counters.products,
         n_m_setup: counters.setup_products,
         setup_seconds: simulation.setup_time().as_secs_f64(),
-        solve_seconds: solve.as_secs_f64(),
+        solve_seconds,
         peak_rss_bytes: peak_memory(),
         it_name: header.it_name.clone(),
         cells: header.cells,
@@ -162,7 +162,6 @@ fn peak_memory() -> u64 {
 }
 
 /// A loud line for each run with steps that did not reach the tolerance, and notes on what is unusual.
-#[must_use]
 pub fn warnings(runs: &[&RunRecord]) -> String {
     let mut text = String::new();
     for run in runs {
@@ -209,9 +208,6 @@ pub fn warnings(runs: &[&RunRecord]) -> String {
 }
 
 /// With `on`, an error if any step did not reach the tolerance.
-///
-/// # Errors
-/// [`Failure`] with the number of such steps.
 pub fn strict<'a>(on: bool, mut runs: impl Iterator<Item = &'a RunRecord>) -> Result<(), Failure> {
     let steps: usize = runs.by_ref().map(|r| r.unconverged.len()).sum();
     match on && steps > 0 {

@@ -48,9 +48,6 @@ pub struct ContactPatch {
 }
 
 /// The first contact surface of a scene that has been stepped; the bottom of the brick if there is none.
-///
-/// # Errors
-/// None for a brick.
 pub fn contact_surface(simulation: &Simulation) -> Result<Surface, Failure> {
     let first = simulation
         .frame()
@@ -63,7 +60,6 @@ pub fn contact_surface(simulation: &Simulation) -> Result<Surface, Failure> {
 
 impl ContactPatch {
     /// Spreads the contact points over the nodes of a surface.
-    #[must_use]
     pub fn new(surface: &Surface, mesh_points: &[[f64; 3]], points: &[PointState]) -> Self {
         let n = surface.nodes().len();
         let mut patch = Self {
@@ -98,14 +94,12 @@ impl ContactPatch {
     }
 
     /// Lengths of the friction forces, N.
-    #[must_use]
     pub fn friction(&self) -> Vec<f64> {
         let length = |f: &[f64; 3]| f.iter().map(|c| c * c).sum::<f64>().sqrt();
         self.friction_force.iter().map(length).collect()
     }
 
     /// Forces over areas, Pa.
-    #[must_use]
     pub fn stress(&self, forces: &[f64]) -> Vec<f64> {
         forces.iter().zip(&self.area).map(|(f, a)| f / a).collect()
     }
@@ -113,9 +107,6 @@ impl ContactPatch {
 
 impl Snapshot {
     /// The state after the last step solved.
-    ///
-    /// # Errors
-    /// [`Failure`] if there is none.
     pub fn new(simulation: &Simulation, header: &Header) -> Result<Self, Failure> {
         let mesh = simulation.scene().mesh();
         let result = simulation.frame().ok_or("no step is solved yet")?;

@@ -68,7 +68,6 @@ pub struct Style<'a> {
 }
 
 /// One panel below the other, with one scale of colours and of lengths.
-#[must_use]
 pub fn picture(style: &Style<'_>, panels: &[Panel<'_>]) -> String {
     let mut view = View::new(style.eye);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

@@ -144,7 +144,7 @@ pub fn execute(options: &AccuracyOptions, out: &mut impl Write) -> Result<Vec<Cu
         curves.extend(found);
     }
     if let Some(folder) = &options.out {
-        save(&folder.join("accuracy.csv"), &table::csv(&curves))?;
+        save(&folder.join("accuracy.csv"), &table::csv(&curves)?)?;
         save(
             &folder.join("accuracy.json"),
             &serde_json::to_string_pretty(&curves)?,
@@ -155,6 +155,9 @@ pub fn execute(options: &AccuracyOptions, out: &mut impl Write) -> Result<Vec<Cu
     Ok(curves)
 }
 
+/// A name and a number of a sample.
+type Value = (&'static str, fn(&Sample) -> f64);
+
 /// Error against cost on logarithmic axes: displacement, force and work side by side; products above, seconds below.
 fn draw(study: Study, curves: &[Curve]) -> Result<String, Failure> {
     let along = match study {
@@ -163,11 +166,11 @@ fn draw(study: Study, curves: &[Curve]) -> Result<String, Failure> {
         Study::Effects => "One point for each scene.",
         Study::Tolerance | Study::Method => "Curves run along the tolerance.",
     };
-    let costs: [(&str, fn(&Sample) -> f64); 2] = [
+    let costs: [Value; 2] = [
         ("products with F", |s| s.products as f64),
         ("seconds, set-up apart", |s| s.seconds),
     ];
-    let errors: [(&str, fn(&Sample) -> f64); 3] = [
+    let errors: [Value; 3] = [
         ("displacement", |s| s.errors.u),
         ("contact force", |s| s.errors.force),
         ("work of friction", |s| s.errors.work),

@@ -1,12 +1,10 @@
 //! Runs, their distance to a reference, and the order of a curve.
 
-use std::time::Instant;
-
 use serde::Serialize;
 use signorini::contact::AccumulatedError;
 use signorini::fem_mesh::{energy_of_difference, fields};
-use signorini::prelude::{Scene, Settings, Simulation};
-use signorini_studies::Failure;
+use signorini::prelude::{Scene, Settings};
+use signorini_studies::{Failure, run};
 
 use super::Sample;
 
@@ -66,19 +64,13 @@ pub(super) fn solve(scene: &Scene, settings: &Settings) -> Result<Solution, Fail
 }
 
 fn once(scene: &Scene, settings: &Settings) -> Result<Solution, Failure> {
-    let mut simulation = Simulation::new(scene.clone(), settings.clone())?;
-    let (mut work, mut certificate, mut unconverged) = (0.0, 0.0_f64, 0);
-    let (mut seconds, mut sum) = (0.0, AccumulatedError::default());
-    while !simulation.is_finished() {
-        let start = Instant::now();
-        let result = simulation.step()?;
-        seconds += start.elapsed().as_secs_f64();
-        // the estimate is not part of the run
-        sum.add(&result);
-        work += result.summary().friction_work;
-        certificate = certificate.max(result.certificate().largest());
-        unconverged += usize::from(!result.report().status.converged());
-    }
+    let mut sum = AccumulatedError::default();
+    // the estimate is not part of the run
+    let (simulation, steps, seconds) =
+        run::solve(scene.clone(), settings.clone(), &mut |simulation, _| {
+            sum.add(&simulation.frame().ok_or("no step is solved yet")?);
+            Ok(())
+        })?;
     let result = simulation.frame().ok_or("no step is solved yet")?;
     let forces = result
         .points()
@@ -89,14 +81,14 @@ fn once(scene: &Scene, settings: &Settings) -> Result<Solution, Failure> {
         displacement: result.displacement(),
         forces,
         resultant: result.summary().resultant,
-        work,
+        work: steps.iter().map(|s| s.dissipation).sum(),
         algebraic: sum.likely(),
         discretisation: result.discretisation_error()?.relative(),
         products: simulation.counters().products,
         setup_seconds: simulation.setup_time().as_secs_f64(),
         seconds,
-        certificate,
-        unconverged,
+        certificate: steps.iter().map(|s| s.certificate).fold(0.0, f64::max),
+        unconverged: steps.iter().filter(|s| !s.converged()).count(),
         scene: scene.clone(),
     })
 }

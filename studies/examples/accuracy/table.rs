@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+use signorini_studies::Failure;
+use signorini_studies::record::columns;
+
 use super::{Curve, Sample, Study};
 
 // Writing to a string cannot fail, so the results of `write!` are dropped.
@@ -81,40 +84,25 @@ fn cost_of_six_digits(curve: &Curve) -> Option<(f64, f64)> {
     Some((ratio(|s| s.products as f64)?, ratio(|s| s.seconds)?))
 }
 
+/// Columns of [`csv`]: those of a curve, and those of a sample.
+const COLUMNS: &str = "study,curve=name,parameter_name=parameter,parameter=sample/parameter,products=sample/products,\
+                       setup_seconds=sample/setup_seconds,seconds=sample/seconds,error_u=sample/errors/u,\
+                       error_force=sample/errors/force,error_work=sample/errors/work,certificate=sample/certificate,\
+                       unconverged=sample/unconverged,estimate=sample/estimate,order_u=orders/u,\
+                       order_force=orders/force,order_work=orders/work,reference";
+
 /// All samples, one a line.
-pub(super) fn csv(curves: &[Curve]) -> String {
-    let mut out = String::from(
-        "study,curve,parameter_name,parameter,products,setup_seconds,seconds,error_u,error_force,error_work,certificate,unconverged,estimate,order_u,order_force,order_work,reference\n",
-    );
-    for c in curves {
-        for s in &c.samples {
-            let estimate = s.estimate.map_or(String::new(), |e| format!("{e:e}"));
-            let _ = writeln!(
-                out,
-                "{},\"{}\",{},{:e},{},{},{:e},{},{estimate},{:.3},{:.3},{:.3},\"{}\"",
-                c.study.name(),
-                c.name,
-                c.parameter,
-                s.parameter,
-                costs(s),
-                errors(s),
-                s.certificate,
-                s.unconverged,
-                c.orders.u,
-                c.orders.force,
-                c.orders.work,
-                c.reference
-            );
+pub(super) fn csv(curves: &[Curve]) -> Result<String, Failure> {
+    let mut rows = Vec::new();
+    for curve in curves {
+        for sample in &curve.samples {
+            let mut row = serde_json::to_value(Curve {
+                samples: Vec::new(),
+                ..curve.clone()
+            })?;
+            row["sample"] = serde_json::to_value(sample)?;
+            rows.push(row);
         }
     }
-    out
-}
-
-fn costs(s: &Sample) -> String {
-    format!("{},{:e},{:e}", s.products, s.setup_seconds, s.seconds)
-}
-
-fn errors(s: &Sample) -> String {
-    let e = &s.errors;
-    format!("{:e},{:e},{:e}", e.u, e.force, e.work)
+    Ok(columns(COLUMNS, &rows))
 }

@@ -14,9 +14,9 @@ use cases::{Case, Extra};
 use clap::Parser;
 use serde::Serialize;
 use signorini::contact::{Plan, Rate, StepResult};
-use signorini::prelude::{PointState, Simulation};
+use signorini::prelude::PointState;
 use signorini_studies::brick::{Block, CELLS, Loading, STEPS};
-use signorini_studies::run::pool;
+use signorini_studies::run::{pool, solve};
 use signorini_studies::{Failure, exit, save};
 
 /// Options of the `effects` example.
@@ -168,26 +168,19 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
 /// Runs one scene beside its plan.
 fn measure(case: &Case, rate: Rate) -> Result<Line, Failure> {
     let plan = Plan::new(&case.scene, &case.settings)?.with_machine(rate);
-    let mut simulation = Simulation::new(case.scene.clone(), case.settings.clone())?;
-    let (mut solve, mut extra) = (0.0, 0.0);
-    let factorisations = simulation.tfeti().report().factorisations;
-    let (mut certificate, mut forces) = (0.0_f64, Vec::new());
-    let (mut fallbacks, mut unconverged) = (0, 0);
-    while !simulation.is_finished() {
-        let start = Instant::now();
-        let result = simulation.step()?;
-        solve += start.elapsed().as_secs_f64();
+    let (mut extra, mut forces) = (0.0, Vec::new());
+    let (scene, settings) = (case.scene.clone(), case.settings.clone());
+    let (simulation, steps, solve) = solve(scene, settings, &mut |simulation, _| {
+        let result = simulation.frame().ok_or("no step is solved yet")?;
         let start = Instant::now();
         compute(case.extra, &result)?;
         if case.extra != Extra::None {
             extra += start.elapsed().as_secs_f64();
         }
-        certificate = certificate.max(result.certificate().largest());
-        fallbacks += usize::from(result.report().fallback);
-        unconverged += usize::from(!result.report().status.converged());
         let force = |p: &PointState| std::iter::once(p.normal_force).chain(p.friction_force);
         forces.extend(result.points().iter().flat_map(force));
-    }
+        Ok(())
+    })?;
     let (counters, setup) = (simulation.counters(), simulation.tfeti().report());
     Ok(Line {
         name: case.name.clone(),
@@ -209,7 +202,7 @@ fn measure(case: &Case, rate: Rate) -> Result<Line, Failure> {
             interface_rows: setup.rows.interface.len(),
             support_rows: setup.rows.dirichlet.len(),
             bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
-            factorisations: factorisations + counters.factorisations,
+            factorisations: setup.factorisations + counters.factorisations,
             products: counters.products,
             setup_seconds: simulation.setup_time().as_secs_f64(),
             solve_seconds: solve,
@@ -218,10 +211,10 @@ fn measure(case: &Case, rate: Rate) -> Result<Line, Failure> {
         inequality_solves: counters.inequality_solves,
         slip_bound_updates: counters.slip_bound_updates,
         rate_updates: counters.rate_updates,
-        fallbacks,
-        unconverged,
+        fallbacks: steps.iter().filter(|s| s.fallback).count(),
+        unconverged: steps.iter().filter(|s| !s.converged()).count(),
         extra_seconds: extra,
-        certificate,
+        certificate: steps.iter().map(|s| s.certificate).fold(0.0, f64::max),
         forces,
     })
 }

@@ -2,7 +2,9 @@
 
 use signorini::prelude::*;
 use signorini_studies::Failure;
-use signorini_studies::brick::{Block, EULER, LENGTHS, POISSON, RAMP, TOP, WAVES, YOUNG, steel};
+use signorini_studies::brick::{
+    Block, EULER, LENGTHS, POISSON, RAMP, TOP, WAVES, YOUNG, by_centre, steel,
+};
 
 use super::cases::Case;
 
@@ -172,7 +174,7 @@ fn cube() -> Result<Scene, Failure> {
 
 fn arch() -> Result<Scene, Failure> {
     let straight = Brick::new([3.0, 1.0, 0.5], [18, 6, 3]).build()?;
-    let parts = parts(&straight, |p| (p[0].floor() as u32).min(2));
+    let parts = by_centre(&straight, |p| (p[0].floor() as u32).min(2));
     let mesh = straight.map_points(|p| {
         let (radius, angle) = (2.0 + p[2], p[0] / 2.0);
         [radius * angle.sin(), p[1], radius * angle.cos()]
@@ -199,7 +201,7 @@ fn rubber() -> Result<Scene, Failure> {
 
 fn layers() -> Result<Scene, Failure> {
     let mesh = Brick::new([3.0, 1.0, 1.0], [12, 4, 4]).build()?;
-    let regions = parts(&mesh, |p| u32::from(p[2] > 0.5));
+    let regions = by_centre(&mesh, |p| u32::from(p[2] > 0.5));
     let materials = Materials::new(vec![
         (0, Hooke::isotropic(YOUNG, POISSON)?),
         (1, Hooke::isotropic(1e-3 * YOUNG, POISSON)?),
@@ -221,14 +223,4 @@ fn free() -> Result<Scene, Failure> {
         .with_contact(floor(0.0, 0.4))
         .with_boxes([2, 2, 1])
         .with_analysis(steps(6)))
-}
-
-/// A number for each tetrahedron from its centre.
-fn parts(mesh: &TetMesh, part: impl Fn([f64; 3]) -> u32) -> Vec<u32> {
-    (0..mesh.tets().len())
-        .map(|tet| {
-            let corners = mesh.tet_points(tet);
-            part([0, 1, 2].map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / 4.0))
-        })
-        .collect()
 }

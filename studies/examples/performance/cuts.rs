@@ -7,8 +7,8 @@ use std::path::Path;
 use signorini::fem_mesh::{Facet, compact_parts, gmsh, split_disconnected};
 use signorini::prelude::*;
 use signorini_studies::Failure;
-use signorini_studies::brick::{Block, CELLS, END, LENGTHS, Loading, TOP, steel};
-use signorini_studies::run::pool;
+use signorini_studies::brick::{Block, CELLS, END, LENGTHS, Loading, TOP, by_nearest, steel};
+use signorini_studies::run::{pool, solve};
 
 use super::PerformanceOptions;
 
@@ -75,16 +75,7 @@ pub(crate) fn voronoi(mesh: &TetMesh, count: usize, seed: u64) -> Vec<u32> {
     let points: Vec<[f64; 3]> = (0..count)
         .map(|_| std::array::from_fn(|d| low[d] + (high[d] - low[d]) * random()))
         .collect();
-    let nearest = |tet: usize| {
-        let corners = mesh.tet_points(tet);
-        let centre: [f64; 3] =
-            std::array::from_fn(|d| corners.iter().map(|p| p[d]).sum::<f64>() / 4.0);
-        let distance = |p: &[f64; 3]| (0..3).map(|d| (p[d] - centre[d]).powi(2)).sum::<f64>();
-        let by_distance =
-            |&a: &usize, &b: &usize| distance(&points[a]).total_cmp(&distance(&points[b]));
-        (0..count).min_by(by_distance).map_or(0, |k| k as u32)
-    };
-    (0..mesh.tets().len()).map(nearest).collect()
+    by_nearest(mesh, &points)
 }
 
 /// Parts grown on the graph of the tetrahedra, which knows no coordinates: from `count` random tetrahedra the smallest part takes the
@@ -178,7 +169,7 @@ pub(crate) fn measure(
         Some(parts) => scene.with_parts(parts),
         None => scene,
     };
-    let mut simulation = Simulation::new(scene, Settings::default())?;
+    let (simulation, steps, _) = solve(scene, Settings::default(), &mut |_, _| Ok(()))?;
     let sizes = || {
         simulation
             .decomposition()
@@ -187,23 +178,18 @@ pub(crate) fn measure(
             .map(|s| s.tets.len())
     };
     let [least, most] = [sizes().min(), sizes().max()].map(Option::unwrap_or_default);
-    let mut line = CutLine {
+    Ok(CutLine {
         case,
         cut: cut.to_owned(),
         subdomains: [sizes().count(), least, most],
         rows: simulation.tfeti().dual_dim(),
-        products: Vec::new(),
-        certificate: 0.0,
-        failed: 0,
-    };
-    while !simulation.is_finished() {
-        let result = simulation.step()?;
-        let report = result.report();
-        line.products.push(report.counters.products);
-        line.failed += usize::from(report.fallback || !report.status.converged());
-        line.certificate = line.certificate.max(result.certificate().largest());
-    }
-    Ok(line)
+        products: steps.iter().map(|s| s.n_m).collect(),
+        certificate: steps.iter().map(|s| s.certificate).fold(0.0, f64::max),
+        failed: steps
+            .iter()
+            .filter(|s| s.fallback || !s.converged())
+            .count(),
+    })
 }
 
 /// A name and the part numbers of the tetrahedra; `None` for boxes.

@@ -103,14 +103,6 @@ pub(crate) struct Case {
     pub(crate) build: Build,
 }
 
-impl std::fmt::Debug for Case {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Case")
-            .field("name", &self.name)
-            .finish_non_exhaustive()
-    }
-}
-
 impl Case {
     /// A case that has to be certified to 1e-5, ten times the tolerance of the solver.
     pub(crate) fn new(

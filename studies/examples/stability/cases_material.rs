@@ -2,18 +2,13 @@
 
 use signorini::prelude::*;
 use signorini_studies::Failure;
-use signorini_studies::brick::Block;
+use signorini_studies::brick::{Block, by_centre};
 
 use super::case::{Case, Setup, ToSetup};
 
 fn jump(block: &Block, ratio: f64, soft: impl Fn([f64; 3]) -> bool) -> Result<Setup, Failure> {
     let mesh = block.mesh()?;
-    let region = |t: usize| {
-        let p = mesh.tet_points(t);
-        let centre = std::array::from_fn(|c| p.iter().map(|p| p[c]).sum::<f64>() / 4.0);
-        u32::from(soft(centre))
-    };
-    let regions = (0..mesh.tets().len()).map(region).collect();
+    let regions = by_centre(&mesh, |x| u32::from(soft(x)));
     let soft = Hooke::isotropic(block.young / ratio, block.poisson)?;
     let materials = Materials::new(vec![(0, block.material()?), (1, soft)])?;
     block.setup_on(mesh.with_regions(regions)?, materials)

@@ -3,7 +3,7 @@
 use super::case::{Case, Setup};
 use signorini::prelude::*;
 use signorini_studies::Failure;
-use signorini_studies::brick::EULER;
+use signorini_studies::brick::{EULER, by_nearest};
 
 const GROUP: &str = "Held by friction alone";
 
@@ -121,20 +121,7 @@ fn scattered(mesh: &TetMesh, count: usize) -> Result<Vec<u32>, Failure> {
             std::array::from_fn(|c| low[c] + (high[c] - low[c]) * (k as f64 * step[c]).fract())
         })
         .collect();
-    let nearest = |tet: &[u32; 4]| {
-        let centre: [f64; 3] = std::array::from_fn(|c| {
-            tet.iter()
-                .map(|&n| mesh.points()[n as usize][c])
-                .sum::<f64>()
-                / 4.0
-        });
-        let square = |s: &[f64; 3]| (0..3).map(|c| (s[c] - centre[c]).powi(2)).sum::<f64>();
-        let distances = seeds.iter().map(square).enumerate();
-        distances
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map_or(0, |(k, _)| k as u32)
-    };
-    let parts: Vec<u32> = mesh.tets().iter().map(nearest).collect();
+    let parts = by_nearest(mesh, &seeds);
     Ok(signorini::fem_mesh::split_disconnected(mesh, &parts)?)
 }
 

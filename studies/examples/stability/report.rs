@@ -9,7 +9,6 @@ use super::locking;
 use super::runner::{Ended, Measured, difference};
 
 /// A case, what was measured, and what is wrong with it, if anything.
-#[derive(Debug)]
 pub(crate) struct Line<'a> {
     /// The case.
     pub(crate) case: &'a Case,

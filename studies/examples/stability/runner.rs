@@ -29,14 +29,12 @@ pub(crate) struct Measured {
     pub(crate) subdomains: usize,
     /// Rows of the dual problem.
     pub(crate) rows: usize,
-    /// Levels solved.
+    /// Steps solved.
     pub(crate) steps: usize,
     /// Products with F.
     pub(crate) products: usize,
-    /// Levels that the fall-back finished.
+    /// Steps that the fall-back finished.
     pub(crate) fallbacks: usize,
-    /// Touch points with a force, and those of them that slide, at the last step.
-    pub(crate) contact: (usize, usize),
     /// Balances of the steps that converged.
     pub(crate) balance: Balance,
     /// Wall-clock seconds, set-up included.
@@ -56,7 +54,6 @@ impl Measured {
             steps: 0,
             products: 0,
             fallbacks: 0,
-            contact: (0, 0),
             balance: Balance::default(),
             seconds: 0.0,
             figures: Vec::new(),
@@ -93,20 +90,12 @@ impl Measured {
             }
         }
     }
-}
 
-impl Measured {
     /// What is wrong where products a step are limited to this mean and no step may need the fall-back.
     pub(crate) fn excess(&self, at_most: usize) -> Option<String> {
-        let most = at_most * self.steps;
-        (self.products > most || self.fallbacks > 0).then(|| {
-            let Self {
-                products,
-                fallbacks,
-                ..
-            } = self;
-            format!("{products} products, {fallbacks} fall-backs; at most {most} and none")
-        })
+        let (most, products, fallbacks) = (at_most * self.steps, self.products, self.fallbacks);
+        let text = format!("{products} products, {fallbacks} fall-backs; at most {most} and none");
+        (products > most || fallbacks > 0).then_some(text)
     }
 }
 
@@ -191,8 +180,6 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
         if worst.0.converged() {
             ledger.enter(&result);
         }
-        let s = *result.summary();
-        measured.contact = (s.active, s.slip);
         measured.figures = figures(&result, &scene, largest_load);
     }
     measured.products = simulation.counters().products + simulation.counters().setup_products;
