@@ -87,7 +87,7 @@ fn static_scenes_hold_no_history() {
     ] {
         let (simulation, levels) = run(statics(friction.clone()), Settings::default());
         assert!(!simulation.plan().effects.history, "{friction:?}");
-        assert_eq!(simulation.state().bytes(), 0, "{friction:?}");
+        assert_eq!(simulation.state().memory(), 0, "{friction:?}");
         assert_eq!(levels[0].report.counters.rate_updates, 0, "{friction:?}");
         assert!(levels[0].points.iter().all(|p| p.slip_rate == 0.0));
     }
@@ -96,7 +96,7 @@ fn static_scenes_hold_no_history() {
         small_benchmark(Friction::coulomb(0.3), 2),
         Settings::default(),
     );
-    assert!(simulation.plan().effects.history && simulation.state().bytes() > 0);
+    assert!(simulation.plan().effects.history && simulation.state().memory() > 0);
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn without_friction_quasistatic_levels_keep_no_traces() {
     let bytes = |friction| {
         let (simulation, _) = run(small_benchmark(friction, 3), Settings::default());
         (
-            simulation.state().bytes(),
+            simulation.state().memory(),
             simulation.tfeti().gluing().ranges().tangential().len(),
         )
     };

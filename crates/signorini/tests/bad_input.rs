@@ -297,7 +297,7 @@ fn times_and_settings() {
         "a forcing term of one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(1.0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "forcing";
         "no faces": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_faces(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_faces";
         "no patience": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_patience(0)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "patience";
-        "a settled share above one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_settled(1.5)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "settled";
+        "a settled share above one": with(Settings::default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_settled_fraction(1.5)))) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "settled_fraction";
         "no products expected, before any work": made(Plan::new(&good(), &no_products)) => Error::Contact(ContactError::Tfeti(TfetiError::Setting { .. })), "expected_products";
         "a negative penalty": smalse(|s| s.with_penalty(-1.0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "penalty";
         "no outer steps": smalse(|s| s.with_max_outer(0)) => Error::Contact(ContactError::Qp(QpError::Setting { .. })), "max_outer";

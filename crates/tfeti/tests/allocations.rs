@@ -9,7 +9,7 @@ use allocation_counter::measure;
 use common::{Brick, build, noise};
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
-    ProductSet, Segment, SymmetricOperator, face,
+    ProductSet, Segment, SymmetricOperator, active_set,
 };
 use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, RowScaling, Sharing};
 
@@ -83,7 +83,7 @@ fn iterations_of_the_face_method_allocate_nothing() {
             .with_max_products(products);
         let mut steps = 0;
         let count = measure(|| {
-            let report = face(
+            let report = active_set(
                 &problem,
                 &mut space,
                 &mut set,
