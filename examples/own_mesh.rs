@@ -17,29 +17,21 @@ pub fn run(folder: &str) -> Result<(), Error> {
     let (top, rim) = (names.surface("top")?, names.surface("rim")?);
     let rubber = Hooke::isotropic(5.0, 0.45)?;
     let materials = Materials::new(vec![(names.volume("roller")?, rubber)])?;
-    println!(
-        "{} nodes, {} tetrahedra",
-        mesh.points().len(),
-        mesh.tets().len()
-    );
+    let (nodes, tets) = (mesh.points().len(), mesh.tets().len());
+    println!("{nodes} nodes, {tets} tetrahedra");
 
     let down = History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, 1.0)])?;
     let along = History::table(vec![(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)])?;
+    let press = Support::components(top, [false, true, true]);
+    let drag = Support::components(top, [true, false, false]);
+    // the floor is the half-space below z = 0
+    let floor = Contact::half_space(rim, [0.0; 3], [0.0, 0.0, 1.0]);
+    let steps = Analysis::quasistatic(1.0, 10);
     let scene = Scene::new(mesh, materials)
-        .with_support(
-            Support::components(top, [false, true, true]).with_motion([0.0, 0.0, -0.8], down),
-        )
-        .with_support(
-            Support::components(top, [true, false, false]).with_motion([0.4, 0.0, 0.0], along),
-        )
-        // the floor is the half-space below z = 0
-        .with_contact(
-            Contact::half_space(rim, [0.0; 3], [0.0, 0.0, 1.0])
-                .with_friction(Friction::coulomb(0.5)),
-        )
-        .with_analysis(
-            Analysis::quasistatic(1.0, 10).with_formula(DifferenceFormula::BACKWARD_EULER),
-        );
+        .with_support(press.with_motion([0.0, 0.0, -0.8], down))
+        .with_support(drag.with_motion([0.4, 0.0, 0.0], along))
+        .with_contact(floor.with_friction(Friction::coulomb(0.5)))
+        .with_analysis(steps.with_formula(DifferenceFormula::BACKWARD_EULER));
 
     let mut simulation = Simulation::new(scene, Settings::default())?;
     let mut series = PvdSeries::create(folder, "roller")?;
@@ -47,15 +39,10 @@ pub fn run(folder: &str) -> Result<(), Error> {
     while !simulation.is_finished() {
         let result = simulation.step()?;
         result.require_converged()?;
-        let sum = result.summary();
-        println!(
-            "{:>8.1} {:>6} {:>6} {:>12.4} {:>14.4}",
-            result.time(),
-            sum.active,
-            sum.slip,
-            sum.normal_force,
-            sum.friction_force[0]
-        );
+        let (t, sum) = (result.time(), result.summary());
+        let (touch, slide, normal) = (sum.active, sum.slip, sum.normal_force);
+        let friction = sum.friction_force[0];
+        println!("{t:>8.1} {touch:>6} {slide:>6} {normal:>12.4} {friction:>14.4}");
         let at_nodes = [
             Field::vector("displacement", result.displacement()),
             Field::vector("contact_force", result.contact_force_field()),

@@ -44,25 +44,19 @@ pub fn scene(cells: usize, steps: usize, softness: f64) -> Result<Scene, Error> 
         (1, Hooke::isotropic(young / softness, poisson)?),
     ])?;
     // the back of the pad goes down by 1 mm, then along by 2 mm
-    let back = pad(brick::Z_MAX);
-    let press = History::table(vec![(0.0, 0.0), (0.2, 1.0), (1.0, 1.0)])?;
-    let pull = History::table(vec![(0.0, 0.0), (0.2, 0.0), (1.0, 1.0)])?;
+    let press = Support::components(pad(brick::Z_MAX), [false, true, true]);
+    let drag = Support::components(pad(brick::Z_MAX), [true, false, false]);
+    let down = History::table(vec![(0.0, 0.0), (0.2, 1.0), (1.0, 1.0)])?;
+    let along = History::table(vec![(0.0, 0.0), (0.2, 0.0), (1.0, 1.0)])?;
+    let contact = Contact::between(pad(brick::Z_MIN), brick::Z_MAX);
+    let steps = Analysis::quasistatic(1.0, steps);
     // subdomains of at most five cells an edge
     let boxes = cells.div_ceil(5);
     Ok(Scene::new(mesh.with_regions(regions)?, materials)
         .with_support(Support::fixed(brick::Z_MIN))
-        .with_support(
-            Support::components(back, [false, true, true]).with_motion([0.0, 0.0, -1e-3], press),
-        )
-        .with_support(
-            Support::components(back, [true, false, false]).with_motion([2e-3, 0.0, 0.0], pull),
-        )
-        .with_contact(
-            Contact::between(pad(brick::Z_MIN), brick::Z_MAX)
-                .with_friction(Friction::coulomb(COEFFICIENT)),
-        )
+        .with_support(press.with_motion([0.0, 0.0, -1e-3], down))
+        .with_support(drag.with_motion([2e-3, 0.0, 0.0], along))
+        .with_contact(contact.with_friction(Friction::coulomb(COEFFICIENT)))
         .with_boxes([3 * boxes, boxes, 3 * boxes])
-        .with_analysis(
-            Analysis::quasistatic(1.0, steps).with_formula(DifferenceFormula::BACKWARD_EULER),
-        ))
+        .with_analysis(steps.with_formula(DifferenceFormula::BACKWARD_EULER)))
 }

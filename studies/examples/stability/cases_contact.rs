@@ -260,7 +260,7 @@ pub(crate) fn sliding() -> Vec<Case> {
         ),
         case(
             "slip bounds exactly 0, given",
-            "given friction with bound 0 is no friction",
+            "Tresca friction with bound 0 is no friction",
             (1e-3, to(1e-2), 3, Friction::tresca(0.0)),
         ),
         case(
@@ -269,7 +269,7 @@ pub(crate) fn sliding() -> Vec<Case> {
             (1e-3, to(1e-2), 3, Friction::Coulomb(one_half)),
         ),
         case(
-            "given friction",
+            "Tresca friction",
             "bounds that do not follow the pressure: friction at open nodes too",
             (
                 1e-4,
