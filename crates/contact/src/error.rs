@@ -21,7 +21,8 @@ fn beside_words(beside: f64, limit: f64) -> String {
 fn held_remedy(friction: Option<f64>) -> String {
     match friction {
         Some(factor) => format!(
-            "friction would have to be more than {:.3} times as large: press harder, pull less, add a support, or move the body by its supports if it is to slide",
+            "friction would have to be more than {:.3} times as large: press harder, pull less, add a support, or \
+             move the body by its supports if it is to slide",
             (1e3 * factor).floor() / 1e3
         ),
         None => "add a support, contact or friction, or balance the loads".to_owned(),
@@ -34,7 +35,8 @@ fn held_remedy(friction: Option<f64>) -> String {
 pub enum ContactError {
     /// A coefficient of friction or a datum of its law.
     #[error(
-        "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate positive)"
+        "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate \
+         positive)"
     )]
     Coefficient {
         /// Position of the contact surface in the scene.
@@ -46,7 +48,8 @@ pub enum ContactError {
     },
     /// A table of coefficients without entries.
     #[error(
-        "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate with its coefficient"
+        "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate with \
+         its coefficient"
     )]
     EmptyTable {
         /// Position of the contact surface in the scene.
@@ -54,7 +57,8 @@ pub enum ContactError {
     },
     /// A slip rate of a table of coefficients is not finite or not larger than the one before.
     #[error(
-        "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is not finite or out of order; give finite slip rates, each larger than the one before"
+        "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is \
+         not finite or out of order; give finite slip rates, each larger than the one before"
     )]
     TableRate {
         /// Position of the contact surface in the scene.
@@ -66,7 +70,8 @@ pub enum ContactError {
     },
     /// A law gave an inadmissible coefficient.
     #[error(
-        "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite and not negative"
+        "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite \
+         and not negative"
     )]
     CoefficientAt {
         /// Mesh node.
@@ -85,44 +90,41 @@ pub enum ContactError {
         value: f64,
     },
     /// A difference formula is not consistent.
-    #[error(
-        "difference formula {alpha}, {beta}, {gamma}: {rule}; use THREE_STEP or BACKWARD_EULER"
-    )]
+    #[error("difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER")]
     Formula {
-        /// Weight of the new level.
+        /// Weight of the new displacement.
         alpha: f64,
-        /// Weight of the last level.
+        /// Weight of the last one.
         beta: f64,
-        /// Weight of the level before.
+        /// Weight of the one before.
         gamma: f64,
         /// The broken rule.
         rule: &'static str,
     },
-    /// No time level, or more than can be meant.
+    /// No step, or more than can be meant.
+    #[error("the analysis has no step or more than a hundred million; ask for at least one step")]
+    NoSteps,
+    /// A time out of order or not finite.
     #[error(
-        "the analysis has no time level or more than a hundred million; ask for at least one step"
-    )]
-    NoLevels,
-    /// A time level out of order or not finite.
-    #[error(
-        "time level {level}: {time} s is not finite or not above the level before (the first must be above 0)"
+        "step {step}: its time {time} s is not finite or not above the one before (the first must be above 0)"
     )]
     Time {
-        /// The level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
         /// Its time.
         time: f64,
     },
     /// Unequal steps with a formula that needs equal ones.
     #[error(
-        "time level {level}: step {step} s, but the first is {first} s; the three-step formula needs equal steps, backward Euler does not"
+        "step {step}: its length is {length} s, but that of the first is {first} s; the three-step formula needs \
+         equal steps, backward Euler does not"
     )]
     UnequalSteps {
-        /// The level, from 0.
-        level: usize,
-        /// Its step.
-        step: f64,
-        /// The first step.
+        /// The step, from 0.
+        step: usize,
+        /// Its length, s.
+        length: f64,
+        /// That of the first, s.
         first: f64,
     },
     /// A tag of a support or contact surface is on no facet.
@@ -163,7 +165,8 @@ pub enum ContactError {
     },
     /// A gap is not finite.
     #[error(
-        "contact {contact}: the gap at node {node}, at {position:?}, is {value} m; it must be finite at every node of the surface"
+        "contact {contact}: the gap at node {node}, at {position:?}, is {value} m; it must be finite at every node \
+         of the surface"
     )]
     Gap {
         /// Position of the contact surface in the scene.
@@ -177,7 +180,9 @@ pub enum ContactError {
     },
     /// A support holds a contact node inside the obstacle, where no contact force can stop it.
     #[error(
-        "support at node {node}: at time {time} s it holds this contact node {depth} m inside the obstacle (normal displacement {displacement} m, gap {gap} m); shorten the motion of the support, correct the gap or the place of the obstacle, or leave the node free along the normal"
+        "support at node {node}: at time {time} s it holds this contact node {depth} m inside the obstacle (normal \
+         displacement {displacement} m, gap {gap} m); shorten the motion of the support, correct the gap or the \
+         place of the obstacle, or leave the node free along the normal"
     )]
     SupportInObstacle {
         /// Mesh node, the deepest one.
@@ -201,7 +206,9 @@ pub enum ContactError {
     },
     /// The direction into the obstacle points into the body.
     #[error(
-        "contact {contact}: the direction into the obstacle {direction:?} is not on the outer side of the body at any of its {nodes} contact nodes, so the body would pass through; turn the direction round (a half-space needs the normal that points out of the obstacle, up for a floor)"
+        "contact {contact}: the direction into the obstacle {direction:?} is not on the outer side of the body at \
+         any of its {nodes} contact nodes, so the body would pass through; turn the direction round (a half-space \
+         needs the normal that points out of the obstacle, up for a floor)"
     )]
     ObstacleSide {
         /// Position of the contact surface in the scene.
@@ -213,7 +220,9 @@ pub enum ContactError {
     },
     /// A contact node has no node of the other body on its normal.
     #[error(
-        "contact {contact}: node {node} has no partner on the other body: {}; meshes of both sides have to match, and the first side must not reach beyond the other one nor be finer (name the smaller or coarser side first)",
+        "contact {contact}: node {node} has no partner on the other body: {}; meshes of both sides have to match, \
+         and the first side must not reach beyond the other one nor be finer (name the smaller or coarser side \
+         first)",
         beside_words(*beside, *limit)
     )]
     NoPartner {
@@ -228,7 +237,9 @@ pub enum ContactError {
     },
     /// Two bodies overlap by more than their facets.
     #[error(
-        "contact {contact}: node {node} lies {depth:.3e} m inside the other body, seen from its partner {partner}, deeper than its facets are large ({size:.3e} m); give sides that face each other across the gap, or, if they are to be pressed apart, tell how far by with_gap"
+        "contact {contact}: node {node} lies {depth:.3e} m inside the other body, seen from its partner {partner}, \
+         deeper than its facets are large ({size:.3e} m); give sides that face each other across the gap, or, if \
+         they are to be pressed apart, tell how far by with_gap"
     )]
     Overlap {
         /// Position of the contact surface in the scene.
@@ -244,7 +255,9 @@ pub enum ContactError {
     },
     /// Two contact nodes have the same partner.
     #[error(
-        "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both sides have to match node by node, and no tag may be on both sides (TetMesh::map_tags before append keeps those of two bodies apart)"
+        "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both \
+         sides have to match node by node, and no tag may be on both sides (TetMesh::map_tags before append keeps \
+         those of two bodies apart)"
     )]
     SharedPartner {
         /// Position of the contact surface in the scene.
@@ -258,7 +271,8 @@ pub enum ContactError {
     },
     /// A contact between bodies has an obstacle that moves.
     #[error(
-        "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its supports instead"
+        "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its supports \
+         instead"
     )]
     MovedPartner {
         /// Position of the contact surface in the scene.
@@ -266,7 +280,9 @@ pub enum ContactError {
     },
     /// A gap field moves far along a curved surface.
     #[error(
-        "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way"
+        "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by \
+         {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less \
+         than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way"
     )]
     MovedField {
         /// Position of the contact surface in the scene.
@@ -280,7 +296,9 @@ pub enum ContactError {
     },
     /// Two contact surfaces meet a node along one direction, and which obstacle is nearer changes with time.
     #[error(
-        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move differently or bring other gaps, so that either may become the nearer one; leave the facets around it out of one of the surfaces, or give both the same motion"
+        "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move \
+         differently or bring other gaps, so that either may become the nearer one; leave the facets around it out \
+         of one of the surfaces, or give both the same motion"
     )]
     SharedNode {
         /// Mesh node.
@@ -304,7 +322,8 @@ pub enum ContactError {
     },
     /// A load, a gap or the motion of a support is so large that squares of what follows from it overflow.
     #[error(
-        "{place}: {value:e} {unit} is too large, squares of what follows from it would overflow (at most {most:e} {unit}); check its units and its history"
+        "{place}: {value:e} {unit} is too large, squares of what follows from it would overflow (at most {most:e} \
+         {unit}); check its units and its history"
     )]
     TooLarge {
         /// Load, support or contact node, and when.
@@ -318,7 +337,8 @@ pub enum ContactError {
     },
     /// A material is so stiff or so soft that squares of forces or displacements overflow or vanish.
     #[error(
-        "region {region}: its material has a stiffness of {value:e} Pa, and squares of what follows from it would overflow or vanish (at least {least:e} Pa, at most {most:e} Pa); check the units of its material"
+        "region {region}: its material has a stiffness of {value:e} Pa, and squares of what follows from it would \
+         overflow or vanish (at least {least:e} Pa, at most {most:e} Pa); check the units of its material"
     )]
     Stiffness {
         /// The region of the mesh.
@@ -332,14 +352,16 @@ pub enum ContactError {
     },
     /// Loads that nothing can balance.
     #[error(
-        "level {level}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push along it with {force:.3e} N; {}",
+        "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push \
+         along it with {force:.3e} N; {}",
         if friction.is_some() { "beyond what friction can hold" } else { "held neither by supports nor by contact" },
         held_remedy(*friction)
     )]
     NotHeld {
-        /// Time level, from 0.
-        level: usize,
-        /// The body (part of the mesh that hangs together; of bodies that may touch each other the one that moves most).
+        /// The step, from 0.
+        step: usize,
+        /// The body (part of the mesh that hangs together; of bodies that may touch each other the one that moves
+        /// most).
         body: usize,
         /// One of its mesh nodes.
         node: u32,
@@ -348,13 +370,14 @@ pub enum ContactError {
         /// Work of the loads per metre of the motion, N. For a translation it is the force along it, for a rotation the
         /// moment divided by the radius.
         force: f64,
-        /// By more than which factor friction (coefficients and given bounds) would have to be larger to hold the body; `None` where no friction on its
-        /// contact surfaces could.
+        /// By more than which factor friction (coefficients and given bounds) would have to be larger to hold the
+        /// body; `None` where no friction on its contact surfaces could.
         friction: Option<f64>,
     },
     /// Loads in balance, or none, on a body that nothing holds.
     #[error(
-        "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are held neither by supports nor by contact ({motions}); add supports that stop them"
+        "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are held \
+         neither by supports nor by contact ({motions}); add supports that stop them"
     )]
     NotDetermined {
         /// The first such body (part of the mesh that hangs together).
@@ -380,42 +403,31 @@ pub enum ContactError {
         /// Why, and what to do.
         reason: &'static str,
     },
-    /// All time levels are solved.
-    #[error("the scene has {levels} time levels and all are solved")]
+    /// All steps are solved.
+    #[error("the scene has {steps} steps and all are solved")]
     Finished {
-        /// Number of levels.
-        levels: usize,
+        /// Number of steps.
+        steps: usize,
     },
-    /// An observer failed; the level before is solved and kept.
-    #[error("observer, after level {level}: {source}")]
+    /// An observer failed; the step before is solved and kept.
+    #[error("observer, after step {step}: {source}")]
     Observer {
-        /// Time level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
         /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// A level did not converge, where that was required.
+    /// A step did not converge, where that was required.
+    #[error("{0}")]
+    NotConverged(crate::status::StepFailure),
+    /// An earlier step did not converge, on whose displacement later ones depend, where that was required.
     #[error(
-        "level {level}, at {time} s, did not converge ({status}, certificate {certificate:.1e}); {}",
-        status.remedy()
-    )]
-    NotConverged {
-        /// The level, from 0.
-        level: usize,
-        /// Its time in s.
-        time: f64,
-        /// How it ended.
-        status: crate::report::StepStatus,
-        /// The largest relative violation of its certificate.
-        certificate: f64,
-    },
-    /// An earlier level did not converge, on whose displacement later ones depend, where that was required.
-    #[error(
-        "level {level} did not converge, and the slip of later levels depends on it; continue from a state before it, with smaller steps or other settings"
+        "step {step} did not converge, and the slip of later steps depends on it; continue from a state before it, \
+         with smaller steps or other settings"
     )]
     UnconvergedHistory {
-        /// The level, from 0.
-        level: usize,
+        /// The step, from 0.
+        step: usize,
     },
     /// A checkpoint does not belong to this scene or is damaged.
     #[error("checkpoint: {reason}")]
@@ -464,7 +476,8 @@ pub enum ContactError {
     Qp(#[from] QpError),
 }
 
-/// Prints its sentence, as with `{}`, and what its sources add to it: that is what a user sees of a `main` that returns it.
+/// Prints its sentence, as with `{}`, and what its sources add to it: that is what a user sees of a `main` that
+/// returns it.
 impl fmt::Debug for ContactError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut said = self.to_string();

@@ -5,7 +5,8 @@ use signorini_fem_mesh as fem;
 use std::fmt;
 use thiserror::Error;
 
-/// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout.
+/// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout. Each arrives in one way:
+/// what a scene passes on from a crate below (a mesh, a material) is that crate's variant here, not one of `Contact`.
 ///
 /// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is wrong and
 /// what to do about it. Programs match on its variants.
@@ -22,7 +23,7 @@ use thiserror::Error;
 pub enum Error {
     /// Scene, settings, simulation.
     #[error(transparent)]
-    Contact(#[from] ContactError),
+    Contact(ContactError),
     /// Mesh.
     #[error(transparent)]
     Mesh(#[from] fem::MeshError),
@@ -73,6 +74,21 @@ pub enum Error {
     #[cfg(feature = "gmsh")]
     #[error(transparent)]
     Gmsh(#[from] fem::gmsh::GmshError),
+}
+
+impl From<ContactError> for Error {
+    fn from(error: ContactError) -> Self {
+        match error {
+            ContactError::Mesh(error) => Self::Mesh(error),
+            ContactError::Material(error) => Self::Material(error),
+            ContactError::Decomposition(error) => Self::Decomposition(error),
+            ContactError::Surface(error) => Self::Surface(error),
+            ContactError::Field(error) => Self::Field(error),
+            ContactError::Tfeti(error) => Self::Tfeti(error),
+            ContactError::Qp(error) => Self::Qp(error),
+            error => Self::Contact(error),
+        }
+    }
 }
 
 impl fmt::Debug for Error {

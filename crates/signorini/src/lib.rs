@@ -5,9 +5,9 @@
 //! | module | package | holds |
 //! |---|---|---|
 //! | [`fem_mesh`] | `signorini-fem-mesh` | tetrahedra, P1 elasticity, loads, decomposition, files |
-//! | [`qp`] | `signorini-qp` | quadratic programming: KPRGP, SMALSE, face method |
+//! | [`qp`] | `signorini-qp` | quadratic programming: KPRGP, SMALSE, active sets |
 //! | [`tfeti`] | `signorini-tfeti` | gluing, kernels, inverses, dual operator, projectors |
-//! | [`contact`] | `signorini-contact` | scenes, plans, time levels, Coulomb friction, certificates |
+//! | [`contact`] | `signorini-contact` | scenes, plans, time steps, Coulomb friction, certificates |
 //!
 //! ```
 //! use signorini::prelude::*;
@@ -26,10 +26,10 @@
 //! let mut simulation = Simulation::new(scene, Settings::default())?;
 //! println!("{}", simulation.plan());
 //! while !simulation.is_finished() {
-//!     let frame = simulation.step()?;
-//!     let sum = frame.summary();
-//!     println!("t = {:.2} s: {} nodes touch, {} slide", frame.time(), sum.active, sum.slip);
-//!     assert!(frame.report().status.converged() && frame.certificate().largest() < 1e-6);
+//!     let result = simulation.step()?;
+//!     let sum = result.summary();
+//!     println!("t = {:.2} s: {} nodes touch, {} slide", result.time(), sum.active, sum.slip);
+//!     assert!(result.report().status.converged() && result.certificate().largest() < 1e-6);
 //! }
 //! # Ok(())
 //! # }
@@ -50,10 +50,10 @@ pub use error::Error;
 pub mod prelude {
     pub use crate::Error;
     pub use signorini_contact::{
-        Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactState,
-        DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Place, Plan,
-        PointState, Preconditioner, RunReport, Scene, Screening, Settings, Silent, Simulation,
-        SlipBound, State, StepResult, StepStatus, Support,
+        Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal,
+        ContactState, ContactSummary, DifferenceFormula, Directions, Flow, Friction, Gap, Load,
+        Method, Observer, Partition, Place, Plan, PointState, Preconditioner, RunReport, Scene,
+        Settings, Silent, Simulation, SlipBound, State, StepResult, StepStatus, Support,
     };
     pub use signorini_fem_mesh::{
         Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,

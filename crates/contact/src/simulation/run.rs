@@ -1,12 +1,12 @@
-//! Solving all levels that are left.
+//! Solving all steps that are left.
 
-use super::Simulation;
+use super::observer::{Flow, Observer};
+use super::simulation::Simulation;
 use crate::error::ContactError;
-use crate::observer::{Flow, Observer};
 use crate::report::RunReport;
 
 impl Simulation {
-    /// Solves all levels that are left, telling the observer; ends early if it says so. Not converging is no error: see the
+    /// Solves all steps that are left, telling the observer; ends early if it says so. Not converging is no error: see the
     /// report, or ask it to [require](RunReport::require_converged) that all converged.
     ///
     /// # Errors
@@ -15,27 +15,30 @@ impl Simulation {
         &mut self,
         observer: &mut (impl Observer + ?Sized),
     ) -> Result<RunReport, ContactError> {
-        let levels = self.model.scene.analysis.steps() - self.state.step();
-        observer.started(&self.model.plan, levels);
+        observer.started(self.plan(), self.plan().steps - self.state.step());
         let mut report = RunReport {
             unconverged_history: self.state.unconverged_history(),
             ..RunReport::default()
         };
         let mut failed = None;
         while !self.is_finished() {
-            let frame = self.step()?;
-            let (level, certificate) = (frame.step(), frame.certificate().largest());
-            report.enter(frame.report(), level, frame.time(), certificate);
-            match observer.step(&frame) {
+            let result = self.step()?;
+            report.enter(
+                result.report(),
+                result.failure(),
+                result.certificate().largest(),
+            );
+            match observer.step(&result) {
                 Flow::Continue => {}
                 Flow::Stop => break,
                 Flow::Fail(source) => {
-                    failed = Some(ContactError::Observer { level, source });
+                    let step = result.step();
+                    failed = Some(ContactError::Observer { step, source });
                     break;
                 }
             }
         }
-        observer.finished(report.levels);
+        observer.finished(report.steps);
         failed.map_or(Ok(report), Err)
     }
 }

@@ -111,11 +111,11 @@ impl<'a> Judge<'a> {
     }
 
     /// Judges a level and takes it into the history.
-    pub(crate) fn step(&mut self, frame: &StepResult<'_>) -> Result<Vec<Violation>, Error> {
+    pub(crate) fn step(&mut self, frame: &StepResult) -> Result<Vec<Violation>, Error> {
         let report = Report {
             points: frame.points(),
-            u: frame.displacement(),
-            reactions: frame.reactions()?,
+            u: frame.displacement().into_flattened(),
+            reactions: frame.reactions(),
             time: frame.time(),
         };
         let mut worst = Worst::default();
@@ -166,7 +166,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Nodal forces of the strained tetrahedra: at the nodes, and their squares summed over the copies of each node.
-    fn torn(&self, frame: &StepResult<'_>) -> (Vec<f64>, Vec<f64>) {
+    fn torn(&self, frame: &StepResult) -> (Vec<f64>, Vec<f64>) {
         let nodes = self.mechanics.points.len();
         let (mut whole, mut squares) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
         let mut start = 0;
@@ -223,7 +223,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Copies of a node are where their mean is.
-    fn copies(&self, frame: &StepResult<'_>, u: &[f64], sizes: &[Size], worst: &mut Worst) {
+    fn copies(&self, frame: &StepResult, u: &[f64], sizes: &[Size], worst: &mut Worst) {
         let mut start = 0;
         for subdomain in frame.decomposition().subdomains() {
             for (local, &node) in (0..).zip(&subdomain.nodes) {

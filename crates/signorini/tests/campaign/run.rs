@@ -72,7 +72,7 @@ type Refusal = (String, String);
 /// Shows all levels of a scene as they are solved; says what refuses it.
 pub(crate) fn each_level(
     recipe: &Recipe,
-    mut see: impl FnMut(&StepResult<'_>) -> Result<(), Error>,
+    mut see: impl FnMut(&StepResult) -> Result<(), Error>,
 ) -> Result<Option<Refusal>, Error> {
     let scene = say::scene(recipe)?;
     let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
@@ -95,7 +95,8 @@ pub(crate) fn each_level(
             simulation = Simulation::new(scene.clone(), say::settings(recipe))?;
             simulation.resume(state)?;
         }
-        see(&simulation.step()?)?;
+        let result = simulation.step()?;
+        see(&result)?;
         solved += 1;
     }
     Ok(None)
@@ -111,7 +112,7 @@ fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
         out.push(Level {
             status: report.status,
             products: report.counters.products,
-            faces: report.counters.faces,
+            faces: report.counters.active_sets,
             fallback: report.fallback,
             inherited: frame.unconverged_history().is_some(),
             certificate: frame.certificate().largest(),

@@ -165,7 +165,7 @@ impl Judge<'_> {
     /// The sums of the frame.
     pub(super) fn sums(
         &self,
-        frame: &StepResult<'_>,
+        frame: &StepResult,
         of: &[Option<usize>],
         sizes: &[Size],
         worst: &mut Worst,

@@ -1,0 +1,131 @@
+//! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is
+//! solved: solvers would only see norms that are infinite or vanish, and blame their tolerance.
+
+use super::points::ContactPoint;
+use crate::error::ContactError;
+use crate::scene::{Analysis, Scene};
+use crate::tolerances::LARGEST;
+use signorini_fem_mesh::{Decomposition, History, assemble_load};
+use signorini_qp::vector;
+use signorini_tfeti::TfetiError;
+use std::collections::BTreeSet;
+
+/// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh,
+/// N/m.
+pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
+    let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
+    let mut ends = [f64::INFINITY, 0.0_f64];
+    for region in regions {
+        let law = scene.materials.get(region).map_err(|source| {
+            let element = scene.mesh.regions().iter().position(|r| *r == region);
+            let element = element.unwrap_or(0);
+            TfetiError::Material {
+                element,
+                message: source.to_string(),
+            }
+        })?;
+        let value = law.bound();
+        if !(1.0 / LARGEST..=LARGEST).contains(&value) {
+            return Err(ContactError::Stiffness {
+                region,
+                value,
+                least: 1.0 / LARGEST,
+                most: LARGEST,
+            });
+        }
+        ends = [ends[0].min(value), ends[1].max(value)];
+    }
+    let (low, high) = scene.mesh.extent();
+    let extent = (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+    Ok(ends.map(|s| s * extent))
+}
+
+/// Refuses what is too large; what is not a number is left to others.
+fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
+    if value > LARGEST {
+        return Err(ContactError::TooLarge {
+            place: place(),
+            value,
+            unit,
+            most: LARGEST,
+        });
+    }
+    Ok(())
+}
+
+/// The largest size of a history at the steps, and its time.
+pub(super) fn largest_factor(analysis: &Analysis, history: &History) -> (f64, f64) {
+    let times = analysis.times().iter();
+    times.fold((0.0, 0.0), |worst: (f64, f64), &time| {
+        let value = history.value(time).abs();
+        if value > worst.0 {
+            (value, time)
+        } else {
+            worst
+        }
+    })
+}
+
+/// Refuses motions of supports and obstacles; `spring` is the largest stiffness of a region, N/m.
+pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactError> {
+    for (index, support) in scene.supports.iter().enumerate() {
+        if let Some((values, history)) = &support.motion {
+            let (factor, time) = largest_factor(&scene.analysis, history);
+            let size = vector::max_abs(values.as_flattened());
+            let place = || format!("support {index} at time {time} s: its displacement");
+            expect(factor * size, "m", place)?;
+            let place = || {
+                format!("support {index} at time {time} s: its displacement times the stiffness")
+            };
+            expect(factor * size * spring, "N", place)?;
+        }
+    }
+    for (index, contact) in scene.contacts.iter().enumerate() {
+        if let Some((value, history)) = &contact.motion {
+            let (factor, time) = largest_factor(&scene.analysis, history);
+            let place = || format!("obstacle {index} at time {time} s: its displacement");
+            expect(factor * vector::max_abs(value), "m", place)?;
+        }
+    }
+    Ok(())
+}
+
+/// The nodal forces of each load with factor one, subdomain by subdomain, N; `spring` is the least stiffness of a
+/// region, N/m.
+pub(super) fn nodal_loads(
+    scene: &Scene,
+    decomposition: &Decomposition,
+    spring: f64,
+) -> Result<Vec<Vec<Vec<f64>>>, ContactError> {
+    let mut out = Vec::with_capacity(scene.loads.len());
+    for (index, load) in scene.loads.iter().enumerate() {
+        let local = assemble_load(&scene.mesh, decomposition, &load.density)
+            .map_err(|source| ContactError::Load { index, source })?;
+        // a NaN stays one
+        let sizes = local.iter().map(|f| vector::max_abs(f));
+        let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
+        let (factor, time) = largest_factor(&scene.analysis, &load.history);
+        let place =
+            |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
+        expect(factor * size, "N", || place(""))?;
+        expect(factor * size / spring, "m", || place(" over the stiffness"))?;
+        out.push(local);
+    }
+    Ok(out)
+}
+
+/// Refuses gaps at the start, and those that obstacles bring with them at the steps.
+pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint]) -> Result<(), ContactError> {
+    for c in conditions {
+        let place = || format!("contact at node {}: the gap", c.node());
+        expect(c.gap.abs(), "m", place)?;
+        let contact = &scene.contacts[c.surface];
+        if contact.carries_field() {
+            for &time in scene.analysis.times() {
+                let gap = c.gap_after(scene, &contact.obstacle_at(time))?;
+                expect(gap.abs(), "m", place)?;
+            }
+        }
+    }
+    Ok(())
+}

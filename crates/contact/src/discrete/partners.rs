@@ -1,0 +1,247 @@
+//! Partners: which node of the other body a contact node may touch.
+//!
+//! Meshes match, so that the partner of a node lies on its normal. What is small against the facets is put down to
+//! rounding, and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do
+//! not face each other are no partners: a thin body has nodes of its far side on the same normal.
+
+use super::rounding::rounding;
+use crate::error::ContactError;
+use crate::scene::{Contact, Gap};
+use crate::tolerances::{BESIDE, FACING, MOST_TILT, TILT};
+use rayon::prelude::*;
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use signorini_qp::vector;
+use std::collections::HashMap;
+
+/// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
+const NEAR: f64 = 10.0;
+
+/// The partner of a contact node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Partner {
+    pub(super) node: u32,
+    /// Distance along the normal of the contact node, m; negative where the bodies overlap.
+    pub(super) gap: f64,
+}
+
+/// The partners of the nodes of a surface, node by node; none where the contact is with a rigid obstacle. `fixed` is
+/// the frame of a contact with one direction.
+pub(super) fn partners(
+    mesh: &TetMesh,
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+    fixed: Option<&SurfaceFrame>,
+) -> Result<Vec<Partner>, ContactError> {
+    if contact.partner.is_empty() {
+        return Ok(Vec::new());
+    }
+    let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
+    let rounding = rounding(mesh);
+    let partner = |(local, &node): (usize, &u32)| {
+        let seen_from = Viewer {
+            node,
+            at: mesh.points()[node as usize],
+            normal: fixed.unwrap_or(&surface.frames()[local]).normal,
+            size: surface.areas()[local].sqrt(),
+        };
+        let size = seen_from.size;
+        let Some(mut partner) = other.partner(&seen_from) else {
+            let (beside, limit) = (other.beside(&seen_from), BESIDE * size);
+            return Err(ContactError::NoPartner {
+                contact: index,
+                node,
+                beside,
+                limit,
+            });
+        };
+        let depth = -partner.gap;
+        if matches!(contact.gap, Gap::Measured) && depth > size {
+            let partner = partner.node;
+            return Err(ContactError::Overlap {
+                contact: index,
+                node,
+                partner,
+                depth,
+                size,
+            });
+        }
+        if depth.abs() <= rounding {
+            partner.gap = 0.0;
+        }
+        Ok(partner)
+    };
+    let found: Vec<_> = surface
+        .nodes()
+        .par_iter()
+        .enumerate()
+        .map(partner)
+        .collect();
+    // of several errors the first, whichever thread has found one
+    let found: Vec<Partner> = found.into_iter().collect::<Result<_, _>>()?;
+    let mut owners = HashMap::new();
+    for (&Partner { node: partner, .. }, &second) in found.iter().zip(surface.nodes()) {
+        let place = |node: u32| &mesh.points()[node as usize];
+        if let Some(first) = owners.insert(partner, second)
+            && vector::distance(place(first), place(second)) > rounding
+        {
+            return Err(ContactError::SharedPartner {
+                contact: index,
+                partner,
+                first,
+                second,
+            });
+        }
+    }
+    Ok(found)
+}
+
+/// A contact node that looks for its partner.
+struct Viewer {
+    node: u32,
+    at: [f64; 3],
+    normal: [f64; 3],
+    /// Root of the area of the node, m.
+    size: f64,
+}
+
+/// The other side, with its nodes in the order of each coordinate.
+struct OtherSide<'a> {
+    mesh: &'a TetMesh,
+    surface: Surface,
+    /// Coordinate and place in the surface.
+    sorted: [Vec<(f64, u32)>; 3],
+}
+
+impl<'a> OtherSide<'a> {
+    fn new(mesh: &'a TetMesh, surface: Surface) -> Self {
+        let sorted = [0, 1, 2].map(|c| {
+            let nodes = surface.nodes().iter().zip(0..);
+            let places = nodes.map(|(&node, local)| (mesh.points()[node as usize][c], local));
+            let mut list: Vec<(f64, u32)> = places.collect();
+            list.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            list
+        });
+        Self {
+            mesh,
+            surface,
+            sorted,
+        }
+    }
+
+    /// The nearest node at the normal of a node.
+    fn partner(&self, from: &Viewer) -> Option<Partner> {
+        let near = NEAR * from.size;
+        let found = self
+            .nearest(from, near)
+            .filter(|(_, distance)| *distance <= near);
+        let found = found.or_else(|| self.nearest(from, f64::INFINITY));
+        found.map(|(partner, _)| partner)
+    }
+
+    /// The nearest of the nodes that may be closer than `most`, with its distance.
+    fn nearest(&self, from: &Viewer, most: f64) -> Option<(Partner, f64)> {
+        // along the axis on which the normal is shortest
+        let slope = |c: &usize| from.normal[*c].abs();
+        let axis = (0..3)
+            .min_by(|a, b| slope(a).total_cmp(&slope(b)))
+            .unwrap_or(0);
+        let along = match slope(&axis) {
+            0.0 => 0.0,
+            slope => slope * most,
+        };
+        let reach = (BESIDE + MOST_TILT) * from.size + along;
+        let (list, at) = (&self.sorted[axis], from.at[axis]);
+        let near = list[list.partition_point(|(x, _)| *x < at - reach)..].iter();
+        let mut found = None::<(Partner, f64)>;
+        for &(_, local) in near.take_while(|(x, _)| *x <= at + reach) {
+            let Some((partner, beside)) = self.seen(from, local as usize) else {
+                continue;
+            };
+            let distance = partner.gap.hypot(beside);
+            let tilted = (TILT * partner.gap.abs()).min(MOST_TILT * from.size);
+            let allowed = BESIDE * from.size + tilted;
+            if beside <= allowed && found.is_none_or(|f| distance < f.1) {
+                found = Some((partner, distance));
+            }
+        }
+        found
+    }
+
+    /// How far from the normal of a node the next of all nodes that face it is, m; infinite if none does.
+    fn beside(&self, from: &Viewer) -> f64 {
+        let seen = (0..self.surface.nodes().len()).filter_map(|local| self.seen(from, local));
+        seen.fold(f64::INFINITY, |least, (_, beside)| least.min(beside))
+    }
+
+    /// A node of this side as it is seen from a node: along its normal, and beside it. `None` if it does not face it.
+    fn seen(&self, from: &Viewer, local: usize) -> Option<(Partner, f64)> {
+        let node = self.surface.nodes()[local];
+        let facing = -self.surface.frames()[local].normal_part(from.normal);
+        if node == from.node || facing < FACING {
+            return None;
+        }
+        let to = self.mesh.points()[node as usize];
+        let way = [0, 1, 2].map(|c| to[c] - from.at[c]);
+        let gap = vector::dot(&way, &from.normal);
+        let beside = vector::norm(&[0, 1, 2].map(|c| way[c] - gap * from.normal[c]));
+        Some((Partner { node, gap }, beside))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use signorini_fem_mesh::{Brick, FacetTag, brick};
+
+    fn lower(tag: FacetTag) -> FacetTag {
+        FacetTag(tag.0 + 100)
+    }
+
+    /// A block over a larger one, bent about the y axis, with a gap.
+    fn bent(gap: f64) -> TetMesh {
+        let upper = Brick::new([1.0, 1.0, 0.5], [6, 4, 2])
+            .build()
+            .expect("brick");
+        let below = Brick::new([2.0, 1.0, 0.5], [12, 4, 2])
+            .build()
+            .expect("brick");
+        let below = below
+            .map_points(|[x, y, z]| [x - 0.5, y, z - 0.5])
+            .expect("moved")
+            .map_tags(lower);
+        // circles about the axis x = 0.5, z = -3; normals stay normals
+        let turn = |[x, y, z]: [f64; 3], out: f64| {
+            let (radius, angle) = (3.0 + z + out, (x - 0.5) / 3.0);
+            [0.5 + radius * angle.sin(), y, radius * angle.cos() - 3.0]
+        };
+        let upper = upper.map_points(|p| turn(p, gap)).expect("bent");
+        let below = below.map_points(|p| turn(p, 0.0)).expect("bent");
+        upper.append(&below).expect("two bodies")
+    }
+
+    /// Near and far partners are those that looking at all nodes finds.
+    #[test]
+    fn partners_lie_on_the_normals_of_curved_surfaces() {
+        for gap in [0.0, 1e-3, 0.02, 0.3] {
+            let mesh = bent(gap);
+            let surface = Surface::new(&mesh, &[brick::Z_MIN]).expect("surface");
+            let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
+            let found = partners(&mesh, 0, &contact, &surface, None).expect("partners");
+            assert_eq!(found.len(), surface.nodes().len());
+            let all = Surface::new(&mesh, &contact.partner).expect("surface");
+            for (partner, &node) in found.iter().zip(surface.nodes()) {
+                let at = mesh.points()[node as usize];
+                let distance = |n: &u32| {
+                    let to = mesh.points()[*n as usize];
+                    (0..3).map(|c| (to[c] - at[c]).powi(2)).sum::<f64>()
+                };
+                let nearest = all.nodes().iter();
+                let nearest = nearest.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                assert_eq!(nearest, Some(&partner.node), "gap {gap}");
+                // edges of the surface have the normals of one row of facets
+                assert!((partner.gap - gap).abs() <= 1e-3 * gap, "{}", partner.gap);
+            }
+        }
+    }
+}

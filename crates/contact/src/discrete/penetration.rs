@@ -1,0 +1,52 @@
+//! Contact nodes whose normal displacement is prescribed by supports.
+//!
+//! They have no contact row, since no contact force can change their displacement. That is right only as long as they
+//! stay outside the obstacle, which is known before anything is solved: prescribed displacement and gap are data.
+
+use super::points::ContactPoint;
+use crate::error::ContactError;
+use crate::scene::Scene;
+use crate::tolerances::DEPTH;
+use signorini_fem_mesh::History;
+use signorini_tfeti::PrescribedPoint;
+
+/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step.
+pub(super) fn check_penetration(
+    scene: &Scene,
+    points: &[ContactPoint],
+    prescribed: &[PrescribedPoint],
+    motions: &[History],
+    rounding: f64,
+) -> Result<(), ContactError> {
+    if prescribed.is_empty() {
+        return Ok(());
+    }
+    for &time in scene.analysis.times() {
+        let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
+        let mut deepest: Option<(f64, u32, f64, f64)> = None;
+        for fixed in prescribed {
+            let point = &points[fixed.point];
+            let contact = &scene.contacts[point.surface];
+            let gap = point.gap_after(scene, &contact.obstacle_at(time))?;
+            let along = fixed.normal.iter();
+            let displacement: f64 = along
+                .map(|&(case, value)| factors[case as usize] * value)
+                .sum();
+            let depth = displacement - gap;
+            let allowed = rounding + DEPTH * gap.abs().max(displacement.abs());
+            if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
+                deepest = Some((depth, fixed.node, displacement, gap));
+            }
+        }
+        if let Some((depth, node, displacement, gap)) = deepest {
+            return Err(ContactError::SupportInObstacle {
+                node,
+                depth,
+                time,
+                displacement,
+                gap,
+            });
+        }
+    }
+    Ok(())
+}

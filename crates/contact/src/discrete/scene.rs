@@ -1,0 +1,103 @@
+//! The discrete scene: a scene at the nodes of its mesh, made and checked once.
+
+use super::overflow::{check_gaps, check_materials, check_motions, nodal_loads};
+use super::penetration::check_penetration;
+use super::points::{ContactPoint, conditions, points};
+use super::rounding::rounding;
+use super::supports::Supports;
+use crate::error::ContactError;
+use crate::scene::{Contact, Scene, check_laws};
+use signorini_fem_mesh::{Decomposition, Surface};
+use signorini_tfeti::{ContactConstraint, ContactConstraints, prescribed_points};
+use std::collections::HashMap;
+
+/// A scene lowered to nodes.
+#[derive(Debug)]
+pub(crate) struct DiscreteScene {
+    /// How the body is cut.
+    pub(crate) decomposition: Decomposition,
+    pub(crate) supports: Supports,
+    /// Contact surfaces, in the order of the scene, fixed nodes included.
+    pub(crate) surfaces: Vec<Surface>,
+    /// What the contacts say: each of their nodes with each of its normals.
+    pub(crate) conditions: Vec<ContactPoint>,
+    /// The contact points that stand for them.
+    pub(crate) points: Vec<ContactPoint>,
+    /// The same as `tfeti` wants them.
+    pub(crate) constraints: ContactConstraints,
+    /// Nodal forces of each load with factor one, subdomain by subdomain, N; the model takes them.
+    pub(crate) loads: Vec<Vec<Vec<f64>>>,
+    /// What of a gap may be rounding, m.
+    pub(crate) rounding: f64,
+}
+
+impl DiscreteScene {
+    /// Refuses all that can be wrong with a scene but two things, which only the set-up can judge: subdomains that
+    /// cannot be factored, and loads that neither supports nor contact hold.
+    pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
+        scene.validate()?;
+        let decomposition = scene.decompose()?;
+        let supports = Supports::new(scene)?;
+        let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
+        let surfaces = scene.contacts.iter().map(surface);
+        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
+        let rounding = rounding(&scene.mesh);
+        let conditions = conditions(scene, &surfaces)?;
+        let points = points(scene, &conditions, rounding)?;
+        let [softest, stiffest] = check_materials(scene)?;
+        check_motions(scene, stiffest)?;
+        check_gaps(scene, &conditions)?;
+        let constraints = constraints(scene, &points);
+        let nodes = scene.mesh.points().len();
+        let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
+        check_penetration(scene, &points, &prescribed, &supports.motions, rounding)?;
+        let loads = nodal_loads(scene, &decomposition, softest)?;
+        // both in the order of the points
+        let mut without = prescribed.iter().map(|p| p.point).peekable();
+        let with_rows = points.iter().enumerate();
+        let with_rows = with_rows.filter(|(k, _)| without.next_if_eq(k).is_none());
+        check_laws(with_rows.map(|(_, p)| {
+            let friction = scene.contacts[p.surface].friction();
+            (friction, p.node(), p.position)
+        }))?;
+        Ok(Self {
+            decomposition,
+            supports,
+            surfaces,
+            conditions,
+            points,
+            constraints,
+            loads,
+            rounding,
+        })
+    }
+
+    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are
+    /// those of nodes that supports hold, judged before anything is solved.
+    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
+        let mut places = places.peekable();
+        let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();
+        for (place, point) in self.points.iter().enumerate() {
+            if places.next_if_eq(&place).is_none() {
+                without.entry(point.node()).or_default().push(point);
+            }
+        }
+        let left = |c: &&ContactPoint| {
+            let points = without.get(&c.node());
+            !points.is_some_and(|p| p.iter().any(|p| p.is_same(c)))
+        };
+        self.conditions.iter().filter(left).cloned().collect()
+    }
+}
+
+/// The contact points as `tfeti` wants them.
+fn constraints(scene: &Scene, points: &[ContactPoint]) -> ContactConstraints {
+    let point = |p: &ContactPoint| {
+        let contact = &scene.contacts[p.surface];
+        ContactConstraint::new(p.node(), p.frame)
+            .with_partner(p.sides.partner())
+            .with_friction(contact.friction().is_some())
+            .with_moving_obstacle(contact.motion.is_some())
+    };
+    points.iter().map(point).collect()
+}

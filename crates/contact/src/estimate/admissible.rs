@@ -1,0 +1,291 @@
+//! The best admissible position of one contact node, and its share of the duality gap.
+//!
+//! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more
+//! freedom. Where it is not free either, both move, each where it can.
+
+use crate::model::{ConstrainedPoint, Model};
+use crate::result::PointState;
+use crate::step::StepProblem;
+use crate::tolerances::{FREEDOM_TAKEN, NEAR_BOUND, ROUNDING};
+use crate::vec3::dot;
+use nalgebra::{DMatrix, Vector3};
+
+/// What the rows of a contact point measure of the displacement of one node, in metres: a direction for each row, the
+/// normal one first, without the parts along directions that supports fix.
+type RowPart = [[f64; 3]; 3];
+
+/// Sum of the squares: 3 for a node without supports.
+fn freedom(part: &RowPart) -> f64 {
+    part.iter().map(|d| dot(d, d)).sum()
+}
+
+/// For each row how both nodes move so that the row grows by one, and the others do not.
+type Shifts = [[[f64; 3]; 2]; 3];
+
+/// The node of a contact point that moves, and its partner, which stays.
+#[derive(Debug, Clone)]
+pub(crate) struct AdmissibleNode {
+    /// Mesh node.
+    pub(crate) node: u32,
+    /// Directions of the rows in space, with row and scale: the normal one, then the tangential ones.
+    rows: Vec<([f64; 3], usize, f64)>,
+    own: RowPart,
+    still: Option<(u32, RowPart)>,
+    /// Where supports hold both nodes in part.
+    both: Option<Box<Shifts>>,
+}
+
+impl AdmissibleNode {
+    pub(crate) fn new(model: &Model, point: &ConstrainedPoint) -> Self {
+        let subdomains = model.discrete.decomposition.subdomains();
+        let rows: Vec<_> = point.directions().collect();
+        let mut parts = [RowPart::default(); 2];
+        for (k, &(_, row, scale)) in rows.iter().enumerate() {
+            for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
+                let first = subdomains[subdomain].nodes[dof / 3] == point.node();
+                parts[usize::from(!first)][k][dof % 3] += coefficient / scale;
+            }
+        }
+        // where supports fix nothing, without rounding
+        let normal = rows[0].0;
+        for (part, sign) in parts.iter_mut().zip([1.0, -1.0]) {
+            if (0..3).all(|c| (sign * part[0][c] - normal[c]).abs() <= ROUNDING) {
+                part[0] = normal.map(|c| sign * c);
+            }
+        }
+        let [mut first, second] = parts;
+        let (node, own, still) = match point.partner() {
+            None => {
+                for (part, (direction, ..)) in first.iter_mut().zip(&rows).skip(1) {
+                    *part = *direction;
+                }
+                (point.node(), first, None)
+            }
+            Some(partner) if freedom(&second) > freedom(&first) + ROUNDING => {
+                (partner, second, Some((point.node(), first)))
+            }
+            Some(partner) => (point.node(), first, Some((partner, second))),
+        };
+        let taken = freedom(&own) < rows.len() as f64 - FREEDOM_TAKEN;
+        let both = still
+            .filter(|_| taken)
+            .and_then(|(_, still)| shifts(&own, &still, rows.len()));
+        Self {
+            node,
+            rows,
+            own,
+            still,
+            both,
+        }
+    }
+
+    /// Moves the node such that row `k`, the normal one or those along the surface, grows by so many metres.
+    fn shift(&self, v: &mut [f64], k: usize, by: f64) {
+        if let (Some(shifts), Some((still, _))) = (&self.both, &self.still) {
+            for (node, direction) in [self.node, *still].into_iter().zip(&shifts[k]) {
+                shift(&mut v[3 * node as usize..][..3], direction, by);
+            }
+            return;
+        }
+        let direction = &self.own[k];
+        // along the movable part, so that supports stay where they are
+        let by = if k == 0 {
+            by / dot(direction, direction)
+        } else {
+            by
+        };
+        shift(self.value(v), direction, by);
+    }
+
+    /// Moves the node out of the obstacle, if it is inside.
+    pub(crate) fn push_out(&self, problem: &StepProblem, v: &mut [f64]) {
+        let depth = self.conditions(problem, v).depth(self.value(v)).max(0.0);
+        self.shift(v, 0, -depth);
+    }
+
+    /// The displacement of the node that moves.
+    pub(crate) fn value<'a>(&self, v: &'a mut [f64]) -> &'a mut [f64] {
+        &mut v[3 * self.node as usize..][..3]
+    }
+
+    /// The conditions on the node that moves, with the others at their displacements `v`.
+    pub(crate) fn conditions(&self, problem: &StepProblem, v: &[f64]) -> Conditions {
+        let mut planes = [([0.0; 3], 0.0); 3];
+        for (k, &(_, row, scale)) in self.rows.iter().enumerate() {
+            // the offset of a row has the motion that supports prescribe along it already
+            let mut offset = problem.offset[row] / scale;
+            if let Some((node, part)) = &self.still {
+                offset -= dot(&part[k], &v[3 * *node as usize..][..3]);
+            }
+            planes[k] = (self.own[k], offset);
+        }
+        Conditions {
+            planes,
+            count: self.rows.len(),
+        }
+    }
+}
+
+/// Conditions on the displacement `v` of one node: `d . v <= offset` along the normal, and friction along the other
+/// directions `d` where `d . v` is not their offset.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Conditions {
+    planes: [([f64; 3], f64); 3],
+    count: usize,
+}
+
+impl Conditions {
+    /// The plane of the obstacle: normal and offset.
+    pub(crate) fn obstacle(&self) -> ([f64; 3], f64) {
+        self.planes[0]
+    }
+
+    /// Directions along the surface, with their offsets.
+    pub(crate) fn along(&self) -> &[([f64; 3], f64)] {
+        &self.planes[1..self.count]
+    }
+
+    /// How deep the node is in the obstacle, m; negative outside.
+    fn depth(&self, value: &[f64]) -> f64 {
+        let (normal, offset) = self.planes[0];
+        dot(&normal, value) - offset
+    }
+}
+
+/// A contact node after its move.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Correction {
+    /// `v_nu - g`, m.
+    open: f64,
+    /// `v_T - z` along the tangential directions, m.
+    slip: [f64; 2],
+    /// Friction force along them, N.
+    force: [f64; 2],
+    /// Slip bound that the estimate takes, N.
+    bound: f64,
+    /// Energy that the change of the slip bound is worth, J.
+    pub(crate) change: f64,
+}
+
+impl Correction {
+    /// Moves a node such that the gap is smallest with all other nodes held; `stiffness` is that of rows in N/m.
+    pub(crate) fn new(
+        node: &AdmissibleNode,
+        state: &PointState,
+        problem: &StepProblem,
+        stiffness: &[f64],
+        v: &mut [f64],
+    ) -> Self {
+        let of_row = |k: usize| node.rows[k].2.powi(2) * stiffness[node.rows[k].1];
+        let open = node.conditions(problem, v).depth(node.value(v));
+        let target = (open - state.normal_force / of_row(0)).min(0.0);
+        node.shift(v, 0, target - open);
+        let mut moved = Self {
+            open: target,
+            slip: [0.0; 2],
+            force: [0.0; 2],
+            bound: state.slip_bound,
+            change: 0.0,
+        };
+        let conditions = node.conditions(problem, v);
+        if conditions.along().is_empty() {
+            return moved;
+        }
+        let k = of_row(1);
+        let value = node.value(v);
+        let mut start = [0.0; 2];
+        for (j, (own, offset)) in conditions.along().iter().enumerate() {
+            start[j] = dot(own, value) - offset;
+            moved.force[j] = dot(&node.rows[1 + j].0, &state.friction_force);
+        }
+        // with the bound of the step, or with the friction force as the bound: whichever costs less
+        let size = length(moved.force);
+        let nearest = |bound: f64| {
+            let w = [start[0] - moved.force[0] / k, start[1] - moved.force[1] / k];
+            let length = length(w);
+            let shrink = if length > 0.0 {
+                (1.0 - bound / (k * length)).max(0.0)
+            } else {
+                0.0
+            };
+            w.map(|w| shrink * w)
+        };
+        let change = 0.5 * (moved.bound - size).powi(2) / k;
+        moved.slip = nearest(moved.bound);
+        let way = length([moved.slip[0] - start[0], moved.slip[1] - start[1]]);
+        let near = (moved.bound - size).abs() <= NEAR_BOUND * moved.bound;
+        if size > moved.bound || near && change < moved.friction_term() + 0.5 * k * way * way {
+            moved.bound = size;
+            moved.change = change;
+            moved.slip = nearest(size);
+        }
+        for j in 0..conditions.along().len() {
+            node.shift(v, 1 + j, moved.slip[j] - start[j]);
+        }
+        moved
+    }
+
+    /// Whether the node is at the obstacle.
+    pub(crate) fn touches(&self) -> bool {
+        self.open == 0.0
+    }
+
+    /// Whether friction holds it where it is.
+    pub(crate) fn sticks(&self) -> bool {
+        self.bound > 0.0 && self.slip == [0.0; 2]
+    }
+
+    /// The node's share of the gap at its final position, which supports may have changed, J.
+    pub(crate) fn gap(mut self, state: &PointState, conditions: &Conditions, value: &[f64]) -> f64 {
+        let far = |a: f64, b: f64, size: f64| (a - b).abs() > ROUNDING * size;
+        let size = value.iter().map(|v| v.abs()).fold(0.0, f64::max);
+        let open = conditions.depth(value);
+        if far(open, self.open, size + conditions.obstacle().1.abs()) {
+            self.open = open;
+        }
+        for ((direction, offset), own) in conditions.along().iter().zip(&mut self.slip) {
+            let slip = dot(direction, value) - offset;
+            if far(slip, *own, size + offset.abs()) {
+                *own = slip;
+            }
+        }
+        (state.normal_force * self.open).abs() + self.friction_term()
+    }
+
+    /// `r |w| + lambda_T . w`, without the cancellation of a sliding node.
+    fn friction_term(&self) -> f64 {
+        let ([a, b], [x, y]) = (self.force, self.slip);
+        let (size, way, work) = (length(self.force), length(self.slip), a * x + b * y);
+        let angle = if work < 0.0 {
+            (a * y - b * x).powi(2) / (size * way - work)
+        } else {
+            size * way + work
+        };
+        (self.bound - size).max(0.0) * way + angle
+    }
+}
+
+/// How both nodes move for each of so many rows, as little as possible; `None` if nothing makes the rows independent.
+fn shifts(own: &RowPart, still: &RowPart, rows: usize) -> Option<Box<Shifts>> {
+    let matrix = DMatrix::from_fn(
+        rows,
+        6,
+        |k, c| if c < 3 { own[k][c] } else { still[k][c - 3] },
+    );
+    let inverse = matrix.pseudo_inverse(FREEDOM_TAKEN).ok()?;
+    let mut out = Shifts::default();
+    for (k, shift) in out.iter_mut().enumerate().take(rows) {
+        *shift = [0, 3].map(|at| Vector3::from_fn(|c, _| inverse[(at + c, k)]).into());
+    }
+    Some(Box::new(out))
+}
+
+fn length(w: [f64; 2]) -> f64 {
+    w[0].hypot(w[1])
+}
+
+fn shift(value: &mut [f64], direction: &[f64; 3], by: f64) {
+    for c in 0..3 {
+        value[c] += by * direction[c];
+    }
+}

@@ -1,0 +1,327 @@
+//! The algebraic error of a step by the duality gap; docs/theory.md derives it.
+//!
+//! The recovered torn displacement `u` is in equilibrium with the multipliers, but only nearly continuous and
+//! admissible. From it a continuous, admissible `v` is made: the mean of the copies of each node weighted by
+//! stiffness, moved at contact nodes ([`admissible`](super::admissible)), set to the supports. With slip bounds `r`,
+//! gaps `g` and rest positions `z`
+//!
+//! ```text
+//! gap = 1/2 |v - u|² + sum lambda_nu (v_nu - g) + sum ( r |v_T - z| + lambda_T . (v_T - z) )
+//! ```
+//!
+//! is at least `1/2 |v - u*|² + 1/2 |u - u*|²`, `u*` the solution of the discrete problem with the slip bounds `r`.
+
+use super::admissible::{AdmissibleNode, Correction};
+use crate::model::Model;
+use crate::report::AlgebraicError;
+use crate::result::Recovered;
+use crate::step::StepProblem;
+use crate::tolerances::{NO_STRAIN, PARALLEL, REST, ROUNDING};
+use crate::vec3::dot;
+use nalgebra::{DMatrix, DVector};
+use signorini_fem_mesh::StrainRecovery;
+use signorini_qp::vector;
+use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// Moves out of one obstacle after another, for nodes in edges; one is enough between perpendicular ones.
+const SWEEPS: usize = 10;
+
+/// Stiffnesses that weigh contact nodes, computed once when first needed.
+#[derive(Debug)]
+pub(crate) struct Weights {
+    /// Stiffness in the direction of the contact rows, N/m, by row.
+    rows: Vec<f64>,
+    /// What moves at each contact point.
+    nodes: Vec<AdmissibleNode>,
+    /// Made where a step needs it: the active-set method leaves nothing to balance.
+    interior: OnceLock<Option<CoarseFactor>>,
+}
+
+impl Weights {
+    fn new(model: &Model) -> Self {
+        let contact = model.tfeti.gluing().ranges().contact().end;
+        let mut rows = vec![0.0; contact];
+        model.tfeti.row_stiffness(0..contact, &mut rows);
+        let nodes = model
+            .points
+            .iter()
+            .map(|p| AdmissibleNode::new(model, p))
+            .collect();
+        Self {
+            rows,
+            nodes,
+            interior: OnceLock::new(),
+        }
+    }
+
+    /// Coarse problem of gluing and supports alone; `None` if contact is needed to hold the body.
+    fn interior(&self, tfeti: &Tfeti) -> Option<&CoarseFactor> {
+        let factor = || {
+            let mut weights = vec![1.0; tfeti.dual_dim()];
+            weights[..self.rows.len()].fill(0.0);
+            let factor = tfeti
+                .coarse()
+                .factor_weighted(RowWeights::diagonal(weights));
+            factor.ok().filter(|f| f.free_motions().is_empty())
+        };
+        self.interior.get_or_init(factor).as_ref()
+    }
+}
+
+/// What estimates need of a model, made when it is first asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Caches {
+    weights: OnceLock<Weights>,
+    /// Patches of the estimate of the discretisation error.
+    pub(crate) recovery: OnceLock<StrainRecovery>,
+}
+
+/// What the estimate needs of a solved step.
+#[derive(Clone, Copy)]
+pub(crate) struct Solved<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) caches: &'a Caches,
+    pub(crate) problem: &'a StepProblem,
+    pub(crate) recovered: &'a Recovered,
+}
+
+impl Solved<'_> {
+    pub(crate) fn algebraic_error(&self) -> AlgebraicError {
+        let (model, tfeti) = (self.model, &self.model.tfeti);
+        let weights = self.caches.weights.get_or_init(|| Weights::new(model));
+        let mut v = self.mean();
+        let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
+        let points = || self.recovered.points.iter().zip(&weights.nodes);
+        let moved: Vec<Correction> = points()
+            .map(|(state, node)| Correction::new(node, state, self.problem, &weights.rows, &mut v))
+            .collect();
+        self.support(&mut v);
+        self.agree(&moved, &weights.nodes, &mut v);
+        let (mut terms, mut change) = (0.0, 0.0);
+        for ((state, node), moved) in points().zip(&moved) {
+            let conditions = node.conditions(self.problem, &v);
+            terms += moved.gap(state, &conditions, node.value(&mut v));
+            change += moved.change;
+        }
+        // torn difference and its energy
+        let balanced = self.balanced(weights);
+        let torn = balanced.as_deref().unwrap_or(&self.recovered.torn);
+        let subdomains = model.discrete.decomposition.subdomains();
+        let nodes = || subdomains.iter().flat_map(|s| &s.nodes);
+        let mut difference = torn.to_vec();
+        for (d, &node) in difference.chunks_exact_mut(3).zip(nodes()) {
+            (0..3).for_each(|c| d[c] -= v[3 * node as usize + c]);
+        }
+        let energy = |u: &[f64]| {
+            let mut force = vec![0.0; u.len()];
+            tfeti.stiffness_times(u, &mut force);
+            vector::dot(u, &force)
+        };
+        // from v to the mean that is handed out
+        let beside = mean.map_or(0.0, |mean| {
+            let off = |&node: &u32| {
+                let at = 3 * node as usize;
+                [0, 1, 2].map(|c| mean[at + c] - v[at + c])
+            };
+            let off: Vec<f64> = nodes().flat_map(off).collect();
+            0.5 * energy(&off)
+        });
+        let (elastic, energy) = (energy(torn), energy(&difference));
+        if balanced.is_none() && !self.is_balanced() {
+            terms += vector::norm(&self.recovered.residual) * vector::norm(&difference);
+        }
+        let distance = 0.5 * energy.max(0.0);
+        let gap = distance + terms;
+        let elastic = 0.5 * elastic.max(0.0);
+        AlgebraicError {
+            // the square of the sum of two norms
+            energy: (gap + change + 2.0 * gap.sqrt() * change.sqrt()).max(beside),
+            distance,
+            elastic,
+            scale: elastic.max(self.scale_at_rest(torn)),
+        }
+    }
+
+    /// What an energy is compared with where the body is at rest, J.
+    fn scale_at_rest(&self, torn: &[f64]) -> f64 {
+        let (model, copies) = (self.model, self.model.copies());
+        let force = self.problem.forces(model);
+        let (mut alone, mut moved) = (0.0_f64, 0.0);
+        for (k, (f, u)) in force.chunks_exact(3).zip(torn.chunks_exact(3)).enumerate() {
+            let stiffness = copies.weight(k);
+            alone += dot(f, f) / stiffness;
+            moved += dot(u, u) * stiffness;
+        }
+        let works = self.problem.peaks.iter();
+        let before = REST * REST * works.map(|p| p.multipliers * p.displacement).sum::<f64>();
+        0.5 * alone.max(before).max(NO_STRAIN * moved)
+    }
+
+    fn is_balanced(&self) -> bool {
+        self.recovered.certificate.equilibrium.relative() < ROUNDING
+    }
+
+    /// The torn displacement with rigid forces balanced by gluing and supports; `None` if they are balanced already.
+    fn balanced(&self, weights: &Weights) -> Option<Vec<f64>> {
+        if self.is_balanced() {
+            return None;
+        }
+        let tfeti = &self.model.tfeti;
+        let interior = weights.interior(tfeti)?;
+        // Rᵀ (K u - f - Bᵀ lambda) = e - G lambda
+        let residual = |s: usize| &self.recovered.residual[tfeti.torn_range(s)];
+        let missing = (0..tfeti.subdomains()).map(|s| tfeti.kernel(s).transpose_times(residual(s)));
+        let missing: Vec<f64> = missing.flatten().collect();
+        let mut lambda = vec![0.0; tfeti.dual_dim()];
+        interior.particular(&missing, &mut lambda, &mut interior.scratch());
+        let mut force = vec![0.0; tfeti.torn_dim()];
+        tfeti.add_rows_transposed(&lambda, &mut force);
+        let mut u = vec![0.0; tfeti.torn_dim()];
+        tfeti.generalised_inverse(&force, &mut u);
+        vector::axpy(1.0, &self.recovered.torn, &mut u);
+        Some(u)
+    }
+
+    /// The mean of the copies of each node, weighted by their stiffness.
+    fn mean(&self) -> Vec<f64> {
+        let weights = self.model.copies();
+        let nodes = self.model.scene.mesh.points().len();
+        let (mut v, mut total) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
+        let subdomains = self.model.discrete.decomposition.subdomains().iter();
+        let copies = subdomains.flat_map(|s| s.nodes.iter().copied());
+        for ((k, node), u) in copies.enumerate().zip(self.recovered.torn.chunks_exact(3)) {
+            let (node, weight) = (node as usize, weights.weight(k));
+            total[node] += weight;
+            (0..3).for_each(|c| v[3 * node + c] += weight * u[c]);
+        }
+        for (value, total) in v.chunks_exact_mut(3).zip(&total) {
+            value.iter_mut().for_each(|x| *x /= total);
+        }
+        v
+    }
+
+    /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one
+    /// may undo another. Points that touch stay at their obstacles, others are moved out of theirs.
+    fn agree(&self, moved: &[Correction], nodes: &[AdmissibleNode], v: &mut [f64]) {
+        let gluing = self.model.tfeti.gluing();
+        if gluing.dependent_nodes().is_empty() {
+            return;
+        }
+        let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
+        for row in gluing.ranges().dirichlet.clone() {
+            if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
+                let plane = (self.model.support_direction(row), self.problem.offset[row]);
+                planes.entry(node).or_default().push(plane);
+            }
+        }
+        let points = self.model.points.iter().zip(nodes).zip(moved);
+        let dependent = points.filter(|((point, _), _)| gluing.is_dependent(point.node()));
+        let dependent: Vec<_> = dependent.map(|((_, node), moved)| (node, moved)).collect();
+        for (node, moved) in &dependent {
+            let conditions = node.conditions(self.problem, v);
+            let planes = planes.entry(node.node).or_default();
+            if moved.touches() {
+                planes.push(conditions.obstacle());
+            }
+            // with Tresca friction also where the contact is open
+            if moved.sticks() {
+                planes.extend_from_slice(conditions.along());
+            }
+        }
+        let on_planes = |v: &mut [f64]| {
+            for (&node, planes) in &planes {
+                meet(planes, &mut v[3 * node as usize..][..3]);
+            }
+        };
+        on_planes(v);
+        for _ in 0..SWEEPS {
+            dependent
+                .iter()
+                .for_each(|(node, _)| node.push_out(self.problem, v));
+        }
+        on_planes(v);
+    }
+
+    /// Sets supported directions to their prescribed values.
+    fn support(&self, v: &mut [f64]) {
+        let gluing = self.model.tfeti.gluing();
+        for row in gluing.ranges().dirichlet.clone() {
+            let Some(node) = gluing.node(row) else {
+                continue;
+            };
+            let direction = self.model.support_direction(row);
+            let value = &mut v[3 * node as usize..][..3];
+            let missing = self.problem.offset[row] - dot(&direction, value);
+            let off = missing / dot(&direction, &direction);
+            for c in 0..3 {
+                value[c] += off * direction[c];
+            }
+        }
+    }
+}
+
+/// Moves a point as little as possible onto planes `(n, d)`, `n . x = d`; next to all of them where they do not meet.
+fn meet(planes: &[([f64; 3], f64)], x: &mut [f64]) {
+    if planes.is_empty() {
+        return;
+    }
+    let rows = DMatrix::from_fn(planes.len(), 3, |i, c| planes[i].0[c]);
+    let off = DVector::from_fn(planes.len(), |i, _| planes[i].1 - dot(&planes[i].0, x));
+    let svd = rows.svd(true, true);
+    let cut = PARALLEL * svd.singular_values.max();
+    if let Ok(by) = svd.solve(&off, cut) {
+        x.iter_mut().zip(by.iter()).for_each(|(x, b)| *x += b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Friction;
+    use crate::step::example::block;
+    use crate::{Load, Settings, Simulation};
+    use signorini_fem_mesh::brick;
+
+    /// Where slip bounds are a little larger than the friction, what lies between is in the estimate.
+    #[test]
+    fn a_changed_slip_bound_is_worth_its_energy() {
+        let scene = block(0.0, Friction::coulomb(0.3))
+            .with_load(Load::traction(brick::Z_MIN, [4e3, 0.0, -4e3]));
+        let settings = Settings::default().with_tolerance(1e-11);
+        let mut simulation = Simulation::new(scene, settings).expect("set-up");
+        simulation.step().expect("step");
+        let (model, caches) = (&simulation.model, &simulation.caches);
+        let (problem, result) = (&simulation.problem, simulation.result().expect("a result"));
+        let estimate = |recovered: &Recovered| {
+            let solved = Solved {
+                model,
+                caches,
+                problem,
+                recovered,
+            };
+            solved.algebraic_error()
+        };
+        let gap = estimate(&result.recovered).energy;
+        let mut recovered = result.recovered.clone();
+        let mut change = 0.0;
+        let weights = caches.weights.get().expect("made by the estimate");
+        for (point, touch) in recovered.points.iter_mut().zip(&model.points) {
+            if point.state != crate::ContactState::Slip {
+                continue;
+            }
+            let more = 4e-3 * point.slip_bound;
+            point.slip_bound += more;
+            let (_, row, scale) = touch.along().next().expect("friction");
+            change += 0.5 * more.powi(2) / (scale.powi(2) * weights.rows[row]);
+        }
+        assert!(change > 1e4 * gap, "{change:e} {gap:e}");
+        let found = estimate(&recovered).energy;
+        let expected = (gap.sqrt() + change.sqrt()).powi(2);
+        assert!(
+            (found - expected).abs() <= 1e-2 * expected,
+            "{found:e} {expected:e}"
+        );
+    }
+}

@@ -1,0 +1,110 @@
+//! Contact points that have rows.
+
+use crate::discrete::ContactPoint;
+use signorini_fem_mesh::SurfaceFrame;
+use signorini_tfeti::{ContactRows, Gluing, TangentialRows};
+
+/// A node that can touch an obstacle or a node of another body. A node in an edge or a corner is several, with other
+/// normals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConstrainedPoint {
+    /// What the scene says of it.
+    pub(crate) contact: ContactPoint,
+    /// Place among all contact points of the scene.
+    pub(crate) place: usize,
+    /// Normal row.
+    pub(crate) row: usize,
+    /// Row value over normal displacement, and nodal force over multiplier.
+    pub(crate) scale: f64,
+    pub(crate) tangential: TangentialRows,
+}
+
+impl ConstrainedPoint {
+    /// Mesh node.
+    #[must_use]
+    pub fn node(&self) -> u32 {
+        self.contact.node()
+    }
+
+    /// Its partner on another body; `None` for a rigid obstacle.
+    #[must_use]
+    pub fn partner(&self) -> Option<u32> {
+        self.contact.sides.partner()
+    }
+
+    /// Position of its contact surface in [`Scene::contacts`](crate::Scene::contacts).
+    #[must_use]
+    pub fn surface(&self) -> usize {
+        self.contact.surface
+    }
+
+    /// Its place, m.
+    #[must_use]
+    pub fn position(&self) -> [f64; 3] {
+        self.contact.position
+    }
+
+    /// Normal into the obstacle and two tangents.
+    #[must_use]
+    pub fn frame(&self) -> &SurfaceFrame {
+        &self.contact.frame
+    }
+
+    /// A third of the areas of the adjacent facets, m².
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.contact.area
+    }
+
+    /// Initial distance to the obstacle or the partner, m.
+    #[must_use]
+    pub fn gap(&self) -> f64 {
+        self.contact.gap
+    }
+
+    /// Directions of all rows of the point, with row and scale: the normal, then the tangential ones.
+    pub(crate) fn directions(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        std::iter::once((self.contact.frame.normal, self.row, self.scale)).chain(self.along())
+    }
+
+    /// Directions of the tangential rows, with row and scale.
+    pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        let [a, b] = self.contact.frame.tangents;
+        let list = match self.tangential {
+            TangentialRows::Disc { row, scale } => {
+                [Some((a, row, scale)), Some((b, row + 1, scale))]
+            }
+            TangentialRows::Interval {
+                row,
+                direction,
+                scale,
+            } => [Some((direction, row, scale)), None],
+            _ => [None, None],
+        };
+        list.into_iter().flatten()
+    }
+
+    /// First tangential row, number of rows, scale.
+    pub(crate) fn tangential_rows(&self) -> Option<(usize, usize, f64)> {
+        match self.tangential {
+            TangentialRows::Disc { row, scale } => Some((row, 2, scale)),
+            TangentialRows::Interval { row, scale, .. } => Some((row, 1, scale)),
+            _ => None,
+        }
+    }
+}
+
+/// The points that have rows.
+pub(super) fn constrained_points(
+    points: &[ContactPoint],
+    gluing: &Gluing,
+) -> Vec<ConstrainedPoint> {
+    let point = |rows: &ContactRows| ConstrainedPoint {
+        contact: points[rows.point].clone(),
+        place: rows.point,
+        row: rows.row,
+        scale: rows.scale,
+        tangential: rows.tangential,
+    };
+    gluing.contact().iter().map(point).collect()
+}

@@ -1,0 +1,178 @@
+//! The model: everything that is computed once from a scene and read-only afterwards.
+
+use super::bodies::Bodies;
+use super::contact_point::{ConstrainedPoint, constrained_points};
+use crate::discrete::{ContactPoint, DiscreteScene};
+use crate::error::ContactError;
+use crate::plan::Plan;
+use crate::scene::{Friction, Scene};
+use crate::settings::Settings;
+use signorini_qp::{ProductSet, RadiusSlope, Segment};
+use signorini_tfeti::{CopyStiffness, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
+use std::sync::OnceLock;
+
+/// Segment numbers of the feasible set.
+pub(crate) const DISCS: usize = 1;
+/// Intervals of points with one tangential direction.
+pub(crate) const INTERVALS: usize = 2;
+
+/// Everything that is computed once.
+#[derive(Debug)]
+pub(crate) struct Model {
+    pub(crate) scene: Scene,
+    pub(crate) plan: Plan,
+    pub(crate) discrete: DiscreteScene,
+    pub(crate) tfeti: Tfeti,
+    pub(crate) bodies: Bodies,
+    pub(crate) loads: Vec<LoadResponse>,
+    pub(crate) points: Vec<ConstrainedPoint>,
+    /// What the certificate judges of the conditions that contacts state.
+    pub(crate) judged: Vec<ContactPoint>,
+    /// Set with zero radii.
+    pub(crate) set: ProductSet,
+    /// Stiffness of the support rows, made if supports move.
+    support_stiffness: OnceLock<Vec<f64>>,
+    /// Stiffness of the copies of each node, made with the first certificate.
+    copies: OnceLock<CopyStiffness>,
+}
+
+impl Model {
+    /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each
+    /// body the norm of these forces, N. Empty if no support moves.
+    pub(crate) fn prescribed_force(&self, offset: &[f64]) -> Vec<f64> {
+        if self.discrete.supports.motions.is_empty() {
+            return Vec::new();
+        }
+        let rows = self.tfeti.gluing().ranges().dirichlet.clone();
+        let stiffness = self.support_stiffness.get_or_init(|| {
+            let mut out = vec![0.0; rows.len()];
+            self.tfeti.row_stiffness(rows.clone(), &mut out);
+            out
+        });
+        let mut out = vec![0.0; self.bodies.count().max(1)];
+        for (row, k) in rows.zip(stiffness) {
+            out[self.bodies.of_row(row)] += (k * offset[row]).powi(2);
+        }
+        out.iter_mut().for_each(|v| *v = v.sqrt());
+        out
+    }
+
+    /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
+    /// certificates.
+    pub(crate) fn copies(&self) -> &CopyStiffness {
+        self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
+    }
+
+    pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
+        let mut discrete = DiscreteScene::new(&scene)?;
+        let plan = Plan::of(&scene, &discrete, settings)?;
+        let mut builder = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
+            .with_supports(&discrete.supports.nodes)
+            .with_row_scaling(settings.row_scaling)
+            .with_sharing(settings.sharing)
+            .with_inverse(settings.inverse);
+        if !scene.contacts.is_empty() {
+            builder = builder.with_contact(&discrete.constraints);
+        }
+        let tfeti = builder.build()?;
+        let loads = std::mem::take(&mut discrete.loads).into_iter();
+        let loads = loads
+            .map(|local| tfeti.load_response(&local))
+            .collect::<Result<_, _>>()?;
+        let points = constrained_points(&discrete.points, tfeti.gluing());
+        let ranges = tfeti.gluing().ranges();
+        let zeros = |count: usize| vec![0.0; count];
+        let set = ProductSet::new(vec![
+            Segment::upper(zeros(ranges.normal.len())),
+            Segment::discs(zeros(ranges.discs.len() / 2)),
+            Segment::bounds(zeros(ranges.intervals.len()), zeros(ranges.intervals.len())),
+            Segment::Free(ranges.interface.len() + ranges.dirichlet.len()),
+        ])
+        .map_err(signorini_qp::QpError::from)?;
+        Ok(Self {
+            bodies: Bodies::new(&tfeti, &discrete),
+            judged: discrete.judged(points.iter().map(|p| p.place)),
+            scene,
+            plan,
+            discrete,
+            tfeti,
+            loads,
+            points,
+            set,
+            support_stiffness: OnceLock::new(),
+            copies: OnceLock::new(),
+        })
+    }
+
+    /// The direction that a support row fixes, times the scale of the row.
+    pub(crate) fn support_direction(&self, row: usize) -> [f64; 3] {
+        let mut direction = [0.0; 3];
+        for (_, dof, coefficient) in self.tfeti.gluing().row(row) {
+            direction[dof % 3] += coefficient;
+        }
+        direction
+    }
+
+    /// Friction law of a point.
+    pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
+        self.scene.contacts[point.contact.surface].friction()
+    }
+
+    /// Whether the law of some contact surface is such.
+    pub(crate) fn any_law(&self, such: impl Fn(&Friction) -> bool) -> bool {
+        self.scene.contacts.iter().any(|c| such(c.friction()))
+    }
+
+    /// Tangential rows.
+    pub(crate) fn tangential_rows(&self) -> usize {
+        self.tfeti.gluing().ranges().tangential().len()
+    }
+
+    /// First tangential row.
+    pub(crate) fn tangential_start(&self) -> usize {
+        self.tfeti.gluing().ranges().tangential().start
+    }
+
+    /// Writes slip bounds (forces in N, one a point) into the set.
+    pub(crate) fn set_slip_bounds(
+        &self,
+        set: &mut ProductSet,
+        bound: impl Fn(usize, &ConstrainedPoint) -> f64,
+    ) {
+        let ranges = self.tfeti.gluing().ranges();
+        for (k, point) in self.points.iter().enumerate() {
+            match point.tangential {
+                TangentialRows::Disc { row, scale } => {
+                    let disc = (row - ranges.discs.start) / 2;
+                    if let Ok(radii) = set.radii_mut(DISCS) {
+                        radii[disc] = bound(k, point) / scale;
+                    }
+                }
+                TangentialRows::Interval { row, scale, .. } => {
+                    let interval = row - ranges.intervals.start;
+                    if let Ok((lower, upper)) = set.bounds_mut(INTERVALS) {
+                        let radius = bound(k, point) / scale;
+                        lower[interval] = -radius;
+                        upper[interval] = radius;
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// How the slip bounds that [`set_slip_bounds`](Self::set_slip_bounds) writes to discs follow the normal rows,
+    /// for a bound of `coefficient(point)` times the normal force.
+    pub(crate) fn slip_slopes(&self, coefficient: impl Fn(usize) -> f64) -> Vec<RadiusSlope> {
+        let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
+            TangentialRows::Disc { row, scale } => Some(RadiusSlope {
+                disc: row,
+                component: point.row,
+                // normal multipliers are negative where pressed
+                slope: -coefficient(k) * point.scale / scale,
+            }),
+            _ => None,
+        };
+        self.points.iter().enumerate().filter_map(slope).collect()
+    }
+}

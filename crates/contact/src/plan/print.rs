@@ -1,0 +1,127 @@
+//! The plan as a table.
+
+use super::effects::FrictionKind;
+use super::plan::Plan;
+use std::fmt;
+
+/// Unknowns of a subdomain from which on cutting it further pays: about ten cells an edge.
+const LARGE: usize = 4000;
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let cost = &self.estimate;
+        let mb = |bytes: u64| bytes as f64 / 1e6;
+        write!(f, "plan")?;
+        let mut line = |name: &str, text: String| write!(f, "\n  {name:<11} {text}");
+        line(
+            "mesh",
+            format!("{} tetrahedra, {} nodes", self.elements, self.nodes),
+        )?;
+        line(
+            "subdomains",
+            format!("{} ({} torn unknowns)", self.subdomains, self.primal),
+        )?;
+        if self.primal > LARGE * self.subdomains {
+            line(
+                "",
+                "large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
+                    .to_owned(),
+            )?;
+        }
+        if cost.is_mostly_coarse() {
+            let motions = self.coarse;
+            line(
+                "",
+                format!(
+                    "too small ones: their {motions} rigid motions take most of the time; some hundred tetrahedra each are faster"
+                ),
+            )?;
+        }
+        line("gluing", self.gluing_text())?;
+        line("supports", self.supports_text())?;
+        line("contact", self.contact_text())?;
+        line("friction", self.friction_text())?;
+        line("history", self.history_text())?;
+        line(
+            "dual",
+            format!("{} rows, coarse {}", self.dual(), self.coarse),
+        )?;
+        line("method", self.method.to_string())?;
+        let [vectors, inverses] = [self.vector_bytes, cost.inverse_bytes].map(mb);
+        let [coarse, tables] = [cost.coarse_bytes, cost.table_bytes].map(mb);
+        line(
+            "memory",
+            format!(
+                "vectors {vectors:.1} MB, inverses {inverses:.1} MB ({} classes), coarse {coarse:.1} MB, tables {tables:.1} MB",
+                cost.classes
+            ),
+        )?;
+        line("products", format!("{} are likely", cost.products))?;
+        if let Some(t) = &cost.times {
+            let product = 1e3 * t.product;
+            line(
+                "time",
+                format!(
+                    "set-up {:.2} s, steps {:.2} s, a product {product:.2} ms, on one processor",
+                    t.setup, t.steps
+                ),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Plan {
+    fn gluing_text(&self) -> String {
+        match self.effects.gluing {
+            true => format!("{} rows", self.interface_rows),
+            false => "none (one subdomain)".to_owned(),
+        }
+    }
+
+    fn supports_text(&self) -> String {
+        let moving = if self.effects.motion { ", moving" } else { "" };
+        match self.effects.supports {
+            true => format!("{} rows{moving}", self.dirichlet_rows),
+            false => "none (free body)".to_owned(),
+        }
+    }
+
+    fn contact_text(&self) -> String {
+        let e = &self.effects;
+        if !e.contact {
+            return "none (no inequality solver)".to_owned();
+        }
+        let gap = match self.gaps.filter(|_| e.gap) {
+            None => "no gap: zero offset".to_owned(),
+            Some([low, high]) => {
+                let inside = if low < 0.0 { ", starts inside" } else { "" };
+                format!("gaps {low:.3e} to {high:.3e} m{inside}")
+            }
+        };
+        let moving = if e.moving_obstacle {
+            ", moving obstacle"
+        } else {
+            ""
+        };
+        let partners = if e.partners { ", between bodies" } else { "" };
+        format!("{} nodes, {gap}{moving}{partners}", self.contact_nodes)
+    }
+
+    fn friction_text(&self) -> String {
+        let rows = self.tangential_rows;
+        match self.effects.friction {
+            FrictionKind::None => "none (no tangential rows)".to_owned(),
+            FrictionKind::Tresca => format!("Tresca, {rows} rows, no outer loop"),
+            FrictionKind::Coulomb => format!("Coulomb, {rows} rows, no slip rate"),
+            FrictionKind::RateDependent => format!("Coulomb, rate dependent, {rows} rows"),
+        }
+    }
+
+    fn history_text(&self) -> String {
+        match self.effects.history {
+            true => format!("{} steps, old traces kept", self.steps),
+            false => "none (each step stands alone)".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! What a run did.
+
+use super::counters::Counters;
+use super::step::StepReport;
+use crate::error::ContactError;
+use crate::status::StepFailure;
+
+/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to converge asks
+/// [`require_converged`](Self::require_converged).
+///
+/// ```
+/// use signorini_contact::{ContactError, Scene, Settings, Silent, Simulation};
+///
+/// fn strict(scene: Scene) -> Result<Simulation, ContactError> {
+///     let mut simulation = Simulation::new(scene, Settings::default())?;
+///     simulation.run(&mut Silent)?.require_converged()?;
+///     Ok(simulation)
+/// }
+/// ```
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+#[must_use = "steps may not have converged: see `first_failure`, or ask `require_converged`"]
+pub struct RunReport {
+    /// Steps solved.
+    pub steps: usize,
+    /// Steps that did not converge, in order.
+    pub failures: Vec<StepFailure>,
+    /// The first step before this run that did not converge and on whose displacement its steps depend, see
+    /// [`State::unconverged_history`](crate::State::unconverged_history).
+    pub unconverged_history: Option<usize>,
+    /// What the run cost.
+    pub counters: Counters,
+    /// The largest certificate of all its steps.
+    pub largest_certificate: f64,
+}
+
+impl RunReport {
+    /// Takes a step into account.
+    pub(crate) fn enter(
+        &mut self,
+        report: &StepReport,
+        failure: Option<StepFailure>,
+        certificate: f64,
+    ) {
+        self.steps += 1;
+        self.counters += report.counters;
+        if certificate.is_nan() || certificate > self.largest_certificate {
+            self.largest_certificate = certificate;
+        }
+        self.failures.extend(failure);
+    }
+
+    /// Whether all steps converged, and those before on whose displacement they depend.
+    #[must_use]
+    pub fn converged(&self) -> bool {
+        self.failures.is_empty() && self.unconverged_history.is_none()
+    }
+
+    /// The first step of this run that did not converge.
+    #[must_use]
+    pub fn first_failure(&self) -> Option<&StepFailure> {
+        self.failures.first()
+    }
+
+    /// For those who want every step to converge: an error unless [all did](Self::converged).
+    ///
+    /// # Errors
+    /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: step, status and remedy of the first one.
+    pub fn require_converged(&self) -> Result<(), ContactError> {
+        require(None, self.unconverged_history)?;
+        require(self.first_failure().copied(), None)
+    }
+}
+
+/// An error for a step that failed, or an earlier one on whose displacement it depends.
+pub(crate) fn require(
+    failure: Option<StepFailure>,
+    history: Option<usize>,
+) -> Result<(), ContactError> {
+    match (failure, history) {
+        (Some(failure), _) => Err(ContactError::NotConverged(failure)),
+        (None, Some(step)) => Err(ContactError::UnconvergedHistory { step }),
+        (None, None) => Ok(()),
+    }
+}

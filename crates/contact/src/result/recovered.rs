@@ -1,0 +1,57 @@
+//! What follows from the multipliers of a step.
+
+use super::certificate::{Certificate, Measured, Sizes, certify, sizes};
+use super::points::{PointState, point_states};
+use crate::error::ContactError;
+use crate::model::Model;
+use crate::step::StepProblem;
+
+/// Displacement, states of points, and how well all conditions hold.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Recovered {
+    /// Displacement of every subdomain, one after another, m.
+    pub(crate) torn: Vec<f64>,
+    /// `B u` of it, in row units.
+    pub(crate) rows: Vec<f64>,
+    /// `K u - f - Bᵀ lambda`, torn, N.
+    pub(crate) residual: Vec<f64>,
+    /// Sizes of the bodies.
+    pub(crate) sizes: Vec<Sizes>,
+    pub(crate) certificate: Certificate,
+    pub(crate) points: Vec<PointState>,
+    /// Multipliers of the support rows.
+    pub(crate) support_multipliers: Vec<f64>,
+}
+
+impl Recovered {
+    /// From multipliers and rigid amplitudes; one product with F.
+    pub(crate) fn new(
+        model: &Model,
+        problem: &StepProblem,
+        lambda: &[f64],
+        alpha: &[f64],
+    ) -> Result<Self, ContactError> {
+        let tfeti = &model.tfeti;
+        let force = problem.forces(model);
+        let torn = tfeti.recover(&force, lambda, alpha)?;
+        let mut rows = vec![0.0; tfeti.dual_dim()];
+        tfeti.rows_times(&torn, &mut rows);
+        let residual = tfeti.equilibrium_residual(&torn, &force, lambda)?;
+        let measured = Measured {
+            rows: &rows,
+            u: &torn,
+            force: &force,
+            residual: &residual,
+        };
+        let sizes = sizes(model, problem, lambda, &measured);
+        Ok(Self {
+            certificate: certify(model, problem, lambda, &measured, &sizes),
+            points: point_states(model, problem, lambda, &rows),
+            support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
+            sizes,
+            torn,
+            rows,
+            residual,
+        })
+    }
+}

@@ -1,0 +1,283 @@
+//! Steps in time and the difference formula (2.9).
+
+use crate::error::ContactError;
+use crate::tolerances::{ROUNDING, UNEQUAL};
+
+/// The difference formula (2.9): `du/dt` at the end of step `i+1` is about
+/// `(alpha u[i+1] + beta u[i] + gamma u[i-1]) / dt`.
+///
+/// With `alpha = 3/2, beta = -2, gamma = 1/2` (the paper's choice) a node that *sticks* obeys
+/// `u[i+1] = 4/3 u[i] - 1/3 u[i-1]`: after slipping `s` a step it still moves `s/3, s/9, ...`, `s/2` in all.
+/// The friction loss of a cycle then has a first-order error. Backward Euler (`1, -1, 0`) has no such
+/// signature and is exact at the steps for piecewise linear slip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DifferenceFormula {
+    alpha: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+impl DifferenceFormula {
+    /// The paper's `3/2, -2, 1/2`.
+    pub const PAPER: Self = Self {
+        alpha: 1.5,
+        beta: -2.0,
+        gamma: 0.5,
+    };
+    /// `1, -1, 0`.
+    pub const BACKWARD_EULER: Self = Self {
+        alpha: 1.0,
+        beta: -1.0,
+        gamma: 0.0,
+    };
+
+    /// Any consistent formula.
+    ///
+    /// # Errors
+    /// [`ContactError::Formula`] unless `alpha > 0`, `alpha + beta + gamma = 0` (a body at rest has rate 0) and
+    /// `-beta - 2 gamma = 1` (uniform motion has its rate).
+    pub fn new(alpha: f64, beta: f64, gamma: f64) -> Result<Self, ContactError> {
+        let error = |rule| {
+            Err(ContactError::Formula {
+                alpha,
+                beta,
+                gamma,
+                rule,
+            })
+        };
+        if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
+            return error("alpha must be positive and all three finite");
+        }
+        if (alpha + beta + gamma).abs() > ROUNDING * alpha {
+            return error("the sum must be 0");
+        }
+        if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
+            return error("-beta - 2 gamma must be 1");
+        }
+        Ok(Self { alpha, beta, gamma })
+    }
+
+    /// Weight of the new displacement.
+    #[must_use]
+    pub fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
+    /// Weight of the last one.
+    #[must_use]
+    pub fn beta(&self) -> f64 {
+        self.beta
+    }
+
+    /// Weight of the one before.
+    #[must_use]
+    pub fn gamma(&self) -> f64 {
+        self.gamma
+    }
+
+    /// Whether only one old displacement is needed.
+    #[must_use]
+    pub fn is_one_step(&self) -> bool {
+        self.gamma == 0.0
+    }
+
+    /// `z` of section 3: the displacement at which the difference vanishes, `-(beta u[i] + gamma u[i-1]) / alpha`.
+    #[must_use]
+    pub fn offset(&self, last: f64, before: f64) -> f64 {
+        -(self.beta * last + self.gamma * before) / self.alpha
+    }
+}
+
+impl Default for DifferenceFormula {
+    /// Backward Euler.
+    fn default() -> Self {
+        Self::BACKWARD_EULER
+    }
+}
+
+/// Whether the scene has a history.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Analysis {
+    /// One state of equilibrium at one time; friction acts against the displacement from the rest position.
+    Static {
+        /// Time at which load histories are evaluated, in s.
+        time: f64,
+    },
+    /// A sequence of states; friction acts against the difference (2.9). The body is at rest before time 0.
+    Quasistatic {
+        /// The times in s, strictly increasing, the first above 0.
+        times: Vec<f64>,
+        /// The difference formula.
+        formula: DifferenceFormula,
+    },
+}
+
+/// Most equal steps.
+const MOST: usize = 100_000_000;
+
+impl Analysis {
+    /// One state at time 1.
+    #[must_use]
+    pub fn statics() -> Self {
+        Self::Static { time: 1.0 }
+    }
+
+    /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is
+    /// asked for with [`with_formula`](Self::with_formula): it remembers the step before the last, so that points
+    /// that slid creep on where loads are held, and its first step sees one and a half times the slip rate.
+    #[must_use]
+    pub fn quasistatic(end: f64, steps: usize) -> Self {
+        // none, which is refused when the scene is used
+        let steps = if steps > MOST { 0 } else { steps };
+        let times = (1..=steps).map(|i| end * i as f64 / steps as f64).collect();
+        Self::Quasistatic {
+            times,
+            formula: DifferenceFormula::default(),
+        }
+    }
+
+    /// The same with another difference formula (static scenes have none).
+    #[must_use]
+    pub fn with_formula(mut self, new: DifferenceFormula) -> Self {
+        if let Self::Quasistatic { formula, .. } = &mut self {
+            *formula = new;
+        }
+        self
+    }
+
+    /// The times of all steps, s.
+    pub(crate) fn times(&self) -> &[f64] {
+        match self {
+            Self::Static { time } => std::slice::from_ref(time),
+            Self::Quasistatic { times, .. } => times,
+        }
+    }
+
+    /// Number of steps.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        self.times().len()
+    }
+
+    /// Time to which a step leads, counted from 0, s.
+    #[must_use]
+    pub fn time(&self, step: usize) -> Option<f64> {
+        self.times().get(step).copied()
+    }
+
+    /// Length of a step, s; `None` for a static scene.
+    #[must_use]
+    pub fn step_size(&self, step: usize) -> Option<f64> {
+        let Self::Quasistatic { times, .. } = self else {
+            return None;
+        };
+        let end = times.get(step)?;
+        Some(end - step.checked_sub(1).map_or(0.0, |before| times[before]))
+    }
+
+    /// The difference formula; `None` for a static scene.
+    #[must_use]
+    pub fn formula(&self) -> Option<DifferenceFormula> {
+        match self {
+            Self::Static { .. } => None,
+            Self::Quasistatic { formula, .. } => Some(*formula),
+        }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ContactError> {
+        let (times, formula) = match self {
+            Self::Static { time } if time.is_finite() => return Ok(()),
+            Self::Static { time } => {
+                return Err(ContactError::Time {
+                    step: 0,
+                    time: *time,
+                });
+            }
+            Self::Quasistatic { times, formula } => (times, formula),
+        };
+        let Some(&first) = times.first() else {
+            return Err(ContactError::NoSteps);
+        };
+        let mut before = 0.0;
+        for (step, &time) in times.iter().enumerate() {
+            if !(time.is_finite() && time > before) {
+                return Err(ContactError::Time { step, time });
+            }
+            before = time;
+        }
+        if formula.is_one_step() {
+            return Ok(());
+        }
+        for (step, pair) in times.windows(2).enumerate() {
+            let length = pair[1] - pair[0];
+            if (length - first).abs() > UNEQUAL * first.max(length) {
+                return Err(ContactError::UnequalSteps {
+                    step: step + 1,
+                    length,
+                    first,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_formulas_are_consistent() {
+        for f in [DifferenceFormula::PAPER, DifferenceFormula::BACKWARD_EULER] {
+            assert_eq!(
+                DifferenceFormula::new(f.alpha(), f.beta(), f.gamma()).unwrap(),
+                f
+            );
+        }
+        assert!(DifferenceFormula::new(1.0, -1.0, 0.5).is_err());
+        assert!(DifferenceFormula::new(-1.0, 1.0, 0.0).is_err());
+        assert!(DifferenceFormula::new(2.0, -2.0, 0.0).is_err());
+    }
+
+    #[test]
+    fn a_sticking_node_still_moves_half_a_step_with_the_three_step_formula() {
+        let f = DifferenceFormula::PAPER;
+        let (mut last, mut before) = (1.0, 0.0);
+        for _ in 0..60 {
+            let next = f.offset(last, before);
+            before = last;
+            last = next;
+        }
+        assert!((last - 1.5).abs() < 1e-12);
+        assert_eq!(DifferenceFormula::BACKWARD_EULER.offset(1.0, 0.0), 1.0);
+    }
+
+    #[test]
+    fn wrong_times_are_refused() {
+        let q = |times: Vec<f64>| Analysis::Quasistatic {
+            times,
+            formula: DifferenceFormula::PAPER,
+        };
+        assert!(matches!(q(vec![]).validate(), Err(ContactError::NoSteps)));
+        assert!(matches!(
+            q(vec![0.0]).validate(),
+            Err(ContactError::Time { step: 0, .. })
+        ));
+        assert!(matches!(
+            q(vec![1.0, 1.0]).validate(),
+            Err(ContactError::Time { step: 1, .. })
+        ));
+        assert!(matches!(
+            q(vec![1.0, 3.0]).validate(),
+            Err(ContactError::UnequalSteps { step: 1, .. })
+        ));
+        assert!(
+            q(vec![1.0, 3.0])
+                .with_formula(DifferenceFormula::BACKWARD_EULER)
+                .validate()
+                .is_ok()
+        );
+        assert!(Analysis::Static { time: f64::NAN }.validate().is_err());
+    }
+}

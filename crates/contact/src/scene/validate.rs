@@ -1,0 +1,119 @@
+//! What can be said against a scene without nodes and rows.
+
+use super::contact::{Contact, ContactNormal};
+use super::friction::Friction;
+use super::scene::Scene;
+use super::support::Place;
+use crate::error::ContactError;
+use signorini_fem_mesh::FacetTag;
+
+impl Scene {
+    /// Nodes of the support at a position, checked; as many displacements as nodes, if it has not one for all.
+    pub(crate) fn support_nodes(&self, support: usize) -> Result<Vec<u32>, ContactError> {
+        let count = self.mesh.points().len();
+        let own = &self.supports[support];
+        let nodes = match &own.place {
+            Place::Tag(tag) => self.mesh.nodes_on(*tag),
+            Place::Nodes(nodes) => nodes.clone(),
+        };
+        if let (Place::Tag(tag), []) = (&own.place, &nodes[..]) {
+            return Err(self.unknown_tag("support", support, *tag));
+        }
+        if let Some(&node) = nodes.iter().find(|&&n| n as usize >= count) {
+            return Err(ContactError::UnknownNode {
+                support,
+                node,
+                nodes: count,
+            });
+        }
+        let values = own.motion.as_ref().map_or(1, |(values, _)| values.len());
+        if values != 1 && values != nodes.len() {
+            return Err(ContactError::ValueCount {
+                support,
+                values,
+                nodes: nodes.len(),
+            });
+        }
+        Ok(nodes)
+    }
+
+    fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
+        let known: Vec<String> = self.mesh.tags().iter().map(|t| t.0.to_string()).collect();
+        ContactError::UnknownTag {
+            what,
+            index,
+            tag: tag.0,
+            known: match &known[..] {
+                [] => "no tags".into(),
+                known => format!("the tags {}", known.join(", ")),
+            },
+        }
+    }
+
+    /// Checks what needs neither nodes nor computation.
+    pub(crate) fn validate(&self) -> Result<(), ContactError> {
+        self.analysis.validate()?;
+        let loads = self.loads.iter().enumerate();
+        let supports = self.supports.iter().enumerate();
+        let contacts = self.contacts.iter().enumerate();
+        let histories: Vec<_> = (loads.map(|(k, l)| ("load", k, &l.history)))
+            .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
+            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
+            .collect();
+        for &time in self.analysis.times() {
+            for &(what, index, history) in &histories {
+                let value = history.value(time);
+                if !value.is_finite() {
+                    return Err(ContactError::HistoryValue {
+                        what,
+                        index,
+                        time,
+                        value,
+                    });
+                }
+            }
+        }
+        let mut contacts = self.contacts.iter().enumerate();
+        contacts.try_for_each(|(index, c)| self.check(index, c))
+    }
+
+    fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {
+        for &tag in contact.tags.iter().chain(&contact.partner) {
+            if self.mesh.nodes_on(tag).is_empty() {
+                return Err(self.unknown_tag("contact", index, tag));
+            }
+        }
+        if let ContactNormal::Fixed(normal) = contact.normal {
+            let length: f64 = normal.iter().map(|c| c * c).sum();
+            if !(length.is_finite() && length > 0.0) {
+                return Err(ContactError::ObstacleNormal {
+                    contact: index,
+                    normal,
+                });
+            }
+        }
+        if contact.motion.is_some() && !contact.partner.is_empty() {
+            return Err(ContactError::MovedPartner { contact: index });
+        }
+        if let Some((displacement, _)) = contact.motion
+            && let Some(value) = displacement.iter().find(|c| !c.is_finite())
+        {
+            return Err(ContactError::Setting {
+                name: "displacement of the obstacle",
+                value: *value,
+                range: "of finite numbers",
+            });
+        }
+        if !(contact.crease > 0.0 && contact.crease <= 180.0) {
+            return Err(ContactError::Setting {
+                name: "crease",
+                value: contact.crease,
+                range: "(0, 180]",
+            });
+        }
+        if let Friction::Coulomb(coefficient) = &contact.friction {
+            coefficient.validate(index)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,178 @@
+//! Settings of a simulation: how, not what.
+
+use super::accuracy::Accuracy;
+use super::method::{InnerAccuracy, Method};
+use crate::error::ContactError;
+use signorini_tfeti::{InverseSettings, RowScaling, Sharing};
+
+/// The preconditioner of the default method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Preconditioner {
+    /// A multiple of the identity; only to measure what the others are worth.
+    None,
+    /// Lumped: the stiffness of the glued unknowns. Cheapest in time for small subdomains.
+    #[default]
+    Lumped,
+    /// Dirichlet: the Schur complement on the glued unknowns. Fewer products for large subdomains.
+    Dirichlet,
+}
+
+/// How a scene is solved. Each setting stands in the doc of its `with_*`, with its range and default.
+///
+/// ```
+/// use signorini_contact::{Method, Settings};
+///
+/// let settings = Settings::default().with_method(Method::paper()).with_tolerance(1e-8);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Settings {
+    pub(crate) method: Method,
+    pub(crate) tolerance: f64,
+    pub(crate) accuracy: Accuracy,
+    pub(crate) max_fixed_point: usize,
+    pub(crate) extrapolate: bool,
+    pub(crate) row_scaling: RowScaling,
+    pub(crate) sharing: Sharing,
+    pub(crate) inverse: InverseSettings,
+    pub(crate) preconditioner: Preconditioner,
+    pub(crate) max_fallback_products: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            tolerance: 1e-6,
+            accuracy: Accuracy::default(),
+            max_fixed_point: 200,
+            extrapolate: true,
+            row_scaling: RowScaling::default(),
+            sharing: Sharing::default(),
+            inverse: InverseSettings::default(),
+            preconditioner: Preconditioner::default(),
+            max_fallback_products: 20_000,
+        }
+    }
+}
+
+impl Settings {
+    /// The solver of a step; [`Method::ActiveSet`] by default.
+    #[must_use]
+    pub fn with_method(mut self, method: Method) -> Self {
+        self.method = method;
+        self
+    }
+
+    /// Relative accuracy of the multipliers at every step, and of the fixed point: `eps` of the paper, in [1e-12, 0.1],
+    /// 1e-6 by default.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Whether a step ends at that tolerance (the default) or by an estimate of its error.
+    #[must_use]
+    pub fn with_accuracy(mut self, accuracy: Accuracy) -> Self {
+        self.accuracy = accuracy;
+        self
+    }
+
+    /// Most evaluations of the Coulomb map a step, at least 1, by default 200.
+    #[must_use]
+    pub fn with_max_fixed_point(mut self, max: usize) -> Self {
+        self.max_fixed_point = max;
+        self
+    }
+
+    /// Whether a step starts from the line through the last two, as it does by default, or from the last one.
+    #[must_use]
+    pub fn with_extrapolation(mut self, on: bool) -> Self {
+        self.extrapolate = on;
+        self
+    }
+
+    /// Scaling of the rows of B, orthonormal by default.
+    #[must_use]
+    pub fn with_row_scaling(mut self, scaling: RowScaling) -> Self {
+        self.row_scaling = scaling;
+        self
+    }
+
+    /// Whether equal subdomains share factors, as translates do by default.
+    #[must_use]
+    pub fn with_sharing(mut self, sharing: Sharing) -> Self {
+        self.sharing = sharing;
+        self
+    }
+
+    /// How the generalised inverse is held, by cost unless told otherwise.
+    #[must_use]
+    pub fn with_inverse(mut self, inverse: InverseSettings) -> Self {
+        self.inverse = inverse;
+        self
+    }
+
+    /// Preconditioner of the default method, lumped by default.
+    #[must_use]
+    pub fn with_preconditioner(mut self, preconditioner: Preconditioner) -> Self {
+        self.preconditioner = preconditioner;
+        self
+    }
+
+    /// Most products with F of one call of the active-set method's fall-back (SMALSE), after which a step ends as
+    /// [`IterationLimit`](crate::StepStatus::IterationLimit); at least 1, by default 20,000.
+    #[must_use]
+    pub fn with_max_fallback_products(mut self, max: usize) -> Self {
+        self.max_fallback_products = max;
+        self
+    }
+
+    /// The relative accuracy of a step.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), ContactError> {
+        let check = |good, name, value, range| match good {
+            true => Ok(()),
+            false => Err(ContactError::Setting { name, value, range }),
+        };
+        let tolerance = self.tolerance;
+        check(
+            (1e-12..=0.1).contains(&tolerance),
+            "tolerance",
+            tolerance,
+            "[1e-12, 0.1]",
+        )?;
+        self.inverse.validate()?;
+        self.accuracy.validate()?;
+        check(
+            self.max_fixed_point > 0,
+            "max_fixed_point",
+            0.0,
+            "at least 1",
+        )?;
+        check(
+            self.max_fallback_products > 0,
+            "max_fallback_products",
+            0.0,
+            "at least 1",
+        )?;
+        match &self.method {
+            Method::ActiveSet(settings) => settings.validate()?,
+            Method::OneLoop { smalse } => smalse.validate()?,
+            Method::SuccessiveApproximations { smalse, accuracy } => {
+                smalse.validate()?;
+                if let InnerAccuracy::Adaptive { factor, loosest } = *accuracy {
+                    let open = |x: f64| x > 0.0 && x < 1.0;
+                    check(open(factor), "accuracy.factor", factor, "(0, 1)")?;
+                    check(open(loosest), "accuracy.loosest", loosest, "(0, 1)")?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

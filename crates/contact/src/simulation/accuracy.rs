@@ -1,0 +1,183 @@
+//! Solves of one step: one, or several until the certificate or an estimate of the error is small enough.
+
+use super::result::discretisation_error;
+use super::simulation::Simulation;
+use crate::error::ContactError;
+use crate::estimate::Solved;
+use crate::report::{AccuracyReport, AlgebraicError, StepReport, relative};
+use crate::result::{Recovered, contact_violation};
+use crate::settings::Accuracy;
+use crate::state::{Discretisation, certificate_limit};
+use crate::status::StepStatus;
+use crate::tolerances::{CERTIFIED, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
+
+/// Ends the rounds of a step by its certificate, which has the last word: where it is above the tolerance, the solver goes
+/// on once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies errors of the forces),
+/// with ever smaller ones.
+struct ByCertificate {
+    tolerance: f64,
+    /// What is wanted of the certificate, and what is accepted.
+    aim: f64,
+    limit: f64,
+}
+
+impl ByCertificate {
+    fn new(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            aim: tolerance.max(LEAST_TOLERANCE),
+            limit: (CERTIFIED * tolerance).max(LEAST_TOLERANCE),
+        }
+    }
+
+    /// How the step ended with this round; `None` if another one is to come.
+    fn judge(&mut self, round: usize, status: StepStatus, largest: f64) -> Option<StepStatus> {
+        let (first, certified) = (round == 1, largest <= self.limit);
+        // an earlier round converged, and what this one could not improve is certified
+        let status = if certified && !first {
+            StepStatus::Converged
+        } else {
+            status
+        };
+        let enough = largest <= self.aim || certified && !first;
+        if enough || !status.converged() || self.tolerance <= LEAST_TOLERANCE {
+            let refused = status.converged() && !certified;
+            return Some(if refused {
+                StepStatus::NotCertified
+            } else {
+                status
+            });
+        }
+        let factor = if certified {
+            (NEXT_AIM * self.aim / largest).max(NEXT_TOLERANCE)
+        } else {
+            NEXT_TOLERANCE
+        };
+        self.tolerance = (factor * self.tolerance).max(LEAST_TOLERANCE);
+        None
+    }
+}
+
+impl Simulation {
+    /// Solves the step to the accuracy of the settings, in as many rounds as that takes, each warm from the one before.
+    pub(super) fn solve(&mut self) -> Result<(StepReport, Recovered), ContactError> {
+        let by_estimates = self.settings.accuracy != Accuracy::Tolerance;
+        let mut certificate = ByCertificate::new(self.settings.tolerance);
+        let mut before: Option<StepReport> = None;
+        let mut round = 0;
+        loop {
+            round += 1;
+            let tolerance = if by_estimates {
+                self.controller.tolerance()
+            } else {
+                certificate.tolerance
+            };
+            let (mut report, recovered) = self.solve_once(tolerance)?;
+            let ended = if by_estimates {
+                self.judge(round, &mut report, &recovered)?
+            } else {
+                certificate.judge(round, report.status, recovered.certificate.largest())
+            };
+            if let Some(before) = before.take() {
+                report = before.resumed(report);
+            }
+            if let Some(status) = ended {
+                report.status = status;
+                return Ok((report, recovered));
+            }
+            before = Some(report);
+        }
+    }
+
+    /// The same by estimates of the error, which it writes to the report.
+    fn judge(
+        &mut self,
+        round: usize,
+        report: &mut StepReport,
+        recovered: &Recovered,
+    ) -> Result<Option<StepStatus>, ContactError> {
+        let solved = Solved {
+            model: &self.model,
+            caches: &self.caches,
+            problem: &self.problem,
+            recovered,
+        };
+        let algebraic = solved.algebraic_error();
+        let (discretisation, target) = match self.settings.accuracy {
+            Accuracy::Balanced { fraction } => {
+                let known = self.discretisation(&algebraic, recovered)?;
+                (Some(known), known.target(fraction))
+            }
+            Accuracy::Relative(x) => (None, x),
+            Accuracy::Tolerance => (None, f64::INFINITY),
+        };
+        let plan = &self.model.plan;
+        let history = plan.effects.history;
+        let errors = &self.controller.errors;
+        let share = if history {
+            errors.share(
+                &algebraic,
+                target,
+                plan.steps - self.problem.index,
+                plan.steps,
+            )
+        } else {
+            target
+        };
+        let (found, largest) = (
+            algebraic.relative(),
+            contact_violation(&recovered.certificate),
+        );
+        let limit = certificate_limit(target);
+        let (reached, certified) = (found <= share, largest <= limit);
+        report.accuracy = Some(AccuracyReport {
+            algebraic,
+            accumulated: errors.with(&algebraic, history),
+            discretisation: discretisation.map(|d| d.relative),
+            estimated_at: discretisation.map(|d| d.step),
+            target,
+            share,
+            reached,
+            certificate_limit: limit,
+            certified,
+            rounds: round,
+            tolerance: self.controller.tolerance(),
+        });
+        let (good, targets) = (reached && certified, [(found, share), (largest, limit)]);
+        if good && round == 1 {
+            self.controller.relax(targets);
+        }
+        let again = !good && report.status.converged() && round < ROUNDS;
+        if again && self.controller.tighten(targets) {
+            return Ok(None);
+        }
+        Ok(Some(match report.status {
+            StepStatus::Converged if !reached => StepStatus::Stagnated,
+            StepStatus::Converged if !certified => StepStatus::NotCertified,
+            status => status,
+        }))
+    }
+
+    /// The discretisation error of the step, or of an earlier one like it.
+    fn discretisation(
+        &mut self,
+        own: &AlgebraicError,
+        recovered: &Recovered,
+    ) -> Result<Discretisation, ContactError> {
+        let (known, step) = (self.controller.discretisation, self.problem.index);
+        if known.holds(step, own.scale) {
+            return Ok(known);
+        }
+        let found = discretisation_error(&self.model, &self.caches, recovered)?;
+        self.controller.discretisation = Discretisation {
+            relative: if own.scale > own.elastic {
+                relative(found.energy(), own.scale)
+            } else {
+                found.relative()
+            },
+            step,
+            scale: own.scale,
+        };
+        Ok(self.controller.discretisation)
+    }
+}

@@ -1,0 +1,75 @@
+//! Observers: what a progress bar, a log or a file writer is told.
+
+use super::result::StepResult;
+use crate::plan::Plan;
+use std::error::Error;
+
+/// Whether a run goes on.
+///
+/// A `Result` converts into it, so that an observer that can fail ends with `Flow::from(...)`:
+///
+/// ```
+/// use signorini_contact::{Flow, StepResult};
+///
+/// let mut log = Vec::new();
+/// let mut write = |result: &StepResult| {
+///     use std::io::Write;
+///     Flow::from(writeln!(log, "{} {}", result.time(), result.summary().active))
+/// };
+/// # fn check(_: &mut impl signorini_contact::Observer) {}
+/// # check(&mut write);
+/// ```
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Flow {
+    /// Solve the next step.
+    Continue,
+    /// End the run after this step; it can be continued later.
+    Stop,
+    /// End the run after this step with [`ContactError::Observer`](crate::ContactError::Observer); it can be continued
+    /// later.
+    Fail(Box<dyn Error + Send + Sync>),
+}
+
+impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<(), E>> for Flow {
+    fn from(result: Result<(), E>) -> Self {
+        Self::from(result.map(|()| Self::Continue))
+    }
+}
+
+impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<Self, E>> for Flow {
+    fn from(result: Result<Self, E>) -> Self {
+        result.unwrap_or_else(|error| Self::Fail(error.into()))
+    }
+}
+
+/// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an observer.
+pub trait Observer {
+    /// The run begins; `steps` are left to solve.
+    fn started(&mut self, plan: &Plan, steps: usize) {
+        let _ = (plan, steps);
+    }
+
+    /// A step is solved.
+    fn step(&mut self, result: &StepResult) -> Flow {
+        let _ = result;
+        Flow::Continue
+    }
+
+    /// The run has ended, also by [`Flow::Fail`]; `steps` were solved in it. Not called when a solve ends in an error.
+    fn finished(&mut self, steps: usize) {
+        let _ = steps;
+    }
+}
+
+impl<F: FnMut(&StepResult) -> Flow> Observer for F {
+    fn step(&mut self, result: &StepResult) -> Flow {
+        self(result)
+    }
+}
+
+/// Observes nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Silent;
+
+impl Observer for Silent {}

@@ -1,0 +1,257 @@
+//! The result of a step: displacement, contact forces and states, and fields that are computed when asked for.
+
+use crate::error::ContactError;
+use crate::estimate::{Caches, Solved};
+use crate::model::Model;
+use crate::report::{AccumulatedError, AlgebraicError, StepReport, require};
+use crate::result::{
+    Certificate, ContactSummary, PointState, Reactions, Recovered, nodal_reactions, reactions_about,
+};
+use crate::scene::Scene;
+use crate::status::StepFailure;
+use crate::step::StepProblem;
+use signorini_fem_mesh::{Decomposition, DiscretisationError, StrainRecovery, Surface, fields};
+use std::sync::Arc;
+
+/// What a step ended with. It lives on by itself: the simulation can take further steps beside it.
+#[derive(Debug)]
+pub struct StepResult {
+    pub(crate) model: Arc<Model>,
+    pub(crate) caches: Arc<Caches>,
+    pub(crate) problem: Arc<StepProblem>,
+    pub(crate) report: StepReport,
+    pub(crate) recovered: Recovered,
+    pub(crate) summary: ContactSummary,
+}
+
+impl StepResult {
+    /// Position of the step in the analysis, from 0.
+    #[must_use]
+    pub fn step(&self) -> usize {
+        self.problem.index
+    }
+
+    /// Time, s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.problem.time
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.model.scene
+    }
+
+    /// The decomposition.
+    #[must_use]
+    pub fn decomposition(&self) -> &Decomposition {
+        &self.model.discrete.decomposition
+    }
+
+    /// All contact surfaces, in the order of [`Scene::contacts`].
+    #[must_use]
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.model.discrete.surfaces
+    }
+
+    /// How the step was solved.
+    #[must_use]
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// The first earlier step that did not converge and on whose displacement this one depends
+    /// ([`StepReport::unconverged_history`]).
+    #[must_use]
+    pub fn unconverged_history(&self) -> Option<usize> {
+        self.report.unconverged_history
+    }
+
+    /// What there is to say of a step that did not converge.
+    #[must_use]
+    pub fn failure(&self) -> Option<StepFailure> {
+        (!self.report.status.converged()).then_some(StepFailure {
+            step: self.step(),
+            time: self.time(),
+            status: self.report.status,
+            certificate: self.recovered.certificate.largest(),
+        })
+    }
+
+    /// For those who want every step to converge: an error unless this one did, and the earlier ones on whose displacement
+    /// it depends.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
+    pub fn require_converged(&self) -> Result<(), ContactError> {
+        require(self.failure(), self.report.unconverged_history)
+    }
+
+    /// How well all conditions hold.
+    #[must_use]
+    pub fn certificate(&self) -> &Certificate {
+        &self.recovered.certificate
+    }
+
+    /// Sums over the contact surface.
+    #[must_use]
+    pub fn summary(&self) -> &ContactSummary {
+        &self.summary
+    }
+
+    /// States of the contact points, in the order of the plan's contact nodes.
+    #[must_use]
+    pub fn points(&self) -> &[PointState] {
+        &self.recovered.points
+    }
+
+    /// The displacement of every subdomain, one after another, m.
+    #[must_use]
+    pub fn torn_displacement(&self) -> &[f64] {
+        &self.recovered.torn
+    }
+
+    /// Displacement of each mesh node, m: the mean of the copies.
+    #[must_use]
+    pub fn displacement(&self) -> Vec<[f64; 3]> {
+        as_vectors(&self.model.tfeti.nodal_mean(&self.recovered.torn))
+    }
+
+    /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; not a number where the displacement is none.
+    #[must_use]
+    pub fn stress(&self) -> Vec<[f64; 6]> {
+        let Scene {
+            mesh, materials, ..
+        } = &self.model.scene;
+        fields::stresses(mesh, materials, self.displacement().as_flattened())
+            .unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
+    }
+
+    /// Elastic energy, J; not a number if the displacement is none.
+    #[must_use]
+    pub fn strain_energy(&self) -> f64 {
+        let Scene {
+            mesh, materials, ..
+        } = &self.model.scene;
+        fields::strain_energy(mesh, materials, self.displacement().as_flattened())
+            .unwrap_or(f64::NAN)
+    }
+
+    /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
+    #[must_use]
+    pub fn algebraic_error(&self) -> AlgebraicError {
+        Solved {
+            model: &self.model,
+            caches: &self.caches,
+            problem: &self.problem,
+            recovered: &self.recovered,
+        }
+        .algebraic_error()
+    }
+
+    /// Estimated discretisation error, tetrahedron by tetrahedron (by recovered strains).
+    ///
+    /// # Errors
+    /// [`ContactError::Field`] if the displacement is not finite.
+    pub fn discretisation_error(&self) -> Result<DiscretisationError, ContactError> {
+        discretisation_error(&self.model, &self.caches, &self.recovered)
+    }
+
+    /// Reactions of the supports, with moments about the origin. See [`reactions_about`](Self::reactions_about).
+    #[must_use]
+    pub fn reactions(&self) -> Reactions {
+        self.reactions_about([0.0; 3])
+    }
+
+    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the obstacle and the
+    /// loads do. Computed from the multipliers when asked for.
+    ///
+    /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
+    ///
+    /// ```
+    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+    ///
+    /// let mesh = Brick::new([1.0, 1.0, 3.0], [2, 2, 6]).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::Z_MIN))
+    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let reactions = simulation.step()?.reactions_about([0.5, 0.5, 0.0]);
+    /// for support in &reactions.supports {
+    ///     let resultant = support.resultant;
+    ///     assert!((resultant.force[2] - 1e6).abs() < 1.0);
+    ///     assert!(resultant.moment.iter().all(|m| m.abs() < 1.0));
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn reactions_about(&self, point: [f64; 3]) -> Reactions {
+        reactions_about(&self.model, &self.problem, &self.recovered, point)
+    }
+
+    /// Reactions of all supports at each mesh node, N: a field for output. Zero at nodes without support.
+    #[must_use]
+    pub fn reaction_field(&self) -> Vec<[f64; 3]> {
+        let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
+        for (node, force) in nodal_reactions(&self.model, &self.recovered) {
+            field[node as usize] = force;
+        }
+        field
+    }
+
+    /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together, so
+    /// that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
+    #[must_use]
+    pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
+        let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
+        for (state, point) in self.recovered.points.iter().zip(&self.model.points) {
+            let force = state.force();
+            for (node, weight) in point.contact.sides.nodes() {
+                (0..3).for_each(|c| field[node as usize][c] += weight * force[c]);
+            }
+        }
+        field
+    }
+
+    /// Sum of all loads at this step, N.
+    #[must_use]
+    pub fn load_resultant(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (factor, load) in self.problem.factors.iter().zip(&self.model.loads) {
+            for node in load.force.chunks_exact(3) {
+                for c in 0..3 {
+                    sum[c] += factor * node[c];
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// Three numbers a node.
+fn as_vectors(field: &[f64]) -> Vec<[f64; 3]> {
+    field.as_chunks().0.to_vec()
+}
+
+/// The error of the mesh, by recovered strains.
+pub(super) fn discretisation_error(
+    model: &Model,
+    caches: &Caches,
+    recovered: &Recovered,
+) -> Result<DiscretisationError, ContactError> {
+    let Scene {
+        mesh, materials, ..
+    } = &model.scene;
+    let recovery = caches.recovery.get_or_init(|| StrainRecovery::new(mesh));
+    Ok(recovery.error(mesh, materials, &model.tfeti.nodal_mean(&recovered.torn))?)
+}
+
+impl AccumulatedError {
+    /// Takes the next step: every step must be added, in order. Where steps stand alone (no friction, or a static scene)
+    /// only the last one counts.
+    pub fn add(&mut self, result: &StepResult) {
+        *self = self.with(&result.algebraic_error(), result.model.plan.effects.history);
+    }
+}

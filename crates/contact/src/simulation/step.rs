@@ -1,0 +1,164 @@
+//! One step: prepared, solved, recovered, remembered.
+
+use super::result::StepResult;
+use super::simulation::{Simulation, on_pool};
+use crate::error::ContactError;
+use crate::model::Model;
+use crate::report::StepReport;
+use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
+use crate::scene::Friction;
+use crate::solve::restore_sliding;
+use crate::state::{Kept, Peak, State};
+use crate::step::StepProblem;
+use signorini_qp::vector;
+use std::sync::Arc;
+
+impl Simulation {
+    /// Solves the next step. Not converging is no error: see the report of the result.
+    ///
+    /// # Errors
+    /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged.
+    pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
+        // not taken out: laws of the user may panic
+        let state = self.state.clone();
+        self.result = None;
+        let mut result = on_pool(|| self.solve_after(&state))?;
+        drop(state);
+        result.report.unconverged_history = self.state.unconverged_history();
+        self.remember(&mut result);
+        self.total += result.report.counters;
+        let result = Arc::new(result);
+        self.result = Some(result.clone());
+        Ok(result)
+    }
+
+    /// Solves the step that follows on a state.
+    fn solve_after(&mut self, state: &State) -> Result<StepResult, ContactError> {
+        self.controller = state.controller();
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, state.step())?;
+        self.start(state);
+        let (report, recovered) = self.solve()?;
+        let (model, problem) = (&self.model, &self.problem);
+        let before: Vec<f64> = (0..model.tangential_rows())
+            .map(|k| state.traces(k).0)
+            .collect();
+        Ok(StepResult {
+            summary: summarise(model, problem, &recovered, &self.iterate.lambda, &before)?,
+            model: model.clone(),
+            caches: self.caches.clone(),
+            problem: problem.clone(),
+            report,
+            recovered,
+        })
+    }
+
+    /// One run of the solver from the present iterate, and what is recovered from it.
+    pub(super) fn solve_once(
+        &mut self,
+        tolerance: f64,
+    ) -> Result<(StepReport, Recovered), ContactError> {
+        let (model, problem, iterate) = (&self.model, &self.problem, &mut self.iterate);
+        let settings = self.settings.clone().with_tolerance(tolerance);
+        let mut report = self.solver.solve(model, problem, &settings, iterate)?;
+        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha)?;
+        report.counters.products += 1;
+        Ok((report, recovered))
+    }
+
+    /// Start vectors of a step: zero, the last step, or the line through the last two.
+    fn start(&mut self, state: &State) {
+        let (model, iterate) = (&self.model, &mut self.iterate);
+        let (lambda, f_lambda) = (state.lambda(), state.f_lambda());
+        let on = self.settings.extrapolate;
+        let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
+        // before the first step everything is at rest: zero is known, too
+        let from_rest = state.step() == 1 && model.plan.steps > 1 && lambda[1].is_empty();
+        let zero = vec![0.0; if from_rest { rows } else { 0 }];
+        let extrapolated = |[last, before]: &[Vec<f64>; 2]| {
+            let before = if from_rest { &zero } else { before };
+            start_vector(last, before, rows, on)
+        };
+        iterate.lambda = extrapolated(lambda);
+        iterate.f_lambda = extrapolated(f_lambda);
+        iterate.known = (0..2).all(|k| lambda[k].len() == f_lambda[k].len());
+        let [last, before] = state.multiplier();
+        iterate.multiplier = start_vector(last, before, coarse, on);
+        if state.sliding().iter().any(|s| *s) {
+            let old = iterate.lambda.clone();
+            let mut set = model.set.clone();
+            self.problem.slip_bounds(model, &iterate.lambda, &mut set);
+            restore_sliding(model, &set, state.sliding(), &mut iterate.lambda);
+            iterate.known &= old == iterate.lambda;
+        }
+    }
+
+    /// Makes the state after the step.
+    fn remember(&mut self, result: &mut StepResult) {
+        let (model, problem, recovered) = (&self.model, &self.problem, &result.recovered);
+        let history = model.plan.effects.history;
+        let mut kept = Kept::default();
+        if history {
+            kept.trace = traces(model, problem, &recovered.rows);
+            let slides = |p: &PointState| p.state == ContactState::Slip;
+            kept.sliding = recovered.points.iter().map(slides).collect();
+        }
+        if history && model.any_law(Friction::depends_on_rate) {
+            kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
+            result.report.counters.rate_updates += 1;
+        }
+        if model.plan.steps > 1 {
+            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate.alpha);
+            kept.lambda = std::mem::take(&mut self.iterate.lambda);
+            kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
+        }
+        let state = Arc::make_mut(&mut self.state);
+        state.pass(problem.time);
+        if result.report.status.converged() {
+            // what did not converge is no scale for later steps
+            let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
+            state.raise(&peaks);
+        } else if history {
+            state.note_unconverged();
+        }
+        state.advance(self.settings.extrapolate, kept);
+        state.seal(self.operator);
+        if let Some(accuracy) = &result.report.accuracy {
+            self.controller.errors = accuracy.accumulated;
+            state.set_controller(self.controller);
+        }
+    }
+}
+
+/// The last vector, or the line through the last two; zero before the first.
+fn start_vector(last: &[f64], before: &[f64], n: usize, extrapolate: bool) -> Vec<f64> {
+    if last.is_empty() {
+        return vec![0.0; n];
+    }
+    let mut x = last.to_vec();
+    if extrapolate && before.len() == n {
+        vector::extrapolate(last, before, 1.0, &mut x);
+    }
+    x
+}
+
+/// Tangential displacements relative to the obstacle or the other body, m, by tangential row.
+fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
+    let mut trace = vec![0.0; model.tangential_rows()];
+    let start = model.tangential_start();
+    for point in &model.points {
+        for along in point.along() {
+            let k = along.1;
+            trace[k - start] = problem.relative(point.surface(), along, rows[k]);
+        }
+    }
+    trace
+}
+
+/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`.
+fn product(model: &Model, problem: &StepProblem, rows: &[f64], alpha: &[f64]) -> Vec<f64> {
+    let coarse = model.tfeti.coarse();
+    let mut rigid = vec![0.0; rows.len()];
+    coarse.apply_transpose(alpha, &mut rigid, &mut coarse.scratch());
+    let parts = rows.iter().zip(&problem.load).zip(&rigid);
+    parts.map(|((u, load), rigid)| u - (load + rigid)).collect()
+}

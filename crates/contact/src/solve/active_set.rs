@@ -1,0 +1,238 @@
+//! The default method: the active-set method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
+//!
+//! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a limit was
+//! reached, from the start of the step where the active-set method stagnated. It is proved to solve every given-friction problem.
+
+use super::iterate::{Iterate, is_coulomb, step_status};
+use super::preconditioner::SelectedPreconditioner;
+use super::release::Exchanges;
+use super::smalse::SmalseSolver;
+use crate::error::ContactError;
+use crate::model::Model;
+use crate::report::StepReport;
+use crate::scene::Friction;
+use crate::settings::Settings;
+use crate::status::StepStatus;
+use crate::step::StepProblem;
+use signorini_qp::{
+    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status,
+    active_set, vector,
+};
+use signorini_tfeti::{ActiveSetProjector, DualOperator};
+
+/// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
+/// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
+/// predicts faces from gradients alone.
+const LOOSE: f64 = 5.0;
+
+/// Part of the stiffness that the natural map takes at rows that may depend on others of their node: two rows along one
+/// direction move it twice.
+const SHARED: f64 = 0.5;
+
+/// What a release would change, over the error of a solved face, from which on it is worth it.
+const CONTRADICTION: f64 = 10.0;
+
+/// Solves of a step with contradicting points released.
+const TURNS: usize = 8;
+
+#[derive(Debug)]
+pub(crate) struct ActiveSetSolver {
+    space: ActiveSetProjector,
+    preconditioner: SelectedPreconditioner,
+    scale: Vec<f64>,
+    set: ProductSet,
+    work: ActiveSetWorkspace<DualOperator, SelectedPreconditioner>,
+    settings: ActiveSetSettings,
+    exchanges: Exchanges,
+    /// Made when it is first needed.
+    paper: Option<Box<SmalseSolver>>,
+}
+
+impl ActiveSetSolver {
+    pub(crate) fn new(
+        model: &Model,
+        settings: &Settings,
+        face: &ActiveSetSettings,
+    ) -> Result<Self, ContactError> {
+        let contact = model.tfeti.gluing().ranges().contact().end;
+        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
+        let mut scale = vec![0.0; model.tfeti.dual_dim()];
+        model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
+        let mut compliance = vec![0.0; contact];
+        model.tfeti.row_compliance(0..contact, &mut compliance);
+        for (scale, compliance) in scale.iter_mut().zip(compliance) {
+            *scale = scale.min(LOOSE / compliance);
+        }
+        let gluing = model.tfeti.gluing();
+        let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
+        for (_, scale) in scale
+            .iter_mut()
+            .enumerate()
+            .take(contact)
+            .filter(|s| shared(s.0))
+        {
+            *scale *= SHARED;
+        }
+        Ok(Self {
+            space: ActiveSetProjector::new(
+                model.tfeti.coarse(),
+                contact,
+                model.tfeti.row_weights(),
+            )?,
+            work: ActiveSetWorkspace::new(model.tfeti.dual(), &preconditioner),
+            preconditioner,
+            scale,
+            set: model.set.clone(),
+            exchanges: Exchanges::new(model),
+            settings: face.clone(),
+            paper: None,
+        })
+    }
+
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        problem: &StepProblem,
+        settings: &Settings,
+        iterate: &mut Iterate,
+    ) -> Result<StepReport, ContactError> {
+        let mut report = StepReport::new();
+        report.counters.inequality_solves = 1;
+        let start = iterate.lambda.clone();
+        let status = self.active_sets(model, problem, settings, iterate, &mut report)?;
+        report.status = step_status(status);
+        if !report.status.converged() {
+            return self.fall_back(model, problem, settings, iterate, start, report);
+        }
+        iterate.known = true;
+        iterate.alpha.resize(problem.rhs.len(), 0.0);
+        let mut residual = iterate.f_lambda.clone();
+        vector::axpy(-1.0, &problem.linear, &mut residual);
+        self.space.amplitudes(&residual, &mut iterate.alpha);
+        Ok(report)
+    }
+
+    /// Active sets with slip bounds that follow, again as long as rows of one node contradict each other.
+    fn active_sets(
+        &mut self,
+        model: &Model,
+        problem: &StepProblem,
+        settings: &Settings,
+        iterate: &mut Iterate,
+        report: &mut StepReport,
+    ) -> Result<Status, ContactError> {
+        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+        let mut updates = usize::from(model.any_law(Friction::is_some));
+        self.space.set_rhs(&problem.rhs);
+        let dual = ActiveSetProblem {
+            operator: model.tfeti.dual(),
+            preconditioner: &self.preconditioner,
+            scale: &self.scale,
+            linear: &problem.linear,
+            rhs: &problem.rhs,
+        };
+        let [least, least_contact] = problem.least();
+        let tolerance = settings.tolerance;
+        let settings = self.settings.clone().with_tolerance(tolerance);
+        let settings = settings
+            .with_error_floor(least)
+            .with_contact_error_floor(least_contact);
+        let coulomb = is_coulomb(model);
+        if coulomb {
+            let slopes = model.slip_slopes(|k| problem.coefficients[k]);
+            self.work.set_slopes(&slopes);
+        }
+        let mut hook = |x: &[f64], set: &mut ProductSet| {
+            if coulomb {
+                problem.slip_bounds(model, x, set);
+                updates += 1;
+            }
+        };
+        let mut turns = 0;
+        let status = loop {
+            let outcome = active_set(
+                &dual,
+                &mut self.space,
+                &mut self.set,
+                &mut iterate.lambda,
+                &mut iterate.f_lambda,
+                iterate.known,
+                &settings,
+                &mut self.work,
+                &mut hook,
+            );
+            let status = match outcome {
+                Ok(outcome) => {
+                    report.iterations += outcome.faces;
+                    report.counters.products += outcome.products();
+                    report.counters.preconditionings += outcome.preconditionings;
+                    report.counters.coarse_factorisations += outcome.factorisations;
+                    report.counters.active_sets += outcome.faces;
+                    report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
+                    outcome.status
+                }
+                // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
+                Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => {
+                    Status::Stagnated
+                }
+                Err(error) => return Err(error.into()),
+            };
+            let size = vector::norm(&iterate.lambda).max(least);
+            let limit = (&self.scale[..], CONTRADICTION * tolerance * size);
+            let residual = self.work.residual();
+            let solved = status == Status::Converged && turns < TURNS;
+            if !solved
+                || !self
+                    .exchanges
+                    .settle(model, problem, residual, limit, &mut iterate.lambda)
+            {
+                break status;
+            }
+            iterate.known = false;
+            turns += 1;
+        };
+        report.counters.slip_bound_updates = updates;
+        Ok(status)
+    }
+
+    fn fall_back(
+        &mut self,
+        model: &Model,
+        problem: &StepProblem,
+        settings: &Settings,
+        iterate: &mut Iterate,
+        start: Vec<f64>,
+        mut report: StepReport,
+    ) -> Result<StepReport, ContactError> {
+        if !iterate.lambda.iter().all(|v| v.is_finite())
+            || matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld)
+        {
+            iterate.lambda = start;
+        }
+        let mut paper = match self.paper.take() {
+            Some(paper) => paper,
+            None => Box::new(SmalseSolver::new(model, settings)?),
+        };
+        iterate.multiplier.clear();
+        // other normal forces may hold the body yet
+        let not_held = report.status == StepStatus::NotHeld;
+        let limit = settings.max_fallback_products;
+        let outcome = paper.solve_within(limit, model, problem, settings, iterate);
+        self.paper = Some(paper);
+        let second = outcome?;
+        report.fallback = true;
+        report.fallback_products = second.counters.products;
+        // SMALSE has no such estimate
+        report.estimated_error = None;
+        report.status = match second.status {
+            StepStatus::IterationLimit if not_held => StepStatus::NotHeld,
+            status => status,
+        };
+        report.iterations += second.iterations;
+        report.counters += second.counters;
+        report.steps += second.steps;
+        report.fixed_point = second.fixed_point;
+        iterate.multiplier.clear();
+        Ok(report)
+    }
+}

@@ -1,0 +1,142 @@
+//! The numerical judgements of the crate, in one table: what each is relative to, and why. Numbers of rounds and weights of a
+//! cost stand where they are used.
+
+// ---- all rooms ----
+
+/// What was computed twice, or from data of this size, differs by rounding only: directions, positions, lengths of loads,
+/// forces of subdomains in balance, sums of a difference formula. Relative to the larger one; of positions, to the largest
+/// coordinate.
+pub(crate) const ROUNDING: f64 = 1e-12;
+
+/// Forces are measured against this part of displacement times stiffness at least: what is left of a rigid motion are rounding
+/// errors, 1e-16 of that product.
+pub(crate) const ROUNDED: f64 = 1e-8;
+
+/// Part of the earlier sizes that a vanishing quantity is measured against.
+pub(crate) const REST: f64 = 1e-3;
+
+// ---- steps in time (scene) ----
+
+/// Steps are equal whose lengths differ by less, relative to the longer one.
+pub(crate) const UNEQUAL: f64 = 1e-9;
+
+// ---- contact points, partners, supports, sizes (discrete) ----
+
+/// Largest force in N, displacement and gap in m. The squares of their products are formed (friction times slip): at most
+/// 1e308, so this leaves 28 digits for stiffness and sums.
+pub(crate) const LARGEST: f64 = 1e70;
+
+/// Cosine to the outward normal below which a direction counts as along the surface.
+pub(crate) const ALONG: f64 = 1e-9;
+
+/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
+/// angle. Within smaller ones a node would have twice the same row, and one condition keeps the other to 1.4e-6 of the way
+/// along the surface, which the certificate sees.
+pub(crate) const SAME_NORMAL: f64 = 1.0 - 1e-12;
+
+/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a twentieth
+/// of the way.
+pub(crate) const TURN: f64 = 0.1;
+
+/// Distance of a partner from the normal that is allowed, over the size of the facets (the root of the area of a node).
+pub(crate) const BESIDE: f64 = 0.02;
+
+/// What is allowed more, over the gap: the normals of curved surfaces are those of facets.
+pub(crate) const TILT: f64 = 0.1;
+
+/// The most of that, over the size of the facets.
+pub(crate) const MOST_TILT: f64 = 0.2;
+
+/// Cosine between a normal and that of the other side reversed above which they face each other.
+pub(crate) const FACING: f64 = 0.1;
+
+/// Depth of a supported node in an obstacle that counts, over its displacement or gap.
+pub(crate) const DEPTH: f64 = 1e-9;
+
+// ---- equilibrium of free bodies (model) ----
+
+/// Work on a free motion below this part of the size of the loads is rounding.
+pub(crate) const FREE_WORK: f64 = 1e-9;
+
+/// What contact forces leave of loads of length one, below which it is rounding.
+pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
+
+/// Singular values below this part of the largest count as zero where contact forces are found.
+pub(crate) const WRENCH_RANK: f64 = 1e-13;
+
+/// Contact forces below this part of the largest leave.
+pub(crate) const WRENCH_FACTOR: f64 = 1e-14;
+
+/// Loads that would need contact forces that many times their own size count as not held.
+pub(crate) const LEVERAGE: f64 = 1e5;
+
+/// Part by which loads must exceed Tresca friction to count.
+pub(crate) const TRESCA_EXCESS: f64 = 1e-6;
+
+/// Friction so many times as large is none that a remedy could name.
+pub(crate) const MOST_FRICTION: f64 = 1e3;
+
+/// Accuracy of the factor of friction that is named, relative.
+pub(crate) const FRICTION_FACTOR: f64 = 1e-4;
+
+// ---- the duality gap (estimate) ----
+
+/// Freedom of a node (3 without supports) that supports take counts above this.
+pub(crate) const FREEDOM_TAKEN: f64 = 1e-8;
+
+/// Relative change of a slip bound that is judged by the stiffness of the node. Larger ones move the whole body, and the gap,
+/// which overrates small changes, is the safer measure.
+pub(crate) const NEAR_BOUND: f64 = 0.01;
+
+/// Planes of one node are parallel below this singular value over the largest.
+pub(crate) const PARALLEL: f64 = 1e-6;
+
+/// Elastic energy that may be rounding, relative to that of all nodes moved alone: that of a body that moves without strain is
+/// a difference of numbers this much larger, or more.
+pub(crate) const NO_STRAIN: f64 = 1e-12;
+
+// ---- tolerances chosen by estimates (state, simulation) ----
+
+/// Tolerance of the first solve of the first step where estimates choose. A looser one saves little and may end before slip
+/// bounds have settled.
+pub(crate) const LOOSEST: f64 = 1e-3;
+
+/// The smallest tolerance a solver is asked for there.
+pub(crate) const TIGHTEST: f64 = 1e-12;
+
+/// Solves of one step there.
+pub(crate) const ROUNDS: usize = 8;
+
+/// What is missing is exceeded by this factor there, so that one more round is usually enough.
+pub(crate) const MARGIN: f64 = 0.5;
+
+/// A smaller discretisation error, relative, counts as this.
+pub(crate) const EXACT_MESH: f64 = 1e-6;
+
+/// Violation of the contact conditions that is accepted, over the target, and the range of it.
+pub(crate) const CONTACT_LIMIT: f64 = 5.0;
+pub(crate) const CONTACT_LIMITS: [f64; 2] = [1e-8, 1e-2];
+
+/// Factor in the elastic energy from which on the discretisation error is estimated again.
+pub(crate) const CHANGED: f64 = 4.0;
+
+// ---- rounds of a step and orders in time (simulation) ----
+
+/// Largest certificate of a converged step over the tolerance.
+pub(crate) const CERTIFIED: f64 = 30.0;
+
+/// Aim of a second round, as a fraction of the tolerance.
+pub(crate) const NEXT_AIM: f64 = 0.3;
+
+/// Most by which the tolerance of a round falls below that of the round before.
+pub(crate) const NEXT_TOLERANCE: f64 = 0.01;
+
+/// Smallest tolerance that is tried for a certificate, and the certificate that rounding leaves.
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-10;
+
+/// Differences of runs are time error, and not the solver's, from this many times the solver's errors on.
+pub(crate) const ABOVE_SOLVER: f64 = 3.0;
+
+/// Orders of the time steps that are believed: below, the steps have not settled into a sequence of sticking and sliding, and
+/// no more than the upper one is in the formulas.
+pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];

@@ -1,0 +1,235 @@
+//! Bodies that nothing holds: what the messages say, and with which numbers.
+
+use crate::common::*;
+
+fn free(mesh: TetMesh) -> Scene {
+    Scene::new(mesh, steel())
+}
+
+fn cube() -> Scene {
+    free(block([1.0; 3], [2, 2, 2]))
+}
+
+fn refused_by(scene: Scene, settings: Settings) -> ContactError {
+    Simulation::new(scene, settings).expect_err("refused")
+}
+
+fn refused(scene: Scene) -> ContactError {
+    refused_by(scene, Settings::default())
+}
+
+/// Solved, body, motion, force.
+fn not_held(scene: Scene) -> (usize, usize, String, f64) {
+    let error = refused(scene);
+    let text = error.to_string();
+    match error {
+        ContactError::NotHeld {
+            step,
+            body,
+            mode,
+            force,
+            ..
+        } => {
+            assert!(
+                text.contains(&format!("{force:.3e} N;")) && text.contains(&mode),
+                "{text}"
+            );
+            (step, body, mode, force)
+        }
+        other => panic!("{other}"),
+    }
+}
+
+fn close(found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() <= 1e-9 * expected,
+        "{found:e}, not {expected:e}"
+    );
+}
+
+/// Supports forgotten: the load of 1e7 N is said, with its direction.
+#[test]
+fn the_force_on_a_free_body_is_its_load() {
+    for boxes in [[1, 1, 1], [2, 2, 1]] {
+        let scene = cube()
+            .with_load(Load::pressure(brick::Z_MAX, 1e7))
+            .with_boxes(boxes);
+        let (level, body, mode, force) = not_held(scene);
+        close(force, 1e7);
+        assert_eq!(
+            (level, body, mode.as_str()),
+            (0, 0, "its translation (0.000, 0.000, -1.000)")
+        );
+    }
+}
+
+#[test]
+fn the_force_is_that_of_the_level_at_which_it_acts() {
+    let late = History::table(vec![(0.5, 0.0), (1.0, 1.0)]).expect("history");
+    let scene = cube()
+        .with_load(Load::traction(brick::X_MAX, [3e6, 4e6, 0.0]).with_history(late))
+        .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+        .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+        .with_analysis(Analysis::quasistatic(1.0, 4));
+    // y is held, x is not; at t = 0.75 half of it acts
+    let (level, _, mode, force) = not_held(scene);
+    close(force, 1.5e6);
+    assert_eq!(
+        (level, mode.as_str()),
+        (2, "its translation (1.000, 0.000, 0.000)")
+    );
+}
+
+/// A couple of 1e6 N at distance 1 m: the moment is the force times the radius that the message names.
+#[test]
+fn a_couple_is_a_moment() {
+    let scene = cube()
+        .with_load(Load::traction(brick::X_MAX, [0.0, 1e6, 0.0]))
+        .with_load(Load::traction(brick::X_MIN, [0.0, -1e6, 0.0]));
+    let (_, _, mode, force) = not_held(scene);
+    let radius = mode
+        .strip_prefix("its rotation (0.000, 0.000, 1.000) at radius ")
+        .and_then(|rest| rest.strip_suffix(" m"))
+        .and_then(|number| number.parse::<f64>().ok())
+        .expect("radius");
+    assert!(
+        (force * radius / 1e6 - 1.0).abs() < 1e-3,
+        "{force:e} at {radius}"
+    );
+}
+
+/// Two cubes far from each other, each with its own load: the one with the larger load is named, with its load alone.
+#[test]
+fn of_two_bodies_the_one_pushed_most_is_named() {
+    let one = block([1.0; 3], [2, 2, 2]);
+    let count = one.points().len() as u32;
+    let mut points = one.points().to_vec();
+    points.extend(one.points().iter().map(|p| [p[0] + 5.0, p[1], p[2]]));
+    let mut tets = one.tets().to_vec();
+    tets.extend(one.tets().iter().map(|t| t.map(|n| n + count)));
+    let mut facets = one.facets().to_vec();
+    facets.extend(one.facets().iter().map(|f| Facet {
+        nodes: f.nodes.map(|n| n + count),
+        tag: FacetTag(f.tag.0 + 100),
+    }));
+    let parts = (0..tets.len())
+        .map(|t| u32::from(t >= one.tets().len()))
+        .collect();
+    let other = FacetTag(brick::Z_MAX.0 + 100);
+    let scene = free(TetMesh::new(points, tets, facets).expect("mesh"))
+        .with_parts(parts)
+        .with_load(Load::pressure(brick::Z_MAX, 3e6))
+        .with_load(Load::pressure(other, 4e6));
+    let (_, body, mode, force) = not_held(scene);
+    close(force, 4e6);
+    assert_eq!(
+        (body, mode.as_str()),
+        (1, "its translation (0.000, 0.000, -1.000)")
+    );
+}
+
+/// What the friction cone cannot hold is the force: on a smooth floor all of the pull.
+#[test]
+fn on_a_smooth_floor_the_force_is_the_pull() {
+    let scene = cube()
+        .with_load(Load::pressure(brick::Z_MAX, 1e7))
+        .with_load(Load::traction(brick::Z_MIN, [2e6, 0.0, 0.0]))
+        .with_contact(Contact::rigid(brick::Z_MIN));
+    let (_, _, mode, force) = not_held(scene);
+    close(force, 2e6);
+    assert_eq!(mode, "its translation (1.000, 0.000, 0.000)");
+}
+
+#[test]
+fn without_forces_or_in_balance_the_motions_are_free() {
+    let balanced = cube()
+        .with_load(Load::pressure(brick::Z_MAX, 1e7))
+        .with_load(Load::pressure(brick::Z_MIN, 1e7));
+    let floor = cube()
+        .with_load(Load::pressure(brick::Z_MAX, 1e7))
+        .with_contact(Contact::rigid(brick::Z_MIN));
+    let paper = by(Method::paper());
+    let turning = cube().with_support(Support::fixed(vec![0]));
+    for (scene, settings, expected) in [
+        (cube(), Settings::default(), 6),
+        (balanced, Settings::default(), 6),
+        (turning, Settings::default(), 3),
+        // the default method solves this one: the body rests where it is
+        (floor, paper, 3),
+    ] {
+        let error = refused_by(scene, settings);
+        let text = error.to_string();
+        match error {
+            ContactError::NotDetermined { body, count, .. } => {
+                assert_eq!((body, count), (0, expected))
+            }
+            other => panic!("{other}"),
+        }
+        assert!(
+            text.contains("not determined") && text.contains("the loads are in balance"),
+            "{text}"
+        );
+        assert!(text.contains(&format!("{expected} rigid motion")), "{text}");
+        assert!(!text.contains("cannot be in equilibrium"), "{text}");
+    }
+}
+
+/// Given friction holds bounds times area whatever the pressure, and no more.
+#[test]
+fn loads_beyond_given_slip_bounds_are_refused() {
+    let scene = |along: f64| {
+        Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e6, 0.3))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(30.0)))
+            .with_load(Load::pressure(brick::Z_MAX, 100.0))
+            .with_load(Load::body([0.6 * along / 2.0, 0.8 * along / 2.0, 0.0]))
+    };
+    // 30 Pa on 2 m²: 60 N, and 200 N of pressure keep the block from tipping
+    for along in [0.0, 20.0, 59.0] {
+        let level = solve(scene(along), Settings::default());
+        let held = level.summary.friction_force;
+        assert!((norm(&held) - along).abs() < 1e-3, "{along}: {held:?}");
+    }
+    for along in [60.1, 90.0] {
+        match Simulation::new(scene(along), Settings::default()) {
+            Err(ContactError::NotHeld { mode, force, .. }) => {
+                assert!(mode.contains("Tresca friction holds 6.000e1 N"), "{mode}");
+                assert!((force / along - 1.0).abs() < 1e-3, "{force}");
+            }
+            Err(error) => panic!("{error}"),
+            Ok(_) => panic!("{along} accepted"),
+        }
+    }
+}
+
+/// Pulled with 4.1 kN where friction can hold 1.9 kN: the message says so, and how much is missing.
+#[test]
+fn a_pull_beyond_friction_is_named() {
+    let refused = |friction, pull: [f64; 3], weight: f64| {
+        let scene = cube()
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+            .with_load(Load::pressure(brick::Z_MAX, weight))
+            .with_load(Load::traction(brick::Z_MIN, pull));
+        match refused(scene) {
+            error @ ContactError::NotHeld { friction, .. } => (error.to_string(), friction),
+            error => panic!("{error}"),
+        }
+    };
+    for (friction, weight) in [
+        (Friction::coulomb(0.19), 1e4),
+        (Friction::tresca(1.9e3), 1e5),
+    ] {
+        let (text, factor) = refused(friction.clone(), [2.46e3, 3.28e3, 0.0], weight);
+        let factor = factor.expect("friction could");
+        assert!((factor / (4.1 / 1.9) - 1.0).abs() < 2e-4, "{factor}");
+        assert!(text.contains("beyond what friction can hold"), "{text}");
+        assert!(text.contains("more than 2.157 times as large"), "{text}");
+        assert!(!text.contains("neither"), "{text}");
+        // what friction cannot hold at all
+        let (text, factor) = refused(friction, [4.1e3, 0.0, 1.5 * weight], weight);
+        assert_eq!(factor, None);
+        assert!(
+            text.contains("held neither by supports nor by contact"),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,31 @@
+//! One module a promise.
+
+mod accuracy;
+mod bar;
+mod bodies;
+mod column;
+mod common;
+mod determinism;
+mod edges;
+mod edges_apart;
+mod effects;
+mod estimates;
+mod free_bodies;
+mod invariance;
+mod manufactured;
+mod methods;
+mod moving_field;
+mod moving_obstacle;
+mod pairs;
+mod pairs_supported;
+mod partitions;
+mod patch;
+mod plan;
+mod reactions;
+mod refusals;
+mod restart;
+mod step_doubling;
+mod supports;
+mod tresca;
+mod unconverged;
+mod wedge;

@@ -1,0 +1,194 @@
+//! Contact between bodies whose contact nodes supports hold on one side or on both; estimates and reactions of pairs.
+
+use crate::common::*;
+use crate::pairs::beam;
+
+fn block_on(lower: &TetMesh) -> TetMesh {
+    with_second(lower, &lifted(&block([1.0; 3], [2; 3]), 1.0))
+}
+
+/// The second body is pushed, and the first one moved, or the obstacle in its place.
+fn pushed(mesh: TetMesh, contact: Contact) -> Scene {
+    let q = 2e6;
+    let shear = Load::traction(second(brick::Z_MAX), [0.0, 0.1 * q, -q]);
+    Scene::new(mesh, uniform(1e9, 0.3))
+        .with_support(Support::components(
+            second(brick::X_MAX),
+            [true, true, false],
+        ))
+        .with_load(shear)
+        .with_contact(contact.with_friction(weakening()))
+        .with_analysis(paper_steps(1.0, 5))
+}
+
+/// A surface that supports hold and move as a whole is a rigid obstacle that moves, the history of its slip included.
+#[test]
+fn a_surface_that_supports_move_is_an_obstacle_that_moves() {
+    let motion = [2e-3, -5e-4, 1e-3];
+    let floor = Contact::rigid(second(brick::Z_MIN)).with_motion(motion, up_down_up());
+    let upper = block([1.0; 3], [2; 3]).map_tags(second);
+    let (_, reference) = run(pushed(upper, floor), tight());
+    let slides = reference.iter().any(|l| l.summary.slip > 0);
+    assert!(slides && reference.iter().any(|l| l.summary.stick > 0));
+    let body = reference[0].displacement.len();
+    let both = block_on(&block([1.0; 3], [2; 3]));
+    let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX);
+    let scene = || {
+        pushed(both.clone(), contact.clone())
+            .with_support(Support::fixed(brick::Z_MAX).with_motion(motion, up_down_up()))
+            .with_boxes([2, 1, 2])
+    };
+    for method in methods() {
+        let what = method.kind().to_string();
+        let (_, levels) = run(scene(), tight().with_method(method));
+        for (a, b) in levels.iter().zip(&reference) {
+            let upper = &a.displacement[a.displacement.len() - body..];
+            assert_close(upper, &b.displacement, 1e-6, &what);
+            assert_close(&forces(&a.points), &forces(&b.points), 1e-6, &what);
+            let works = [a, b].map(|l| l.summary.friction_work);
+            let size = b.summary.normal_force * norm(&motion);
+            assert!(
+                (works[0] - works[1]).abs() < 1e-6 * size,
+                "{what}: {works:?}"
+            );
+        }
+    }
+}
+
+fn held(scene: Scene, tag: FacetTag, directions: &[[f64; 3]]) -> Scene {
+    scene.with_support(Support::partial(
+        tag,
+        Directions::Vectors(directions.to_vec()),
+    ))
+}
+
+/// Supports at contact nodes of the lower body, of the upper one, and of both, along the axes and oblique.
+fn supported(friction: &Friction) -> [Scene; 5] {
+    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let scene = || {
+        let q = 2e6;
+        Scene::new(block_on(&block([1.0; 3], [2; 3])), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_load(Load::traction(
+                second(brick::Z_MAX),
+                [0.1 * q, 0.05 * q, -q],
+            ))
+            .with_contact(
+                Contact::between(second(brick::Z_MIN), brick::Z_MAX)
+                    .with_friction(friction.clone()),
+            )
+            .with_boxes([2, 1, 2])
+    };
+    let (lower, upper) = (brick::X_MIN, second(brick::X_MIN));
+    [
+        held(scene(), lower, &[x, y, z]),
+        held(held(scene(), lower, &[z]), upper, &[x, y]),
+        held(held(scene(), lower, &[x]), upper, &[y]),
+        held(scene(), lower, &[[1.0, 0.5, 0.7]]),
+        held(
+            held(scene(), lower, &[[1.0, 0.5, 0.7]]),
+            upper,
+            &[[0.3, -1.0, 0.6], x],
+        ),
+    ]
+}
+
+/// What a support takes from the other body belongs to its reaction.
+#[test]
+fn reactions_have_the_contact_force_on_supported_nodes() {
+    for friction in [Friction::None, Friction::coulomb(0.4)] {
+        for (k, scene) in supported(&friction).into_iter().enumerate() {
+            let scene = held(scene, second(brick::Y_MIN), &[[0.0, 1.0, 0.0]]);
+            let scene = held(scene, second(brick::X_MAX), &[[1.0, 0.0, 0.0]]);
+            let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+            let frame = simulation.step().expect("step");
+            let reactions = frame.reactions();
+            let rest = reactions.imbalance();
+            let whole = norm(&reactions.loads.force);
+            assert!(
+                norm(&rest.force) < 1e-7 * whole && norm(&rest.moment) < 1e-7 * whole,
+                "{k} {friction:?}: {rest:?}"
+            );
+            let field = frame.reaction_field();
+            let sum = reactions.of_supports().force;
+            for c in 0..3 {
+                let total: f64 = field.iter().map(|force| force[c]).sum();
+                assert!((total - sum[c]).abs() < 1e-9 * whole, "{k} {friction:?}");
+            }
+        }
+    }
+}
+
+/// The estimate of the algebraic error is no guess where supports hold both nodes of a pair in part.
+#[test]
+fn the_algebraic_error_is_estimated_where_both_sides_are_held() {
+    for friction in [Friction::None, Friction::tresca(2e5)] {
+        for (k, scene) in supported(&friction).into_iter().enumerate() {
+            let scene = held(scene, second(brick::Y_MAX), &[[0.0, 1.0, 0.0]]);
+            let scene = held(scene, second(brick::X_MAX), &[[1.0, 0.0, 0.0]]);
+            let exact = solve(scene.clone(), tight().with_tolerance(1e-11)).displacement;
+            let settings = at(1e-3);
+            let mut simulation = Simulation::new(scene, settings).expect("set-up");
+            let frame = simulation.step().expect("step");
+            let found = frame.displacement();
+            let truth = relative_distance(frame.scene(), found.as_flattened(), &exact);
+            let ratio = frame.algebraic_error().relative() / truth;
+            assert!(
+                (0.9..30.0).contains(&ratio),
+                "{k} {friction:?}: {ratio}, {truth:e}"
+            );
+        }
+    }
+}
+
+/// Where supports fix the normal displacement of one side its rows are of the other body alone. Friction joins both all the same:
+/// a body that its supports press on another one is held by friction.
+#[test]
+fn friction_joins_bodies_that_no_normal_row_joins() {
+    let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX)
+        .with_gap(-1e-3)
+        .with_friction(Friction::coulomb(0.3));
+    let scene = |push: f64| {
+        let scene = Scene::new(block_on(&block([1.0; 3], [2; 3])), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_load(Load::traction(second(brick::Z_MAX), [push, 0.0, 0.0]))
+            .with_contact(contact.clone());
+        held(scene, second(brick::Z_MIN), &[[0.0, 0.0, 1.0]])
+    };
+    let reference = solve(scene(1e5), tight());
+    let force = reference.summary;
+    assert!((force.resultant[0] + 1e5).abs() < 1.0, "{force:?}");
+    assert!(force.normal_force > 4e5, "{force:?}");
+    for method in methods() {
+        let level = solve(
+            scene(1e5).with_boxes([2, 1, 2]),
+            tight().with_method(method),
+        );
+        assert_close(&level.displacement, &reference.displacement, 1e-6, "cut");
+    }
+}
+
+/// The estimate of the algebraic error bounds the truth, and is not far above it, whichever side supports hold.
+#[test]
+fn the_algebraic_error_is_estimated() {
+    let held = |tag: FacetTag| Support::components(tag, [false, true, false]);
+    for sides in [&[][..], &[brick::Y_MIN], &[second(brick::Y_MIN)]] {
+        let scene = || {
+            let scene = sides.iter().fold(beam(Some(4e11)), |scene, tag| {
+                scene.with_support(held(*tag))
+            });
+            scene.with_analysis(Analysis::Static { time: 1.0 })
+        };
+        let exact = solve(scene(), tight().with_tolerance(1e-11)).displacement;
+        let mut simulation = Simulation::new(scene(), at(1e-4)).expect("set-up");
+        let frame = simulation.step().expect("step");
+        let found = frame.displacement();
+        let truth = relative_distance(frame.scene(), found.as_flattened(), &exact);
+        let estimate = frame.algebraic_error();
+        let ratio = estimate.relative() / truth;
+        assert!(
+            (0.9..30.0).contains(&ratio),
+            "{sides:?}: {ratio}, {truth:e}"
+        );
+    }
+}

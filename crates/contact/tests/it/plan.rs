@@ -1,0 +1,85 @@
+//! What a plan tells before any work is what the set-up finds.
+
+use crate::common::*;
+
+fn statics(friction: Friction) -> Scene {
+    small_benchmark(friction, 1).with_analysis(Analysis::statics())
+}
+
+fn set_up(scene: Scene) -> Simulation {
+    Simulation::new(scene, Settings::default()).expect("set-up")
+}
+
+/// What the plan promises is what the set-up finds.
+/// A mesh in other units or in another place shows in the plan.
+#[test]
+fn the_plan_tells_the_range_of_the_gaps() {
+    let plan = |contact: Contact| {
+        let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel()).with_contact(contact);
+        Plan::new(&scene, &Settings::default()).expect("plan")
+    };
+    let touching = plan(Contact::rigid(brick::Z_MIN));
+    assert_eq!(touching.gaps, Some([0.0; 2]));
+    assert!(touching.to_string().contains("no gap"));
+    let wedge = plan(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 0.25 * x[0] - 0.125));
+    assert_eq!(wedge.gaps, Some([-0.125, 0.375]));
+    let text = wedge.to_string();
+    assert!(
+        text.contains("gaps -1.250e-1 to 3.750e-1 m, starts inside"),
+        "{text}"
+    );
+    let scene =
+        Scene::new(block([1.0; 3], [2; 3]), steel()).with_support(Support::fixed(brick::X_MIN));
+    let none = Plan::new(&scene, &Settings::default()).expect("plan");
+    assert_eq!(none.gaps, None);
+}
+
+#[test]
+fn the_plan_predicts_the_rows() {
+    for scene in [
+        statics(Friction::None),
+        statics(Friction::coulomb(0.3)),
+        benchmark(ramp(), 3),
+        benchmark(ramp(), 3).with_boxes([1, 1, 1]),
+    ] {
+        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+        let simulation = set_up(scene);
+        let ranges = simulation.tfeti().gluing().ranges().clone();
+        assert_eq!(plan.normal_rows, ranges.normal.len());
+        assert_eq!(plan.tangential_rows, ranges.tangential().len());
+        assert_eq!(plan.interface_rows, ranges.interface.len());
+        assert_eq!(plan.dirichlet_rows, ranges.dirichlet.len());
+        assert_eq!(plan.dual(), simulation.tfeti().dual_dim());
+        assert_eq!(plan.primal, simulation.tfeti().torn_dim());
+    }
+}
+
+/// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that outweighs all else.
+#[test]
+fn the_plan_knows_what_very_small_subdomains_cost() {
+    let plan = |n: usize, small: bool| {
+        let mesh = block([3.0, 1.0, 1.0], [3 * n, n, n]);
+        let parts = (0..mesh.tets().len() as u32).collect();
+        let scene = Scene::new(mesh, steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01));
+        let scene = if small {
+            scene.with_parts(parts)
+        } else {
+            scene.with_boxes([3, 1, 1])
+        };
+        Plan::new(&scene, &Settings::default()).expect("plan")
+    };
+    let seconds = |p: &Plan| {
+        let plan = p.clone().with_machine(Rate::default());
+        let times = plan.estimate.times.expect("a machine");
+        times.setup + times.steps
+    };
+    let (coarse, fine) = (plan(3, true), plan(6, true));
+    // eight times as many subdomains, nearly their square
+    assert!(seconds(&fine) > 30.0 * seconds(&coarse));
+    assert!(seconds(&fine) > 30.0 * seconds(&plan(6, false)));
+    assert!(fine.to_string().contains("too small ones"), "{fine}");
+    assert!(!plan(6, false).to_string().contains("too small ones"));
+}

@@ -1,0 +1,314 @@
+//! Supports that move: rigid motions cost little, dragged contact nodes have the friction of the law, planes of symmetry.
+
+use crate::common::*;
+
+/// Displacements alone: no loads, no contact, forces from gluing and supports only.
+#[test]
+fn a_body_stretched_by_its_supports_is_certified() {
+    let ramp = History::ramp(1.0, 1.0).expect("ramp");
+    let scene = Scene::new(block([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(Support::fixed(brick::X_MAX).with_motion([1e-3, 0.0, 0.0], ramp))
+        .with_boxes([3, 1, 1])
+        .with_analysis(paper_steps(1.0, 2));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    while !simulation.is_finished() {
+        let frame = simulation.step().expect("step");
+        let (status, certificate) = (frame.report().status, frame.certificate());
+        assert!(status.converged(), "{status:?} {certificate:?}");
+        assert!(certificate.largest() < 1e-6, "{certificate:?}");
+    }
+}
+
+/// A thin plate glued to the ground: its torn subdomains bend by far more than the plate moves, and are no scale for it.
+#[test]
+fn the_certificate_of_a_thin_bedded_plate_tells_its_error() {
+    let scene = || {
+        Scene::new(block([1.0, 0.2, 0.003], [20, 4, 2]), steel())
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_load(Load::new(LoadDensity::traction_field(
+                brick::Z_MAX,
+                |x: [f64; 3], _| [0.0, 0.0, -1e6 * f64::sin(7.0 * x[0])],
+            )))
+            .with_boxes([5, 1, 1])
+            .with_analysis(Analysis::Static { time: 1.0 })
+    };
+    let solve = |tolerance: f64| {
+        let settings = at(tolerance);
+        let mut simulation = Simulation::new(scene(), settings).expect("set-up");
+        let frame = simulation.step().expect("step");
+        (
+            frame.displacement(),
+            frame.certificate().largest(),
+            frame.report().status,
+        )
+    };
+    let (exact, _, _) = solve(1e-10);
+    for tolerance in [1e-2, 1e-4, 1e-6] {
+        let (u, certificate, status) = solve(tolerance);
+        let off = distance(u.as_flattened(), exact.as_flattened());
+        println!("{tolerance:e}: error {off:.1e}, certificate {certificate:.1e}, {status:?}");
+        assert!(
+            !status.converged() || off < 30.0 * tolerance,
+            "{tolerance:e}: {off:e}"
+        );
+    }
+}
+
+/// A block on its top support, lowered on a floor.
+fn lowered(gap: f64, depth: f64, tilt: [f64; 2]) -> Scene {
+    let down = History::table(vec![(0.0, 0.0), (1.0, 1.0)]).expect("ramp");
+    Scene::new(block([2.0, 1.0, 1.0], [8, 4, 4]), steel())
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([tilt[0], tilt[1], -depth], down))
+        .with_contact(
+            Contact::rigid(brick::Z_MIN)
+                .with_gap(gap)
+                .with_friction(Friction::coulomb(0.3)),
+        )
+        .with_boxes([2, 1, 1])
+        .with_analysis(paper_steps(1.0, 10))
+}
+
+fn assert_cheap(level: &Solved, what: &str) {
+    let report = &level.report;
+    let parts = level.certificate.parts().map(|(n, v)| (n, v.relative()));
+    assert!(report.status.converged(), "{what}: {report:?} {parts:?}");
+    assert!(report.counters.products <= 60, "{what}: {report:?}");
+}
+
+#[test]
+fn a_body_that_is_lowered_touches_at_the_right_level() {
+    for (gap, depth, tilt) in [
+        (1e-3, 2e-3, [0.0; 2]),
+        (1e-3, 2e-3, [3e-4, 1e-4]),
+        (0.99, 1.0, [0.1, 0.0]),
+        (1e-3, 0.9e-3, [0.0; 2]),
+    ] {
+        let mut simulation =
+            Simulation::new(lowered(gap, depth, tilt), Settings::default()).expect("set-up");
+        while !simulation.is_finished() {
+            let level = step(&mut simulation);
+            let reach = depth * level.time;
+            let what = format!("gap {gap}, depth {depth}, t = {}", level.time);
+            assert_cheap(&level, &what);
+            let touches = level.summary.normal_force > 1.0;
+            assert_eq!(touches, reach > gap * (1.0 + 1e-9), "{what}");
+        }
+    }
+}
+
+/// Two supports that move alike: every level is a rigid motion.
+#[test]
+fn a_rigid_motion_costs_little() {
+    let motion = [1e-3, -2e-3, 5e-4];
+    for contact in [false, true] {
+        let mut scene = Scene::new(block([2.0, 1.0, 1.0], [8, 4, 4]), steel())
+            .with_support(Support::fixed(brick::X_MIN).with_motion(motion, ramp()))
+            .with_support(Support::fixed(brick::X_MAX).with_motion(motion, ramp()))
+            .with_boxes([3, 1, 1])
+            .with_analysis(paper_steps(1.0, 5));
+        if contact {
+            let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-2);
+            scene = scene.with_contact(floor.with_friction(Friction::coulomb(0.3)));
+        }
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        while !simulation.is_finished() {
+            let level = step(&mut simulation);
+            assert_cheap(&level, &format!("contact {contact}"));
+            for u in level.displacement.chunks_exact(3) {
+                for (u, m) in u.iter().zip(motion) {
+                    assert!((u - level.time * m).abs() < 1e-12, "{u:e}");
+                }
+            }
+        }
+    }
+}
+
+const COEFFICIENT: f64 = 0.3;
+const PRESSURE: f64 = 1e3;
+
+fn there_and_back() -> History {
+    History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, -1.0)]).expect("table")
+}
+
+fn pressed(friction: Friction, boxes: [usize; 3], steps: usize) -> Scene {
+    Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e7, 0.3))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+        .with_load(Load::pressure(brick::Z_MAX, PRESSURE))
+        .with_boxes(boxes)
+        .with_analysis(Analysis::quasistatic(1.0, steps))
+}
+
+/// All of the bottom is moved along (3, 4, 0) / 5 and back: friction mu N against it at every node, whatever the body does.
+fn dragged(method: Method, boxes: [usize; 3]) {
+    let name = method.kind();
+    let length = 1e-2;
+    let way = [0.6 * length, 0.8 * length, 0.0];
+    let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 8).with_support(
+        Support::components(brick::Z_MIN, [true, true, false]).with_motion(way, there_and_back()),
+    );
+    let (mut work, mut before) = (0.0, 0.0);
+    let (_, levels) = run(scene, at(1e-9).with_method(method));
+    for level in &levels {
+        let what = format!("{} {boxes:?} t = {}", name, level.time);
+        let sign = if level.time <= 0.5 { -1.0 } else { 1.0 };
+        let total = COEFFICIENT * 2.0 * PRESSURE;
+        let friction = level.summary.friction_force;
+        for (found, part) in friction.iter().zip([0.6, 0.8, 0.0]) {
+            assert!((found - sign * part * total).abs() < 1e-5 * total, "{what}");
+        }
+        for point in &level.points {
+            assert_eq!(point.state, ContactState::Slip, "{what}");
+            let size = norm(&point.friction_force);
+            assert!((size + COEFFICIENT * point.normal_force).abs() < 1e-6 * size);
+        }
+        let now = length * there_and_back().value(level.time);
+        work += total * (now - before).abs();
+        before = now;
+    }
+    let found: f64 = levels.iter().map(|l| l.summary.friction_work).sum();
+    assert!((found / work - 1.0).abs() < 1e-5, "{found} {work}");
+}
+
+#[test]
+fn a_bottom_that_is_dragged_slides_with_friction() {
+    for method in methods() {
+        dragged(method, [1, 1, 1]);
+    }
+}
+
+#[test]
+fn a_bottom_of_two_parts_that_is_dragged_slides_with_friction() {
+    for method in methods() {
+        dragged(method, [2, 1, 1]);
+    }
+}
+
+#[test]
+fn a_bottom_of_eight_parts_that_is_dragged_slides_with_friction() {
+    for method in methods() {
+        dragged(method, [2, 2, 2]);
+    }
+}
+
+/// The displacement is that without friction: the support takes all of it.
+#[test]
+fn what_is_dragged_moves_as_without_friction() {
+    let scene = |friction| {
+        pressed(friction, [2, 1, 1], 4).with_support(
+            Support::components(brick::Z_MIN, [true, true, false])
+                .with_motion([1e-2, 0.0, 0.0], ramp()),
+        )
+    };
+    let rough = run(scene(Friction::coulomb(COEFFICIENT)), at(1e-9)).1;
+    let smooth = run(scene(Friction::None), at(1e-9)).1;
+    for (a, b) in rough.iter().zip(&smooth) {
+        assert_close(&a.displacement, &b.displacement, 1e-7, "displacement");
+    }
+}
+
+/// One direction prescribed, the other free: friction acts against the direction of both, so that any force across drives the
+/// block sideways, with s_y / s_x = F_y / sqrt((mu N)^2 - F_y^2).
+#[test]
+fn a_block_that_is_dragged_drifts_with_a_force_across() {
+    let (normal, across, way) = (2.0 * PRESSURE, 0.25 * 2.0 * PRESSURE, 1e-1);
+    let bound = COEFFICIENT * normal;
+    let along = (bound * bound - across * across).sqrt();
+    for boxes in [[1, 1, 1], [2, 1, 1]] {
+        let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 1)
+            .with_load(Load::body([0.0, across / 2.0, 0.0]))
+            .with_support(
+                Support::components(brick::Z_MIN, [true, false, false])
+                    .with_motion([way, 0.0, 0.0], ramp()),
+            );
+        let (_, levels) = run(scene, at(1e-9));
+        let what = format!("{boxes:?}: {:?}", levels[0].report);
+        let friction = levels[0].summary.friction_force;
+        assert!(
+            (friction[0] + along).abs() < 1e-4 * bound,
+            "{what}: {friction:?}"
+        );
+        assert!(
+            (friction[1] + across).abs() < 1e-4 * bound,
+            "{what}: {friction:?}"
+        );
+        for point in &levels[0].points {
+            let [x, y, _] = point.tangential_displacement;
+            assert!((x / way - 1.0).abs() < 1e-9, "{what}");
+            assert!((y / x - across / along).abs() < 2e-2, "{what}: {}", y / x);
+        }
+        assert!(!levels[0].report.fallback, "{what}");
+    }
+}
+
+/// With given friction the bound holds without pressure.
+#[test]
+fn given_friction_of_what_is_dragged() {
+    let stress = 40.0;
+    let scene = pressed(Friction::tresca(stress), [2, 1, 1], 2).with_support(
+        Support::components(brick::Z_MIN, [true, true, false])
+            .with_motion([1e-2, 0.0, 0.0], ramp()),
+    );
+    for level in run(scene, at(1e-9)).1 {
+        let friction = level.summary.friction_force[0];
+        assert!(
+            (friction + 2.0 * stress).abs() < 1e-6 * stress,
+            "{friction}"
+        );
+    }
+}
+
+/// A support that does not move leaves its friction open; as before there is none along it.
+#[test]
+fn a_symmetry_plane_keeps_one_tangential_row() {
+    let scene = pressed(Friction::coulomb(COEFFICIENT), [1, 1, 1], 1)
+        .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+        .with_support(Support::components(brick::X_MIN, [true, false, false]));
+    let simulation = Simulation::new(scene, at(1e-9)).expect("set-up");
+    let gluing = simulation.tfeti().gluing();
+    assert_eq!(gluing.ranges().intervals.len(), 4 + 2);
+    assert!(gluing.dependent_nodes().is_empty() && gluing.is_orthonormal());
+}
+
+/// Half a block that is pressed on a floor and dragged along its plane of symmetry.
+fn half(friction: Friction) -> Scene {
+    Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e9, 0.3))
+        .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([8e-3, 0.0, -2e-3], ramp()))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+        .with_boxes([2, 1, 1])
+        .with_analysis(Analysis::quasistatic(1.0, 3))
+}
+
+/// The slip bound of a node with one direction left is that of the law, not a part of it.
+#[test]
+fn sliding_nodes_in_a_plane_of_symmetry_have_the_friction_of_the_law() {
+    let (mu, stress) = (0.3, 2e5);
+    for (friction, given) in [
+        (Friction::coulomb(mu), 0.0),
+        (Friction::tresca(stress), stress),
+    ] {
+        for method in methods() {
+            let name = method.kind();
+            let (_, levels) = run(half(friction.clone()), at(1e-9).with_method(method));
+            let mut slid = 0;
+            for point in levels.iter().flat_map(|l| &l.points) {
+                let in_plane = point.node % 15 < 5;
+                if !in_plane || point.state != ContactState::Slip {
+                    continue;
+                }
+                slid += 1;
+                let bound = match given {
+                    0.0 => -mu * point.normal_force,
+                    stress => stress * point.area,
+                };
+                assert!(bound > 0.0 && (point.slip_bound - bound).abs() <= 1e-9 * bound);
+                let [x, y, z] = point.friction_force;
+                assert!((x + bound).abs() <= 1e-6 * bound, "{name}: {point:?}");
+                assert!(y.hypot(z) <= 1e-9 * bound, "{name}: {point:?}");
+            }
+            // five nodes lie in the plane
+            assert!(slid >= 5, "{name}: {slid} slide");
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Steps that do not converge: no method claims what it did not find, who depends on them knows it, who wants errors gets them.
+
+use crate::common::*;
+use signorini_contact::fixed_point::Verdict;
+use signorini_qp::ActiveSetSettings;
+
+/// A cantilever pressed on an oblique obstacle, where with this coefficient successive approximations have no limit, then lifted.
+fn cantilever(friction: Friction) -> Scene {
+    let lifted = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, -1.0)]).expect("table");
+    let tilt = 0.02_f64;
+    Scene::new(block([5.0, 1.0, 1.0], [10, 2, 2]), uniform(1000.0, 0.0))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::body([0.0, 0.0, -1.0]).with_history(lifted))
+        .with_contact(
+            Contact::rigid(brick::X_MAX)
+                .with_normal([tilt.cos(), 0.0, -tilt.sin()])
+                .with_friction(friction),
+        )
+        .with_boxes([5, 1, 1])
+        .with_analysis(Analysis::quasistatic(3.0, 3))
+}
+
+fn rough() -> Simulation {
+    let settings = by(Method::paper());
+    Simulation::new(cantilever(Friction::coulomb(0.8)), settings).expect("set-up")
+}
+
+#[test]
+fn later_levels_name_the_first_level_that_did_not_converge() {
+    let mut simulation = rough();
+    let mut seen = Vec::new();
+    while !simulation.is_finished() {
+        let frame = simulation.step().expect("step");
+        seen.push((frame.report().status, frame.unconverged_history()));
+        let strict = frame.require_converged();
+        match frame.step() {
+            0 => assert!(matches!(
+                strict,
+                Err(ContactError::NotConverged(StepFailure {
+                    step: 0,
+                    status: StepStatus::NotContractive,
+                    ..
+                }))
+            )),
+            _ => assert!(matches!(
+                strict,
+                Err(ContactError::UnconvergedHistory { step: 0 })
+            )),
+        }
+    }
+    // lifted off the obstacle the body is certified, but where it stands along the obstacle depends on level 0
+    assert_eq!(
+        seen,
+        [
+            (StepStatus::NotContractive, None),
+            (StepStatus::Converged, Some(0)),
+            (StepStatus::Converged, Some(0)),
+        ]
+    );
+    assert_eq!(simulation.state().unconverged_history(), Some(0));
+}
+
+#[test]
+fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
+    let mut simulation = rough();
+    let report = simulation.run(&mut Silent).expect("run");
+    assert_eq!((report.steps, report.failures.len()), (3, 1));
+    assert!(!report.converged() && report.counters == *simulation.counters());
+    let first = *report.first_failure().expect("a failure");
+    assert_eq!(
+        (first.step, first.time, first.status),
+        (0, 1.0, StepStatus::NotContractive)
+    );
+    assert!(first.certificate <= report.largest_certificate);
+    let error = report.require_converged().expect_err("not converged");
+    let text = error.to_string();
+    for part in ["step 0", "at 1 s", "not contractive", "smaller coefficient"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn an_observer_can_end_a_run_at_the_first_such_level() {
+    let mut simulation = rough();
+    let outcome = simulation.run(&mut |frame: &StepResult| Flow::from(frame.require_converged()));
+    let error = outcome.expect_err("not converged");
+    assert!(matches!(error, ContactError::Observer { step: 0, .. }));
+    assert!(error.to_string().contains("not contractive"), "{error}");
+    assert_eq!(simulation.state().step(), 1);
+}
+
+#[test]
+fn a_resumed_run_knows_what_it_continues() {
+    let mut first = rough();
+    let _ = first.step().expect("step");
+    let mut second =
+        Simulation::new(cantilever(Friction::coulomb(0.8)), Settings::default()).expect("set-up");
+    second.resume(first.state().clone()).expect("resume");
+    let report = second.run(&mut Silent).expect("run");
+    assert!(report.failures.is_empty());
+    assert_eq!(report.unconverged_history, Some(0));
+    let error = report
+        .require_converged()
+        .expect_err("an unconverged history");
+    assert!(matches!(
+        error,
+        ContactError::UnconvergedHistory { step: 0 }
+    ));
+}
+
+/// Without friction a level depends on nothing that an earlier one found.
+#[test]
+fn scenes_without_memory_never_set_it() {
+    let short = Settings::default()
+        .with_method(Method::ActiveSet(
+            ActiveSetSettings::default().with_max_products(1),
+        ))
+        .with_max_fallback_products(1);
+    let mut simulation = Simulation::new(cantilever(Friction::None), short).expect("set-up");
+    let report = simulation.run(&mut Silent).expect("run");
+    assert!(report.first_failure().is_some(), "{report:?}");
+    assert_eq!(report.unconverged_history, None);
+    assert_eq!(simulation.state().unconverged_history(), None);
+    let frame = simulation.result().expect("frame");
+    assert_eq!(frame.unconverged_history(), None);
+}
+
+#[test]
+fn runs_that_converge_are_converged() {
+    for method in methods() {
+        let settings = by(method);
+        let mut simulation =
+            Simulation::new(cantilever(Friction::coulomb(0.05)), settings).expect("set-up");
+        let report = simulation.run(&mut Silent).expect("run");
+        assert!(report.converged() && report.largest_certificate <= 1e-6);
+        report.require_converged().expect("converged");
+        assert_eq!(report.steps, 3);
+        assert_eq!(simulation.state().unconverged_history(), None);
+    }
+}
+
+/// A cantilever under its own weight `across` and the axial load `axial` (N/m³); `tilt` is the angle between the axis
+/// and the obstacle's normal.
+fn weighed_cantilever(coefficient: f64, tilt: f64, axial: f64) -> Scene {
+    Scene::new(block([5.0, 1.0, 1.0], [10, 2, 2]), uniform(1000.0, 0.0))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::body([axial, 0.0, -1.0]))
+        .with_contact(
+            Contact::rigid(brick::X_MAX)
+                .with_normal([tilt.cos(), 0.0, -tilt.sin()])
+                .with_friction(Friction::coulomb(coefficient)),
+        )
+        .with_boxes([5, 1, 1])
+}
+
+fn first_level(scene: Scene, method: Method) -> (StepStatus, Option<Verdict>, Option<f64>, f64) {
+    let settings = by(method);
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    let frame = simulation.step().expect("step");
+    let fixed_point = frame.report().fixed_point.clone();
+    (
+        frame.report().status,
+        fixed_point.as_ref().map(|f| f.verdict),
+        fixed_point.and_then(|f| f.rate),
+        frame.certificate().largest(),
+    )
+}
+
+/// Whatever the coefficient: either a certified solution, or a status that says that there is none.
+#[test]
+fn no_method_claims_what_it_did_not_find() {
+    let mut unsolved = 0;
+    for method in methods() {
+        for (tilt, axial) in [(0.02, 0.0), (0.1, 0.1), (0.1, 1.0), (0.3, 0.0)] {
+            for coefficient in [0.05, 0.3, 0.5, 0.7, 0.9, 1.1, 1.5, 3.0] {
+                let scene = weighed_cantilever(coefficient, tilt, axial);
+                let (status, _, _, certificate) = first_level(scene, method.clone());
+                let what = format!(
+                    "{}, tilt {tilt}, axial {axial}, F {coefficient}",
+                    method.kind()
+                );
+                assert!(certificate.is_finite(), "{what}");
+                if status.converged() {
+                    assert!(
+                        certificate <= 1e-6,
+                        "{what}: converged with {certificate:e}"
+                    );
+                } else {
+                    unsolved += 1;
+                }
+            }
+        }
+    }
+    assert!(unsolved > 0, "the cases are too easy to tell anything");
+}
+
+#[test]
+fn successive_approximations_say_that_the_map_is_not_contractive() {
+    for coefficient in [0.6, 0.8, 1.0] {
+        let scene = weighed_cantilever(coefficient, 0.02, 0.0);
+        let (status, verdict, rate, _) = first_level(scene, Method::paper());
+        assert_eq!(status, StepStatus::NotContractive, "F {coefficient}");
+        assert_eq!(verdict, Some(Verdict::NotContractive), "F {coefficient}");
+        assert!(rate.is_some_and(|r| r > 0.5), "F {coefficient}: {rate:?}");
+    }
+}
+
+/// On both sides of that range the map has a limit: little friction, and so much that the tip sticks.
+#[test]
+fn outside_of_that_range_the_map_converges() {
+    for coefficient in [0.05, 0.1, 3.0] {
+        let scene = weighed_cantilever(coefficient, 0.02, 0.0);
+        let (status, verdict, _, certificate) = first_level(scene, Method::paper());
+        assert_eq!(
+            (status, verdict),
+            (StepStatus::Converged, Some(Verdict::Converged)),
+            "F {coefficient}"
+        );
+        assert!(certificate <= 1e-6, "F {coefficient}: {certificate:e}");
+    }
+}
+
+/// All loads act at contact nodes, which stick: nothing moves, and rounding must not count as a violation.
+#[test]
+fn a_body_that_does_not_move_is_certified() {
+    for method in methods() {
+        let scene = Scene::new(block([5.0, 1.0, 1.0], [10, 2, 2]), uniform(1000.0, 0.0))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::X_MAX, [2.0, 0.0, -1.0]))
+            .with_contact(Contact::rigid(brick::X_MAX).with_friction(Friction::coulomb(1.0)))
+            .with_boxes([5, 1, 1]);
+        let (status, _, _, certificate) = first_level(scene, method.clone());
+        assert!(
+            status.converged() && certificate <= 1e-6,
+            "{}: {status:?}, {certificate:e}",
+            method.kind()
+        );
+    }
+}
