@@ -21,7 +21,7 @@ fn main() -> Result<(), Error> {
     second.resume(State::load(&file)?)?;
     second.run(&mut Silent)?.require_converged()?;
 
-    let displacement = |s: &Simulation| s.frame().map(|result| result.displacement());
+    let displacement = |s: &Simulation| s.result().map(|result| result.displacement());
     assert!(displacement(&whole) == displacement(&second));
     let step = second.state().step();
     println!("went on to step {step}: the same displacements, bit for bit");

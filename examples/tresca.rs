@@ -11,7 +11,7 @@ const BOUND: f64 = 3e7;
 fn main() -> Result<(), Error> {
     let mut pulls = Vec::new();
     for method in [Method::default(), Method::paper()] {
-        println!("method {}", method.name());
+        println!("method {}", method.kind());
         println!(
             "  t in s  products  stick  slip  normal in N  friction in N  dissipation in J  certificate"
         );

@@ -39,7 +39,7 @@ fn a_mesh_of_ones_own_becomes_a_series() {
 fn a_slip_bound_that_is_data_takes_one_quadratic_program_a_step() {
     let mut pulls = Vec::new();
     for method in [Method::paper(), Method::default()] {
-        let programs = usize::from(method.name() == "paper");
+        let programs = usize::from(method.kind().to_string() == "paper");
         let settings = Settings::default().with_method(method).with_tolerance(1e-8);
         let mut simulation =
             Simulation::new(tresca::scene(3e7).expect("scene"), settings).expect("set-up");
@@ -49,7 +49,7 @@ fn a_slip_bound_that_is_data_takes_one_quadratic_program_a_step() {
             assert!(programs == 0 || result.report().counters.quadratic_programs == programs);
             assert!(result.certificate().largest() < 1e-7 && result.summary().friction_work > 0.0);
         }
-        let last = *simulation.frame().expect("a result").summary();
+        let last = *simulation.result().expect("a result").summary();
         // everything slides at the end, so the friction is at most bound times area
         assert_eq!(last.stick, 0);
         assert!(last.friction_force[0] < 0.0 && last.friction_force[0] > -3e7 * 3.0);

@@ -81,7 +81,7 @@ pub fn execute(
         outcomes.push(pool.install(|| run(scene, common.settings(), &header))?);
     }
     let records: Vec<&RunRecord> = outcomes.iter().map(|o| &o.record).collect();
-    let method = records.first().map_or("", |r| r.method.as_str());
+    let method = records.first().map_or("", |r| r.method_name());
     let (traction, tolerance) = (options.traction, common.tolerance);
     writeln!(
         out,

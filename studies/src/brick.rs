@@ -25,7 +25,7 @@ pub const STEPS: usize = 50;
 /// Cells along the edge of a subdomain in the benchmark: H/h.
 pub const CELLS: usize = 5;
 /// The difference formula of the paper: 3/2, -2, 1/2.
-pub const PAPER_FORMULA: DifferenceFormula = DifferenceFormula::THREE_STEP;
+pub const PAPER_FORMULA: DifferenceFormula = DifferenceFormula::PAPER;
 /// Backward Euler.
 pub const EULER: DifferenceFormula = DifferenceFormula::BACKWARD_EULER;
 /// From 0 to 1 in one second.

@@ -35,7 +35,7 @@ impl RunFiles {
 
     /// Writes the last step solved, if it is due.
     pub fn write(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let Some(result) = simulation.frame() else {
+        let Some(result) = simulation.result() else {
             return Ok(());
         };
         let due = (result.step() + 1).checked_rem(self.every) == Some(0);
@@ -48,28 +48,27 @@ impl RunFiles {
             self.series = Some((body, surface, PvdSeries::create(&self.folder, "contact")?));
         }
         if let Some((body, surface, contact)) = &mut self.series {
-            write_body(body, &result, self.reactions)?;
-            write_contact(contact, surface, &result)?;
+            write_body(body, result, self.reactions)?;
+            write_contact(contact, surface, result)?;
         }
         Ok(())
     }
 }
 
-fn write_body(
-    series: &mut PvdSeries,
-    result: &StepResult<'_>,
-    reactions: bool,
-) -> Result<(), Failure> {
+fn write_body(series: &mut PvdSeries, result: &StepResult, reactions: bool) -> Result<(), Failure> {
     let mesh = result.scene().mesh();
-    let stress = result.stress()?;
+    let stress = result.stress();
     let nodal = nodal_average(mesh, &stress)?;
     let mut points = vec![
-        Field::vector("displacement", result.displacement()),
+        Field::vector("displacement", result.displacement().into_flattened()),
         Field::symmetric_tensor("stress", &nodal),
         Field::scalar("von_mises", nodal.iter().map(von_mises).collect()),
     ];
     if reactions {
-        points.push(Field::vector("reaction", result.reaction_field()));
+        points.push(Field::vector(
+            "reaction",
+            result.reaction_field().into_flattened(),
+        ));
     }
     let cells = [Field::scalar(
         "von_mises",
@@ -81,13 +80,13 @@ fn write_body(
 fn write_contact(
     series: &mut PvdSeries,
     surface: &Surface,
-    result: &StepResult<'_>,
+    result: &StepResult,
 ) -> Result<(), Failure> {
     let mesh = result.scene().mesh();
     let patch = ContactPatch::new(surface, mesh.points(), result.points());
     let u = result.displacement();
-    let at = |node: &u32| &u[3 * *node as usize..3 * *node as usize + 3];
-    let displacement = surface.nodes().iter().flat_map(at).copied().collect();
+    let at = |node: &u32| u[*node as usize];
+    let displacement = surface.nodes().iter().flat_map(at).collect();
     let friction = patch.friction_force.iter().flatten().copied().collect();
     let fields = [
         Field::vector("displacement", displacement),

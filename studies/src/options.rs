@@ -84,9 +84,6 @@ pub struct Common {
     /// Threads; 0 takes all cores.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
-    /// Threads stay awake between the parallel parts of a step.
-    #[arg(long)]
-    pub busy_waiting: bool,
     /// Cells along the edge of a subdomain, H/h.
     #[arg(long, default_value_t = CELLS, value_parser = positive)]
     pub cells: usize,
@@ -107,7 +104,6 @@ impl Common {
         Settings::default()
             .with_method(self.method.method().0)
             .with_tolerance(self.tolerance)
-            .with_busy_waiting(self.busy_waiting)
     }
 
     /// The header of a run.

@@ -68,6 +68,16 @@ pub struct RunRecord {
     pub steps: Vec<StepRecord>,
 }
 
+impl RunRecord {
+    /// The method as the command line calls it.
+    pub fn method_name(&self) -> &str {
+        match self.method.as_str() {
+            "face" => "active-set",
+            other => other,
+        }
+    }
+}
+
 /// One time step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StepRecord {
@@ -124,7 +134,7 @@ pub struct StepRecord {
 
 impl StepRecord {
     /// Reads a result.
-    pub fn new(result: &StepResult<'_>) -> Self {
+    pub fn new(result: &StepResult) -> Self {
         let (sum, report) = (result.summary(), result.report());
         Self {
             step: result.step() + 1,
@@ -147,7 +157,7 @@ impl StepRecord {
             status: report.status.to_string(),
             unconverged_history: result.unconverged_history().map(|step| step + 1),
             fallback: report.fallback,
-            faces: report.counters.faces,
+            faces: report.counters.active_sets,
             quadratic_programs: report.counters.quadratic_programs,
             contraction: report.fixed_point.as_ref().and_then(|f| f.rate),
             load: result.load_resultant(),
@@ -237,10 +247,10 @@ pub fn steps_chart(record: &RunRecord) -> Result<String, Failure> {
         curve("certificate", 0, &|s| s.certificate),
         curve("tolerance", 5, &|_| record.tolerance),
     ];
+    let method = record.method_name();
     let RunRecord {
         n,
         loading,
-        method,
         it_name,
         ..
     } = record;

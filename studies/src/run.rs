@@ -50,7 +50,7 @@ pub fn pool(threads: usize) -> Result<rayon::ThreadPool, Failure> {
     pool.map_err(|e| format!("cannot start {threads} threads: {e}; {remedy}").into())
 }
 
-/// Is called after each step, in which `simulation.frame()` has its result.
+/// Is called after each step, in which `simulation.result()` has its result.
 pub type OnStep<'a> = dyn FnMut(&Simulation, &StepRecord) -> Result<(), Failure> + Send + 'a;
 
 /// Solves all steps of a scene: the simulation at its end, its steps, and the seconds that they took, without `on_step`.
@@ -125,7 +125,8 @@ fn collect(
     RunRecord {
         n: header.n,
         loading: header.loading.clone(),
-        method: plan.method.to_owned(),
+        // the default's name in this file since there is one
+        method: plan.method.to_string().replace("active-set", "face"),
         threads: rayon::current_num_threads(),
         n_s: plan.subdomains,
         n_p: plan.primal,
@@ -139,9 +140,9 @@ fn collect(
         peak_rss_bytes: peak_memory(),
         it_name: header.it_name.clone(),
         cells: header.cells,
-        tolerance: simulation.settings().tolerance,
+        tolerance: simulation.settings().tolerance(),
         formula: header.formula.clone(),
-        faces: counters.faces,
+        faces: counters.active_sets,
         quadratic_programs: counters.quadratic_programs,
         preconditionings: counters.preconditionings,
         projections: counters.projections,

@@ -50,7 +50,7 @@ pub struct ContactPatch {
 /// The first contact surface of a scene that has been stepped; the bottom of the brick if there is none.
 pub fn contact_surface(simulation: &Simulation) -> Result<Surface, Failure> {
     let first = simulation
-        .frame()
+        .result()
         .and_then(|r| r.surfaces().first().cloned());
     match first {
         Some(surface) => Ok(surface),
@@ -109,13 +109,13 @@ impl Snapshot {
     /// The state after the last step solved.
     pub fn new(simulation: &Simulation, header: &Header) -> Result<Self, Failure> {
         let mesh = simulation.scene().mesh();
-        let result = simulation.frame().ok_or("no step is solved yet")?;
+        let result = simulation.result().ok_or("no step is solved yet")?;
         let surface = contact_surface(simulation)?;
         Ok(Self {
             loading: header.loading.clone(),
             time: result.time(),
             points: mesh.points().to_vec(),
-            displacement: result.displacement().as_chunks::<3>().0.to_vec(),
+            displacement: result.displacement(),
             triangles: mesh.facets().iter().map(|f| f.nodes).collect(),
             contact: ContactPatch::new(&surface, mesh.points(), result.points()),
         })

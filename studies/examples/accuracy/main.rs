@@ -214,11 +214,14 @@ fn write_field(path: &Path, short: bool) -> Result<(), Failure> {
     };
     let mut simulation = Simulation::new(block.scene()?, Settings::default())?;
     simulation.run(&mut Silent)?.require_converged()?;
-    let result = simulation.frame().ok_or("no step is solved yet")?;
+    let result = simulation.result().ok_or("no step is solved yet")?;
     let error = result.discretisation_error()?;
     let scene = simulation.scene();
     let stress = error.stress_errors(scene.mesh(), scene.materials())?;
-    let points = [Field::vector("displacement", result.displacement())];
+    let points = [Field::vector(
+        "displacement",
+        result.displacement().into_flattened(),
+    )];
     let cells = [
         Field::scalar("error_energy", error.energies().to_vec()),
         Field::scalar("error_stress", stress),

@@ -68,17 +68,17 @@ fn once(scene: &Scene, settings: &Settings) -> Result<Solution, Failure> {
     // the estimate is not part of the run
     let (simulation, steps, seconds) =
         run::solve(scene.clone(), settings.clone(), &mut |simulation, _| {
-            sum.add(&simulation.frame().ok_or("no step is solved yet")?);
+            sum.add(simulation.result().ok_or("no step is solved yet")?);
             Ok(())
         })?;
-    let result = simulation.frame().ok_or("no step is solved yet")?;
+    let result = simulation.result().ok_or("no step is solved yet")?;
     let forces = result
         .points()
         .iter()
         .flat_map(|p| std::iter::once(p.normal_force).chain(p.friction_force))
         .collect();
     Ok(Solution {
-        displacement: result.displacement(),
+        displacement: result.displacement().into_flattened(),
         forces,
         resultant: result.summary().resultant,
         work: steps.iter().map(|s| s.dissipation).sum(),

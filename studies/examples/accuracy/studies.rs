@@ -1,6 +1,7 @@
 //! The five studies.
 
 use signorini::contact::Accuracy;
+use signorini::contact::MethodKind;
 use signorini::prelude::*;
 use signorini::qp::ActiveSetSettings;
 use signorini_studies::Failure;
@@ -98,16 +99,16 @@ fn tolerance(short: bool) -> Result<Vec<Curve>, Failure> {
     };
     let mut curves = Vec::new();
     for method in [Method::default(), Method::paper(), Method::one_loop()] {
-        let name = method.name();
+        let kind = method.kind();
         let settings = Settings::default().with_method(method);
         // the paper's methods are slow: every other tolerance
-        let chosen: Vec<f64> = match name {
-            "face" => tolerances.to_vec(),
+        let chosen: Vec<f64> = match kind {
+            MethodKind::ActiveSet => tolerances.to_vec(),
             _ => tolerances.iter().copied().step_by(2).collect(),
         };
         curves.push(along_tolerances(
             Study::Tolerance,
-            name,
+            &kind.to_string(),
             &variant,
             &settings,
             &chosen,
@@ -127,17 +128,17 @@ fn method(short: bool) -> Result<Vec<Curve>, Failure> {
     };
     let default = Settings::default;
     let mut choices = vec![
-        ("face, lumped", default()),
+        ("active set, lumped", default()),
         (
-            "face, Dirichlet",
+            "active set, Dirichlet",
             default().with_preconditioner(Preconditioner::Dirichlet),
         ),
         (
-            "face, no extrapolation",
+            "active set, no extrapolation",
             default().with_extrapolation(false),
         ),
         (
-            "face, forcing 0.02",
+            "active set, forcing 0.02",
             default().with_method(Method::ActiveSet(
                 ActiveSetSettings::default().with_forcing(0.02),
             )),

@@ -178,7 +178,12 @@ fn report(
     writeln!(
         out,
         "\nbrick, method {}, {} steps ({}), tolerance {:e}, H/h = {}, {} threads\n",
-        first.method, options.steps, first.formula, first.tolerance, first.cells, first.threads
+        first.method_name(),
+        options.steps,
+        first.formula,
+        first.tolerance,
+        first.cells,
+        first.threads
     )?;
     write!(out, "{}", table::table(&records))?;
     if options.is_standard() {
@@ -203,8 +208,8 @@ fn report(
 
 /// The forces on the body, and their moments about the origin, at the last step.
 fn reactions(label: &str, simulation: &Simulation) -> Result<String, Failure> {
-    let result = simulation.frame().ok_or("no step is solved yet")?;
-    let reactions = result.reactions()?;
+    let result = simulation.result().ok_or("no step is solved yet")?;
+    let reactions = result.reactions();
     let mut text = format!(
         "{label} at {} s, on the body: forces along x, y, z in N and moments about the axes in N m\n",
         result.time()

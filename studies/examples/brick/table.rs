@@ -80,7 +80,7 @@ pub(crate) fn verdict(runs: &[&RunRecord]) -> String {
         true => "none".to_owned(),
         false => list.join(", "),
     });
-    let method = runs.first().map_or("", |r| r.method.as_str());
+    let method = runs.first().map_or("", |r| r.method_name());
     format!("products over the paper's, method {method}: at or below: {below}; above: {above}")
 }
 

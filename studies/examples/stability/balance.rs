@@ -146,8 +146,8 @@ impl Ledger {
     }
 
     /// Enters a step.
-    pub(crate) fn enter(&mut self, result: &StepResult<'_>) {
-        let u = result.displacement();
+    pub(crate) fn enter(&mut self, result: &StepResult) {
+        let u = result.displacement().into_flattened();
         let internal: Vec<f64> = self
             .rows
             .iter()

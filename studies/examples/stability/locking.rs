@@ -33,7 +33,7 @@ pub(crate) fn deflection(poisson: f64, cells: usize) -> Result<f64, Failure> {
         return Err("the cantilever did not converge".into());
     }
     let u = result.displacement();
-    let mean = end.iter().map(|&n| u[3 * n as usize + 2]).sum::<f64>() / end.len() as f64;
+    let mean = end.iter().map(|&n| u[n as usize][2]).sum::<f64>() / end.len() as f64;
     let [length, width, height] = LENGTHS;
     let force = TRACTION * width * height;
     let bending = force * length.powi(3) / (3.0 * YOUNG * width * height.powi(3) / 12.0);

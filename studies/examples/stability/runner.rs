@@ -187,7 +187,7 @@ fn solve(setup: Setup, measured: &mut Measured) -> Result<Ended, Failure> {
     Ok(Ended::Solved(worst.0, worst.1))
 }
 
-fn figures(result: &StepResult<'_>, scene: &Scene, load: f64) -> Vec<f64> {
+fn figures(result: &StepResult, scene: &Scene, load: f64) -> Vec<f64> {
     let s = result.summary();
     let unit = if load > 0.0 { load } else { 1.0 };
     let (low, high) = scene.mesh().extent();
@@ -199,9 +199,9 @@ fn figures(result: &StepResult<'_>, scene: &Scene, load: f64) -> Vec<f64> {
     out.extend(s.friction_force.map(|v| v / unit));
     out.push(s.friction_norm / unit);
     let u = result.displacement();
-    let nodes = (u.len() / 3) as f64;
+    let nodes = u.len() as f64;
     for c in 0..3 {
-        let sum: f64 = u.iter().skip(c).step_by(3).sum();
+        let sum: f64 = u.iter().map(|u| u[c]).sum();
         out.push(sum / nodes / length);
     }
     out

@@ -21,7 +21,7 @@ fn short_run_writes_all_files_and_errors_fall() {
     assert!(!text.contains("NOT CONVERGED"), "{text}");
 
     // tolerance: errors fall, and the library's own estimate is of their size
-    for name in ["face", "paper", "one-loop"] {
+    for name in ["active-set", "paper", "one-loop"] {
         let c = curve(&curves, Study::Tolerance, name);
         for pair in c.samples.windows(2) {
             assert!(pair[1].errors.u < pair[0].errors.u, "{name}: {text}");
