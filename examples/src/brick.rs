@@ -1,6 +1,6 @@
 //! The scene of the benchmark: a steel brick, clamped at one end, pressed on a rough floor and pulled along it.
 //!
-//! Section 6 of the paper; `docs/benchmark.md` says what is our reading: the side of the floor, the unit of the tractions,
+//! Section 6 of the paper; `docs/reports/benchmark.md` says what is our reading: the side of the floor, the unit of the tractions,
 //! the histories, the coefficient of friction and its decay.
 
 use signorini::contact::Plan;

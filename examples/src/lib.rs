@@ -45,9 +45,15 @@ pub mod stability;
 pub mod table;
 pub mod tresca;
 
-/// The pieces of code in the guide compile.
+/// The pieces of code in the how-to pages compile.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/guide.md")]
-pub struct Guide;
+#[doc = include_str!("../../docs/how-to/loads.md")]
+#[doc = include_str!("../../docs/how-to/floors-and-walls.md")]
+#[doc = include_str!("../../docs/how-to/subdomains.md")]
+#[doc = include_str!("../../docs/how-to/convergence.md")]
+#[doc = include_str!("../../docs/how-to/accuracy.md")]
+#[doc = include_str!("../../docs/how-to/results.md")]
+#[doc = include_str!("../../docs/how-to/reactions.md")]
+pub struct HowTo;
 
 pub use error::ExampleError;

@@ -18,7 +18,7 @@
 //! Not in them: slip bounds and slip rates that follow the wrong forces (Coulomb friction magnifies by `1 / (1 - q)`, see
 //! [`algebraic`](crate::algebraic)), and weights of the difference formula above one (`4/3, -1/3` for the three-step formula).
 //! On the benchmark with a coefficient that falls with the slip rate the sum was once 0.67 of the true error;
-//! `docs/accuracy-and-time.md` has the measurements.
+//! `docs/reports/accuracy-and-time.md` has the measurements.
 
 use crate::algebraic::{AlgebraicError, relative};
 use crate::frame::StepResult;
