@@ -194,7 +194,7 @@ pub fn free() -> Vec<Case> {
         Case::new(
             GROUP,
             "falls on the floor",
-            "gap below a body that nothing holds: the first level has to close it rigidly",
+            "gap below a body that nothing holds: the first step has to close it rigidly",
             move || {
                 let block = Block {
                     gap: 0.01,

@@ -169,7 +169,7 @@ pub fn sets() -> Vec<Case> {
         Case::new(
             GROUP,
             "starts inside the obstacle",
-            "negative gap: the first level must push the body out",
+            "negative gap: the first step must push the body out",
             || with_gap(|x| -1e-3 * x[0]),
         ),
         Case::new(
@@ -296,7 +296,7 @@ pub fn sliding() -> Vec<Case> {
         Case::new(
             GROUP,
             "slip bounds exactly 0, given",
-            "given friction with bound 0 is no friction",
+            "Tresca friction with bound 0 is no friction",
             || {
                 driven(
                     1e-3,
@@ -322,7 +322,7 @@ pub fn sliding() -> Vec<Case> {
         ),
         Case::new(
             GROUP,
-            "given friction",
+            "Tresca friction",
             "bounds that do not follow the pressure: friction at open nodes too",
             || {
                 driven(

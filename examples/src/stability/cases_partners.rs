@@ -120,7 +120,7 @@ pub fn cases() -> Vec<Case> {
         ),
         stack(
             "stack of three falls together",
-            "gaps between blocks that nothing holds: the first level has to close them rigidly",
+            "gaps between blocks that nothing holds: the first step has to close them rigidly",
             Stack {
                 blocks: 3,
                 gap: 1e-3,

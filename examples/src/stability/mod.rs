@@ -8,7 +8,7 @@
 //! | [`block`] | the body of most cases: the benchmark's brick with everything variable |
 //! | `cases_*` | the cases, one group a file |
 //! | [`locking`] | linear tetrahedra near incompressibility, measured |
-//! | [`report`] | the table, and the document `docs/stability.md` |
+//! | [`report`] | the table, and the document `docs/reports/stability.md` |
 
 pub mod app;
 pub mod balance;

@@ -1,4 +1,4 @@
-//! The table of results, as text and as the document `docs/stability.md`.
+//! The table of results, as text and as the document `docs/reports/stability.md`.
 
 use super::case::{Case, Failure};
 use super::locking;
@@ -42,10 +42,10 @@ pub fn outcome(m: &Measured) -> String {
     match &m.ended {
         Ended::Solved(status, _) if status.converged() => match m.fallbacks {
             0 => "certified".to_owned(),
-            1 => "certified, 1 level by the fall-back".to_owned(),
-            n => format!("certified, {n} levels by the fall-back"),
+            1 => "certified, 1 step by the fall-back".to_owned(),
+            n => format!("certified, {n} steps by the fall-back"),
         },
-        Ended::Solved(status, level) => format!("says {status:?} at level {level}"),
+        Ended::Solved(status, level) => format!("says {status:?} at step {level}"),
         Ended::Refused(text) => format!("refused: {}", text.split(';').next().unwrap_or("")),
         Ended::Panicked(text) => format!("PANIC {text}"),
     }
@@ -78,83 +78,55 @@ pub fn plain(line: &Line<'_>) -> String {
 const HEAD: &str = "\
 # Hard cases
 
-Written by `COMMAND`; run it to see the numbers of your machine. The same cases are tests: `cargo test --release -p \
-signorini-examples --test stability` runs the short ones, with `-- --include-ignored` all of them.
+Written by `COMMAND`. The same cases are tests: `cargo test --release -p signorini-examples stability` runs the short ones, with
+`-- --include-ignored` all of them.
 
-Most cases are the benchmark's brick (3 m x 1 m x 1 m, steel, clamped at one end, floor 0.1 m below, coefficient 0.3) with \
-3 subdomains of 4 x 4 x 4 cells and 6 steps of backward Euler, and one thing made hard. Settings are the defaults: method \
-`face`, tolerance 1e-6. What has to hold:
+Most cases are the benchmark's brick (steel, clamped at one end, floor 0.1 m below, coefficient 0.3) with 3 subdomains of 4 x 4 x 4 cells,
+6 steps of backward Euler, and one thing made hard. Settings are the defaults. What has to hold:
 
-- *certified*: every level converges, and the largest relative violation of all conditions (column *certificate*; computed \
-from the recovered displacement, not by the solver) stays below 1e-5 (1e-4 for a coefficient of 1000, which may also say that it is not solved);
-- or the *status* says that there is no certified result, and why: `NotContractive`, `IterationLimit`, `Stagnated`, \
-`NotCertified` (the solver met its tolerance, the certificate did not follow);
+- *certified*: every step converges, and the largest relative violation of all conditions (column *certificate*) stays below 1e-5, 1e-4 for a coefficient of 1000;
+- or the *status* says that there is no certified result, and why;
 - or the scene is *refused* before anything is solved, with a message that names the place;
 - never a panic, NaN, or a result that is wrong and says nothing;
-- *balance*: the largest error of the balances of force, moment and energy of every step, and of negative dissipation, \
-below ten times the limit of the certificate;
-- cases that are one problem in two forms (units, cuts, restarts, redundant supports) give the same dimensionless results (*as 'X'*: as case X).
+- *balance*: the largest error of the balances of force, moment and energy of every step, and of negative dissipation, stays below ten times the limit of the certificate;
+- cases that are one problem in two forms give the same dimensionless results (*as 'X'*: as case X).
 
-Columns: *n_s* subdomains, *rows* of B, *levels* (they count from 0), *products* with F of all levels, *s* seconds.
+Columns: *n_s* subdomains, *rows* of B, *steps* (they count from 0), *products* with F of all steps, *s* seconds.
 
 ## What is conserved
 
-With internal forces `K u`, loads `f`, contact forces `c`, reactions `R` at supported nodes, all computed from the mesh and the \
-reported nodal values:
+With internal forces `K u`, loads `f`, contact forces `c` and reactions `R`, all computed from the mesh and the reported nodal values:
 
-- forces and moments: the sum of `f + c + R` and of its moments vanishes at every level;
-- energy: `E1 - E0` equals the work of the mean of `f + c + R` of two successive levels in the step between them. For linear \
-elasticity this is an identity in the exact solution, for any step length;
-- with the forces of the new level alone (backward Euler) the balance is
-  `(f1 + R1)(u1 - u0) = (E1 - E0) + D_t + D_n + (u1 - u0) K (u1 - u0) / 2`
-  with friction loss `D_t >= 0` and `D_n = -c_n (u1 - u0) >= 0` of nodes that close in the step. The last term is the price of the \
-formula: it is never negative and vanishes in sum like the step;
-- with the paper's formula `3/2, -2, 1/2` the friction force times *its* difference is never negative; the friction work of the \
-displacement increments can be slightly negative at nodes that stick after sliding (see `docs/theory.md`).
+- Forces and moments: the sum of `f + c + R` and of its moments vanishes in every step.
+- Energy: `E1 - E0` equals the work of the mean of `f + c + R` of two successive steps. This is an identity in the exact solution, for any step length.
+- With the forces of the new step alone (backward Euler): `(f1 + R1)(u1 - u0) = (E1 - E0) + D_t + D_n + (u1 - u0) K (u1 - u0) / 2`, with friction loss `D_t >= 0` and `D_n = -c_n (u1 - u0) >= 0` of nodes that close. The last term is the price of the formula and vanishes in sum like the step.
+- With the paper's formula friction can give energy back at nodes that stick after sliding ([theory](../theory.md#2-time)).
 
 ";
 
 const BOUNDS: &str = "
 ## What the expensive cases are bound by
 
-Most cases need 10 to 50 products a level. The others, and what was found in them:
+Most cases need 10 to 50 products a step. The others:
 
-- *Jumps of stiffness between subdomains.* While the interface is not glued yet, the soft copy of a contact node is displaced \
-by the error of gluing, which is large in the soft part. Rows on the plain mean of the copies showed this error as slip and \
-penetration of the stiff part: wrong faces, error estimates 1e5 times too large, tens of thousands of products. Rows now weigh \
-the copies by stiffness (`CopyStiffness`), and the jump has no influence on the number of products. Nodal displacements are the \
-same mean, else the energy of the stiff part would carry the error of the soft one.
-- *Poisson's ratios near 1/2, and flat elements.* With all its neighbours held, a node can hardly move: the lumped stiffness of its \
-row is 120 times (nu = 0.499) to 12000 times (0.49999) the stiffness with the subdomain free; ordinary are 1 to 4. The natural map \
-that predicts faces had steps that much too large. They are now limited (to five times the latter). What is left is the \
-condition of the preconditioner: conjugate gradients need 100 and more steps on a face, and the estimate of the error, the length \
-of the preconditioned residual, is as much too large as the stiffness. These cases are therefore solved more accurately than \
-asked (see their certificates), at some times the cost. The Dirichlet preconditioner does not cure it: with all boundary nodes of \
-a subdomain held its volume is held, too. It saves up to half of the products in flat bodies and costs more near nu = 1/2.
-- *Barely not tipping.* Nearly all nodes of the edge slide, by about a micrometre, and stick and slip change with the last digits. \
-Small changes of the rules change the products by a fifth.
-- *A coefficient of 1000.* Slip bounds follow normal forces with a factor of 1000, and neither the face method nor successive \
-approximations come to rest; the latter see changes that do not shrink and say `NotContractive`. The result reported solves the \
-problem of given friction with the last bounds (see its certificate), not Coulomb's. A damped outer loop was not tried. Whether there is a \
-solution near is not known.
+- *Jumps of stiffness between subdomains.* The soft copy of a contact node is displaced by the error of gluing. Rows therefore weigh copies by stiffness, and the jump has no influence on the number of products.
+- *Poisson's ratios near 1/2, and flat elements.* With all its neighbours held, a node can hardly move: the lumped stiffness of its row is 120 times (nu = 0.499) to 12000 times (0.49999) the stiffness with the subdomain free; ordinary are 1 to 4. The error estimate is as much too large, so these cases are solved more accurately than asked. The Dirichlet preconditioner does not cure it: it holds the volume, too.
+- *Barely not tipping.* Nearly all nodes of the edge slide by about a micrometre. Stick and slip change with the last digits.
+- *A coefficient of 1000.* Neither method comes to rest; successive approximations say `NotContractive`. The result solves the Tresca problem of the last bounds, not Coulomb's. Whether there is a solution near is not known.
 
 ";
 
 const LOCKING: &str = "
 ## Locking of linear tetrahedra
 
-The solver copes with Poisson's ratios near 1/2, but the element does not: a linear tetrahedron with nearly no change of \
-volume has hardly any way to bend. Deflection of the clamped brick under a transverse force at its end, over that of \
-Timoshenko's beam (bending and shear; the clamped end makes a few per cent):
+A linear tetrahedron with nearly no change of volume has hardly any way to bend. Deflection of the clamped brick under a transverse force
+at its end, over that of Timoshenko's beam:
 
 | nu | CELLS |
 |---|RULES
-ROWS
-At nu = 0 halving the cells divides the error by 3 to 4, as linear elements should. At 0.499 it divides it by 1.7 only, and with \
-8 cells the bar is still a fifth too stiff, six times the error at nu = 0. (A few per cent of that are real: the clamped end \
-stiffens a body that cannot change its volume.) This is a property of the discretisation, not of the solution of its equations: \
-the certificates above belong to converged solutions of the locked equations. For rubber use a mixed element (not in this \
-library), a finer mesh, or the smallest Poisson's ratio that the question allows.
+ROWSHalving the cells divides the error by 3 to 4 at nu = 0, by 1.7 only at 0.499. This is a property of the discretisation: the certificates
+above belong to converged solutions of the locked equations. For rubber use a mixed element (not in this library), a finer mesh, or the
+smallest Poisson's ratio that the question allows.
 ";
 
 /// The document. `command` wrote it.
@@ -176,7 +148,7 @@ pub fn document(lines: &[Line<'_>], command: &str) -> Result<String, Failure> {
             group = case.group;
             let _ = writeln!(
                 out,
-                "\n### {group}\n\n| case | what is hard | what the library did | certificate | balance | n_s | rows | levels | products | s |\n|---|---|---|---|---|---|---|---|---|---|"
+                "\n### {group}\n\n| case | what is hard | what the library did | certificate | balance | n_s | rows | steps | products | s |\n|---|---|---|---|---|---|---|---|---|---|"
             );
         }
         let mut did = outcome(m);
