@@ -11,7 +11,13 @@
 //!
 //! What is measured and reported about the library is in the package `signorini-studies`.
 
-/// The pieces of code in the guide compile.
+/// The pieces of code in the how-to pages compile.
 #[cfg(doctest)]
-#[doc = include_str!("../docs/guide.md")]
-pub struct Guide;
+#[doc = include_str!("../docs/how-to/loads.md")]
+#[doc = include_str!("../docs/how-to/floors-and-walls.md")]
+#[doc = include_str!("../docs/how-to/subdomains.md")]
+#[doc = include_str!("../docs/how-to/convergence.md")]
+#[doc = include_str!("../docs/how-to/accuracy.md")]
+#[doc = include_str!("../docs/how-to/results.md")]
+#[doc = include_str!("../docs/how-to/reactions.md")]
+pub struct HowTo;

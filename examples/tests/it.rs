@@ -8,6 +8,8 @@ mod qp_only;
 #[path = "../tresca.rs"]
 mod tresca;
 
+mod docs;
+
 use signorini::prelude::*;
 use signorini_qp::Expansion;
 
