@@ -1,6 +1,7 @@
 //! A mesh of one's own: from a file of Gmsh to files for ParaView.
 //!
-//! Half a rubber roller (10 mm radius, `roller.msh`) is pressed on a floor and dragged along it. Lengths in mm, stresses in MPa.
+//! Half a rubber roller (10 mm radius, `roller.msh`) is pressed on a floor and dragged along it. Lengths in mm,
+//! stresses in MPa.
 
 use signorini::fem_mesh::gmsh::read_named_gmsh;
 use signorini::fem_mesh::output::{Field, PvdSeries};

@@ -1,7 +1,7 @@
 //! Quadratic programming without mechanics: only the crate `signorini-qp`.
 //!
-//! A string over an obstacle (bounds) by KPRGP, and three unknowns with a disc and an equality by SMALSE. `kkt` checks the
-//! conditions of optimality with code that the solvers do not share.
+//! A string over an obstacle (bounds) by KPRGP, and three unknowns with a disc and an equality by SMALSE. `kkt`
+//! checks the conditions of optimality with code that the solvers do not share.
 
 use std::f64::consts::PI;
 
@@ -60,8 +60,8 @@ pub fn string(expansion: Expansion) -> Result<(KprgpReport, usize, f64), QpError
     Ok((report, resting, kkt))
 }
 
-/// Minimises `|x|^2 / 2 - 1.8 x0 - 2.2 x1` with `|(x0, x1)| <= 1`, `x2` free and `x1 + x2 = 1`: exactly (0.6, 0.8, 0.2) with
-/// the multiplier -0.2 of the equality. The last number is the distance from optimality.
+/// Minimises `|x|^2 / 2 - 1.8 x0 - 2.2 x1` with `|(x0, x1)| <= 1`, `x2` free and `x1 + x2 = 1`: exactly (0.6, 0.8,
+/// 0.2) with the multiplier -0.2 of the equality. The last number is the distance from optimality.
 pub fn disc() -> Result<([f64; 3], f64, f64), QpError> {
     let a = DenseOperator::new(3, vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])?;
     let b = [1.8, 2.2, 0.0];

@@ -1,7 +1,7 @@
 //! Tresca friction: the slip bound is data, so that a step is one quadratic program.
 //!
-//! A brick lies on a floor, is pressed on its top and pulled at its end until all of it slides. The default method and the
-//! paper's find the same forces.
+//! A brick lies on a floor, is pressed on its top and pulled at its end until all of it slides. The default method
+//! and the paper's find the same forces.
 
 use signorini::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Two elastic bodies: a pad is pressed on a rail and then pulled along it.
 //!
-//! The pad shears, begins to slide at its back, and in the end all of it slides: friction is then the coefficient times the
-//! normal force.
+//! The pad shears, begins to slide at its back, and in the end all of it slides: friction is then the coefficient
+//! times the normal force.
 
 use signorini::prelude::*;
 
@@ -26,7 +26,8 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-/// A cube on a rail of 3 x 1 x 0.5 m, with `cells` cells along a metre (even). The rail is steel, the cube `softness` times softer.
+/// A cube on a rail of 3 x 1 x 0.5 m, with `cells` cells along a metre (even). The rail is steel, the cube
+/// `softness` times softer.
 pub fn scene(cells: usize, steps: usize, softness: f64) -> Result<Scene, Error> {
     let (young, poisson) = (2.1e11, 0.3);
     // facets of the pad get tags of their own: those of a brick, plus 100

@@ -110,7 +110,7 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
             let mut w = vec![1.0; x.len()];
             let mut k = 0;
             group.bench_function(
-                BenchmarkId::new(format!("change of face, {name}"), n),
+                BenchmarkId::new(format!("change of active set, {name}"), n),
                 |b| {
                     b.iter(|| {
                         k += 1;
@@ -136,8 +136,8 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
     Ok(())
 }
 
-fn once_a_level(c: &mut Criterion) -> Result<(), Failure> {
-    let mut group = c.benchmark_group("once a level");
+fn once_a_step(c: &mut Criterion) -> Result<(), Failure> {
+    let mut group = c.benchmark_group("once a step");
     group.sample_size(20);
     for n in SIZES {
         let body = Body::new(n)?;
@@ -164,7 +164,7 @@ fn once_a_level(c: &mut Criterion) -> Result<(), Failure> {
 }
 
 fn all(c: &mut Criterion) {
-    for run in [set_up, products, coarse, once_a_level] {
+    for run in [set_up, products, coarse, once_a_step] {
         if let Err(error) = run(c) {
             panic!("{error}");
         }

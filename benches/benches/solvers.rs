@@ -56,8 +56,8 @@ fn steps(c: &mut Criterion) -> Result<(), Failure> {
     group.sample_size(10);
     let paper = Settings::default().with_method(Method::paper());
     let cases = [
-        ("face", 1, Settings::default()),
-        ("face", 2, Settings::default()),
+        ("active-set", 1, Settings::default()),
+        ("active-set", 2, Settings::default()),
         ("paper", 1, paper),
     ];
     for (name, n, settings) in cases {

@@ -62,7 +62,8 @@ pub fn wave(length: usize) -> Vec<f64> {
     (0..length).map(|i| (0.7 * i as f64).sin()).collect()
 }
 
-/// Seconds of one run: the fifth percentile of many, so that other work on the machine disturbs little. Once if `quick`.
+/// Seconds of one run: the fifth percentile of many, so that other work on the machine disturbs little. Once if
+/// `quick`.
 pub fn seconds(quick: bool, mut body: impl FnMut()) -> f64 {
     let mut times = Vec::new();
     let started = Instant::now();
@@ -115,7 +116,8 @@ pub fn gemm(quick: bool, flops: u64, size: usize, threads: usize) -> Result<[f64
 /// Bytes of the three arrays of [`triad`] that stand for memory.
 pub const MEMORY: u64 = 3 << 26;
 
-/// Bytes per second of the triad `a = b + s c` on three arrays of so many `bytes` in all, counting two reads and one write.
+/// Bytes per second of the triad `a = b + s c` on three arrays of so many `bytes` in all, counting two reads and one
+/// write.
 pub fn triad(quick: bool, threads: usize, bytes: u64) -> Result<f64, Failure> {
     let length = (bytes / 24).clamp(1, if quick { 1 << 18 } else { 1 << 32 }) as usize;
     let chunk = length.div_ceil(8 * threads).min(1 << 16);

@@ -29,8 +29,8 @@ pub struct FrictionlessOptions {
     pub common: Common,
 }
 
-/// What the best existing code (T-FETI with bounds) needs, to 1e-6: n, pressure in Pa, products at its best settings, at its
-/// defaults, and on two processes the seconds of set-up and solve.
+/// What the best existing code (T-FETI with bounds) needs, to 1e-6: n, pressure in Pa, products at its best
+/// settings, at its defaults, and on two processes the seconds of set-up and solve.
 pub type Known = (usize, f64, usize, Option<(usize, f64, f64)>);
 
 /// Counts and times of that code.

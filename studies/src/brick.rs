@@ -1,7 +1,7 @@
 //! The brick of the benchmark, with everything variable.
 //!
-//! Section 6 of the paper; `docs/reports/benchmark.md` says what is our reading: the side of the floor, the unit of the tractions,
-//! the histories, the coefficient of friction and its decay.
+//! Section 6 of the paper; `docs/reports/benchmark.md` says what is our reading: the side of the floor, the unit of
+//! the tractions, the histories, the coefficient of friction and its decay.
 
 use signorini::contact::Plan;
 use signorini::prelude::*;
@@ -117,8 +117,8 @@ pub struct Block {
 }
 
 impl Default for Block {
-    /// Loads and floor of the benchmark, loading c, but 3 subdomains of 4 x 4 x 4 cells, 6 steps of backward Euler and a
-    /// constant coefficient of 0.3.
+    /// Loads and floor of the benchmark, loading c, but 3 subdomains of 4 x 4 x 4 cells, 6 steps of backward Euler
+    /// and a constant coefficient of 0.3.
     fn default() -> Self {
         Self {
             lengths: LENGTHS,

@@ -69,7 +69,8 @@ pub struct Chart {
     pub curves: Vec<Curve>,
 }
 
-/// Charts in `rows` and `columns`. A heading that is not empty stands above, with the names of the first chart's curves.
+/// Charts in `rows` and `columns`. A heading that is not empty stands above, with the names of the first chart's
+/// curves.
 pub fn page(
     size: (u32, u32),
     [rows, columns]: [usize; 2],

@@ -21,8 +21,8 @@ pub struct RunFiles {
 }
 
 impl RunFiles {
-    /// Files in a folder, at every `every`-th step and at the last (0: none); with the reactions of the supports as a field of
-    /// the body if asked for.
+    /// Files in a folder, at every `every`-th step and at the last (0: none); with the reactions of the supports as
+    /// a field of the body if asked for.
     pub fn new(folder: &Path, every: usize, reactions: bool) -> Self {
         let folder = folder.to_path_buf();
         Self {

@@ -1,7 +1,7 @@
 //! What the studies share: the brick of the benchmark, runs with their records, tables, files and pictures.
 //!
-//! The studies themselves are the examples of this package, one file or folder each; `cargo run --release --example NAME -- --help`
-//! lists their options. Each has a function `execute`, which the tests call as well.
+//! The studies themselves are the examples of this package, one file or folder each; `cargo run --release --example
+//! NAME -- --help` lists their options. Each has a function `execute`, which the tests call as well.
 //!
 //! | study | shows |
 //! |---|---|
@@ -51,7 +51,8 @@ pub fn exit<T>(result: Result<T, Failure>) -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// A table of text, columns right-aligned under heads of two lines; a head `["|", "|"]` is a bar between columns and takes no cell.
+/// A table of text, columns right-aligned under heads of two lines; a head `["|", "|"]` is a bar between columns and
+/// takes no cell.
 pub fn aligned(heads: &[[&str; 2]], rows: &[Vec<String>]) -> String {
     let mut columns: Vec<Vec<&str>> = heads.iter().map(|h| h.to_vec()).collect();
     for row in rows {

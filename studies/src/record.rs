@@ -38,7 +38,8 @@ pub struct RunRecord {
     pub setup_seconds: f64,
     /// Wall clock of all steps, s; writing of files not included.
     pub solve_seconds: f64,
-    /// Largest resident memory of the process so far (it never falls from run to run); 0 where the system does not tell.
+    /// Largest resident memory of the process so far (it never falls from run to run); 0 where the system does not
+    /// tell.
     pub peak_rss_bytes: u64,
     /// What `it` counts: the method's own name of its outer iterations.
     pub it_name: String,
@@ -117,7 +118,8 @@ pub struct StepRecord {
     pub certificate_parts: BTreeMap<String, f64>,
     /// How the step ended.
     pub status: String,
-    /// The first earlier step that did not converge and on whose slip this one depends, from 1; absent where there is none.
+    /// The first earlier step that did not converge and on whose slip this one depends, from 1; absent where there
+    /// is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unconverged_history: Option<usize>,
     /// Whether the active-set method gave up and SMALSE finished.

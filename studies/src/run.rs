@@ -53,8 +53,8 @@ pub fn pool(threads: usize) -> Result<rayon::ThreadPool, Failure> {
 /// Is called after each step, in which `simulation.result()` has its result.
 pub type OnStep<'a> = dyn FnMut(&Simulation, &StepRecord) -> Result<(), Failure> + Send + 'a;
 
-/// Solves all steps of a scene: the simulation at its end, its steps, and the seconds that they took, without `on_step`.
-/// Not converging is no error: see the records.
+/// Solves all steps of a scene: the simulation at its end, its steps, and the seconds that they took, without
+/// `on_step`. Not converging is no error: see the records.
 pub fn solve(
     scene: Scene,
     settings: Settings,
@@ -171,7 +171,8 @@ pub fn warnings(runs: &[&RunRecord]) -> String {
             let (steps, tolerance) = (&run.unconverged, run.tolerance);
             let _ = writeln!(
                 text,
-                "WARNING: {name}: steps {steps:?} DID NOT REACH the tolerance {tolerance:e}; their states are the last iterates"
+                "WARNING: {name}: steps {steps:?} DID NOT REACH the tolerance {tolerance:e}; their states are the \
+                 last iterates"
             );
             let mut history = run.steps.iter().filter_map(|s| s.unconverged_history);
             if let Some(first) = history.next() {

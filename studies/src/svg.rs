@@ -42,8 +42,8 @@ impl Svg {
         );
     }
 
-    /// Many polygons (or lines, if not closed) as one path. Coordinates are written in tenths of a pixel, relative to the point
-    /// before, which makes short files.
+    /// Many polygons (or lines, if not closed) as one path. Coordinates are written in tenths of a pixel, relative
+    /// to the point before, which makes short files.
     pub(crate) fn polygons<P: AsRef<[[f64; 2]]>>(
         &mut self,
         polygons: &[P],

@@ -2,7 +2,7 @@
 //!
 //! | study | what varies | reference |
 //! |---|---|---|
-//! | `tolerance` | tolerance of the solver, for three methods | the same mesh and steps, tolerance 1e-12, other preconditioner, no extrapolation |
+//! | `tolerance` | tolerance of the solver, for three methods | same mesh and steps, 1e-12, other preconditioner, no extrapolation |
 //! | `mesh` | cell size, at fixed H/h and at fixed H | a mesh with half the smallest cells or less |
 //! | `time` | time step, for two difference formulas | backward Euler with 16 times the most steps |
 //! | `method` | solver and preconditioner on a larger brick | as `tolerance` |

@@ -241,7 +241,7 @@ fn effects(short: bool) -> Result<Vec<Curve>, Failure> {
     let floors = [
         ("elastic only", None),
         ("contact", Some(Friction::None)),
-        ("given friction", Some(Friction::tresca(1e8))),
+        ("Tresca friction", Some(Friction::tresca(1e8))),
         ("Coulomb friction", Some(Friction::coulomb(0.3))),
         ("rate-dependent friction", Some(weakening())),
     ];

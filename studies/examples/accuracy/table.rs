@@ -62,7 +62,8 @@ pub(super) fn text(study: Study, curves: &[Curve]) -> String {
         if let Some((products, seconds)) = cost_of_six_digits(curve) {
             let _ = writeln!(
                 out,
-                "  {}: from certificate 1e-4 to 1e-10 costs {products:.2} times the products, {seconds:.2} times the time",
+                "  {}: from certificate 1e-4 to 1e-10 costs {products:.2} times the products, {seconds:.2} times the \
+                 time",
                 curve.name
             );
         }

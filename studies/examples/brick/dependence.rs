@@ -2,7 +2,8 @@
 
 use signorini_studies::run::Outcome;
 
-/// Compares two runs of the same brick under the same final loads, in words; `None` if the meshes differ or a run has no step.
+/// Compares two runs of the same brick under the same final loads, in words; `None` if the meshes differ or a run
+/// has no step.
 pub(crate) fn dependence(first: &Outcome, second: &Outcome) -> Option<String> {
     let (a, b) = (&first.snapshot, &second.snapshot);
     let (x, y) = (first.record.steps.last()?, second.record.steps.last()?);
@@ -12,7 +13,8 @@ pub(crate) fn dependence(first: &Outcome, second: &Outcome) -> Option<String> {
     let flat = |u: &[[f64; 3]]| u.iter().flatten().copied().collect::<Vec<f64>>();
     let [pull, other] = [x, y].map(|s| s.tangential_force[0]);
     Some(format!(
-        "n = {}: friction force along x1 {pull:.4e} N ({}), {other:.4e} N ({}): {:+.2} %; normal force {:.4e} N, {:+.2} %; \
+        "n = {}: friction force along x1 {pull:.4e} N ({}), {other:.4e} N ({}): {:+.2} %; normal force {:.4e} N, \
+         {:+.2} %; \
          fields, difference over the first: |lambda_T| {:.2} %, lambda_nu {:.2} %, u {:.3} %",
         first.record.n,
         a.loading,

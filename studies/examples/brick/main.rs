@@ -1,4 +1,5 @@
-//! The brick benchmark: quasistatic contact with Coulomb friction, its table beside the paper's; `--help` lists the options.
+//! The brick benchmark: quasistatic contact with Coulomb friction, its table beside the paper's; `--help` lists the
+//! options.
 
 mod dependence;
 mod pictures;
@@ -50,7 +51,8 @@ pub struct BrickOptions {
     /// With --out: write a VTU file at every K-th step and at the last; 0 writes none.
     #[arg(long, value_name = "K", default_value_t = 1)]
     pub vtu_every: usize,
-    /// Print what supports, floor and loads do to the body at the end; with --out: write the reactions at its nodes, too.
+    /// Print what supports, floor and loads do to the body at the end; with --out: write the reactions at its nodes,
+    /// too.
     #[arg(long)]
     pub reactions: bool,
     /// Draw products and seconds against the size into this SVG file.

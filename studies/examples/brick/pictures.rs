@@ -176,8 +176,8 @@ fn marks(s: &Snapshot, directions: bool) -> Vec<Shape> {
     shapes
 }
 
-/// Products a step, and products and seconds of a run against the size; the paper's numbers beside them where the records are of
-/// the benchmark.
+/// Products a step, and products and seconds of a run against the size; the paper's numbers beside them where the
+/// records are of the benchmark.
 pub(crate) fn growth(records: &[&RunRecord], standard: bool) -> Result<String, Failure> {
     let own = |point: fn(&RunRecord) -> (f64, f64)| -> Vec<Curve> {
         let mut loadings: Vec<&str> = records.iter().map(|r| r.loading.as_str()).collect();

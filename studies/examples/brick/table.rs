@@ -54,7 +54,8 @@ pub(crate) fn table(runs: &[&RunRecord]) -> String {
     };
     aligned(&heads, &rows)
         + &format!(
-            "The paper's letters: subdomains n_s, unknowns n_p, multipliers n_d (it counts contact rows of fixed nodes, too; we\n\
+            "The paper's letters: subdomains n_s, unknowns n_p, multipliers n_d (it counts contact rows of fixed \
+             nodes, too; we\n\
              solve for full rank), outer iterations it ({iterations}), products n_m (those for norms apart).\n"
         )
 }

@@ -41,8 +41,8 @@ impl Case {
     }
 }
 
-/// The brick of the benchmark with `cells` cells along the edge of each of three subdomains, and `steps` steps where it has a
-/// history.
+/// The brick of the benchmark with `cells` cells along the edge of each of three subdomains, and `steps` steps where
+/// it has a history.
 pub(crate) fn cases(cells: usize, steps: usize) -> Result<Vec<Case>, Failure> {
     let full = Block {
         cells: [cells; 3],
@@ -64,7 +64,7 @@ pub(crate) fn cases(cells: usize, steps: usize) -> Result<Vec<Case>, Failure> {
         ("+ contact", whole(Some(Friction::None), 0.0, 0)),
         ("+ gap", whole(Some(Friction::None), gap, 0)),
         (
-            "+ given friction",
+            "+ Tresca friction",
             whole(Some(Friction::tresca(3e8)), gap, 0),
         ),
         ("Coulomb instead", whole(Some(coulomb.clone()), gap, 0)),

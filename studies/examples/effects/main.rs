@@ -1,5 +1,5 @@
-//! Only what the scene calls for: one brick, its effects switched on one by one, each beside the plan's prediction; then
-//! the plan against the truth on the benchmark and on other scenes. `--help` lists the options.
+//! Only what the scene calls for: one brick, its effects switched on one by one, each beside the plan's prediction;
+//! then the plan against the truth on the benchmark and on other scenes. `--help` lists the options.
 
 mod cases;
 mod shapes;
@@ -173,7 +173,7 @@ fn measure(case: &Case, rate: Rate) -> Result<Line, Failure> {
     let (simulation, steps, solve) = solve(scene, settings, &mut |simulation, _| {
         let result = simulation.result().ok_or("no step is solved yet")?;
         let start = Instant::now();
-        compute(case.extra, &result)?;
+        compute(case.extra, result)?;
         if case.extra != Extra::None {
             extra += start.elapsed().as_secs_f64();
         }

@@ -63,7 +63,7 @@ pub(crate) fn shapes() -> Result<Vec<Case>, Failure> {
         ("long beam, bends down", long_beam.scene()?),
         ("plate, frictionless, static", plate.scene()?),
         ("arch on a cylinder", arch()?),
-        ("rubber, given friction", rubber()?),
+        ("rubber, Tresca friction", rubber()?),
         ("layers, stiffness 1 : 1000", layers()?),
         ("irregular mesh", irregular.scene()?),
         ("block held by friction", free()?),
@@ -77,7 +77,7 @@ pub(crate) fn shapes() -> Result<Vec<Case>, Failure> {
             }
             .scene()?,
         ),
-        ("pulled brick, given friction", pulled.scene()?),
+        ("pulled brick, Tresca friction", pulled.scene()?),
         (
             "brick, no friction, 10 steps",
             Block {

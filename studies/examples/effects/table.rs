@@ -20,7 +20,8 @@ pub(super) fn effects(lines: &[Line], out: &mut impl Write) -> Result<(), Failur
         let (p, t) = (&l.plan, &l.truth);
         writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {} | {} | {:.0} / {:.0} | {:.0} | {} | {} | {} | {} | {:.0} / {:.0} | {:.0} / {:.0} | {:.1} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {:.0} / {:.0} | {:.0} | {} | {} | {} | {} | {:.0} / {:.0} | {:.0} / \
+             {:.0} | {:.1} |",
             l.name,
             l.steps,
             pair(p.normal_rows, t.normal_rows),
@@ -78,7 +79,8 @@ pub(super) fn shapes(lines: &[Line], out: &mut impl Write) -> Result<(), Failure
     writeln!(
         out,
         "\nOther scenes: the plan's products and the truth.\n\n\
-         | scene | steps | rows | likely | truth | truth / likely | steps that fell back |\n|---|---|---|---|---|---|---|"
+         | scene | steps | rows | likely | truth | truth / likely | steps that fell back \
+         |\n|---|---|---|---|---|---|---|"
     )?;
     for l in lines {
         let truth = l.truth.products;

@@ -78,8 +78,9 @@ pub(crate) fn voronoi(mesh: &TetMesh, count: usize, seed: u64) -> Vec<u32> {
     by_nearest(mesh, &points)
 }
 
-/// Parts grown on the graph of the tetrahedra, which knows no coordinates: from `count` random tetrahedra the smallest part takes the
-/// neighbour that waits longest, as long as one is free. Of equal sizes as far as there is room, and as ragged as can be.
+/// Parts grown on the graph of the tetrahedra, which knows no coordinates: from `count` random tetrahedra the
+/// smallest part takes the neighbour that waits longest, as long as one is free. Of equal sizes as far as there is
+/// room, and as ragged as can be.
 pub(crate) fn grown(mesh: &TetMesh, count: usize, seed: u64) -> Vec<u32> {
     let tets = mesh.tets().len();
     let mut random = random(seed);
@@ -195,8 +196,8 @@ pub(crate) fn measure(
 /// A name and the part numbers of the tetrahedra; `None` for boxes.
 pub(crate) type Cut = (String, Option<Vec<u32>>);
 
-/// The cuts of a mesh into about `3n³` parts: boxes, random Voronoi cells and those of a file, as they are and made compact, and grown parts
-/// made compact.
+/// The cuts of a mesh into about `3n³` parts: boxes, random Voronoi cells and those of a file, as they are and made
+/// compact, and grown parts made compact.
 pub(crate) fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<Cut>, Failure> {
     let count = 3 * n * n * n;
     let mut given = vec![

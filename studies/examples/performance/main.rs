@@ -59,7 +59,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// What is new on each rung of the ladder, with the ideas of those before it unless its name says otherwise, and settings.
+/// What is new on each rung of the ladder, with the ideas of those before it unless its name says otherwise, and
+/// settings.
 fn ladder(active_set_only: bool) -> Vec<(&'static str, Settings)> {
     let base = Settings::default;
     let full = match Method::paper() {

@@ -10,8 +10,9 @@
 //!   For linear elasticity this is an identity, so it measures the forces, not the step;
 //! - *dissipation*: friction force of the new step times the tangential difference; never negative;
 //! - *surplus*: what a step loses beyond friction because forces of its end do the work. It is
-//!   `(u1 - u0) K (u1 - u0) / 2` exactly: loads and reactions of the end do the work `E1 - E0 + D_n + D_t + surplus`, with
-//!   `D_t = -c_t (u1 - u0)` and `D_n = -c_n (u1 - u0) >= 0` (nodes that close do it once). It is of first order in the step.
+//!   `(u1 - u0) K (u1 - u0) / 2` exactly: loads and reactions of the end do the work `E1 - E0 + D_n + D_t +
+//!   surplus`, with `D_t = -c_t (u1 - u0)` and `D_n = -c_n (u1 - u0) >= 0` (nodes that close do it once). It is of
+//!   first order in the step.
 
 use signorini::fem_mesh::{Decomposition, assemble_load, assemble_stiffness};
 use signorini::prelude::*;

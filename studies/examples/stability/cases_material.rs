@@ -54,7 +54,8 @@ pub(crate) fn cases() -> Vec<Case> {
             Case::new(
                 JUMP,
                 format!("between subdomains {ratio:e}"),
-                "the middle subdomain is soft, the jump falls on an interface; its contact nodes belong to stiff and soft parts",
+                "the middle subdomain is soft, the jump falls on an interface; its contact nodes belong to stiff and \
+                 soft parts",
                 move || jump(&between, ratio, |x| x[0] > 1.0 && x[0] < 2.0),
             ),
             Case::new(

@@ -16,8 +16,8 @@ fn of(block: usize, tag: FacetTag) -> FacetTag {
     FacetTag(tag.0 + 100 * block as u32)
 }
 
-/// A stack of unit cubes, each softer than the one below by a factor, the lowest one fixed, the highest one pressed and pushed.
-/// Contact alone holds the others.
+/// A stack of unit cubes, each softer than the one below by a factor, the lowest one fixed, the highest one pressed
+/// and pushed. Contact alone holds the others.
 #[derive(Debug, Clone, Copy)]
 struct Stack {
     blocks: usize,

@@ -31,8 +31,8 @@ fn resumed(scene: &Block, other: &Block, steps: usize) -> Result<Setup, Failure>
 /// Format number and checksum before the state.
 const HEAD: usize = 12;
 
-/// Reads and writes the numbers of a stored state: postcard keeps lengths as varints and numbers as eight bytes. The checksum
-/// (FNV-1a) is made to fit what was written.
+/// Reads and writes the numbers of a stored state: postcard keeps lengths as varints and numbers as eight bytes. The
+/// checksum (FNV-1a) is made to fit what was written.
 pub(crate) fn garble(bytes: &mut [u8], vectors: usize, mut value: impl FnMut(f64) -> f64) {
     let mut at = HEAD;
     let varint = |bytes: &[u8], at: &mut usize| {

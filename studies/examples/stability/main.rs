@@ -1,5 +1,5 @@
-//! Hard cases: what makes a scene hard, what the library does with it, and what has to hold afterwards; `--help` lists the
-//! options.
+//! Hard cases: what makes a scene hard, what the library does with it, and what has to hold afterwards; `--help`
+//! lists the options.
 //!
 //! | module | holds |
 //! |---|---|

@@ -107,7 +107,8 @@ fn results(lines: &[Line<'_>]) -> String {
             group = case.group;
             let _ = writeln!(
                 out,
-                "\n### {group}\n\n| case | what is hard | what the library did | certificate | balance | n_s | rows | steps | products | s |\n|---|---|---|---|---|---|---|---|---|---|"
+                "\n### {group}\n\n| case | what is hard | what the library did | certificate | balance | n_s | rows | \
+                 steps | products | s |\n|---|---|---|---|---|---|---|---|---|---|"
             );
         }
         let mut did = outcome(m);

@@ -39,8 +39,8 @@ pub(crate) struct Measured {
     pub(crate) balance: Balance,
     /// Wall-clock seconds, set-up included.
     pub(crate) seconds: f64,
-    /// Dimensionless figures of the last step: normal force, friction force (three components), norm of the friction forces
-    /// and mean displacement (three components), by the load and the size of the body.
+    /// Dimensionless figures of the last step: normal force, friction force (three components), norm of the friction
+    /// forces and mean displacement (three components), by the load and the size of the body.
     pub(crate) figures: Vec<f64>,
 }
 

@@ -42,8 +42,8 @@ fn compact_parts_take_at_most_a_quarter_more_products_than_boxes() {
     assert!(text.lines().count() == 2 + lines.len() && text.contains("| grown, compact |"));
 }
 
-/// Where predictions made no progress, the residual of subdomains that had come apart told what holds and slides next: steps of 72, 256,
-/// 45 and 250 products then.
+/// Where predictions made no progress, the residual of subdomains that had come apart told what holds and slides
+/// next: steps of 72, 256, 45 and 250 products then.
 #[test]
 fn no_step_of_a_ragged_cut_runs_in_circles() {
     let mesh = Brick::new([3.0, 1.0, 1.0], [45, 15, 15])

@@ -38,7 +38,7 @@ fn effects_that_are_off_cost_nothing() {
         assert!(l.truth.normal_rows > 0 && l.truth.tangential_rows == 0);
         assert_eq!((l.inequality_solves, l.slip_bound_updates), (1, 0));
     }
-    assert_eq!(find(lines, "given friction").slip_bound_updates, 1);
+    assert_eq!(find(lines, "Tresca friction").slip_bound_updates, 1);
     let coulomb = find(lines, "Coulomb instead");
     assert!(coulomb.slip_bound_updates > 1);
     assert_eq!(coulomb.truth.tangential_rows, 2 * coulomb.truth.normal_rows);
@@ -72,6 +72,6 @@ fn effects_that_are_off_cost_nothing() {
         assert!(l.extra_seconds > 0.0);
     }
     let text = String::from_utf8(out).expect("text");
-    assert!(text.contains("| + given friction |") && text.contains("| n = 1 |"));
+    assert!(text.contains("| + Tresca friction |") && text.contains("| n = 1 |"));
     assert!(read(&json).contains("rate_updates"));
 }

@@ -59,7 +59,7 @@ fn a_pad_on_a_rail_sticks_then_slides() {
     assert!(run.largest_certificate < 1e-6);
     // pressed, then sheared while some of it sticks, then sliding as a whole
     assert!(run.steps[2].stick > 0 && run.steps[2].slip > 0);
-    let last = run.steps.last().expect("levels");
+    let last = run.steps.last().expect("steps");
     assert_eq!((last.stick, last.slip), (0, last.active));
     let ratio = bodies::final_ratio(run);
     assert!((ratio / COEFFICIENT - 1.0).abs() < 0.01, "{ratio}");
