@@ -6,7 +6,8 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use signorini::fem_mesh::{Hooke, StrainRecovery, assemble_stiffness};
 use signorini::qp::{Equality, EqualityProjector, SymmetricOperator};
-use signorini::tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, Sharing};
+use signorini::tfeti::internal::{ActiveSetFactor, InverseKind};
+use signorini::tfeti::ActiveSetProjector;
 use signorini_benches::{Body, Failure, wave};
 use signorini_studies::brick::{POISSON, YOUNG};
 use std::hint::black_box;
@@ -26,7 +27,7 @@ fn set_up(c: &mut Criterion) -> Result<(), Failure> {
             });
         });
         group.bench_function(BenchmarkId::new("system", n), |b| {
-            b.iter(|| black_box(body.system(Sharing::Translates, InverseKind::Auto)));
+            b.iter(|| black_box(body.system(true, InverseKind::Auto)));
         });
     }
     for (name, kind) in [
@@ -35,7 +36,7 @@ fn set_up(c: &mut Criterion) -> Result<(), Failure> {
     ] {
         let body = Body::new(2)?;
         group.bench_function(BenchmarkId::new("24 different subdomains", name), |b| {
-            b.iter(|| black_box(body.system(Sharing::Never, kind)));
+            b.iter(|| black_box(body.system(false, kind)));
         });
     }
     group.finish();
@@ -46,7 +47,7 @@ fn products(c: &mut Criterion) -> Result<(), Failure> {
     let mut group = c.benchmark_group("products");
     group.sample_size(20);
     for n in SIZES {
-        let system = Body::new(n)?.system(Sharing::Translates, InverseKind::Auto)?;
+        let system = Body::new(n)?.system(true, InverseKind::Auto)?;
         let (f, x) = (system.dual(), wave(system.dual_dim()));
         let mut y = x.clone();
         let mut scratch = f.scratch();
@@ -71,7 +72,7 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
     let mut group = c.benchmark_group("coarse");
     group.sample_size(20);
     for n in SIZES {
-        let system = Body::new(n)?.system(Sharing::Translates, InverseKind::Auto)?;
+        let system = Body::new(n)?.system(true, InverseKind::Auto)?;
         let mut x = wave(system.dual_dim());
         let mut alpha = wave(system.coarse().rows());
         let factor = system.coarse_factor();
@@ -141,7 +142,7 @@ fn once_a_step(c: &mut Criterion) -> Result<(), Failure> {
     group.sample_size(20);
     for n in SIZES {
         let body = Body::new(n)?;
-        let system = body.system(Sharing::Translates, InverseKind::Auto)?;
+        let system = body.system(true, InverseKind::Auto)?;
         let u = wave(system.torn_dim());
         let mut f = u.clone();
         group.bench_function(BenchmarkId::new("K u", n), |b| {

@@ -8,7 +8,8 @@
 //! nothing.
 
 use signorini::qp::{EqualityProjector, SymmetricOperator, vector};
-use signorini::tfeti::{ActiveSetProjector, InverseKind, Sharing, Tfeti};
+use signorini::tfeti::internal::InverseKind;
+use signorini::tfeti::{ActiveSetProjector, Tfeti};
 use signorini_benches::{Body, Failure, MEMORY, gemm, seconds, triad, wave};
 
 fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> {
@@ -73,7 +74,7 @@ fn main() -> Result<(), Failure> {
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for n in sizes.clone() {
         let body = Body::new(n)?;
-        let system = body.system(Sharing::Translates, InverseKind::Auto)?;
+        let system = body.system(true, InverseKind::Auto)?;
         let size = system.report().classes.iter().map(|c| c.boundary).max();
         for threads in [1, 2] {
             let pool = rayon::ThreadPoolBuilder::new()
@@ -84,7 +85,7 @@ fn main() -> Result<(), Failure> {
             let [m, p, v, follow, change] = parts(quick, &system, threads)?;
             let setup = pool.install(|| {
                 seconds(quick, || {
-                    drop(body.system(Sharing::Translates, InverseKind::Auto))
+                    drop(body.system(true, InverseKind::Auto))
                 })
             });
             println!(
@@ -119,7 +120,7 @@ fn main() -> Result<(), Failure> {
             ("sparse", InverseKind::Sparse),
             ("dense", InverseKind::Dense),
         ] {
-            let system = body.system(Sharing::Never, kind)?;
+            let system = body.system(false, kind)?;
             let bytes: u64 = match kind {
                 InverseKind::Sparse => system.report().inverse_bytes,
                 _ => {

@@ -4,9 +4,9 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 use signorini::fem_mesh::{Decomposition, Materials, SurfaceFrame, TetMesh, brick};
+use signorini::tfeti::internal::InverseKind;
 use signorini::tfeti::{
-    ContactConstraints, InverseKind, InverseSettings, NodeSupport, Sharing, Tfeti, TfetiBuilder,
-    TfetiError,
+    ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError,
 };
 use signorini_studies::brick::{Block, Loading, steel};
 use std::time::Instant;
@@ -47,11 +47,11 @@ impl Body {
     }
 
     /// The T-FETI system.
-    pub fn system(&self, sharing: Sharing, kind: InverseKind) -> Result<Tfeti, TfetiError> {
+    pub fn system(&self, share_translates: bool, kind: InverseKind) -> Result<Tfeti, TfetiError> {
         TfetiBuilder::new(&self.mesh, &self.decomposition, &self.materials)
             .with_supports(&self.supports)
             .with_contact(&self.contact)
-            .with_sharing(sharing)
+            .with_share_translates(share_translates)
             .with_inverse(InverseSettings::default().with_kind(kind))
             .build()
     }

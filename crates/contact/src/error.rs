@@ -30,7 +30,14 @@ fn held_remedy(friction: Option<f64>) -> String {
 }
 
 /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
+///
+/// Fields are what their variant speaks of: `contact`, `support` and `index` positions in the scene, `node` and `partner`
+/// mesh nodes, steps from 0; in s, m, m/s, N and Pa.
 #[derive(Error)]
+#[allow(
+    missing_docs,
+    reason = "fields that the sentence of their variant explains have none"
+)]
 #[non_exhaustive]
 pub enum ContactError {
     /// A coefficient of friction or a datum of its law.
@@ -39,11 +46,8 @@ pub enum ContactError {
          positive)"
     )]
     Coefficient {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// The datum.
         what: &'static str,
-        /// Its value.
         value: f64,
     },
     /// A table of coefficients without entries.
@@ -51,21 +55,15 @@ pub enum ContactError {
         "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate with \
          its coefficient"
     )]
-    EmptyTable {
-        /// Position of the contact surface in the scene.
-        contact: usize,
-    },
+    EmptyTable { contact: usize },
     /// A slip rate of a table of coefficients is not finite or not larger than the one before.
     #[error(
         "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is \
          not finite or out of order; give finite slip rates, each larger than the one before"
     )]
     TableRate {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// Place in the table, from 0.
         entry: usize,
-        /// The slip rate, m/s.
         rate: f64,
     },
     /// A law gave an inadmissible coefficient.
@@ -73,32 +71,16 @@ pub enum ContactError {
         "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite \
          and not negative"
     )]
-    CoefficientAt {
-        /// Mesh node.
-        node: u32,
-        /// Slip rate in m/s.
-        rate: f64,
-        /// What the law gave.
-        value: f64,
-    },
+    CoefficientAt { node: u32, rate: f64, value: f64 },
     /// A given slip bound is negative or not finite.
     #[error("friction at node {node}: the slip bound {value} Pa must be finite and not negative")]
-    SlipBound {
-        /// Mesh node.
-        node: u32,
-        /// The bound in Pa.
-        value: f64,
-    },
+    SlipBound { node: u32, value: f64 },
     /// A difference formula is not consistent.
     #[error("difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER")]
     Formula {
-        /// Weight of the new displacement.
         alpha: f64,
-        /// Weight of the last one.
         beta: f64,
-        /// Weight of the one before.
         gamma: f64,
-        /// The broken rule.
         rule: &'static str,
     },
     /// No step, or more than can be meant.
@@ -108,23 +90,15 @@ pub enum ContactError {
     #[error(
         "step {step}: its time {time} s is not finite or not above the one before (the first must be above 0)"
     )]
-    Time {
-        /// The step, from 0.
-        step: usize,
-        /// Its time.
-        time: f64,
-    },
+    Time { step: usize, time: f64 },
     /// Unequal steps with a formula that needs equal ones.
     #[error(
         "step {step}: its length is {length} s, but that of the first is {first} s; the three-step formula needs \
          equal steps, backward Euler does not"
     )]
     UnequalSteps {
-        /// The step, from 0.
         step: usize,
-        /// Its length, s.
         length: f64,
-        /// That of the first, s.
         first: f64,
     },
     /// A tag of a support or contact surface is on no facet.
@@ -132,9 +106,7 @@ pub enum ContactError {
     UnknownTag {
         /// Support or contact.
         what: &'static str,
-        /// Its position in the scene.
         index: usize,
-        /// The tag.
         tag: u32,
         /// Tags of the mesh in words: `"the tags 1, 2"` or `"no tags"`.
         known: String,
@@ -144,11 +116,8 @@ pub enum ContactError {
         "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0"
     )]
     UnknownNode {
-        /// Position of the support in the scene.
         support: usize,
-        /// The node.
         node: u32,
-        /// Number of nodes.
         nodes: usize,
     },
     /// The nodes of a support and its displacements differ in number.
@@ -156,11 +125,8 @@ pub enum ContactError {
         "support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node"
     )]
     ValueCount {
-        /// Position of the support in the scene.
         support: usize,
-        /// Number of values.
         values: usize,
-        /// Number of nodes.
         nodes: usize,
     },
     /// A gap is not finite.
@@ -169,13 +135,9 @@ pub enum ContactError {
          of the surface"
     )]
     Gap {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// Mesh node.
         node: u32,
-        /// Its place, m.
         position: [f64; 3],
-        /// The gap.
         value: f64,
     },
     /// A support holds a contact node inside the obstacle, where no contact force can stop it.
@@ -198,12 +160,7 @@ pub enum ContactError {
     },
     /// An obstacle has no usable normal.
     #[error("contact {contact}: the obstacle's normal {normal:?} must be finite and not zero")]
-    ObstacleNormal {
-        /// Position of the contact surface in the scene.
-        contact: usize,
-        /// The normal.
-        normal: [f64; 3],
-    },
+    ObstacleNormal { contact: usize, normal: [f64; 3] },
     /// The direction into the obstacle points into the body.
     #[error(
         "contact {contact}: the direction into the obstacle {direction:?} is not on the outer side of the body at \
@@ -211,11 +168,8 @@ pub enum ContactError {
          needs the normal that points out of the obstacle, up for a floor)"
     )]
     ObstacleSide {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// The direction given.
         direction: [f64; 3],
-        /// Number of nodes of the contact surface.
         nodes: usize,
     },
     /// A contact node has no node of the other body on its normal.
@@ -226,13 +180,10 @@ pub enum ContactError {
         beside_words(*beside, *limit)
     )]
     NoPartner {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// Mesh node.
         node: u32,
         /// Distance from the normal, m; infinite if no node faces it.
         beside: f64,
-        /// What is allowed, m.
         limit: f64,
     },
     /// Two bodies overlap by more than their facets.
@@ -242,11 +193,8 @@ pub enum ContactError {
          they are to be pressed apart, tell how far by with_gap"
     )]
     Overlap {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// Mesh node.
         node: u32,
-        /// Node of the other body.
         partner: u32,
         /// Depth along the normal of the node, m.
         depth: f64,
@@ -260,13 +208,9 @@ pub enum ContactError {
          those of two bodies apart)"
     )]
     SharedPartner {
-        /// Position of the contact surface in the scene.
         contact: usize,
-        /// Node of the other body.
         partner: u32,
-        /// Node of the first side.
         first: u32,
-        /// Another one.
         second: u32,
     },
     /// A contact between bodies has an obstacle that moves.
@@ -274,10 +218,7 @@ pub enum ContactError {
         "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its supports \
          instead"
     )]
-    MovedPartner {
-        /// Position of the contact surface in the scene.
-        contact: usize,
-    },
+    MovedPartner { contact: usize },
     /// A gap field moves far along a curved surface.
     #[error(
         "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by \
@@ -285,7 +226,6 @@ pub enum ContactError {
          than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way"
     )]
     MovedField {
-        /// Position of the contact surface in the scene.
         contact: usize,
         /// Mesh node at which the surface is most curved.
         node: u32,
@@ -301,11 +241,8 @@ pub enum ContactError {
          of one of the surfaces, or give both the same motion"
     )]
     SharedNode {
-        /// Mesh node.
         node: u32,
-        /// Position of the first surface in the scene.
         first: usize,
-        /// Position of the second.
         second: usize,
     },
     /// A load or support history gave a value that is not finite.
@@ -313,11 +250,8 @@ pub enum ContactError {
     HistoryValue {
         /// Load, support or contact.
         what: &'static str,
-        /// Its position in the scene.
         index: usize,
-        /// Time in s.
         time: f64,
-        /// The value.
         value: f64,
     },
     /// A load, a gap or the motion of a support is so large that squares of what follows from it overflow.
@@ -330,9 +264,7 @@ pub enum ContactError {
         place: String,
         /// Its size: the largest nodal force, displacement or gap.
         value: f64,
-        /// N or m.
         unit: &'static str,
-        /// The largest size that is taken.
         most: f64,
     },
     /// A material is so stiff or so soft that squares of forces or displacements overflow or vanish.
@@ -341,13 +273,10 @@ pub enum ContactError {
          overflow or vanish (at least {least:e} Pa, at most {most:e} Pa); check the units of its material"
     )]
     Stiffness {
-        /// The region of the mesh.
         region: u32,
         /// Largest eigenvalue of its law on symmetric tensors, Pa.
         value: f64,
-        /// The least that is taken.
         least: f64,
-        /// The largest that is taken.
         most: f64,
     },
     /// Loads that nothing can balance.
@@ -358,7 +287,6 @@ pub enum ContactError {
         held_remedy(*friction)
     )]
     NotHeld {
-        /// The step, from 0.
         step: usize,
         /// The body (part of the mesh that hangs together; of bodies that may touch each other the one that moves
         /// most).
@@ -384,37 +312,25 @@ pub enum ContactError {
         body: usize,
         /// Number of free rigid motions of all bodies.
         count: usize,
-        /// The motions, in words.
         motions: String,
     },
     /// A setting is out of range.
     #[error("setting {name} = {value} is outside its range {range}")]
     Setting {
-        /// The setting.
         name: &'static str,
-        /// Its value.
         value: f64,
-        /// What is allowed.
         range: &'static str,
     },
     /// Steps that cannot be doubled.
     #[error("step doubling: {reason}")]
-    Doubling {
-        /// Why, and what to do.
-        reason: &'static str,
-    },
+    Doubling { reason: &'static str },
     /// All steps are solved.
     #[error("the scene has {steps} steps and all are solved")]
-    Finished {
-        /// Number of steps.
-        steps: usize,
-    },
+    Finished { steps: usize },
     /// An observer failed; the step before is solved and kept.
     #[error("observer, after step {step}: {source}")]
     Observer {
-        /// The step, from 0.
         step: usize,
-        /// Its error.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// A step did not converge, where that was required.
@@ -425,24 +341,16 @@ pub enum ContactError {
         "step {step} did not converge, and the slip of later steps depends on it; continue from a state before it, \
          with smaller steps or other settings"
     )]
-    UnconvergedHistory {
-        /// The step, from 0.
-        step: usize,
-    },
+    UnconvergedHistory { step: usize },
     /// A checkpoint does not belong to this scene or is damaged.
     #[error("checkpoint: {reason}")]
-    Checkpoint {
-        /// What does not fit.
-        reason: String,
-    },
+    Checkpoint { reason: String },
     /// The file of a checkpoint cannot be read or written.
     #[error("checkpoint: cannot {what} {}: {source}", path.display())]
     CheckpointFile {
         /// `"read"` or `"write"`.
         what: &'static str,
-        /// The file.
         path: std::path::PathBuf,
-        /// What the system says.
         source: std::io::Error,
     },
     /// Mesh.
@@ -457,9 +365,7 @@ pub enum ContactError {
     /// Load.
     #[error("load {index}: {source}")]
     Load {
-        /// Position in the scene.
         index: usize,
-        /// What is wrong.
         source: fem::LoadError,
     },
     /// Contact surface.

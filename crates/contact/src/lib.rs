@@ -1,8 +1,9 @@
 //! Quasistatic contact with Coulomb friction: scenes, plans, time steps, fixed-point loops and certificates.
 //!
-//! Elastic bodies, cut into subdomains or not, are loaded slowly and may touch a rigid foundation or each other. A [`Scene`]
-//! says what there is, a [`Simulation`] solves it step by step, and a [`StepResult`] holds what a step ended with. Only the
-//! effects that a scene has are set up: without friction there are no tangential rows, without history no traces.
+//! Elastic bodies, cut into subdomains or not, are loaded slowly and may touch a rigid foundation or each other. A
+//! [`Scene`] says what there is, a [`Simulation`] solves it step by step, and a [`StepResult`] holds what a step ended
+//! with. Only the effects that a scene has are set up: without friction there are no tangential rows, without history
+//! no traces.
 //!
 //! | you want | you use |
 //! |---|---|
@@ -59,11 +60,11 @@
 //!
 //! # What can go wrong
 //!
-//! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads that
-//! nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a step then ends
-//! with another [`StepStatus`] than `Converged`, its result holds the last iterate, and the certificate says how far it is.
-//! Later steps whose friction depends on its slip name it ([`StepResult::unconverged_history`]). Who wants errors instead asks
-//! [`RunReport::require_converged`] or [`StepResult::require_converged`].
+//! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads
+//! that nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a step
+//! then ends with another [`StepStatus`] than `Converged`, its result holds the last iterate, and the certificate says
+//! how far it is. Later steps whose friction depends on its slip name it ([`StepResult::unconverged_history`]). Who
+//! wants errors instead asks [`RunReport::require_converged`] or [`StepResult::require_converged`].
 //!
 //! Work runs on the current [`rayon`] pool, and results have the same bits for any number of threads.
 
@@ -90,9 +91,9 @@ mod vec3;
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
 pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
-pub use report::fixed_point;
 pub use report::{
-    AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport,
+    AccumulatedError, AccuracyReport, AlgebraicError, Counters, FixedPointReport, RunReport,
+    StepReport, Verdict,
 };
 pub use result::{
     Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant,
@@ -103,7 +104,8 @@ pub use scene::{
     Partition, Place, PlaceField, RateField, Scene, SlipBound, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
-pub use signorini_tfeti::{Directions, Rate};
+pub use signorini_tfeti::Directions;
+pub use signorini_tfeti::internal::Rate;
 pub use simulation::{Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
 pub use status::{StepFailure, StepStatus};

@@ -18,9 +18,10 @@ pub enum StepStatus {
     /// With the normal forces of this step friction does not hold a body: slip bounds and normal forces that agree
     /// leave no balance with the loads. The set-up judges only whether any normal forces could.
     NotHeld,
-    /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance (with an
-    /// [`Accuracy`](crate::Accuracy) by estimates, above [`certificate_limit`](crate::AccuracyReport::certificate_limit)): mostly the
-    /// problem is too badly conditioned for it. The parts of the certificate name the violated condition.
+    /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance
+    /// (with an [`Accuracy`](crate::Accuracy) by estimates, above
+    /// [`certificate_limit`](crate::AccuracyReport::certificate_limit)): mostly the problem is too badly conditioned
+    /// for it. The parts of the certificate name the violated condition.
     NotCertified,
 }
 

@@ -1,15 +1,15 @@
-//! The numerical judgements of the crate, in one table: what each is relative to, and why. Numbers of rounds and weights of a
-//! cost stand where they are used.
+//! The numerical judgements of the crate, in one table: what each is relative to, and why. Numbers of rounds and
+//! weights of a cost stand where they are used.
 
 // ---- all rooms ----
 
-/// What was computed twice, or from data of this size, differs by rounding only: directions, positions, lengths of loads,
-/// forces of subdomains in balance, sums of a difference formula. Relative to the larger one; of positions, to the largest
-/// coordinate.
+/// What was computed twice, or from data of this size, differs by rounding only: directions, positions, lengths of
+/// loads, forces of subdomains in balance, sums of a difference formula. Relative to the larger one; of positions, to
+/// the largest coordinate.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-/// Forces are measured against this part of displacement times stiffness at least: what is left of a rigid motion are rounding
-/// errors, 1e-16 of that product.
+/// Forces are measured against this part of displacement times stiffness at least: what is left of a rigid motion are
+/// rounding errors, 1e-16 of that product.
 pub(crate) const ROUNDED: f64 = 1e-8;
 
 /// Part of the earlier sizes that a vanishing quantity is measured against.
@@ -22,20 +22,20 @@ pub(crate) const UNEQUAL: f64 = 1e-9;
 
 // ---- contact points, partners, supports, sizes (discrete) ----
 
-/// Largest force in N, displacement and gap in m. The squares of their products are formed (friction times slip): at most
-/// 1e308, so this leaves 28 digits for stiffness and sums.
+/// Largest force in N, displacement and gap in m. The squares of their products are formed (friction times slip): at
+/// most 1e308, so this leaves 28 digits for stiffness and sums.
 pub(crate) const LARGEST: f64 = 1e70;
 
 /// Cosine to the outward normal below which a direction counts as along the surface.
 pub(crate) const ALONG: f64 = 1e-9;
 
-/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
-/// angle. Within smaller ones a node would have twice the same row, and one condition keeps the other to 1.4e-6 of the way
-/// along the surface, which the certificate sees.
+/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at
+/// any angle. Within smaller ones a node would have twice the same row, and one condition keeps the other to 1.4e-6 of
+/// the way along the surface, which the certificate sees.
 pub(crate) const SAME_NORMAL: f64 = 1.0 - 1e-12;
 
-/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a twentieth
-/// of the way.
+/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a
+/// twentieth of the way.
 pub(crate) const TURN: f64 = 0.1;
 
 /// Distance of a partner from the normal that is allowed, over the size of the facets (the root of the area of a node).
@@ -84,21 +84,21 @@ pub(crate) const FRICTION_FACTOR: f64 = 1e-4;
 /// Freedom of a node (3 without supports) that supports take counts above this.
 pub(crate) const FREEDOM_TAKEN: f64 = 1e-8;
 
-/// Relative change of a slip bound that is judged by the stiffness of the node. Larger ones move the whole body, and the gap,
-/// which overrates small changes, is the safer measure.
+/// Relative change of a slip bound that is judged by the stiffness of the node. Larger ones move the whole body, and
+/// the gap, which overrates small changes, is the safer measure.
 pub(crate) const NEAR_BOUND: f64 = 0.01;
 
 /// Planes of one node are parallel below this singular value over the largest.
 pub(crate) const PARALLEL: f64 = 1e-6;
 
-/// Elastic energy that may be rounding, relative to that of all nodes moved alone: that of a body that moves without strain is
-/// a difference of numbers this much larger, or more.
+/// Elastic energy that may be rounding, relative to that of all nodes moved alone: that of a body that moves without
+/// strain is a difference of numbers this much larger, or more.
 pub(crate) const NO_STRAIN: f64 = 1e-12;
 
 // ---- tolerances chosen by estimates (state, simulation) ----
 
-/// Tolerance of the first solve of the first step where estimates choose. A looser one saves little and may end before slip
-/// bounds have settled.
+/// Tolerance of the first solve of the first step where estimates choose. A looser one saves little and may end before
+/// slip bounds have settled.
 pub(crate) const LOOSEST: f64 = 1e-3;
 
 /// The smallest tolerance a solver is asked for there.
@@ -137,6 +137,51 @@ pub(crate) const LEAST_TOLERANCE: f64 = 1e-10;
 /// Differences of runs are time error, and not the solver's, from this many times the solver's errors on.
 pub(crate) const ABOVE_SOLVER: f64 = 3.0;
 
-/// Orders of the time steps that are believed: below, the steps have not settled into a sequence of sticking and sliding, and
-/// no more than the upper one is in the formulas.
+/// Orders of the time steps that are believed: below, the steps have not settled into a sequence of sticking and
+/// sliding, and no more than the upper one is in the formulas.
 pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
+
+// ---- solvers (solve) ----
+
+/// Estimated error of the multipliers, over the tolerance of a step, at which conjugate gradients stop without contact:
+/// no condition but continuity is left to them, and what copies differ by, over the largest displacement, is a
+/// thirtieth of that error and less. The certificate tells where it is not.
+pub(crate) const LINEAR_SLACK: f64 = 30.0;
+
+/// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
+/// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
+/// predicts active sets from gradients alone.
+pub(crate) const STIFF_ROWS: f64 = 5.0;
+
+/// Part of the stiffness that the natural map takes at rows that may depend on others of their node: two rows along one
+/// direction move it twice.
+pub(crate) const SHARED_ROWS: f64 = 0.5;
+
+/// What a release would change, over the error of a solved active set, from which on it is worth it.
+pub(crate) const CONTRADICTION: f64 = 10.0;
+
+/// Safety factor between the tolerance of a step and those of SMALSE.
+pub(crate) const SMALSE_SAFETY: f64 = 0.05;
+
+/// Relative changes below this one that do not halve are put down to the inner solve.
+pub(crate) const INNER_STALL: f64 = 1e-4;
+
+/// A point within rounding of its bound.
+pub(crate) const AT_BOUND: f64 = 1.0 - 1e-9;
+
+/// Singular values below this part of one count as zero.
+pub(crate) const NULL_RANK: f64 = 1e-9;
+
+/// Mean ratio of changes from which they count as not shrinking.
+pub(crate) const GROWTH: f64 = 0.98;
+
+// ---- points and accumulated errors (result, report) ----
+
+/// Part of all forces that a vanishing contact force is measured against.
+pub(crate) const SMALL_PART: f64 = 1e-4;
+
+/// Part of the slip bound from which friction counts as on it.
+pub(crate) const ON_BOUND: f64 = 1.0 - 1e-5;
+
+/// Smallest share of a step in the square of the error, relative to an equal share.
+pub(crate) const LEAST_SHARE: f64 = 0.25;

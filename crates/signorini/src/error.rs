@@ -5,11 +5,12 @@ use signorini_fem_mesh as fem;
 use std::fmt;
 use thiserror::Error;
 
-/// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout. Each arrives in one way:
-/// what a scene passes on from a crate below (a mesh, a material) is that crate's variant here, not one of `Contact`.
+/// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout. Each arrives in
+/// one way: what a scene passes on from a crate below (a mesh, a material) is that crate's variant here, not one of
+/// `Contact`.
 ///
-/// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is wrong and
-/// what to do about it. Programs match on its variants.
+/// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is
+/// wrong and what to do about it. Programs match on its variants.
 ///
 /// ```
 /// use signorini::prelude::*;

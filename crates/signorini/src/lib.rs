@@ -35,8 +35,8 @@
 //! # }
 //! ```
 //!
-//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `checkpoint` turns states into bytes and back, `serde`
-//! serialises tags, facets, frames and bricks. All are off by default.
+//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `checkpoint` turns states into bytes and back,
+//! `serde` serialises tags, facets, frames and bricks. All are off by default.
 
 pub use signorini_contact as contact;
 pub use signorini_fem_mesh as fem_mesh;

@@ -1,28 +1,25 @@
-//! Total FETI for elasticity with contact: the body is torn into subdomains that all float, and everything that
-//! holds them (gluing, supports, contact, friction) becomes a row of one matrix `B` with a Lagrange multiplier.
+//! Total FETI for elasticity with contact: the body is torn into subdomains that all float, and everything that holds
+//! them (gluing, supports, contact, friction) becomes a row of one matrix `B` with a Lagrange multiplier.
 //!
 //! For `K u = f + B^T lambda` and row offsets `c` this crate builds, once,
 //!
 //! | symbol | here | meaning |
 //! |---|---|---|
-//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent rows are removed and reported, or kept where contact needs them |
-//! | `R` | [`Kernel`] | six orthonormal rigid motions of a subdomain, without eigenvalue computation |
-//! | `F = B K+ B^T` | [`DualOperator`] | the dual operator, a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
-//! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium of the subdomains, `G lambda = e` |
+//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent ones are removed and reported, or kept |
+//! | `F = B K+ B^T` | [`DualOperator`] | a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
+//! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium: `G lambda = e` |
 //! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, with row weights if wanted |
-//! | `C`, `C C^T = I` | [`OrthonormalCoarse`] | orthonormal rows that span those of `G`, an [`Equality`](signorini_qp::Equality) |
+//! | `C`, `C C^T = I` | [`OrthonormalCoarse`] | rows that span those of `G`, an [`Equality`](signorini_qp::Equality) |
 //! | `alpha` | [`CoarseFactor::amplitudes`] | rigid amplitudes in `u = K+ (f + B^T lambda) + R alpha` (5.27) |
 //!
-//! and two preconditioners ([`Tfeti::lumped`], [`Tfeti::dirichlet`]). The dual problem is: minimise
-//! `1/2 lambda^T F lambda - lambda^T d`, `d = c - B K+ f`, subject to `G lambda = e` and the bounds of the contact rows.
-//! Multipliers are forces on the body; a normal multiplier is at most zero. The residual of the rows is
-//! `B u - c = F lambda - d + G^T alpha`.
+//! and two preconditioners ([`Tfeti::lumped`], [`Tfeti::dirichlet`]). The dual problem is: minimise `1/2 lambda^T F
+//! lambda - lambda^T d`, `d = c - B K+ f`, subject to `G lambda = e` and the bounds of the contact rows. Multipliers
+//! are forces on the body; a normal multiplier is at most zero. The residual of the rows is `B u - c = F lambda - d +
+//! G^T alpha`.
 //!
-//! Subdomains that are translations of one another share one matrix and are applied together ([`Classes`]); for others a
-//! cost model chooses between dense blocks and sparse factors ([`InverseSettings`]). Everything is immutable once built and
-//! applied without allocation with work memory that the caller owns; results have the same bits for any number of threads.
-//! Products run in parallel on the current rayon pool. An iteration is best run on one of its threads (`rayon::scope`): called from
-//! outside of it, each parallel part changes threads twice.
+//! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products
+//! run in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of
+//! threads.
 //!
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};
@@ -47,66 +44,54 @@
 //! println!("{}", system.report());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Rooms, each of which uses those before it: `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
+//! `preconditioner`.
 
-mod block_rows;
-mod boundary;
-mod class;
 mod coarse;
-mod coarse_factor;
-mod coarse_matrix;
-mod coarse_order;
-mod coarse_tree;
-mod contact;
-mod contact_fronts;
-mod copy_stiffness;
-mod cost;
-mod dense;
-mod dependencies;
 mod dual;
 mod error;
-mod face_space;
-mod forecast;
-mod gluing;
-mod inverse;
-mod joints;
-mod kernel;
-mod matrices;
-mod mobility;
-mod packed;
-mod panels;
+mod linalg;
 mod preconditioner;
-mod recovery;
-mod report;
-mod row_stiffness;
-mod row_weights;
+mod projector;
 mod rows;
-mod scaling;
-mod sparse;
-mod split_factor;
-mod split_solve;
-mod supernodes;
-mod supports;
+mod subdomain;
 mod system;
-mod torn;
+mod tolerances;
 
-pub use class::{Class, Classes, Sharing};
-pub use coarse::{Coarse, CoarseScratch};
-pub use coarse_factor::{CoarseFactor, OrthonormalCoarse};
-pub use contact::{ContactConstraint, ContactConstraints, PrescribedPoint, prescribed_points};
-pub use copy_stiffness::CopyStiffness;
-pub use cost::{InverseKind, InverseSettings};
-pub use dependencies::Dependency;
-pub use dual::{DualOperator, DualScratch};
+pub use coarse::mobility::{BodyMotion, FreeMotion};
+pub use coarse::space::Coarse;
+pub use coarse::weights::RowWeights;
+pub use dual::operator::DualOperator;
 pub use error::TfetiError;
-pub use face_space::{ActiveSetFactor, ActiveSetProjector};
-pub use forecast::{ClassForecast, Forecast, Rate};
-pub use gluing::{ContactRows, Gluing, TangentialRows};
-pub use kernel::Kernel;
-pub use mobility::{BodyMotion, FreeMotion};
-pub use preconditioner::{DualPreconditioner, DualPreconditionerScratch};
-pub use recovery::{Jump, LoadResponse};
-pub use report::{ClassReport, SetupReport};
-pub use row_weights::{LineWeight, RowWeights};
-pub use rows::{RemovalReason, RemovedRow, RowKind, RowRanges, RowScaling, count_removed};
-pub use supports::{Directions, Motion, NodeSupport, PrescribedDirection, prescribed_directions};
-pub use system::{Tfeti, TfetiBuilder};
+pub use preconditioner::operator::DualPreconditioner;
+pub use projector::active_set::ActiveSetProjector;
+pub use projector::factor::CoarseFactor;
+pub use projector::orthonormal::OrthonormalCoarse;
+pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
+pub use rows::kinds::RowRanges;
+pub use rows::side::{ContactConstraint, ContactConstraints, Side};
+pub use rows::supports::{Directions, Motion, NodeSupport};
+pub use subdomain::cost::InverseSettings;
+pub use system::builder::TfetiBuilder;
+pub use system::recovery::LoadResponse;
+pub use system::report::SetupReport;
+pub use system::tfeti::Tfeti;
+
+/// Plumbing for the other crates of the workspace, without promises.
+#[doc(hidden)]
+pub mod internal {
+    pub use crate::coarse::space::CoarseScratch;
+    pub use crate::dual::operator::DualScratch;
+    pub use crate::preconditioner::operator::DualPreconditionerScratch;
+    pub use crate::projector::active_set::ActiveSetFactor;
+    pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
+    pub use crate::rows::dependencies::Dependency;
+    pub use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+    pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
+    pub use crate::subdomain::class::{Class, Classes};
+    pub use crate::subdomain::copy_stiffness::CopyStiffness;
+    pub use crate::subdomain::cost::{ClassReport, InverseKind};
+    pub use crate::subdomain::forecast::{Forecast, Rate};
+    pub use crate::subdomain::kernel::Kernel;
+}

@@ -1,26 +1,26 @@
 //! With work memory made before, products, preconditioners and projectors allocate nothing.
 //!
-//! The counter sees the calling thread only, and a parallel loop may make it wait on others: the systems are small enough
-//! that everything stays on the calling thread.
+//! The counter sees the calling thread only, and a parallel loop may make it wait on others: the systems are small
+//! enough that everything stays on the calling thread.
 
+use common::{Brick, build, noise};
+#[path = "it/common.rs"]
+#[allow(dead_code)]
 mod common;
 
 use allocation_counter::measure;
-use common::{Brick, build, noise};
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
     ProductSet, Segment, SymmetricOperator, active_set,
 };
-use signorini_tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, RowScaling, Sharing};
+use signorini_tfeti::ActiveSetProjector;
+use signorini_tfeti::internal::{ActiveSetFactor, InverseKind};
 
 #[test]
 fn products_and_projectors_allocate_nothing() {
     let b = Brick::of(1, 3, 0.1);
-    for (kind, sharing) in [
-        (InverseKind::Dense, Sharing::Translates),
-        (InverseKind::Sparse, Sharing::Never),
-    ] {
-        let system = build(&b, kind, sharing, RowScaling::Orthonormal);
+    for (kind, sharing) in [(InverseKind::Dense, true), (InverseKind::Sparse, false)] {
+        let system = build(&b, kind, sharing);
         let (f, x) = (system.dual(), noise(system.dual_dim(), 1));
         let (mut y, mut s) = (x.clone(), f.scratch());
         assert_eq!(measure(|| f.apply(&x, &mut y, &mut s)).count_total, 0);
@@ -55,12 +55,7 @@ fn products_and_projectors_allocate_nothing() {
 #[test]
 fn iterations_of_the_face_method_allocate_nothing() {
     let b = Brick::new(1, 3);
-    let system = build(
-        &b,
-        InverseKind::Auto,
-        Sharing::Translates,
-        RowScaling::Orthonormal,
-    );
+    let system = b.system();
     let (n, contact) = (system.dual_dim(), system.gluing().ranges().contact().end);
     let response = system.load_response(&b.loads()).unwrap();
     let lumped = system.lumped().unwrap();

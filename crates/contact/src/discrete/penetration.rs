@@ -8,7 +8,7 @@ use crate::error::ContactError;
 use crate::scene::Scene;
 use crate::tolerances::DEPTH;
 use signorini_fem_mesh::History;
-use signorini_tfeti::PrescribedPoint;
+use signorini_tfeti::internal::PrescribedPoint;
 
 /// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step.
 pub(super) fn check_penetration(

@@ -11,12 +11,13 @@
 use super::creases::{area_vector, creases, length};
 use super::overflow::largest_factor;
 use super::partners::{Partner, partners};
-use super::side::{Side, Sides};
+use super::side::Sides;
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal, Scene};
 use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
 use signorini_qp::vector;
+use signorini_tfeti::Side;
 use std::cmp::Ordering;
 use std::collections::HashMap;
 

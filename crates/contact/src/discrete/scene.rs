@@ -8,7 +8,8 @@ use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Contact, Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
-use signorini_tfeti::{ContactConstraint, ContactConstraints, prescribed_points};
+use signorini_tfeti::internal::prescribed_points;
+use signorini_tfeti::{ContactConstraint, ContactConstraints};
 use std::collections::HashMap;
 
 /// A scene lowered to nodes.
@@ -94,8 +95,8 @@ impl DiscreteScene {
 fn constraints(scene: &Scene, points: &[ContactPoint]) -> ContactConstraints {
     let point = |p: &ContactPoint| {
         let contact = &scene.contacts[p.surface];
-        ContactConstraint::new(p.node(), p.frame)
-            .with_partner(p.sides.partner())
+        ContactConstraint::new(p.sides.own.clone(), p.frame)
+            .with_partner(p.sides.partner.clone())
             .with_friction(contact.friction().is_some())
             .with_moving_obstacle(contact.motion.is_some())
     };

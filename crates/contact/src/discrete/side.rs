@@ -1,27 +1,8 @@
-//! The two sides of a contact point, as short lists of nodes: all that is above asks here which nodes a point moves.
+//! The two sides of a contact point: all that is above asks here which nodes a point moves.
 
-/// One side: mesh nodes and their weights, whose sum is one. Where meshes match it is one node.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Side(Vec<(u32, f64)>);
+use signorini_tfeti::Side;
 
-impl Side {
-    /// A side that is one node.
-    pub(crate) fn node(node: u32) -> Self {
-        Self(vec![(node, 1.0)])
-    }
-
-    /// Its nodes and their weights.
-    pub(crate) fn nodes(&self) -> &[(u32, f64)] {
-        &self.0
-    }
-
-    /// The node that names the side.
-    pub(crate) fn first(&self) -> u32 {
-        self.0[0].0
-    }
-}
-
-/// Both sides of a contact point.
+/// Both sides of a contact point: short lists of nodes with weights, where meshes match of one node each.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sides {
     /// That of the body whose outward normal counts.
@@ -31,20 +12,20 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// The node that names the point.
+    /// The node that names the point: the first.
     pub(crate) fn node(&self) -> u32 {
-        self.own.first()
+        self.own.nodes()[0].0
     }
 
     /// The node that names the other side.
     pub(crate) fn partner(&self) -> Option<u32> {
-        self.partner.as_ref().map(Side::first)
+        self.partner.as_ref().map(|side| side.nodes()[0].0)
     }
 
-    /// The relative displacement of the sides as a sum: nodes with their weights, those of the partner negative.
+    /// The displacement of one side relative to the other as a sum: nodes with weights, those of the partner negative.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = (u32, f64)> {
         let partner = self.partner.iter().flat_map(Side::nodes);
         let partner = partner.map(|&(node, weight)| (node, -weight));
-        self.own.0.iter().copied().chain(partner)
+        self.own.nodes().iter().copied().chain(partner)
     }
 }

@@ -3,7 +3,8 @@
 use crate::error::ContactError;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
-use signorini_tfeti::{Motion, NodeSupport, PrescribedDirection, prescribed_directions};
+use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
+use signorini_tfeti::{Motion, NodeSupport};
 use std::collections::BTreeMap;
 
 /// The supports of a scene, node by node.

@@ -212,7 +212,7 @@ impl Solved<'_> {
         let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
         for row in gluing.ranges().dirichlet.clone() {
             if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
-                let plane = (self.model.support_direction(row), self.problem.offset[row]);
+                let plane = (gluing.direction(row), self.problem.offset[row]);
                 planes.entry(node).or_default().push(plane);
             }
         }
@@ -251,7 +251,7 @@ impl Solved<'_> {
             let Some(node) = gluing.node(row) else {
                 continue;
             };
-            let direction = self.model.support_direction(row);
+            let direction = gluing.direction(row);
             let value = &mut v[3 * node as usize..][..3];
             let missing = self.problem.offset[row] - dot(&direction, value);
             let off = missing / dot(&direction, &direction);

@@ -7,8 +7,9 @@ use crate::error::ContactError;
 use crate::plan::Plan;
 use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
-use signorini_qp::{ProductSet, RadiusSlope, Segment};
-use signorini_tfeti::{CopyStiffness, LoadResponse, TangentialRows, Tfeti, TfetiBuilder};
+use signorini_qp::{ProductSet, Segment};
+use signorini_tfeti::internal::CopyStiffness;
+use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder};
 use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
@@ -68,8 +69,7 @@ impl Model {
         let plan = Plan::of(&scene, &discrete, settings)?;
         let mut builder = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
             .with_supports(&discrete.supports.nodes)
-            .with_row_scaling(settings.row_scaling)
-            .with_sharing(settings.sharing)
+            .with_share_translates(settings.share_translates)
             .with_inverse(settings.inverse);
         if !scene.contacts.is_empty() {
             builder = builder.with_contact(&discrete.constraints);
@@ -104,15 +104,6 @@ impl Model {
         })
     }
 
-    /// The direction that a support row fixes, times the scale of the row.
-    pub(crate) fn support_direction(&self, row: usize) -> [f64; 3] {
-        let mut direction = [0.0; 3];
-        for (_, dof, coefficient) in self.tfeti.gluing().row(row) {
-            direction[dof % 3] += coefficient;
-        }
-        direction
-    }
-
     /// Friction law of a point.
     pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
         self.scene.contacts[point.contact.surface].friction()
@@ -131,48 +122,5 @@ impl Model {
     /// First tangential row.
     pub(crate) fn tangential_start(&self) -> usize {
         self.tfeti.gluing().ranges().tangential().start
-    }
-
-    /// Writes slip bounds (forces in N, one a point) into the set.
-    pub(crate) fn set_slip_bounds(
-        &self,
-        set: &mut ProductSet,
-        bound: impl Fn(usize, &ConstrainedPoint) -> f64,
-    ) {
-        let ranges = self.tfeti.gluing().ranges();
-        for (k, point) in self.points.iter().enumerate() {
-            match point.tangential {
-                TangentialRows::Disc { row, scale } => {
-                    let disc = (row - ranges.discs.start) / 2;
-                    if let Ok(radii) = set.radii_mut(DISCS) {
-                        radii[disc] = bound(k, point) / scale;
-                    }
-                }
-                TangentialRows::Interval { row, scale, .. } => {
-                    let interval = row - ranges.intervals.start;
-                    if let Ok((lower, upper)) = set.bounds_mut(INTERVALS) {
-                        let radius = bound(k, point) / scale;
-                        lower[interval] = -radius;
-                        upper[interval] = radius;
-                    }
-                }
-                _ => {}
-            }
-        }
-    }
-
-    /// How the slip bounds that [`set_slip_bounds`](Self::set_slip_bounds) writes to discs follow the normal rows,
-    /// for a bound of `coefficient(point)` times the normal force.
-    pub(crate) fn slip_slopes(&self, coefficient: impl Fn(usize) -> f64) -> Vec<RadiusSlope> {
-        let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
-            TangentialRows::Disc { row, scale } => Some(RadiusSlope {
-                disc: row,
-                component: point.row,
-                // normal multipliers are negative where pressed
-                slope: -coefficient(k) * point.scale / scale,
-            }),
-            _ => None,
-        };
-        self.points.iter().enumerate().filter_map(slope).collect()
     }
 }

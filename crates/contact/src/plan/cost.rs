@@ -1,16 +1,18 @@
-//! What a run is likely to cost. Memory follows from counts; only the sizes of sparse factors are estimated ([`Forecast`]).
+//! What a run is likely to cost. Memory follows from counts; only the sizes of sparse factors are estimated
+//! ([`Forecast`]).
 //!
-//! Products are likely to be `steps + sqrt(H/h / 5) d / 6 (first + (steps - 1) next)`: one a step for the recovery, and those
-//! of a solve, which grow like conjugate gradients with a condition number of `H/h` (cells along the edge of a subdomain)
-//! with the digits `d` asked for. `first` and `next` are the means of the benchmark, where `H/h` is 5 and `d` 6. Slender
-//! bodies and loads that jump take several times as many, loads that grow in proportion fewer.
+//! Products are likely to be `steps + sqrt(H/h / 5) d / 6 (first + (steps - 1) next)`: one a step for the recovery, and
+//! those of a solve, which grow like conjugate gradients with a condition number of `H/h` (cells along the edge of a
+//! subdomain) with the digits `d` asked for. `first` and `next` are the means of the benchmark, where `H/h` is 5 and
+//! `d` 6. Slender bodies and loads that jump take several times as many, loads that grow in proportion fewer.
 
+use super::plan::Plan;
 use crate::settings::{Accuracy, MethodKind, Settings};
 use crate::tolerances::LOOSEST;
-use signorini_tfeti::{Forecast, Rate};
+use signorini_tfeti::internal::{Forecast, Rate};
 
 /// Estimated cost of a run; made before any work.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Estimate {
     /// Sets of equal subdomains, each with one stiffness and one inverse.
@@ -27,7 +29,8 @@ pub struct Estimate {
     pub products: usize,
     /// Times on the machine of [`Plan::with_machine`](crate::Plan::with_machine).
     pub times: Option<Times>,
-    sizes: PlanSizes,
+    /// Rows, torn unknowns and steps of the plan.
+    sizes: [usize; 3],
     product_flops: f64,
     setup_flops: f64,
     coarse_flops: f64,
@@ -47,17 +50,8 @@ pub struct Times {
     coarse: f64,
 }
 
-/// What the estimate needs of a plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PlanSizes {
-    pub(crate) rows: usize,
-    pub(crate) primal: usize,
-    pub(crate) elements: usize,
-    pub(crate) subdomains: usize,
-    pub(crate) steps: usize,
-}
-
-/// How often the coarse factor is made in a set-up, doubled: sparse factors are made at half the speed of dense products.
+/// How often the coarse factor is made in a set-up, doubled: sparse factors are made at half the speed of dense
+/// products.
 const COARSE_FACTORS: f64 = 4.0;
 /// How often a product with all that belongs to it reads the coarse factor.
 const COARSE_READS: f64 = 4.0;
@@ -71,21 +65,16 @@ const NUMBERS_OF_SETUP: [f64; 2] = [2e7, 2000.0];
 const NUMBERS_OF_STEP: f64 = 300.0;
 
 impl Estimate {
-    pub(crate) fn new(
-        method: MethodKind,
-        settings: &Settings,
-        forecast: &Forecast,
-        sizes: PlanSizes,
-    ) -> Self {
+    pub(super) fn new(plan: &Plan, settings: &Settings, forecast: &Forecast) -> Self {
         Self {
             classes: forecast.classes.len(),
             factorisations: forecast.classes.len() + 1,
             inverse_bytes: forecast.inverse_bytes,
             coarse_bytes: forecast.coarse_bytes,
             table_bytes: forecast.table_bytes,
-            products: likely_products(method, settings, &sizes),
+            products: likely_products(plan, settings),
             times: None,
-            sizes,
+            sizes: [plan.dual(), plan.primal, plan.steps],
             product_flops: forecast.product_flops(),
             setup_flops: forecast.setup_flops(),
             coarse_flops: forecast.coarse_flops,
@@ -105,7 +94,7 @@ impl Estimate {
     }
 
     pub(super) fn times_on(&self, rate: Rate) -> Times {
-        let (rows, primal) = (self.sizes.rows as f64, self.sizes.primal as f64);
+        let [rows, primal, steps] = self.sizes.map(|n| n as f64);
         let moved = |[fixed, each]: [f64; 2], count: f64| (fixed + each * count) / rate.numbers;
         let coarse = COARSE_CHANGES * self.coarse_flops / rate.flops
             + COARSE_READS * self.coarse_bytes as f64 / 8.0 / rate.numbers;
@@ -117,7 +106,7 @@ impl Estimate {
         Times {
             product,
             setup: setup + moved(NUMBERS_OF_SETUP, primal),
-            steps: self.products as f64 * product + self.sizes.steps as f64 * step,
+            steps: self.products as f64 * product + steps * step,
             coarse,
         }
     }
@@ -133,7 +122,7 @@ fn benchmark(method: MethodKind) -> [f64; 2] {
     }
 }
 
-fn likely_products(method: MethodKind, settings: &Settings, sizes: &PlanSizes) -> usize {
+fn likely_products(plan: &Plan, settings: &Settings) -> usize {
     let tolerance = match settings.accuracy {
         Accuracy::Tolerance => settings.tolerance,
         Accuracy::Relative(x) => x.min(LOOSEST),
@@ -141,11 +130,11 @@ fn likely_products(method: MethodKind, settings: &Settings, sizes: &PlanSizes) -
         Accuracy::Balanced { fraction } => (0.1 * fraction).min(LOOSEST),
     };
     // five tetrahedra fill a cell of a brick
-    let cells = (sizes.elements as f64 / (5 * sizes.subdomains.max(1)) as f64)
+    let cells = (plan.elements as f64 / (5 * plan.subdomains.max(1)) as f64)
         .cbrt()
         .max(1.0);
     let size = (cells / 5.0).sqrt() * -tolerance.log10() / 6.0;
-    let [first, next] = benchmark(method);
-    let steps = sizes.steps as f64;
+    let [first, next] = benchmark(plan.method);
+    let steps = plan.steps as f64;
     (steps + size * (first + (steps - 1.0).max(0.0) * next)).round() as usize
 }

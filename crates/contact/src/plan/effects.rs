@@ -1,5 +1,8 @@
 //! Which effects a scene has.
 
+use crate::discrete::DiscreteScene;
+use crate::scene::{Analysis, Friction, Gap, Scene};
+
 /// What kind of friction a scene has; of several the one with the most effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -36,4 +39,41 @@ pub struct Effects {
     pub motion: bool,
     /// Obstacles that move.
     pub moving_obstacle: bool,
+}
+
+impl FrictionKind {
+    fn of(friction: &Friction) -> Self {
+        match friction {
+            Friction::None => Self::None,
+            Friction::Tresca(_) => Self::Tresca,
+            Friction::Coulomb(law) if law.depends_on_rate() => Self::RateDependent,
+            Friction::Coulomb(_) => Self::Coulomb,
+        }
+    }
+}
+
+impl Effects {
+    pub(super) fn of(scene: &Scene, discrete: &DiscreteScene) -> Self {
+        let (contacts, points) = (&scene.contacts, &discrete.points);
+        let kinds = contacts.iter().map(|c| FrictionKind::of(c.friction()));
+        let friction = kinds.max_by_key(|k| *k as u8).unwrap_or(FrictionKind::None);
+        let measured = |surface: usize| points.iter().any(|p| p.surface == surface && p.gap != 0.0);
+        let has_gap = |surface: usize| match contacts[surface].gap {
+            Gap::None => false,
+            Gap::Measured => measured(surface),
+            _ => true,
+        };
+        let quasistatic = matches!(scene.analysis, Analysis::Quasistatic { .. });
+        Self {
+            contact: !contacts.is_empty(),
+            gap: (0..contacts.len()).any(has_gap),
+            partners: points.iter().any(|p| p.sides.partner.is_some()),
+            friction,
+            history: friction != FrictionKind::None && quasistatic,
+            gluing: discrete.decomposition.subdomains().len() > 1,
+            supports: !scene.supports.is_empty(),
+            motion: scene.supports.iter().any(|s| s.motion.is_some()),
+            moving_obstacle: contacts.iter().any(|c| c.motion.is_some()),
+        }
+    }
 }

@@ -1,12 +1,13 @@
 //! The plan: which effects a scene has, how large each is, and what is left out. Made before any work.
 
-use super::cost::{Estimate, PlanSizes};
-use super::effects::{Effects, FrictionKind};
+use super::cost::Estimate;
+use super::effects::Effects;
 use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
-use crate::scene::{Analysis, Friction, Gap, Scene};
+use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
-use signorini_tfeti::{Directions, Forecast, Rate};
+use signorini_tfeti::Directions;
+use signorini_tfeti::internal::{Forecast, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes of a scene and the method chosen for it.
@@ -25,13 +26,11 @@ pub struct Plan {
     pub subdomains: usize,
     /// Unknown displacements of all torn subdomains, n_p of the paper.
     pub primal: usize,
-    /// Contact points that can touch: nodes, those in edges and corners counted once for each normal (nodes whose normal
-    /// displacement is fixed by supports are left out).
-    pub contact_nodes: usize,
-    /// Smallest and largest gap of these points at the start, m; a negative one is inside the obstacle or the partner. `None`
-    /// without points.
+    /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the
+    /// partner. `None` without points.
     pub gaps: Option<[f64; 2]>,
-    /// Rows of `N`.
+    /// Rows of `N`: contact points that can touch, nodes in edges and corners once for each normal (nodes whose normal
+    /// displacement is fixed by supports are left out).
     pub normal_rows: usize,
     /// Rows of `T`.
     pub tangential_rows: usize,
@@ -52,8 +51,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Judges a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, but for loads that nothing can
-    /// hold: that takes a set-up.
+    /// Judges a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, but for loads that
+    /// nothing can hold: that takes a set-up.
     ///
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
@@ -81,109 +80,60 @@ impl Plan {
         settings: &Settings,
     ) -> Result<Self, ContactError> {
         settings.validate()?;
-        let fixed = fixed_directions(&discrete.supports);
+        let effects = Effects::of(scene, discrete);
         let decomposition = &discrete.decomposition;
-        let nodes = scene.mesh.points().len();
-        let torn_nodes: usize = decomposition
-            .subdomains()
-            .iter()
-            .map(|s| s.nodes.len())
-            .sum();
-        let interface_rows = 3 * (torn_nodes - nodes);
-        let dirichlet_rows: usize = fixed.values().copied().sum();
-        let candidates = &discrete.points;
+        let (elements, nodes) = (scene.mesh.tets().len(), scene.mesh.points().len());
+        let (subdomains, primal) = (decomposition.subdomains().len(), decomposition.torn_dofs());
+        let fixed = fixed_directions(&discrete.supports);
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
         let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
         let free = |p: &ContactPoint| 3 - p.sides.nodes().map(held).min().unwrap_or(3);
-        let points = candidates.iter().filter(|point| free(point) > 0);
+        let points = discrete.points.iter().filter(|point| free(point) > 0);
         let points: Vec<&ContactPoint> = points.collect();
-        let both = |p: &&ContactPoint| -> Vec<u32> { p.sides.nodes().map(|n| n.0).collect() };
-        let touching: BTreeSet<u32> = points.iter().flat_map(both).collect();
-        let normal_rows = points.len();
         let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
-        let tangential_rows = points.iter().filter(rough).map(|p| free(p) - 1).sum();
-        let kind = |friction: &Friction| match friction {
-            Friction::None => FrictionKind::None,
-            Friction::Tresca(_) => FrictionKind::Tresca,
-            Friction::Coulomb(c) if c.depends_on_rate() => FrictionKind::RateDependent,
-            Friction::Coulomb(_) => FrictionKind::Coulomb,
+        let gap = |range: Option<[f64; 2]>, p: &&ContactPoint| {
+            let [low, high] = range.unwrap_or([p.gap; 2]);
+            Some([p.gap.min(low), p.gap.max(high)])
         };
-        let kinds = scene.contacts.iter().map(|c| kind(c.friction()));
-        let kind = kinds.max_by_key(|k| *k as u8).unwrap_or(FrictionKind::None);
-        let effects = Effects {
-            contact: !scene.contacts.is_empty(),
-            gap: (0..scene.contacts.len()).any(|k| has_gap(scene, k, candidates)),
-            partners: candidates.iter().any(|p| p.sides.partner.is_some()),
-            friction: kind,
-            history: kind != FrictionKind::None
-                && matches!(scene.analysis, Analysis::Quasistatic { .. }),
-            gluing: decomposition.subdomains().len() > 1,
-            supports: !scene.supports.is_empty(),
-            motion: scene.supports.iter().any(|s| s.motion.is_some()),
-            moving_obstacle: scene.contacts.iter().any(|c| c.motion.is_some()),
+        let mut plan = Self {
+            effects,
+            elements,
+            nodes,
+            subdomains,
+            primal,
+            gaps: points.iter().fold(None, gap),
+            normal_rows: points.len(),
+            tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
+            // each copy of a node but one is glued
+            interface_rows: primal - 3 * nodes,
+            dirichlet_rows: fixed.values().copied().sum(),
+            coarse: 6 * subdomains,
+            steps: scene.analysis.steps(),
+            method: if effects.contact {
+                settings.method.kind()
+            } else {
+                MethodKind::Linear
+            },
+            vector_bytes: 0,
+            estimate: Estimate::default(),
         };
-        let method = if effects.contact {
-            settings.method.kind()
-        } else {
-            MethodKind::Linear
-        };
-        let primal = decomposition.torn_dofs();
-        let dual = normal_rows + tangential_rows + interface_rows + dirichlet_rows;
-        let smalse = [MethodKind::SuccessiveApproximations, MethodKind::OneLoop];
-        let vectors = if smalse.contains(&settings.method.kind()) {
-            18
-        } else {
-            16
-        };
-        let touched = |node: u32| fixed.contains_key(&node) || touching.contains(&node);
+        let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
+        let touching: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
         let forecast = Forecast::new(
             &scene.mesh,
             decomposition,
             &scene.materials,
-            settings.sharing,
+            settings.share_translates,
             &settings.inverse,
-            touched,
+            |node| fixed.contains_key(&node) || touching.contains(&node),
         )?;
-        let sizes = PlanSizes {
-            rows: dual,
-            primal,
-            elements: scene.mesh.tets().len(),
-            subdomains: decomposition.subdomains().len(),
-            steps: scene.analysis.steps(),
+        let vectors = match settings.method.kind() {
+            MethodKind::Linear | MethodKind::ActiveSet => 16,
+            MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
         };
-        let estimate = Estimate::new(method, settings, &forecast, sizes);
-        Ok(Self {
-            effects,
-            elements: scene.mesh.tets().len(),
-            nodes,
-            subdomains: decomposition.subdomains().len(),
-            primal,
-            contact_nodes: normal_rows,
-            gaps: points.iter().map(|p| p.gap).fold(None, |range, gap| {
-                let [low, high] = range.unwrap_or([gap; 2]);
-                Some([gap.min(low), gap.max(high)])
-            }),
-            normal_rows,
-            tangential_rows,
-            interface_rows,
-            dirichlet_rows,
-            coarse: 6 * decomposition.subdomains().len(),
-            steps: sizes.steps,
-            method,
-            vector_bytes: 8 * (vectors * dual + (1 + scene.loads.len()) * primal) as u64,
-            estimate,
-        })
-    }
-}
-
-/// Whether the rows of a contact surface have offsets.
-fn has_gap(scene: &Scene, surface: usize, candidates: &[ContactPoint]) -> bool {
-    match scene.contacts[surface].gap {
-        Gap::None => false,
-        Gap::Measured => candidates
-            .iter()
-            .any(|p| p.surface == surface && p.gap != 0.0),
-        _ => true,
+        plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
+        plan.estimate = Estimate::new(&plan, settings, &forecast);
+        Ok(plan)
     }
 }
 

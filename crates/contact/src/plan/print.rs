@@ -105,7 +105,7 @@ impl Plan {
             ""
         };
         let partners = if e.partners { ", between bodies" } else { "" };
-        format!("{} nodes, {gap}{moving}{partners}", self.contact_nodes)
+        format!("{} nodes, {gap}{moving}{partners}", self.normal_rows)
     }
 
     fn friction_text(&self) -> String {

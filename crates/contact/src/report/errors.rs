@@ -1,11 +1,13 @@
 //! Estimated errors of a step, and of all steps so far.
 
+use crate::tolerances::LEAST_SHARE;
+
 /// Estimated algebraic error of a step, by the duality gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct AlgebraicError {
-    /// The duality gap: bounds half the squared energy norm of the error of the torn displacement, J. Not less than what lies
-    /// between the mean of its copies and the displacement whose energy is in the gap.
+    /// The duality gap: bounds half the squared energy norm of the error of the torn displacement, J. Not less than
+    /// what lies between the mean of its copies and the displacement whose energy is in the gap.
     pub energy: f64,
     /// Part of it that comes from the distance of the torn displacement to a continuous admissible one, J.
     pub distance: f64,
@@ -16,8 +18,8 @@ pub struct AlgebraicError {
 }
 
 impl AlgebraicError {
-    /// Error relative to the displacement, both in the energy norm: `sqrt(energy / scale)`. 0 where nothing is wrong, infinite
-    /// where something is and there is no scale: no load, no displacement, no step before.
+    /// Error relative to the displacement, both in the energy norm: `sqrt(energy / scale)`. 0 where nothing is wrong,
+    /// infinite where something is and there is no scale: no load, no displacement, no step before.
     #[must_use]
     pub fn relative(&self) -> f64 {
         relative(self.energy, self.scale)
@@ -39,10 +41,11 @@ pub(crate) fn relative(energy: f64, scale: f64) -> f64 {
 pub struct AccuracyReport {
     /// Estimated algebraic error of this step alone.
     pub algebraic: AlgebraicError,
-    /// The same with what earlier steps have left in it. A run that is resumed from a state without such estimates starts at 0.
+    /// The same with what earlier steps have left in it. A run that is resumed from a state without such estimates
+    /// starts at 0.
     pub accumulated: AccumulatedError,
-    /// Estimated discretisation error relative to the displacement (or to the [scale](AlgebraicError::scale) of a body at rest), in
-    /// the energy norm, if it was asked for.
+    /// Estimated discretisation error relative to the displacement (or to the [scale](AlgebraicError::scale) of a body
+    /// at rest), in the energy norm, if it was asked for.
     pub discretisation: Option<f64>,
     /// The step at which it was estimated: this one or one of the last seven.
     pub estimated_at: Option<usize>,
@@ -62,7 +65,8 @@ pub struct AccuracyReport {
     pub tolerance: f64,
 }
 
-/// Algebraic error with what earlier steps have left in it: the sum of the roots of all gaps, and the root of their sum.
+/// Algebraic error with what earlier steps have left in it: the sum of the roots of all gaps, and the root of their
+/// sum.
 ///
 /// ```
 /// use signorini_contact::{
@@ -111,8 +115,8 @@ impl AccumulatedError {
         [self.sum, self.energy, self.scale]
     }
 
-    /// What the last step may have of a total error `target` (relative, likely) if all steps are to have the same share of
-    /// what is left; `left` steps of `steps` are to be solved, this one with them.
+    /// What the last step may have of a total error `target` (relative, likely) if all steps are to have the same share
+    /// of what is left; `left` steps of `steps` are to be solved, this one with them.
     pub(crate) fn share(
         &self,
         own: &AlgebraicError,
@@ -126,7 +130,7 @@ impl AccumulatedError {
         let all = target.powi(2);
         let rest = (all - self.energy / own.scale) / left.max(1) as f64;
         // where the load has fallen the old error may be more than is wanted: no accuracy of this step helps
-        rest.max(LEAST * all / steps.max(1) as f64).sqrt()
+        rest.max(LEAST_SHARE * all / steps.max(1) as f64).sqrt()
     }
 
     /// Likely error relative to the last displacement, both in the energy norm. 0 and infinity as in
@@ -152,9 +156,6 @@ impl AccumulatedError {
         relative(self.sum * self.sum, self.scale)
     }
 }
-
-/// Smallest share of a step in the square of the error, relative to an equal share.
-const LEAST: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {

@@ -7,14 +7,14 @@
 
 mod counters;
 mod errors;
-pub mod fixed_point;
+mod fixed_point;
 mod run;
 mod step;
 
 pub use counters::Counters;
 pub(crate) use errors::relative;
 pub use errors::{AccumulatedError, AccuracyReport, AlgebraicError};
-pub(crate) use fixed_point::{Contraction, FixedPointReport, Verdict, successive_approximations};
+pub use fixed_point::{FixedPointReport, Verdict};
 pub use run::RunReport;
 pub(crate) use run::require;
 pub use step::StepReport;

@@ -5,8 +5,8 @@ use super::step::StepReport;
 use crate::error::ContactError;
 use crate::status::StepFailure;
 
-/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to converge asks
-/// [`require_converged`](Self::require_converged).
+/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to
+/// converge asks [`require_converged`](Self::require_converged).
 ///
 /// ```
 /// use signorini_contact::{ContactError, Scene, Settings, Silent, Simulation};
@@ -65,7 +65,8 @@ impl RunReport {
     /// For those who want every step to converge: an error unless [all did](Self::converged).
     ///
     /// # Errors
-    /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: step, status and remedy of the first one.
+    /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: step, status and remedy of the first
+    /// one.
     pub fn require_converged(&self) -> Result<(), ContactError> {
         require(None, self.unconverged_history)?;
         require(self.first_failure().copied(), None)

@@ -29,9 +29,9 @@ pub struct StepReport {
     pub estimated_error: Option<f64>,
     /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
-    /// The first earlier step that did not converge and on whose displacement this one depends, from 0: its slip is part of
-    /// the history of friction, which no certificate of this step can judge. Always `None` in scenes without history (no
-    /// friction, or static). The status of this step does not depend on it.
+    /// The first earlier step that did not converge and on whose displacement this one depends, from 0: its slip is
+    /// part of the history of friction, which no certificate of this step can judge. Always `None` in scenes without
+    /// history (no friction, or static). The status of this step does not depend on it.
     pub unconverged_history: Option<usize>,
 }
 

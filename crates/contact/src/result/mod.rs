@@ -6,16 +6,19 @@
 //! In: multipliers, displacement, residual. Out: plain data for the user.
 
 mod certificate;
+mod certify;
 mod points;
 mod reactions;
 mod recovered;
+mod sizes;
 mod summary;
 
+pub(crate) use certificate::contact_violation;
 pub use certificate::{Certificate, Violation};
-pub(crate) use certificate::{Sizes, contact_violation};
 pub use points::{ContactState, PointState};
 pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
 pub(crate) use reactions::{nodal_reactions, reactions_about};
 pub(crate) use recovered::Recovered;
+pub(crate) use sizes::Sizes;
 pub use summary::ContactSummary;
 pub(crate) use summary::summarise;

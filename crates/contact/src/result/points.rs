@@ -1,8 +1,8 @@
 //! What each contact point does at the end of a step, and sums over them.
 
-use super::certificate::slip_bound;
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::{StepProblem, entry_or_zero};
+use crate::tolerances::ON_BOUND;
 use signorini_tfeti::TangentialRows;
 
 /// What a contact point does.
@@ -29,7 +29,8 @@ pub struct PointState {
     pub surface: usize,
     /// What it does.
     pub state: ContactState,
-    /// Unit normal out of the body, into the obstacle or the partner: the direction in which gap and normal force are measured.
+    /// Unit normal out of the body, into the obstacle or the partner: the direction in which gap and normal force are
+    /// measured.
     pub normal: [f64; 3],
     /// Normal force on the body `lambda_nu`, N, not positive.
     pub normal_force: f64,
@@ -41,7 +42,8 @@ pub struct PointState {
     pub gap: f64,
     /// Tangential displacement, m, in space; relative to the partner, if there is one.
     pub tangential_displacement: [f64; 3],
-    /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static scene.
+    /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static
+    /// scene.
     pub difference: [f64; 3],
     /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene.
     pub slip_rate: f64,
@@ -67,7 +69,7 @@ pub(crate) fn point_states(
     let states = model.points.iter().enumerate();
     states
         .map(|(k, point)| {
-            let bound = slip_bound(model, problem, k, lambda).unwrap_or(0.0);
+            let bound = problem.slip_bound(k, point, lambda);
             point_state(model, problem, point, (lambda, rows), bound)
         })
         .collect()
@@ -81,7 +83,11 @@ fn point_state(
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
-    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let alpha = model
+        .scene
+        .analysis
+        .formula()
+        .map_or(1.0, |f| f.weights()[0]);
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),
@@ -97,7 +103,7 @@ fn point_state(
             displacement[j] = (rows[k] - entry_or_zero(&problem.prescribed, k)) / scale;
             difference[j] = alpha * (rows[k] - problem.offset[k]) / scale;
         }
-        on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
+        on_bound = friction[0].hypot(friction[1]) >= bound * ON_BOUND;
     }
     let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
     let state = if normal_force >= 0.0 {

@@ -1,7 +1,8 @@
 //! Reactions: what the supports do to the body, and what contact and loads do. Computed when asked for.
 //!
-//! A support row of `B` with multiplier `lambda` pushes each copy of its node with `lambda` times its coefficients; their sum is
-//! the force on the node. A direction that several supports fix has one row, and belongs to the first of them.
+//! A support row of `B` with multiplier `lambda` pushes each copy of its node with `lambda` times its coefficients;
+//! their sum is the force on the node. A direction that several supports fix has one row, and belongs to the first of
+//! them.
 
 use super::recovered::Recovered;
 use crate::discrete::Supports;
@@ -9,7 +10,8 @@ use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
 use crate::tolerances::ROUNDING;
 use crate::vec3::dot;
-use signorini_tfeti::{NodeSupport, PrescribedDirection};
+use signorini_tfeti::NodeSupport;
+use signorini_tfeti::internal::PrescribedDirection;
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
@@ -63,9 +65,9 @@ pub struct SupportReaction {
 
 /// Forces on the body at the end of a step, and their moments about a point.
 ///
-/// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs to that one, and a
-/// later support has what it adds at right angles to it. At a contact node whose normal a support fixes, the support's
-/// reaction contains the force of the obstacle.
+/// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs
+/// to that one, and a later support has what it adds at right angles to it. At a contact node whose normal a support
+/// fixes, the support's reaction contains the force of the obstacle.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Reactions {
@@ -75,8 +77,8 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
-    /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the body with
-    /// the first tag ([`Contact::between`](crate::Contact::between)), which has the opposite on the partner.
+    /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the
+    /// body with the first tag ([`Contact::between`](crate::Contact::between)), which has the opposite on the partner.
     pub contacts: Vec<Resultant>,
     /// What the loads do.
     pub loads: Resultant,
@@ -103,8 +105,8 @@ impl Reactions {
 
 /// Forces of all supports by node, from the multipliers of the support rows.
 ///
-/// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it; it is
-/// taken out here.
+/// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it;
+/// it is taken out here.
 pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<u32, [f64; 3]> {
     let (points, lambda) = (&recovered.points, &recovered.support_multipliers);
     let gluing = model.tfeti.gluing();

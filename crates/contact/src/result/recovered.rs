@@ -1,7 +1,9 @@
 //! What follows from the multipliers of a step.
 
-use super::certificate::{Certificate, Measured, Sizes, certify, sizes};
+use super::certificate::Certificate;
+use super::certify::{Measured, certify};
 use super::points::{PointState, point_states};
+use super::sizes::{Sizes, sizes};
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::StepProblem;
@@ -38,14 +40,17 @@ impl Recovered {
         tfeti.rows_times(&torn, &mut rows);
         let residual = tfeti.equilibrium_residual(&torn, &force, lambda)?;
         let measured = Measured {
+            model,
+            problem,
+            lambda,
             rows: &rows,
             u: &torn,
             force: &force,
             residual: &residual,
         };
-        let sizes = sizes(model, problem, lambda, &measured);
+        let sizes = sizes(&measured);
         Ok(Self {
-            certificate: certify(model, problem, lambda, &measured, &sizes),
+            certificate: certify(&measured, &sizes),
             points: point_states(model, problem, lambda, &rows),
             support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
             sizes,

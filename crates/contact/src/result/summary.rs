@@ -6,8 +6,8 @@ use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::{StepProblem, entry_or_zero};
 
-/// Sums over the contact surface at the end of a problem. Between bodies, forces are those on the body that was named first
-/// ([`Contact::between`](crate::Contact::between)).
+/// Sums over the contact surface at the end of a problem. Between bodies, forces are those on the body that was named
+/// first ([`Contact::between`](crate::Contact::between)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ContactSummary {
@@ -31,14 +31,16 @@ pub struct ContactSummary {
     pub max_slip_rate: f64,
     /// Largest penetration, m.
     pub max_penetration: f64,
-    /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the paper's formula it can be
-    /// slightly negative at points that stick after sliding, see [`DifferenceFormula`](crate::DifferenceFormula).
+    /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the
+    /// paper's formula it can be slightly negative at points that stick after sliding, see
+    /// [`DifferenceFormula`](crate::DifferenceFormula).
     pub friction_work: f64,
     /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
-    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
-    /// the obstacle, and normal forces times the change of a [gap that moves along](crate::Contact::with_motion).
+    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the
+    /// displacement of the obstacle, and normal forces times the change of a [gap that moves
+    /// along](crate::Contact::with_motion).
     pub obstacle_work: f64,
 }
 

@@ -72,17 +72,14 @@ pub enum SlipBound {
 }
 
 impl SlipBound {
-    /// The bound in Pa at `point`, checked.
-    pub(crate) fn stress(&self, node: u32, point: [f64; 3]) -> Result<f64, ContactError> {
+    /// The bound in Pa at a place, checked.
+    pub(crate) fn stress(&self, node: u32, place: [f64; 3]) -> Result<f64, ContactError> {
         let value = match self {
             Self::Stress(value) => *value,
-            Self::StressField(field) => field(point),
+            Self::StressField(field) => field(place),
         };
-        if value.is_finite() && value >= 0.0 {
-            Ok(value)
-        } else {
-            Err(ContactError::SlipBound { node, value })
-        }
+        let error = ContactError::SlipBound { node, value };
+        is_good(value).then_some(value).ok_or(error)
     }
 }
 
@@ -152,42 +149,23 @@ impl Coefficient {
             Self::Table(points) => Some(points.iter().fold(0.0_f64, |m, p| m.max(p.1))),
             Self::RateField(_) => None,
         }
-        .filter(|v| v.is_finite() && *v >= 0.0)
+        .filter(|v| is_good(*v))
     }
 
     /// Checks what can be checked without a place; `contact` is whose law it is.
     pub(crate) fn validate(&self, contact: usize) -> Result<(), ContactError> {
-        let bad = |what: &'static str, value: f64| {
-            Err(ContactError::Coefficient {
-                contact,
-                what,
-                value,
-            })
-        };
-        let good = |value: f64| value.is_finite() && value >= 0.0;
-        match self {
-            Self::Constant(value) if !good(*value) => bad("coefficient", *value),
-            Self::Exponential {
-                fixed,
-                kinetic,
-                decay,
-            } => {
-                if !good(*fixed) {
-                    bad("coefficient at rest", *fixed)
-                } else if !good(*kinetic) {
-                    bad("kinetic coefficient", *kinetic)
-                } else if !(decay.is_finite() && *decay > 0.0) {
-                    bad("decay rate", *decay)
-                } else {
-                    Ok(())
-                }
+        let numbers: Vec<(&'static str, f64)> = match self {
+            Self::Field(_) | Self::RateField(_) => Vec::new(),
+            Self::Constant(value) => vec![("coefficient", *value)],
+            Self::Exponential { fixed, kinetic, .. } => {
+                vec![
+                    ("coefficient at rest", *fixed),
+                    ("kinetic coefficient", *kinetic),
+                ]
             }
             Self::Table(points) => {
-                if points.is_empty() {
-                    return Err(ContactError::EmptyTable { contact });
-                }
                 let mut before = f64::NEG_INFINITY;
-                for (entry, &(rate, value)) in points.iter().enumerate() {
+                for (entry, &(rate, _)) in points.iter().enumerate() {
                     if !(rate.is_finite() && rate > before) {
                         return Err(ContactError::TableRate {
                             contact,
@@ -195,36 +173,54 @@ impl Coefficient {
                             rate,
                         });
                     }
-                    if !good(value) {
-                        return bad("coefficient in the table", value);
-                    }
                     before = rate;
                 }
-                Ok(())
+                if points.is_empty() {
+                    return Err(ContactError::EmptyTable { contact });
+                }
+                points
+                    .iter()
+                    .map(|p| ("coefficient in the table", p.1))
+                    .collect()
             }
-            _ => Ok(()),
+        };
+        let mut bad = numbers.into_iter().find(|(_, value)| !is_good(*value));
+        if let Self::Exponential { decay, .. } = self
+            && !(decay.is_finite() && *decay > 0.0)
+        {
+            bad = bad.or(Some(("decay rate", *decay)));
         }
+        let error = |(what, value)| {
+            Err(ContactError::Coefficient {
+                contact,
+                what,
+                value,
+            })
+        };
+        bad.map_or(Ok(()), error)
     }
 
     /// The coefficient at a node, checked. `rate` in m/s.
-    pub(crate) fn value(&self, node: u32, point: [f64; 3], rate: f64) -> Result<f64, ContactError> {
+    pub(crate) fn value(&self, node: u32, place: [f64; 3], rate: f64) -> Result<f64, ContactError> {
         let value = match self {
             Self::Constant(value) => *value,
-            Self::Field(field) => field(point),
+            Self::Field(field) => field(place),
             Self::Exponential {
                 fixed,
                 kinetic,
                 decay,
             } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
             Self::Table(points) => interpolate(points, rate),
-            Self::RateField(field) => field(point, rate),
+            Self::RateField(field) => field(place, rate),
         };
-        if value.is_finite() && value >= 0.0 {
-            Ok(value)
-        } else {
-            Err(ContactError::CoefficientAt { node, rate, value })
-        }
+        let error = ContactError::CoefficientAt { node, rate, value };
+        is_good(value).then_some(value).ok_or(error)
     }
+}
+
+/// Whether a bound or a coefficient can be meant.
+fn is_good(value: f64) -> bool {
+    value.is_finite() && value >= 0.0
 }
 
 impl fmt::Debug for Coefficient {

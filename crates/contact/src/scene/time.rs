@@ -11,25 +11,13 @@ use crate::tolerances::{ROUNDING, UNEQUAL};
 /// The friction loss of a cycle then has a first-order error. Backward Euler (`1, -1, 0`) has no such
 /// signature and is exact at the steps for piecewise linear slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DifferenceFormula {
-    alpha: f64,
-    beta: f64,
-    gamma: f64,
-}
+pub struct DifferenceFormula([f64; 3]);
 
 impl DifferenceFormula {
     /// The paper's `3/2, -2, 1/2`.
-    pub const PAPER: Self = Self {
-        alpha: 1.5,
-        beta: -2.0,
-        gamma: 0.5,
-    };
+    pub const PAPER: Self = Self([1.5, -2.0, 0.5]);
     /// `1, -1, 0`.
-    pub const BACKWARD_EULER: Self = Self {
-        alpha: 1.0,
-        beta: -1.0,
-        gamma: 0.0,
-    };
+    pub const BACKWARD_EULER: Self = Self([1.0, -1.0, 0.0]);
 
     /// Any consistent formula.
     ///
@@ -54,37 +42,26 @@ impl DifferenceFormula {
         if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
             return error("-beta - 2 gamma must be 1");
         }
-        Ok(Self { alpha, beta, gamma })
+        Ok(Self([alpha, beta, gamma]))
     }
 
-    /// Weight of the new displacement.
+    /// The weights `alpha`, `beta`, `gamma` of the new displacement, the last one and the one before.
     #[must_use]
-    pub fn alpha(&self) -> f64 {
-        self.alpha
-    }
-
-    /// Weight of the last one.
-    #[must_use]
-    pub fn beta(&self) -> f64 {
-        self.beta
-    }
-
-    /// Weight of the one before.
-    #[must_use]
-    pub fn gamma(&self) -> f64 {
-        self.gamma
+    pub fn weights(&self) -> [f64; 3] {
+        self.0
     }
 
     /// Whether only one old displacement is needed.
     #[must_use]
     pub fn is_one_step(&self) -> bool {
-        self.gamma == 0.0
+        self.0[2] == 0.0
     }
 
     /// `z` of section 3: the displacement at which the difference vanishes, `-(beta u[i] + gamma u[i-1]) / alpha`.
     #[must_use]
     pub fn offset(&self, last: f64, before: f64) -> f64 {
-        -(self.beta * last + self.gamma * before) / self.alpha
+        let [alpha, beta, gamma] = self.0;
+        -(beta * last + gamma * before) / alpha
     }
 }
 
@@ -230,10 +207,7 @@ mod tests {
     #[test]
     fn the_two_formulas_are_consistent() {
         for f in [DifferenceFormula::PAPER, DifferenceFormula::BACKWARD_EULER] {
-            assert_eq!(
-                DifferenceFormula::new(f.alpha(), f.beta(), f.gamma()).unwrap(),
-                f
-            );
+            assert_eq!(DifferenceFormula::new(f.0[0], f.0[1], f.0[2]).unwrap(), f);
         }
         assert!(DifferenceFormula::new(1.0, -1.0, 0.5).is_err());
         assert!(DifferenceFormula::new(-1.0, 1.0, 0.0).is_err());

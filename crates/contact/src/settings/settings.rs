@@ -3,7 +3,7 @@
 use super::accuracy::Accuracy;
 use super::method::{InnerAccuracy, Method};
 use crate::error::ContactError;
-use signorini_tfeti::{InverseSettings, RowScaling, Sharing};
+use signorini_tfeti::InverseSettings;
 
 /// The preconditioner of the default method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,8 +32,7 @@ pub struct Settings {
     pub(crate) accuracy: Accuracy,
     pub(crate) max_fixed_point: usize,
     pub(crate) extrapolate: bool,
-    pub(crate) row_scaling: RowScaling,
-    pub(crate) sharing: Sharing,
+    pub(crate) share_translates: bool,
     pub(crate) inverse: InverseSettings,
     pub(crate) preconditioner: Preconditioner,
     pub(crate) max_fallback_products: usize,
@@ -47,8 +46,7 @@ impl Default for Settings {
             accuracy: Accuracy::default(),
             max_fixed_point: 200,
             extrapolate: true,
-            row_scaling: RowScaling::default(),
-            sharing: Sharing::default(),
+            share_translates: true,
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
             max_fallback_products: 20_000,
@@ -93,17 +91,10 @@ impl Settings {
         self
     }
 
-    /// Scaling of the rows of B, orthonormal by default.
-    #[must_use]
-    pub fn with_row_scaling(mut self, scaling: RowScaling) -> Self {
-        self.row_scaling = scaling;
-        self
-    }
-
     /// Whether equal subdomains share factors, as translates do by default.
     #[must_use]
-    pub fn with_sharing(mut self, sharing: Sharing) -> Self {
-        self.sharing = sharing;
+    pub fn with_share_translates(mut self, share: bool) -> Self {
+        self.share_translates = share;
         self
     }
 

@@ -43,7 +43,8 @@ impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<Self, E>> for Flow {
     }
 }
 
-/// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an observer.
+/// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an
+/// observer.
 pub trait Observer {
     /// The run begins; `steps` are left to solve.
     fn started(&mut self, plan: &Plan, steps: usize) {

@@ -79,8 +79,8 @@ impl StepResult {
         })
     }
 
-    /// For those who want every step to converge: an error unless this one did, and the earlier ones on whose displacement
-    /// it depends.
+    /// For those who want every step to converge: an error unless this one did, and the earlier ones on whose
+    /// displacement it depends.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
@@ -100,7 +100,7 @@ impl StepResult {
         &self.summary
     }
 
-    /// States of the contact points, in the order of the plan's contact nodes.
+    /// States of the contact points, in the order of the rows.
     #[must_use]
     pub fn points(&self) -> &[PointState] {
         &self.recovered.points
@@ -115,27 +115,24 @@ impl StepResult {
     /// Displacement of each mesh node, m: the mean of the copies.
     #[must_use]
     pub fn displacement(&self) -> Vec<[f64; 3]> {
-        as_vectors(&self.model.tfeti.nodal_mean(&self.recovered.torn))
+        let mean = self.model.tfeti.nodal_mean(&self.recovered.torn);
+        mean.as_chunks().0.to_vec()
     }
 
     /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; not a number where the displacement is none.
     #[must_use]
     pub fn stress(&self) -> Vec<[f64; 6]> {
-        let Scene {
-            mesh, materials, ..
-        } = &self.model.scene;
-        fields::stresses(mesh, materials, self.displacement().as_flattened())
-            .unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
+        let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
+        let stresses = fields::stresses(mesh, materials, self.displacement().as_flattened());
+        stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
     }
 
     /// Elastic energy, J; not a number if the displacement is none.
     #[must_use]
     pub fn strain_energy(&self) -> f64 {
-        let Scene {
-            mesh, materials, ..
-        } = &self.model.scene;
-        fields::strain_energy(mesh, materials, self.displacement().as_flattened())
-            .unwrap_or(f64::NAN)
+        let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
+        let energy = fields::strain_energy(mesh, materials, self.displacement().as_flattened());
+        energy.unwrap_or(f64::NAN)
     }
 
     /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
@@ -164,8 +161,8 @@ impl StepResult {
         self.reactions_about([0.0; 3])
     }
 
-    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the obstacle and the
-    /// loads do. Computed from the multipliers when asked for.
+    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the
+    /// obstacle and the loads do. Computed from the multipliers when asked for.
     ///
     /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
     ///
@@ -201,8 +198,8 @@ impl StepResult {
         field
     }
 
-    /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together, so
-    /// that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
+    /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together,
+    /// so that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
     #[must_use]
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
@@ -230,11 +227,6 @@ impl StepResult {
     }
 }
 
-/// Three numbers a node.
-fn as_vectors(field: &[f64]) -> Vec<[f64; 3]> {
-    field.as_chunks().0.to_vec()
-}
-
 /// The error of the mesh, by recovered strains.
 pub(super) fn discretisation_error(
     model: &Model,
@@ -249,8 +241,8 @@ pub(super) fn discretisation_error(
 }
 
 impl AccumulatedError {
-    /// Takes the next step: every step must be added, in order. Where steps stand alone (no friction, or a static scene)
-    /// only the last one counts.
+    /// Takes the next step: every step must be added, in order. Where steps stand alone (no friction, or a static
+    /// scene) only the last one counts.
     pub fn add(&mut self, result: &StepResult) {
         *self = self.with(&result.algebraic_error(), result.model.plan.effects.history);
     }

@@ -9,10 +9,11 @@ use std::sync::Arc;
 impl Simulation {
     /// Continues from a stored state of the same scene.
     ///
-    /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports, contact points with
-    /// their normals and areas, difference formula, and the times of the steps solved so far. Free to change are loads, motions of supports, materials,
-    /// gap, coefficients, times to come, settings and method: the state is then where the changed scene goes on from. A start from
-    /// a scene that is another one on purpose needs [`State::without_origin`]; sizes must fit in any case.
+    /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports,
+    /// contact points with their normals and areas, difference formula, and the times of the steps solved so far. Free
+    /// to change are loads, motions of supports, materials, gap, coefficients, times to come, settings and method: the
+    /// state is then where the changed scene goes on from. A start from a scene that is another one on purpose needs
+    /// [`State::without_origin`]; sizes must fit in any case.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
@@ -23,7 +24,7 @@ impl Simulation {
             return refuse("it has more steps than this scene".to_owned());
         }
         let origin = self.origin.after(analysis, state.step());
-        let known = state.origin().filter(|_| state.step() > 0);
+        let known = state.origin.filter(|_| state.step() > 0);
         if let Some(part) = known.and_then(|known| known.difference(&origin)) {
             return refuse(format!(
                 "it belongs to another scene, with other {part}; continue with the scene that it was stored with, or, if \
@@ -38,14 +39,15 @@ impl Simulation {
             self.model.tangential_rows(),
             self.model.points.len(),
         )?;
-        state.set_origin(origin);
+        state.origin = Some(origin);
         self.check_products(&mut state);
         self.result = None;
         self.state = Arc::new(state);
         Ok(())
     }
 
-    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its word.
+    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its
+    /// word.
     fn check_products(&self, state: &mut State) {
         let dual = self.model.tfeti.dual();
         state.renew_products(self.operator, |lambda, f_lambda| {
@@ -75,8 +77,8 @@ mod tests {
         Simulation::new(scene, Settings::default()).expect("set-up")
     }
 
-    /// Products of another material, and such as are none, are made anew, by name of the scene or without it; those of the same
-    /// one keep every bit.
+    /// Products of another material, and such as are none, are made anew, by name of the scene or without it; those of
+    /// the same one keep every bit.
     #[test]
     fn products_of_another_operator_are_made_anew() {
         let mut stored = simulation(1e9);
@@ -87,16 +89,16 @@ mod tests {
         for state in [state.clone(), state.clone().without_origin()] {
             let mut same = simulation(1e9);
             same.resume(state.clone()).expect("resume");
-            assert_eq!(same.state().f_lambda(), state.f_lambda());
+            assert_eq!(same.state().f_lambda, state.f_lambda);
             // twice as stiff: half the displacement by the same forces
             let mut other = simulation(2e9);
             other.resume(state.clone()).expect("resume");
             let (dual, found) = (other.tfeti().dual(), other.state());
             for k in 0..2 {
                 let mut product = vec![0.0; dual.dim()];
-                dual.apply(&found.lambda()[k], &mut product, &mut dual.scratch());
-                assert_eq!(found.f_lambda()[k], product, "step {k} ago");
-                let [new, old] = [&product, &state.f_lambda()[k]].map(|v| vector::norm(v));
+                dual.apply(&found.lambda[k], &mut product, &mut dual.scratch());
+                assert_eq!(found.f_lambda[k], product, "step {k} ago");
+                let [new, old] = [&product, &state.f_lambda[k]].map(|v| vector::norm(v));
                 assert!((new / old - 0.5).abs() < 1e-6, "{new} {old}");
             }
             // stored once more it is a state of the stiffer body
@@ -111,7 +113,7 @@ mod tests {
         same.resume(garbage).expect("resume");
         let (dual, found) = (same.tfeti().dual(), same.state());
         let mut product = vec![0.0; dual.dim()];
-        dual.apply(&found.lambda()[0], &mut product, &mut dual.scratch());
-        assert_eq!(found.f_lambda()[0], product);
+        dual.apply(&found.lambda[0], &mut product, &mut dual.scratch());
+        assert_eq!(found.f_lambda[0], product);
     }
 }

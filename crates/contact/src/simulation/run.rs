@@ -6,11 +6,12 @@ use crate::error::ContactError;
 use crate::report::RunReport;
 
 impl Simulation {
-    /// Solves all steps that are left, telling the observer; ends early if it says so. Not converging is no error: see the
-    /// report, or ask it to [require](RunReport::require_converged) that all converged.
+    /// Solves all steps that are left, telling the observer; ends early if it says so. Not converging is no error: see
+    /// the report, or ask it to [require](RunReport::require_converged) that all converged.
     ///
     /// # Errors
-    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after it.
+    /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after
+    /// it.
     pub fn run(
         &mut self,
         observer: &mut (impl Observer + ?Sized),

@@ -86,8 +86,10 @@ impl Simulation {
         };
         let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);
         let solver = solver?;
-        let mut state = State::default();
-        state.set_origin(origin);
+        let state = State {
+            origin: Some(origin),
+            ..State::default()
+        };
         Ok(Self {
             model: Arc::new(model),
             caches: Arc::default(),
@@ -166,15 +168,16 @@ impl Simulation {
         self.state.step() >= self.model.scene.analysis.steps()
     }
 
-    /// The result of the last step; `None` before the first one, after [`resume`](Self::resume) and after a step that failed.
+    /// The result of the last step; `None` before the first one, after [`resume`](Self::resume) and after a step that
+    /// failed.
     #[must_use]
     pub fn result(&self) -> Option<&Arc<StepResult>> {
         self.result.as_ref()
     }
 }
 
-/// Runs `work` on a thread of the pool of rayon. Parts of it that run in parallel then begin where it runs; from another thread
-/// each of them would cost a change of threads, about as long as a product of a small scene.
+/// Runs `work` on a thread of the pool of rayon. Parts of it that run in parallel then begin where it runs; from
+/// another thread each of them would cost a change of threads, about as long as a product of a small scene.
 pub(super) fn on_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     rayon::scope(|_| work())
 }

@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
-use crate::solve::restore_sliding;
+use crate::solve::Task;
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
@@ -34,7 +34,7 @@ impl Simulation {
 
     /// Solves the step that follows on a state.
     fn solve_after(&mut self, state: &State) -> Result<StepResult, ContactError> {
-        self.controller = state.controller();
+        self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, state.step())?;
         self.start(state);
         let (report, recovered) = self.solve()?;
@@ -59,7 +59,12 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let (model, problem, iterate) = (&self.model, &self.problem, &mut self.iterate);
         let settings = self.settings.clone().with_tolerance(tolerance);
-        let mut report = self.solver.solve(model, problem, &settings, iterate)?;
+        let task = Task {
+            model,
+            problem,
+            settings: &settings,
+        };
+        let mut report = self.solver.solve(task, iterate)?;
         let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha)?;
         report.counters.products += 1;
         Ok((report, recovered))
@@ -68,7 +73,7 @@ impl Simulation {
     /// Start vectors of a step: zero, the last step, or the line through the last two.
     fn start(&mut self, state: &State) {
         let (model, iterate) = (&self.model, &mut self.iterate);
-        let (lambda, f_lambda) = (state.lambda(), state.f_lambda());
+        let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let on = self.settings.extrapolate;
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too
@@ -81,13 +86,12 @@ impl Simulation {
         iterate.lambda = extrapolated(lambda);
         iterate.f_lambda = extrapolated(f_lambda);
         iterate.known = (0..2).all(|k| lambda[k].len() == f_lambda[k].len());
-        let [last, before] = state.multiplier();
+        let [last, before] = &state.multiplier;
         iterate.multiplier = start_vector(last, before, coarse, on);
-        if state.sliding().iter().any(|s| *s) {
+        if state.sliding.iter().any(|s| *s) {
             let old = iterate.lambda.clone();
-            let mut set = model.set.clone();
-            self.problem.slip_bounds(model, &iterate.lambda, &mut set);
-            restore_sliding(model, &set, state.sliding(), &mut iterate.lambda);
+            self.problem
+                .restore_sliding(model, &state.sliding, &mut iterate.lambda);
             iterate.known &= old == iterate.lambda;
         }
     }
@@ -96,7 +100,10 @@ impl Simulation {
     fn remember(&mut self, result: &mut StepResult) {
         let (model, problem, recovered) = (&self.model, &self.problem, &result.recovered);
         let history = model.plan.effects.history;
-        let mut kept = Kept::default();
+        let mut kept = Kept {
+            time: problem.time,
+            ..Kept::default()
+        };
         if history {
             kept.trace = traces(model, problem, &recovered.rows);
             let slides = |p: &PointState| p.state == ContactState::Slip;
@@ -112,7 +119,6 @@ impl Simulation {
             kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
         }
         let state = Arc::make_mut(&mut self.state);
-        state.pass(problem.time);
         if result.report.status.converged() {
             // what did not converge is no scale for later steps
             let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
@@ -120,11 +126,10 @@ impl Simulation {
         } else if history {
             state.note_unconverged();
         }
-        state.advance(self.settings.extrapolate, kept);
-        state.seal(self.operator);
+        state.advance(self.settings.extrapolate, self.operator, kept);
         if let Some(accuracy) = &result.report.accuracy {
             self.controller.errors = accuracy.accumulated;
-            state.set_controller(self.controller);
+            state.controller = self.controller;
         }
     }
 }

@@ -1,17 +1,17 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
-//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If the
-//! error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps times
-//! `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where sliding begins,
-//! ends and turns, better where nothing changes, and without order where another step leads to another sequence of sticking
-//! and sliding. A difference that is not three times as large as what the solver has left in both runs
-//! ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
+//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If
+//! the error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps
+//! times `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where
+//! sliding begins, ends and turns, better where nothing changes, and without order where another step leads to another
+//! sequence of sticking and sliding. A difference that is not three times as large as what the solver has left in both
+//! runs ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
 
 use super::result::StepResult;
 use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::report::{AccumulatedError, Counters, relative};
-use crate::result::{ContactState, PointState};
+use crate::result::PointState;
 use crate::scene::{Analysis, Scene};
 use crate::settings::Settings;
 use crate::tolerances::{ABOVE_SOLVER, ORDERS};
@@ -27,31 +27,30 @@ pub struct TimeError {
     /// Time, s.
     pub time: f64,
     /// Energy of the difference of the displacements, `1/2 |u - u'|²`, J.
-    pub energy: f64,
+    energy: f64,
     /// Elastic energy of the half steps' displacement, J.
-    pub elastic: f64,
+    elastic: f64,
     /// What energies are compared with, J: that, or more for a [body at rest](crate::AlgebraicError::scale).
-    pub scale: f64,
-    /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of the sum of
-    /// the roots of their accumulated algebraic errors.
-    pub algebraic: f64,
+    scale: f64,
+    /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of
+    /// the sum of the roots of their accumulated algebraic errors.
+    algebraic: f64,
     /// Euclidean norm of the differences of the nodal contact forces, N.
-    pub contact_force: f64,
+    contact_force: f64,
     /// Euclidean norm of the nodal contact forces, N.
-    pub contact_force_size: f64,
+    contact_force_size: f64,
     /// Difference of the work of friction since the start, J.
     pub dissipated_work: f64,
     /// That work, J.
     pub dissipated_work_size: f64,
     /// Contact points whose state (open, sticking, sliding) is another one after the half steps.
     pub changed_points: usize,
-    /// Contact points that touch after the half steps.
-    pub touching_points: usize,
     /// Energy of the difference of the whole to the quarter steps, J.
-    pub quarter_energy: f64,
+    quarter_energy: f64,
     /// Energy of the difference of the half to the quarter steps, J.
-    pub finest_energy: f64,
-    /// Order `p` measured on all steps so far in which more differs than the solver leaves; `None` as long as there is none.
+    finest_energy: f64,
+    /// Order `p` measured on all steps so far in which more differs than the solver leaves; `None` as long as there is
+    /// none.
     pub order: Option<f64>,
 }
 
@@ -62,25 +61,26 @@ impl TimeError {
         relative(self.energy, self.scale)
     }
 
-    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the quarter
-    /// steps, extrapolated with the measured order (taken into its admissible range), or with order one if none was measured.
+    /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the
+    /// quarter steps, extrapolated with the measured order (taken into its admissible range), or with order one if none
+    /// was measured.
     #[must_use]
     pub fn whole_error(&self) -> f64 {
         let order = self.order.unwrap_or(1.0).clamp(ORDERS[0], ORDERS[1]);
         relative(self.quarter_energy, self.scale) / (1.0 - 4.0_f64.powf(-order))
     }
 
-    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most three times
-    /// the algebraic error. The error of the time steps is then as small as that or smaller; how small only a smaller tolerance
-    /// can tell.
+    /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most
+    /// three times the algebraic error. The error of the time steps is then as small as that or smaller; how small only
+    /// a smaller tolerance can tell.
     #[must_use]
     pub fn is_below_solver(&self) -> bool {
         self.finest_energy <= ABOVE_SOLVER * ABOVE_SOLVER * self.algebraic
     }
 
-    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead to
-    /// another sequence of sticking and sliding, and the estimate tells no more than that the results still differ. `None` where
-    /// the difference [is no more than the solver's error](Self::is_below_solver).
+    /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead
+    /// to another sequence of sticking and sliding, and the estimate tells no more than that the results still differ.
+    /// `None` where the difference [is no more than the solver's error](Self::is_below_solver).
     #[must_use]
     pub fn is_reliable(&self) -> Option<bool> {
         (!self.is_below_solver()).then(|| self.order.is_some_and(|order| order >= ORDERS[0]))
@@ -90,12 +90,6 @@ impl TimeError {
     #[must_use]
     pub fn force(&self) -> f64 {
         ratio(self.contact_force, self.contact_force_size)
-    }
-
-    /// Relative difference of the work of friction.
-    #[must_use]
-    pub fn work(&self) -> f64 {
-        ratio(self.dissipated_work.abs(), self.dissipated_work_size.abs())
     }
 }
 
@@ -277,7 +271,6 @@ fn compare(whole: &StepResult, half: &StepResult, work: [f64; 2]) -> TimeError {
     };
     for (a, b) in whole.points().iter().zip(half.points()) {
         error.changed_points += usize::from(a.state != b.state);
-        error.touching_points += usize::from(b.state != ContactState::Open);
         let forces = |p: &PointState| [[p.normal_force, 0.0, 0.0], p.friction_force];
         for (a, b) in forces(a)
             .as_flattened()

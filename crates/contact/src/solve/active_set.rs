@@ -1,9 +1,11 @@
-//! The default method: the active-set method of `signorini-qp` on the dual problem, slip bounds following the normal forces.
+//! The default method: the active-set method of `signorini-qp` on the dual problem, slip bounds following the normal
+//! forces.
 //!
-//! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a limit was
-//! reached, from the start of the step where the active-set method stagnated. It is proved to solve every given-friction problem.
+//! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a
+//! limit was reached, from the start of the step where the active-set method stagnated. It is proved to solve every
+//! given-friction problem.
 
-use super::iterate::{Iterate, is_coulomb, step_status};
+use super::iterate::{Iterate, Task, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
 use super::smalse::SmalseSolver;
@@ -13,24 +15,12 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
-use crate::step::StepProblem;
+use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
 use signorini_qp::{
     ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status,
     active_set, vector,
 };
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
-
-/// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
-/// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
-/// predicts faces from gradients alone.
-const LOOSE: f64 = 5.0;
-
-/// Part of the stiffness that the natural map takes at rows that may depend on others of their node: two rows along one
-/// direction move it twice.
-const SHARED: f64 = 0.5;
-
-/// What a release would change, over the error of a solved face, from which on it is worth it.
-const CONTRADICTION: f64 = 10.0;
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
@@ -52,7 +42,7 @@ impl ActiveSetSolver {
     pub(crate) fn new(
         model: &Model,
         settings: &Settings,
-        face: &ActiveSetSettings,
+        own: &ActiveSetSettings,
     ) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
@@ -61,7 +51,7 @@ impl ActiveSetSolver {
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
         for (scale, compliance) in scale.iter_mut().zip(compliance) {
-            *scale = scale.min(LOOSE / compliance);
+            *scale = scale.min(STIFF_ROWS / compliance);
         }
         let gluing = model.tfeti.gluing();
         let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
@@ -71,7 +61,7 @@ impl ActiveSetSolver {
             .take(contact)
             .filter(|s| shared(s.0))
         {
-            *scale *= SHARED;
+            *scale *= SHARED_ROWS;
         }
         Ok(Self {
             space: ActiveSetProjector::new(
@@ -84,30 +74,28 @@ impl ActiveSetSolver {
             scale,
             set: model.set.clone(),
             exchanges: Exchanges::new(model),
-            settings: face.clone(),
+            settings: own.clone(),
             paper: None,
         })
     }
 
     pub(crate) fn solve(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
         report.counters.inequality_solves = 1;
         let start = iterate.lambda.clone();
-        let status = self.active_sets(model, problem, settings, iterate, &mut report)?;
+        let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
         if !report.status.converged() {
-            return self.fall_back(model, problem, settings, iterate, start, report);
+            return self.fall_back(task, iterate, start, report);
         }
         iterate.known = true;
-        iterate.alpha.resize(problem.rhs.len(), 0.0);
+        iterate.alpha.resize(task.problem.rhs.len(), 0.0);
         let mut residual = iterate.f_lambda.clone();
-        vector::axpy(-1.0, &problem.linear, &mut residual);
+        vector::axpy(-1.0, &task.problem.linear, &mut residual);
         self.space.amplitudes(&residual, &mut iterate.alpha);
         Ok(report)
     }
@@ -115,15 +103,14 @@ impl ActiveSetSolver {
     /// Active sets with slip bounds that follow, again as long as rows of one node contradict each other.
     fn active_sets(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
-        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+        let Task { model, problem, .. } = task;
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
         let mut updates = usize::from(model.any_law(Friction::is_some));
-        self.space.set_rhs(&problem.rhs);
+        self.space.set_coarse_rhs(&problem.rhs);
         let dual = ActiveSetProblem {
             operator: model.tfeti.dual(),
             preconditioner: &self.preconditioner,
@@ -132,19 +119,19 @@ impl ActiveSetSolver {
             rhs: &problem.rhs,
         };
         let [least, least_contact] = problem.least();
-        let tolerance = settings.tolerance;
+        let tolerance = task.settings.tolerance;
         let settings = self.settings.clone().with_tolerance(tolerance);
         let settings = settings
             .with_error_floor(least)
             .with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
-            let slopes = model.slip_slopes(|k| problem.coefficients[k]);
+            let slopes = problem.slip_slopes(model);
             self.work.set_slopes(&slopes);
         }
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             if coulomb {
-                problem.slip_bounds(model, x, set);
+                problem.write_slip_bounds(model, x, set);
                 updates += 1;
             }
         };
@@ -184,7 +171,7 @@ impl ActiveSetSolver {
             if !solved
                 || !self
                     .exchanges
-                    .settle(model, problem, residual, limit, &mut iterate.lambda)
+                    .settle(task, residual, limit, &mut iterate.lambda)
             {
                 break status;
             }
@@ -197,9 +184,7 @@ impl ActiveSetSolver {
 
     fn fall_back(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
         start: Vec<f64>,
         mut report: StepReport,
@@ -211,13 +196,12 @@ impl ActiveSetSolver {
         }
         let mut paper = match self.paper.take() {
             Some(paper) => paper,
-            None => Box::new(SmalseSolver::new(model, settings)?),
+            None => Box::new(SmalseSolver::new(task.model, task.settings)?),
         };
         iterate.multiplier.clear();
         // other normal forces may hold the body yet
         let not_held = report.status == StepStatus::NotHeld;
-        let limit = settings.max_fallback_products;
-        let outcome = paper.solve_within(limit, model, problem, settings, iterate);
+        let outcome = paper.solve_within(task.settings.max_fallback_products, task, iterate);
         self.paper = Some(paper);
         let second = outcome?;
         report.fallback = true;

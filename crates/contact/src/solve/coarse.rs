@@ -1,27 +1,49 @@
-//! Orthonormal coarse rows.
+//! Orthonormal coarse rows, which the linear solver and the paper's methods need.
 
 use crate::error::ContactError;
 use crate::model::Model;
 use signorini_tfeti::OrthonormalCoarse;
+use signorini_tfeti::internal::CoarseScratch;
 
-/// The orthonormal coarse rows that the linear solver and the paper's methods need.
-///
-/// # Errors
-/// [`ContactError::NotDetermined`] if no row stops some rigid motion. The check of equilibrium has found before that the loads do not
-/// push along it.
-pub(crate) fn orthonormal_coarse(model: &Model) -> Result<OrthonormalCoarse, ContactError> {
-    let factor = model.tfeti.coarse_factor();
-    factor.orthonormal().ok_or_else(|| {
-        let motions = factor.free_motions();
-        let words: Vec<String> = motions.iter().map(ToString::to_string).collect();
-        let body = motions
-            .first()
-            .and_then(|m| m.bodies.first())
-            .map_or(0, |b| b.body);
-        ContactError::NotDetermined {
-            body,
-            count: motions.len(),
-            motions: words.join("; "),
-        }
-    })
+/// The rows with their right side and work memory.
+pub(super) struct OrthonormalRows {
+    pub(super) coarse: OrthonormalCoarse,
+    /// Right side of the step, in orthonormal rows.
+    pub(super) rhs: Vec<f64>,
+    scratch: CoarseScratch,
+}
+
+impl OrthonormalRows {
+    /// # Errors
+    /// [`ContactError::NotDetermined`] if no row stops some rigid motion. The check of equilibrium has found before
+    /// that the loads do not push along it.
+    pub(super) fn new(model: &Model) -> Result<Self, ContactError> {
+        let factor = model.tfeti.coarse_factor();
+        let coarse = factor.orthonormal().ok_or_else(|| {
+            let motions = factor.free_motions();
+            let words: Vec<String> = motions.iter().map(ToString::to_string).collect();
+            let body = motions.first().and_then(|m| m.bodies.first());
+            ContactError::NotDetermined {
+                body: body.map_or(0, |b| b.body),
+                count: motions.len(),
+                motions: words.join("; "),
+            }
+        })?;
+        Ok(Self {
+            coarse,
+            rhs: vec![0.0; model.tfeti.coarse().rows()],
+            scratch: factor.scratch(),
+        })
+    }
+
+    /// Takes the right side `e` of a step.
+    pub(super) fn set_rhs(&mut self, rhs: &[f64]) {
+        self.coarse.rhs(rhs, &mut self.rhs, &mut self.scratch);
+    }
+
+    /// Rigid amplitudes from the multiplier of the equality.
+    pub(super) fn amplitudes(&mut self, multiplier: &[f64], alpha: &mut Vec<f64>) {
+        alpha.resize(self.rhs.len(), 0.0);
+        self.coarse.amplitudes(multiplier, alpha, &mut self.scratch);
+    }
 }

@@ -2,8 +2,18 @@
 
 use crate::model::Model;
 use crate::scene::Friction;
+use crate::settings::Settings;
 use crate::status::StepStatus;
+use crate::step::StepProblem;
 use signorini_qp::Status;
+
+/// What is to be solved, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) problem: &'a StepProblem,
+    pub(crate) settings: &'a Settings,
+}
 
 /// Iterate of a step in and out of a solver.
 #[derive(Debug, Default)]

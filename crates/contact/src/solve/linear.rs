@@ -1,26 +1,22 @@
 //! Scenes without contact: projected preconditioned conjugate gradients, no inequality anywhere.
 
-use super::coarse::orthonormal_coarse;
-use super::iterate::{Iterate, step_status};
+use super::coarse::OrthonormalRows;
+use super::iterate::{Iterate, Task, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::report::StepReport;
 use crate::settings::Settings;
-use crate::step::StepProblem;
+use crate::tolerances::LINEAR_SLACK;
 use signorini_qp::{CgWorkspace, Tolerance, projected_cg};
-use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
+use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
-/// Estimated error of the multipliers, over the tolerance of a step, at which conjugate gradients stop: no condition but continuity
-/// is left to them, and what copies differ by, over the largest displacement, is a thirtieth of that error and less. The certificate tells
-/// where it is not.
-const SLACK: f64 = 30.0;
+/// Most products of a step.
+const MOST_PRODUCTS: usize = 10_000;
 
 pub(crate) struct LinearSolver {
-    coarse: OrthonormalCoarse,
-    coarse_scratch: CoarseScratch,
+    rows: OrthonormalRows,
     preconditioner: SelectedPreconditioner,
-    rhs: Vec<f64>,
     work: CgWorkspace<DualOperator, OrthonormalCoarse, SelectedPreconditioner>,
 }
 
@@ -32,53 +28,45 @@ impl std::fmt::Debug for LinearSolver {
 
 impl LinearSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
-        let factor = model.tfeti.coarse_factor();
-        let coarse = orthonormal_coarse(model)?;
+        let rows = OrthonormalRows::new(model)?;
         let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
+        let work = CgWorkspace::new(model.tfeti.dual(), &rows.coarse, &preconditioner);
         Ok(Self {
-            coarse_scratch: factor.scratch(),
-            rhs: vec![0.0; model.tfeti.coarse().rows()],
-            work: CgWorkspace::new(model.tfeti.dual(), &coarse, &preconditioner),
-            coarse,
+            rows,
             preconditioner,
+            work,
         })
     }
 
     pub(crate) fn solve(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        self.coarse
-            .rhs(&problem.rhs, &mut self.rhs, &mut self.coarse_scratch);
+        self.rows.set_rhs(&task.problem.rhs);
+        let tolerance = Tolerance::Error {
+            factor: task.settings.tolerance * LINEAR_SLACK,
+            least: task.problem.least()[0],
+        };
         let outcome = projected_cg(
-            model.tfeti.dual(),
-            &problem.linear,
-            &self.coarse,
-            &self.rhs,
+            task.model.tfeti.dual(),
+            &task.problem.linear,
+            &self.rows.coarse,
+            &self.rows.rhs,
             &self.preconditioner,
-            Tolerance::Error {
-                factor: settings.tolerance * SLACK,
-                least: problem.least()[0],
-            },
-            10_000,
+            tolerance,
+            MOST_PRODUCTS,
             &mut iterate.lambda,
             &mut self.work,
         )?;
+        iterate.known = false;
+        self.rows
+            .amplitudes(self.work.equality_multiplier(), &mut iterate.alpha);
         let mut report = StepReport::new();
         report.status = step_status(outcome.status);
         report.iterations = outcome.iterations;
         report.counters.products = outcome.products;
         report.counters.preconditionings = outcome.preconditionings;
-        iterate.known = false;
-        iterate.alpha.resize(problem.rhs.len(), 0.0);
-        self.coarse.amplitudes(
-            self.work.equality_multiplier(),
-            &mut iterate.alpha,
-            &mut self.coarse_scratch,
-        );
         Ok(report)
     }
 }

@@ -4,7 +4,8 @@ use crate::error::ContactError;
 use crate::model::Model;
 use crate::settings::Preconditioner as Choice;
 use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator, vector};
-use signorini_tfeti::{DualPreconditioner, DualPreconditionerScratch};
+use signorini_tfeti::DualPreconditioner;
+use signorini_tfeti::internal::DualPreconditionerScratch;
 
 /// A preconditioner of the dual problem.
 #[derive(Debug)]

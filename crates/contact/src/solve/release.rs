@@ -1,10 +1,10 @@
 //! Forces at a node that may replace one another, where the rows of the node contradict each other.
 //!
-//! At a node with more rows than displacements ([`Dependency`]) a face may ask for what cannot be: a point sticks where a
-//! support or another obstacle moves it. The solution of such a face leaves a slip or a gap `r` in the null space of `Bᵀ`
-//! that no displacement can change. Then the dual cost falls without end along `-r`, and `B^T lambda` does not change on the
-//! way: multipliers are moved there until a point slides at its bound or lets go, which ends the contradiction. Slip bounds follow the normal
-//! forces on the way.
+//! At a node with more rows than displacements ([`Dependency`]) an active set may ask for what cannot be: a point
+//! sticks where a support or another obstacle moves it. The solution on such a set leaves a slip or a gap `r` in the
+//! null space of `Bᵀ` that no displacement can change. Then the dual cost falls without end along `-r`, and `B^T
+//! lambda` does not change on the way: multipliers are moved there until a point slides at its bound or lets go, which
+//! ends the contradiction. Slip bounds follow the normal forces on the way.
 //!
 //! | local | meaning |
 //! |---|---|
@@ -12,17 +12,12 @@
 //! | `d` | direction in the null space along which `a` moves |
 //! | `held` | rows that stay: those at their bound that `d` would take across it |
 
+use super::iterate::Task;
 use crate::model::{ConstrainedPoint, Model};
-use crate::step::StepProblem;
+use crate::tolerances::{AT_BOUND, NULL_RANK};
 use nalgebra::{DMatrix, DVector};
-use signorini_tfeti::Dependency;
 use signorini_tfeti::TangentialRows;
-
-/// A point within rounding of its bound.
-const AT_BOUND: f64 = 1.0 - 1e-9;
-
-/// Singular values below this part of one count as zero.
-const ZERO: f64 = 1e-9;
+use signorini_tfeti::internal::Dependency;
 
 /// The dependencies of a model, with the points whose rows they hold.
 #[derive(Debug)]
@@ -58,19 +53,21 @@ impl Exchanges {
         )
     }
 
-    /// Ends what the rows of a solved face contradict; whether there was anything. `residual` is that of all rows, `scale`
-    /// the stiffness of contact rows; what would move a force by less than `limit` is left.
+    /// Ends what the rows of a solved active set contradict; whether there was anything. `residual` is that of all
+    /// rows, `scale` the stiffness of contact rows; what would move a force by less than `limit` is left.
     pub(crate) fn settle(
         &self,
-        model: &Model,
-        problem: &StepProblem,
+        task: Task<'_>,
         residual: &[f64],
         (scale, limit): (&[f64], f64),
         lambda: &mut [f64],
     ) -> bool {
         let mut any = false;
         for exchange in &self.0 {
-            any |= exchange.settle(model, problem, residual, (scale, limit), lambda);
+            let rows = exchange.rows.iter().map(|k| residual[*k]);
+            let r = DVector::from_iterator(exchange.rows.len(), rows);
+            let stiffness = scale[exchange.rows[0]];
+            any |= Contradiction { exchange, task, r }.settle(stiffness, limit, lambda);
         }
         any
     }
@@ -99,31 +96,34 @@ impl Exchange {
         let null = DMatrix::from_fn(rows.len(), vectors.len(), |i, k| vectors[k][i]);
         Self { rows, null, points }
     }
+}
 
-    fn settle(
-        &self,
-        model: &Model,
-        problem: &StepProblem,
-        residual: &[f64],
-        (scale, limit): (&[f64], f64),
-        lambda: &mut [f64],
-    ) -> bool {
-        let r = DVector::from_iterator(self.rows.len(), self.rows.iter().map(|k| residual[*k]));
-        let stiffness = scale[self.rows[0]];
+/// The rows of one dependency and what is left of their conditions.
+struct Contradiction<'a> {
+    exchange: &'a Exchange,
+    task: Task<'a>,
+    /// Residual of the rows.
+    r: DVector<f64>,
+}
+
+impl Contradiction<'_> {
+    fn settle(&self, stiffness: f64, limit: f64, lambda: &mut [f64]) -> bool {
+        let rows = &self.exchange.rows;
         let mut any = false;
         // each step ends at a bound
-        for _ in 0..2 * self.rows.len() {
-            let mut found = self.way(model, problem, &r, lambda, true);
+        for _ in 0..2 * rows.len() {
+            let mut found = self.way(lambda, true);
             if found.1.is_infinite() {
                 // slip bounds outgrow friction: with those of now
-                found = self.way(model, problem, &r, lambda, false);
+                found = self.way(lambda, false);
             }
             let (d, length) = found;
-            let small = d.norm() <= model.discrete.rounding || d.norm() * stiffness <= limit;
+            let small =
+                d.norm() <= self.task.model.discrete.rounding || d.norm() * stiffness <= limit;
             if small || !length.is_finite() {
                 break;
             }
-            for (k, d) in self.rows.iter().zip(d.iter()) {
+            for (k, d) in rows.iter().zip(d.iter()) {
                 lambda[*k] += length * d;
             }
             any |= length > 0.0;
@@ -131,23 +131,17 @@ impl Exchange {
         any
     }
 
-    /// Rows that the face does not leave free: those of open and of sliding points.
-    fn held(
-        &self,
-        model: &Model,
-        problem: &StepProblem,
-        r: &DVector<f64>,
-        lambda: &[f64],
-    ) -> Vec<bool> {
-        let mut held = vec![false; self.rows.len()];
-        for place in &self.points {
+    /// Rows that the active set does not leave free: those of open and of sliding points.
+    fn held(&self, lambda: &[f64]) -> Vec<bool> {
+        let (Exchange { rows, points, .. }, r) = (self.exchange, &self.r);
+        let mut held = vec![false; rows.len()];
+        for place in points {
             let normal = place.normal;
-            held[normal] = lambda[self.rows[normal]] >= 0.0 && r[normal] <= 0.0;
-            let point = &model.points[place.point];
-            let radius = problem.bound(place.point, point, lambda) / place.scale;
+            held[normal] = lambda[rows[normal]] >= 0.0 && r[normal] <= 0.0;
+            let radius = self.radius(place, lambda);
             let (mut square, mut along) = (0.0, 0.0);
             for k in &place.tangential {
-                let a = lambda[self.rows[*k]];
+                let a = lambda[rows[*k]];
                 square += a * a;
                 along += a * r[*k];
             }
@@ -159,29 +153,25 @@ impl Exchange {
     }
 
     /// The direction in which the multipliers move, and how far to the next bound.
-    fn way(
-        &self,
-        model: &Model,
-        problem: &StepProblem,
-        r: &DVector<f64>,
-        lambda: &[f64],
-        follow: bool,
-    ) -> (DVector<f64>, f64) {
-        let mut held = self.held(model, problem, r, lambda);
+    fn way(&self, lambda: &[f64], follow: bool) -> (DVector<f64>, f64) {
+        let Exchange {
+            rows: own, points, ..
+        } = self.exchange;
+        let mut held = self.held(lambda);
         loop {
-            let d = self.descent(r, &held);
+            let d = self.descent(&held);
             let mut length = f64::INFINITY;
             let mut stopped = false;
-            for place in &self.points {
+            for place in points {
                 let along = d[place.normal];
                 let opens = match along > 0.0 {
-                    true => (-lambda[self.rows[place.normal]] / along).max(0.0),
+                    true => (-lambda[own[place.normal]] / along).max(0.0),
                     false => f64::INFINITY,
                 };
                 let mut stops = vec![(std::slice::from_ref(&place.normal), opens)];
                 // friction of a point that slides follows its bound afterwards
                 if place.tangential.iter().any(|k| !held[*k]) {
-                    let slides = self.slides(model, problem, place, lambda, (&d, follow));
+                    let slides = self.slides(place, lambda, &d, follow);
                     stops.push((&place.tangential, slides));
                 }
                 for (rows, to) in stops {
@@ -199,37 +189,30 @@ impl Exchange {
     }
 
     /// `-r` in the part of the null space that leaves `held` rows alone.
-    fn descent(&self, r: &DVector<f64>, held: &[bool]) -> DVector<f64> {
+    fn descent(&self, held: &[bool]) -> DVector<f64> {
+        let (null, r) = (&self.exchange.null, &self.r);
         let free = |k: usize| if held[k] { 0.0 } else { -r[k] };
-        let w = self
-            .null
-            .tr_mul(&DVector::from_fn(held.len(), |k, _| free(k)));
+        let w = null.tr_mul(&DVector::from_fn(held.len(), |k, _| free(k)));
         let rows: Vec<usize> = (0..held.len()).filter(|k| held[*k]).collect();
         if rows.is_empty() {
-            return &self.null * w;
+            return null * w;
         }
-        let fixed = self.null.select_rows(&rows);
+        let fixed = null.select_rows(&rows);
         let off = &fixed * &w;
-        let correction = fixed.svd(true, true).solve(&off, ZERO);
-        let mut d =
-            &self.null * (w - correction.unwrap_or_else(|_| DVector::zeros(self.null.ncols())));
+        let correction = fixed.svd(true, true).solve(&off, NULL_RANK);
+        let mut d = null * (w - correction.unwrap_or_else(|_| DVector::zeros(null.ncols())));
         // what is held does not move by rounding either
         rows.iter().for_each(|k| d[*k] = 0.0);
         d
     }
 
-    /// How far along `d` friction reaches its bound, which follows the normal force; 0 where it is there and would cross it.
-    fn slides(
-        &self,
-        model: &Model,
-        problem: &StepProblem,
-        place: &Place,
-        lambda: &[f64],
-        (d, follow): (&DVector<f64>, bool),
-    ) -> f64 {
-        let point = &model.points[place.point];
-        let radius = problem.bound(place.point, point, lambda) / place.scale;
-        let normal = self.rows[place.normal];
+    /// How far along `d` friction reaches its bound, which follows the normal force; 0 where it is there and would
+    /// cross it.
+    fn slides(&self, place: &Place, lambda: &[f64], d: &DVector<f64>, follow: bool) -> f64 {
+        let Task { model, problem, .. } = self.task;
+        let rows = &self.exchange.rows;
+        let (point, radius) = (&model.points[place.point], self.radius(place, lambda));
+        let normal = rows[place.normal];
         let slope = match follow && (lambda[normal] < 0.0 || d[place.normal] < 0.0) {
             true => problem.coefficients[place.point] * point.scale / place.scale,
             false => 0.0,
@@ -237,7 +220,7 @@ impl Exchange {
         let growth = -slope * d[place.normal];
         let (mut aa, mut ad, mut dd) = (-radius * radius, -radius * growth, -growth * growth);
         for k in &place.tangential {
-            let a = lambda[self.rows[*k]];
+            let a = lambda[rows[*k]];
             aa += a * a;
             ad += a * d[*k];
             dd += d[*k] * d[*k];
@@ -252,5 +235,11 @@ impl Exchange {
             true if ad > 0.0 => aa.min(0.0) / -(ad + root.sqrt()),
             _ => f64::INFINITY,
         }
+    }
+
+    /// Slip bound of a point, as a multiplier.
+    fn radius(&self, place: &Place, lambda: &[f64]) -> f64 {
+        let Task { model, problem, .. } = self.task;
+        problem.slip_bound(place.point, &model.points[place.point], lambda) / place.scale
     }
 }

@@ -1,39 +1,30 @@
 //! The paper's methods: successive approximations (3.17) with given-friction problems by SMALSE and KPRGP
 //! (Algorithm 4.1), and the one inexact loop in which the slip bounds follow the outer steps of SMALSE.
 
-use super::coarse::orthonormal_coarse;
-use super::iterate::{Iterate, is_coulomb, step_status};
+use super::coarse::OrthonormalRows;
+use super::iterate::{Iterate, Task, is_coulomb, step_status};
+use super::successive::{Contraction, successive_approximations};
 use crate::error::ContactError;
 use crate::model::{DISCS, INTERVALS, Model};
-use crate::report::{
-    Contraction, FixedPointReport, StepReport, Verdict, successive_approximations,
-};
+use crate::report::{FixedPointReport, StepReport, Verdict};
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings};
 use crate::status::StepStatus;
-use crate::step::StepProblem;
+use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::{
     HookAction, NormSettings, OuterHook, OuterStep, ProductSet, Projected, Segment, SmalseReport,
     SmalseSettings, SmalseWorkspace, Status, Tolerance, norm_estimate, smalse, vector,
 };
-use signorini_tfeti::{CoarseScratch, DualOperator, OrthonormalCoarse};
-
-/// Safety factor between the tolerance of a step and those of SMALSE.
-const SAFETY: f64 = 0.05;
-
-/// Relative changes below this one that do not halve are put down to the inner solve.
-const STALL: f64 = 1e-4;
+use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// How often a step may tighten the inner tolerance tenfold.
 const MAX_TIGHTENINGS: usize = 3;
 
 pub(crate) struct SmalseSolver {
-    coarse: OrthonormalCoarse,
-    coarse_scratch: CoarseScratch,
+    rows: OrthonormalRows,
     norm: f64,
     norm_products: usize,
     set: ProductSet,
-    rhs: Vec<f64>,
     work: SmalseWorkspace<DualOperator, OrthonormalCoarse>,
     settings: SmalseSettings,
     accuracy: InnerAccuracy,
@@ -61,19 +52,14 @@ impl SmalseSolver {
                 _ => (SmalseSettings::default(), InnerAccuracy::default(), false),
             },
         };
-        let factor = model.tfeti.coarse_factor();
-        let coarse = orthonormal_coarse(model)?;
+        let rows = OrthonormalRows::new(model)?;
         let operator = model.tfeti.dual();
-        let estimate = norm_estimate(
-            &Projected::new(operator, &coarse)?,
-            &NormSettings::default(),
-        )?;
+        let projected = Projected::new(operator, &rows.coarse)?;
+        let estimate = norm_estimate(&projected, &NormSettings::default())?;
         Ok(Self {
-            coarse_scratch: factor.scratch(),
-            work: SmalseWorkspace::new(operator, &coarse),
-            rhs: vec![0.0; model.tfeti.coarse().rows()],
+            work: SmalseWorkspace::new(operator, &rows.coarse),
             set: model.set.clone(),
-            coarse,
+            rows,
             norm: estimate.upper,
             norm_products: estimate.products,
             settings: smalse,
@@ -87,63 +73,60 @@ impl SmalseSolver {
     pub(crate) fn solve_within(
         &mut self,
         limit: usize,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         self.left = limit;
-        let report = self.solve(model, problem, settings, iterate);
+        let report = self.solve(task, iterate);
         self.left = usize::MAX;
         report
     }
 
     pub(crate) fn solve(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        self.coarse
-            .rhs(&problem.rhs, &mut self.rhs, &mut self.coarse_scratch);
-        iterate.multiplier.resize(self.rhs.len(), 0.0);
+        self.rows.set_rhs(&task.problem.rhs);
+        iterate.multiplier.resize(self.rows.rhs.len(), 0.0);
         let mut report = StepReport::new();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
-        if !is_coulomb(model) {
-            problem.slip_bounds(model, &iterate.lambda, &mut self.set);
-            report.counters.slip_bound_updates = usize::from(model.any_law(Friction::is_some));
-            let qp = self.given_friction(
-                model,
-                problem,
-                settings.tolerance * SAFETY,
-                &mut (),
-                iterate,
-            )?;
-            add(&mut report, &qp);
-            report.iterations = 1;
-            report.status = step_status(qp.status);
+        if !is_coulomb(task.model) {
+            self.tresca(task, iterate, &mut report)?;
         } else if self.one_loop {
-            self.inexact_loop(model, problem, settings, iterate, &mut report)?;
+            self.inexact_loop(task, iterate, &mut report)?;
         } else {
-            self.fixed_point(model, problem, settings, iterate, &mut report)?;
+            self.fixed_point(task, iterate, &mut report)?;
         }
         iterate.known = false;
-        iterate.alpha.resize(problem.rhs.len(), 0.0);
-        self.coarse.amplitudes(
-            self.work.equality_multiplier(),
-            &mut iterate.alpha,
-            &mut self.coarse_scratch,
-        );
+        self.rows
+            .amplitudes(self.work.equality_multiplier(), &mut iterate.alpha);
         Ok(report)
+    }
+
+    /// One problem whose slip bounds are known.
+    fn tresca(
+        &mut self,
+        task: Task<'_>,
+        iterate: &mut Iterate,
+        report: &mut StepReport,
+    ) -> Result<(), ContactError> {
+        task.problem
+            .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
+        report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
+        let tolerance = task.settings.tolerance * SMALSE_SAFETY;
+        let qp = self.given_friction(task, tolerance, &mut (), iterate)?;
+        add(report, &qp);
+        report.iterations = 1;
+        report.status = step_status(qp.status);
+        Ok(())
     }
 
     /// Problem (D(g)) with the slip bounds that are in the set.
     fn given_friction(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
+        task: Task<'_>,
         tolerance: f64,
         hook: &mut impl OuterHook<ProductSet>,
         iterate: &mut Iterate,
@@ -153,12 +136,11 @@ impl SmalseSolver {
             .with_tolerance(Tolerance::Relative(tolerance))
             .with_equality(tolerance);
         settings.inner.max_products = settings.inner.max_products.min(self.left).max(1);
-        let operator = model.tfeti.dual();
         let report = smalse(
-            operator,
-            &problem.linear,
-            &self.coarse,
-            &self.rhs,
+            task.model.tfeti.dual(),
+            &task.problem.linear,
+            &self.rows.coarse,
+            &self.rows.rhs,
             &mut self.set,
             self.norm,
             &settings,
@@ -174,19 +156,22 @@ impl SmalseSolver {
     /// (3.17): the map takes normal multipliers to normal multipliers.
     fn fixed_point(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
         report: &mut StepReport,
     ) -> Result<(), ContactError> {
+        let Task {
+            model,
+            problem,
+            settings,
+        } = task;
         let normal = model.tfeti.gluing().ranges().normal.clone();
         let mut x: Vec<f64> = iterate.lambda[normal.clone()]
             .iter()
             .map(|v| v.min(0.0))
             .collect();
         let mut inner = Status::Converged;
-        let mut target = settings.tolerance * SAFETY;
+        let mut target = settings.tolerance * SMALSE_SAFETY;
         let mut last = f64::INFINITY;
         let mut tightenings = 0;
         let mut exact = 0;
@@ -198,7 +183,7 @@ impl SmalseSolver {
             |x, change| {
                 // Small contact forces under large loads: changes that stall above the tolerance are
                 // errors of the inner solve.
-                let stalls = exact > 2 && change > 0.5 * last && change < STALL;
+                let stalls = exact > 2 && change > 0.5 * last && change < INNER_STALL;
                 if stalls && tightenings < MAX_TIGHTENINGS {
                     target *= 0.1;
                     tightenings += 1;
@@ -216,10 +201,10 @@ impl SmalseSolver {
                     _ => target,
                 };
                 iterate.lambda[normal.clone()].copy_from_slice(x);
-                problem.slip_bounds(model, &iterate.lambda, &mut self.set);
+                problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
                 report.counters.slip_bound_updates += 1;
                 let qp = self
-                    .given_friction(model, problem, tolerance, &mut (), iterate)
+                    .given_friction(task, tolerance, &mut (), iterate)
                     .map_err(Some)?;
                 inner = qp.status;
                 add(report, &qp);
@@ -256,15 +241,14 @@ impl SmalseSolver {
     /// Slip bounds follow every outer step of one SMALSE run.
     fn inexact_loop(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
         report: &mut StepReport,
     ) -> Result<(), ContactError> {
-        problem.slip_bounds(model, &iterate.lambda, &mut self.set);
-        let tolerance = settings.tolerance * SAFETY;
-        let mut contraction = Contraction::new();
+        let Task { model, problem, .. } = task;
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
+        let tolerance = task.settings.tolerance * SMALSE_SAFETY;
+        let mut contraction = Contraction::default();
         let mut updates = 1;
         let mut last_change = f64::INFINITY;
         // bounds of normal forces that vanish
@@ -272,7 +256,7 @@ impl SmalseSolver {
         let least = coefficient * problem.least()[1];
         let mut hook = |step: &OuterStep<'_>, set: &mut ProductSet| {
             let old = radii(set);
-            problem.slip_bounds(model, step.x, set);
+            problem.write_slip_bounds(model, step.x, set);
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
@@ -288,7 +272,7 @@ impl SmalseSolver {
                 HookAction::SetChanged
             }
         };
-        let qp = self.given_friction(model, problem, tolerance, &mut hook, iterate)?;
+        let qp = self.given_friction(task, tolerance, &mut hook, iterate)?;
         add(report, &qp);
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;

@@ -1,7 +1,7 @@
 //! The solver of a step: chooses by effect and method, owns all work memory.
 
 use super::active_set::ActiveSetSolver;
-use super::iterate::Iterate;
+use super::iterate::{Iterate, Task};
 use super::linear::LinearSolver;
 use super::scaling::scaled;
 use super::smalse::SmalseSolver;
@@ -9,7 +9,6 @@ use crate::error::ContactError;
 use crate::model::Model;
 use crate::report::StepReport;
 use crate::settings::{Method, Settings};
-use crate::step::StepProblem;
 
 /// The solvers that a scene can need; only what it needs exists.
 #[derive(Debug)]
@@ -19,7 +18,7 @@ pub(crate) enum Solver {
     /// The default.
     ActiveSet(Box<ActiveSetSolver>),
     /// The paper's methods.
-    Paper(Box<SmalseSolver>),
+    Smalse(Box<SmalseSolver>),
 }
 
 impl Solver {
@@ -28,42 +27,44 @@ impl Solver {
             return Ok(Self::Linear(Box::new(LinearSolver::new(model, settings)?)));
         }
         Ok(match &settings.method {
-            Method::ActiveSet(face) => {
-                Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, face)?))
+            Method::ActiveSet(own) => {
+                Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?))
             }
             Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } => {
-                Self::Paper(Box::new(SmalseSolver::new(model, settings)?))
+                Self::Smalse(Box::new(SmalseSolver::new(model, settings)?))
             }
         })
     }
 
-    /// Solves a step; every body in a unit of force of its own .
+    /// Solves a step; every body in a unit of force of its own.
     pub(crate) fn solve(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        let Some((problem, units)) = scaled(model, problem, iterate) else {
-            return self.solve_plain(model, problem, settings, iterate);
+        let Some((problem, units)) = scaled(task.model, task.problem, iterate) else {
+            return self.solve_plain(task, iterate);
         };
-        let report = self.solve_plain(model, &problem, settings, iterate);
+        let report = self.solve_plain(
+            Task {
+                problem: &problem,
+                ..task
+            },
+            iterate,
+        );
         units.restore(iterate);
         report
     }
 
     fn solve_plain(
         &mut self,
-        model: &Model,
-        problem: &StepProblem,
-        settings: &Settings,
+        task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         match self {
-            Self::Linear(solver) => solver.solve(model, problem, settings, iterate),
-            Self::ActiveSet(solver) => solver.solve(model, problem, settings, iterate),
-            Self::Paper(solver) => solver.solve(model, problem, settings, iterate),
+            Self::Linear(solver) => solver.solve(task, iterate),
+            Self::ActiveSet(solver) => solver.solve(task, iterate),
+            Self::Smalse(solver) => solver.solve(task, iterate),
         }
     }
 }

@@ -15,8 +15,8 @@ fn checksum(bytes: &[u8]) -> u64 {
 }
 
 impl State {
-    /// Writes the state as bytes (feature `checkpoint`): a number for the format (4 bytes) and a checksum of the rest (8 bytes,
-    /// FNV-1a), both little-endian, then the state in the encoding of postcard.
+    /// Writes the state as bytes (feature `checkpoint`): a number for the format (4 bytes) and a checksum of the rest
+    /// (8 bytes, FNV-1a), both little-endian, then the state in the encoding of postcard.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the encoder fails.
@@ -30,8 +30,8 @@ impl State {
         Ok(bytes)
     }
 
-    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`). The checksum finds damage by chance; it is no
-    /// protection against bytes made on purpose.
+    /// Reads what [`to_bytes`](Self::to_bytes) wrote (feature `checkpoint`). The checksum finds damage by chance; it is
+    /// no protection against bytes made on purpose.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the bytes are of another format, cut, changed, or followed by others.
@@ -70,8 +70,8 @@ impl State {
         }
     }
 
-    /// Stores the state in a file (feature `checkpoint`). The file is complete at any moment: a kill or a full disk leaves the state that
-    /// was there before ([`replace_file`](signorini_fem_mesh::replace_file)).
+    /// Stores the state in a file (feature `checkpoint`). The file is complete at any moment: a kill or a full disk
+    /// leaves the state that was there before ([`replace_file`](signorini_fem_mesh::replace_file)).
     ///
     /// # Errors
     /// [`ContactError::CheckpointFile`] if the file system refuses.
@@ -83,8 +83,8 @@ impl State {
     /// Reads what [`save`](Self::save) stored (feature `checkpoint`).
     ///
     /// # Errors
-    /// [`ContactError::CheckpointFile`] if the file system refuses, with [`NotFound`](std::io::ErrorKind::NotFound) where there is no file yet;
-    /// [`ContactError::Checkpoint`] as [`from_bytes`](Self::from_bytes), with the file.
+    /// [`ContactError::CheckpointFile`] if the file system refuses, with [`NotFound`](std::io::ErrorKind::NotFound)
+    /// where there is no file yet; [`ContactError::Checkpoint`] as [`from_bytes`](Self::from_bytes), with the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ContactError> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|source| file_error(path, "read", source))?;

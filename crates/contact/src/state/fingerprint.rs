@@ -1,7 +1,8 @@
-//! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean something else.
+//! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean
+//! something else.
 //!
-//! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between two
-//! steps, and so may settings: the state is then where the changed scene goes on from.
+//! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between
+//! two steps, and so may settings: the state is then where the changed scene goes on from.
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Analysis, DifferenceFormula};
@@ -71,8 +72,8 @@ impl Fingerprint {
     }
 }
 
-/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in lanes: it is
-/// taken at every step.
+/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in
+/// lanes: it is taken at every step.
 pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
     let mut lanes = [operator; 8];
     for part in [lambda, f_lambda] {
@@ -115,9 +116,9 @@ fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
         .chain(numbers.chain([point.area()]).map(number))
 }
 
-/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the
-/// numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made, which changes F on forces
-/// that are not in balance.
+/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what
+/// gives the numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made,
+/// which changes F on forces that are not in balance.
 pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Settings) -> u64 {
     let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
     let body = [origin.points, origin.tets, origin.parts, origin.contact];
@@ -138,10 +139,7 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
             std::iter::once(row as u64).chain(numbers)
         })
     });
-    let how = format!(
-        "{:?}",
-        (settings.row_scaling, settings.sharing, settings.inverse)
-    );
+    let how = format!("{:?}", (settings.share_translates, settings.inverse));
     let words = body.into_iter().chain(laws.map(|x| number(*x)));
     let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
     let words = words.chain(entries).chain(scales);
@@ -149,8 +147,7 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
 }
 
 fn formula(formula: DifferenceFormula) -> u64 {
-    let weights = [formula.alpha(), formula.beta(), formula.gamma()];
-    hash(weights.into_iter().map(number))
+    hash(formula.weights().into_iter().map(number))
 }
 
 /// The fixed directions of each node, as the projector on them, rounded: neither the order of supports nor the scale of
@@ -159,7 +156,7 @@ fn supports(model: &Model) -> u64 {
     let gluing = model.tfeti.gluing();
     let mut nodes: BTreeMap<u32, [f64; 6]> = BTreeMap::new();
     for row in gluing.ranges().dirichlet.clone() {
-        let d = model.support_direction(row);
+        let d = gluing.direction(row);
         let square = d.iter().map(|v| v * v).sum::<f64>();
         let Some(node) = gluing.node(row).filter(|_| square > 0.0) else {
             continue;

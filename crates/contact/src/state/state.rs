@@ -11,29 +11,29 @@ use crate::error::ContactError;
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Steps solved.
-    pub(super) step: usize,
+    pub(crate) step: usize,
     /// Multipliers of the last step and the one before.
-    pub(super) lambda: [Vec<f64>; 2],
+    pub(crate) lambda: [Vec<f64>; 2],
     /// `F lambda` of the same.
-    pub(super) f_lambda: [Vec<f64>; 2],
+    pub(crate) f_lambda: [Vec<f64>; 2],
     /// Multiplier of the coarse equality, for the methods that carry one.
-    pub(super) multiplier: [Vec<f64>; 2],
+    pub(crate) multiplier: [Vec<f64>; 2],
     /// Tangential displacements of the last step and the one before, m, one a tangential row.
-    pub(super) trace: [Vec<f64>; 2],
+    pub(crate) trace: [Vec<f64>; 2],
     /// Slip rate at each contact point, m/s; only if the coefficient depends on it.
-    pub(super) rate: Vec<f64>,
+    pub(crate) rate: Vec<f64>,
     /// Points that slid at the last step.
-    pub(super) sliding: Vec<bool>,
+    pub(crate) sliding: Vec<bool>,
     /// What chooses the tolerance of the next step by estimates of the error.
-    pub(super) controller: Controller,
+    pub(crate) controller: Controller,
     /// Largest sizes of each body at the steps so far.
-    pub(super) peaks: Vec<Peak>,
+    pub(crate) peaks: Vec<Peak>,
     /// With history: the first step that did not converge.
-    pub(super) unconverged: Option<usize>,
+    pub(crate) unconverged: Option<usize>,
     /// What its numbers refer to; `None` if that is not to be compared.
-    pub(super) origin: Option<Fingerprint>,
+    pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
-    pub(super) seals: [u64; 2],
+    pub(crate) seals: [u64; 2],
 }
 
 /// Largest sizes of a body at earlier steps: what a step where forces and displacements vanish is measured against.
@@ -62,6 +62,8 @@ impl Peak {
 /// What a step leaves; vectors that the scene does not need are empty.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
+    /// Time of the step, s.
+    pub(crate) time: f64,
     pub(crate) lambda: Vec<f64>,
     /// `F lambda`.
     pub(crate) f_lambda: Vec<f64>,
@@ -85,38 +87,16 @@ impl State {
     /// Bytes held.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        let numbers: usize = pairs
-            .iter()
-            .flat_map(|p| p.iter())
-            .map(Vec::len)
-            .sum::<usize>()
-            + self.rate.len();
-        8 * numbers + self.sliding.len()
+        8 * self.numbers().map(Vec::len).sum::<usize>() + self.sliding.len()
     }
 
-    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume) then compares
-    /// sizes only. Multipliers are start values there; tangential displacements and slip rates are taken for those of the
-    /// points with the same numbers.
+    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume)
+    /// then compares sizes only. Multipliers are start values there; tangential displacements and slip rates are taken
+    /// for those of the points with the same numbers.
     #[must_use]
     pub fn without_origin(mut self) -> Self {
         self.origin = None;
         self
-    }
-
-    /// What its numbers refer to.
-    pub(crate) fn origin(&self) -> Option<Fingerprint> {
-        self.origin
-    }
-
-    /// Notes what its numbers refer to.
-    pub(crate) fn set_origin(&mut self, origin: Fingerprint) {
-        self.origin = Some(origin);
-    }
-
-    /// Notes that the product of the last step is one with this F.
-    pub(crate) fn seal(&mut self, operator: u64) {
-        self.seals[0] = seal(operator, &self.lambda[0], &self.f_lambda[0]);
     }
 
     /// Hands multipliers and their products to `renew` where they are not those that were stored with this F.
@@ -134,13 +114,6 @@ impl State {
         }
     }
 
-    /// Notes the time of the step that is being taken over.
-    pub(crate) fn pass(&mut self, time: f64) {
-        if let Some(origin) = &mut self.origin {
-            origin.pass(time);
-        }
-    }
-
     /// The first step that did not converge and on whose displacement later steps depend, from 0. `None` where all
     /// converged, and in scenes without history (no friction, or static), whose steps stand alone.
     #[must_use]
@@ -153,44 +126,14 @@ impl State {
         self.unconverged = self.unconverged.or(Some(self.step));
     }
 
-    /// What chooses tolerances by estimates.
-    pub(crate) fn controller(&self) -> Controller {
-        self.controller
-    }
-
-    /// Notes it.
-    pub(crate) fn set_controller(&mut self, controller: Controller) {
-        self.controller = controller;
-    }
-
-    pub(crate) fn lambda(&self) -> &[Vec<f64>; 2] {
-        &self.lambda
-    }
-
-    pub(crate) fn f_lambda(&self) -> &[Vec<f64>; 2] {
-        &self.f_lambda
-    }
-
-    pub(crate) fn multiplier(&self) -> &[Vec<f64>; 2] {
-        &self.multiplier
-    }
-
     /// Last and older trace of a tangential row; zero before the start.
     pub(crate) fn traces(&self, k: usize) -> (f64, f64) {
         let get = |v: &Vec<f64>| v.get(k).copied().unwrap_or(0.0);
         (get(&self.trace[0]), get(&self.trace[1]))
     }
 
-    pub(crate) fn rates(&self) -> &[f64] {
-        &self.rate
-    }
-
-    pub(crate) fn sliding(&self) -> &[bool] {
-        &self.sliding
-    }
-
-    /// Takes over what a step leaves.
-    pub(crate) fn advance(&mut self, keep_before: bool, new: Kept) {
+    /// Takes over what a step leaves, whose products are those with this F.
+    pub(crate) fn advance(&mut self, keep_before: bool, operator: u64, new: Kept) {
         let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
             pair.swap(0, 1);
             pair[0] = new;
@@ -201,18 +144,19 @@ impl State {
         push(&mut self.lambda, new.lambda);
         push(&mut self.f_lambda, new.f_lambda);
         push(&mut self.multiplier, new.multiplier);
-        self.seals.swap(0, 1);
+        self.seals = [
+            seal(operator, &self.lambda[0], &self.f_lambda[0]),
+            self.seals[0],
+        ];
         // old tangential displacements are part of the model, not of the extrapolation
         self.trace.swap(0, 1);
         self.trace[0] = new.trace;
         self.rate = new.rate;
         self.sliding = new.sliding;
         self.step += 1;
-    }
-
-    /// Largest sizes of each body at the steps so far; empty before the first.
-    pub(crate) fn peaks(&self) -> &[Peak] {
-        &self.peaks
+        if let Some(origin) = &mut self.origin {
+            origin.pass(new.time);
+        }
     }
 
     /// Takes the sizes of a step into account, one a body.
@@ -231,63 +175,54 @@ impl State {
         tangential: usize,
         points: usize,
     ) -> Result<(), ContactError> {
-        let fit = |v: &Vec<f64>, n: usize| v.is_empty() || v.len() == n;
-        let pairs = |v: &[Vec<f64>; 2], n: usize| v.iter().all(|v| fit(v, n));
-        let flags = self.sliding.is_empty() || self.sliding.len() == points;
+        let refuse = |reason: String| Err(ContactError::Checkpoint { reason });
+        let fit = |length: usize, n: usize| length == 0 || length == n;
+        let pairs = |v: &[Vec<f64>; 2], n: usize| v.iter().all(|v| fit(v.len(), n));
         // what is most telling first
         let parts = [
-            ("number of contact points", fit(&self.rate, points) && flags),
             (
-                "number of directions with friction (a coefficient that is zero everywhere is no friction)",
+                "contact points",
+                fit(self.rate.len(), points) && fit(self.sliding.len(), points),
+            ),
+            (
+                "directions with friction (a coefficient that is zero everywhere is no friction)",
                 pairs(&self.trace, tangential),
             ),
             (
-                "number of rows (gluing, supports, contact)",
+                "rows (gluing, supports, contact)",
                 pairs(&self.lambda, rows) && pairs(&self.f_lambda, rows),
             ),
             (
-                "number of rigid motions of subdomains",
+                "rigid motions of subdomains",
                 pairs(&self.multiplier, coarse),
             ),
         ];
-        let numbers = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        let finite = numbers
-            .iter()
-            .flat_map(|p| p.iter())
-            .chain([&self.rate])
-            .flatten()
-            .all(|v| v.is_finite());
         if let Some((part, _)) = parts.iter().find(|(_, good)| !good) {
-            return Err(ContactError::Checkpoint {
-                reason: format!(
-                    "it belongs to another scene, with another {part}; continue with the scene that it was stored with"
-                ),
-            });
+            return refuse(format!(
+                "it belongs to another scene, with another number of {part}; continue with the scene that it was stored with"
+            ));
         }
-        if !finite {
-            return Err(ContactError::Checkpoint {
-                reason: "it contains NaN or infinity; use an earlier checkpoint or start anew"
-                    .to_owned(),
-            });
-        }
-        if self.unconverged.is_some_and(|k| k >= self.step) {
-            return Err(ContactError::Checkpoint {
-                reason: "it says that a level did not converge that it has not solved; use an earlier checkpoint or \
-                         start anew"
-                    .to_owned(),
-            });
-        }
-        let peaks = self.peaks.iter();
-        let sizes = peaks.flat_map(|p| [p.multipliers, p.force, p.displacement]);
+        let sizes = self
+            .peaks
+            .iter()
+            .flat_map(|p| [p.multipliers, p.force, p.displacement]);
         let mut sizes = sizes.chain(self.controller.numbers());
-        if !sizes.all(|v| v.is_finite() && v >= 0.0) {
-            return Err(ContactError::Checkpoint {
-                reason: "an error, a tolerance or a size of earlier levels in it is negative, NaN or infinite; use an \
-                         earlier checkpoint or start anew"
-                    .to_owned(),
-            });
-        }
-        Ok(())
+        let damage = if !self.numbers().flatten().all(|v| v.is_finite()) {
+            "it contains NaN or infinity"
+        } else if self.unconverged.is_some_and(|k| k >= self.step) {
+            "it says that a step did not converge that it has not solved"
+        } else if !sizes.all(|v| v.is_finite() && v >= 0.0) {
+            "an error, a tolerance or a size of earlier steps in it is negative, NaN or infinite"
+        } else {
+            return Ok(());
+        };
+        refuse(format!("{damage}; use an earlier checkpoint or start anew"))
+    }
+
+    /// All vectors of numbers.
+    fn numbers(&self) -> impl Iterator<Item = &Vec<f64>> {
+        let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
+        pairs.into_iter().flatten().chain([&self.rate])
     }
 }
 
@@ -315,7 +250,7 @@ pub(crate) mod tests {
             sliding: vec![true],
             ..Kept::default()
         };
-        state.advance(true, kept);
+        state.advance(true, 0, kept);
         state
     }
 
@@ -325,7 +260,7 @@ pub(crate) mod tests {
         assert_eq!(state.unconverged_history(), None);
         state.note_unconverged();
         for _ in 0..2 {
-            state.advance(true, Kept::default());
+            state.advance(true, 0, Kept::default());
             state.note_unconverged();
         }
         assert_eq!((state.step(), state.unconverged_history()), (3, Some(1)));
@@ -366,7 +301,7 @@ pub(crate) mod tests {
             sliding: vec![false],
             ..Kept::default()
         };
-        state.advance(true, kept);
+        state.advance(true, 0, kept);
         assert!(state.fits(2, 6, 1, 1).is_err());
     }
 }

@@ -75,8 +75,8 @@ impl Controller {
         self.tolerance
     }
 
-    /// After a solve that missed a target; `false` if nothing tighter can be asked for. Targets are pairs of what was found and
-    /// what is wanted.
+    /// After a solve that missed a target; `false` if nothing tighter can be asked for. Targets are pairs of what was
+    /// found and what is wanted.
     pub(crate) fn tighten(&mut self, targets: [(f64, f64); 2]) -> bool {
         if self.tolerance <= TIGHTEST {
             return false;

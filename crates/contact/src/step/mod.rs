@@ -6,5 +6,6 @@
 #[cfg(test)]
 pub(crate) mod example;
 mod problem;
+mod slip_bounds;
 
 pub(crate) use problem::{StepProblem, entry_or_zero};

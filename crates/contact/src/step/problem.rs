@@ -1,12 +1,12 @@
-//! The dual problem of one step: offsets, loads, and slip bounds that follow the normal forces.
+//! The dual problem of one step: loads and offsets.
 
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
-use crate::scene::{Friction, Scene};
+use crate::scene::Scene;
 use crate::state::{Peak, State};
 use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
-use signorini_qp::{ProductSet, vector};
+use signorini_qp::vector;
 
 /// Data of one step; vectors are allocated once and rewritten.
 #[derive(Debug, Default, Clone)]
@@ -62,7 +62,7 @@ impl StepProblem {
         self.time = time;
         self.step = analysis.step_size(index);
         self.peaks.clear();
-        self.peaks.extend_from_slice(state.peaks());
+        self.peaks.extend_from_slice(&state.peaks);
         self.peaks
             .resize(model.bodies.count().max(1), Peak::default());
         self.factors.clear();
@@ -104,7 +104,7 @@ impl StepProblem {
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
             *d = c - l;
         }
-        self.friction(model, state)
+        self.find_friction(model, state)
     }
 
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.
@@ -205,47 +205,6 @@ impl StepProblem {
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
         let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
         model.tfeti.combine_forces(&loads)
-    }
-
-    /// Coefficients and Tresca bounds of all points; anew only where the coefficient follows the slip rate.
-    fn friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
-        let known = !self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate);
-        if known || !model.any_law(Friction::is_some) {
-            return Ok(());
-        }
-        // none where the law fails at a point: a later step must not take a part for all
-        self.coefficients.clear();
-        let value = |(k, point): (usize, &ConstrainedPoint)| -> Result<_, ContactError> {
-            let (node, place) = (point.node(), point.position());
-            let rate = state.rates().get(k).copied().unwrap_or(0.0);
-            Ok(match model.law(point) {
-                Friction::None => (0.0, 0.0),
-                Friction::Tresca(bound) => (0.0, bound.stress(node, place)? * point.area()),
-                Friction::Coulomb(law) => (law.value(node, place, rate)?, 0.0),
-            })
-        };
-        let values: Result<Vec<_>, _> = model.points.iter().enumerate().map(value).collect();
-        (self.coefficients, self.tresca) = values?.into_iter().unzip();
-        Ok(())
-    }
-
-    /// Writes the slip bounds into the set: those of Tresca friction, or the coefficients times the normal forces in
-    /// `lambda`.
-    pub(crate) fn slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
-        model.set_slip_bounds(set, |k, point| self.bound(k, point, lambda));
-    }
-
-    /// Slip bound of a point in units of force of its body (newtons), `-F_i lambda_nu,i` or that of Tresca
-    /// friction; 0 without friction.
-    pub(crate) fn bound(&self, k: usize, point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
-        let (Some(tresca), Some(coefficient)) = (self.tresca.get(k), self.coefficients.get(k))
-        else {
-            return 0.0;
-        };
-        let unit = self.units.get(k).copied().unwrap_or(1.0);
-        // pressing force, not negative
-        let pressure = (-point.scale * lambda[point.row]).max(0.0);
-        tresca / unit + coefficient * pressure
     }
 }
 

@@ -5,8 +5,8 @@ use signorini_fem_mesh::energy_of_difference;
 
 #[test]
 fn nothing_is_estimated_unless_asked_for() {
-    let level = solve(pressed(2, Friction::coulomb(0.3)), Settings::default());
-    assert!(level.report.accuracy.is_none());
+    let result = solve(pressed(2, Friction::coulomb(0.3)), Settings::default());
+    assert!(result.report.accuracy.is_none());
 }
 
 #[test]
@@ -18,18 +18,18 @@ fn a_relative_accuracy_is_reached_and_reported() {
     for target in [1e-2, 1e-4, 1e-6] {
         let settings = Settings::default().with_accuracy(Accuracy::Relative(target));
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
-        for (k, level) in rest(&mut simulation).iter().enumerate() {
-            let report = level.report.accuracy.expect("a report");
-            assert!(level.report.status.converged() && report.reached && report.target == target);
+        for (k, result) in rest(&mut simulation).iter().enumerate() {
+            let report = result.report.accuracy.expect("a report");
+            assert!(result.report.status.converged() && report.reached && report.target == target);
             assert!(report.algebraic.relative() <= target && report.discretisation.is_none());
-            let d: Vec<f64> = (level.displacement.iter().zip(&exact[k].displacement))
+            let d: Vec<f64> = (result.displacement.iter().zip(&exact[k].displacement))
                 .map(|(a, b)| a - b)
                 .collect();
             let energy =
                 fields::strain_energy(scene.mesh(), scene.materials(), &d).expect("energy");
             let truth = (energy / report.algebraic.elastic).sqrt();
-            // with all that the levels before have left in it
-            assert!(truth <= 1.2 * target, "level {k}: {truth:e} for {target:e}");
+            // with all that the steps before have left in it
+            assert!(truth <= 1.2 * target, "step {k}: {truth:e} for {target:e}");
             assert!(report.share <= target && report.accumulated.likely() <= target);
         }
         let products = simulation.counters().products;
@@ -45,13 +45,13 @@ fn the_error_of_the_mesh_is_estimated_now_and_then() {
     let scene = small_benchmark(Friction::coulomb(0.3), 20);
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let mut fresh = 0;
-    for (k, level) in rest(&mut simulation).iter().enumerate() {
-        let report = level.report.accuracy.expect("a report");
+    for (k, result) in rest(&mut simulation).iter().enumerate() {
+        let report = result.report.accuracy.expect("a report");
         let at = report.estimated_at.expect("an estimate");
-        assert!(report.reached && at <= k && k - at < 8, "level {k}: {at}");
+        assert!(report.reached && at <= k && k - at < 8, "step {k}: {at}");
         fresh += usize::from(at == k);
     }
-    println!("{fresh} estimates in 20 levels");
+    println!("{fresh} estimates in 20 steps");
     assert!((3..=12).contains(&fresh));
 }
 
@@ -83,18 +83,18 @@ fn balanced_saves_products_and_keeps_the_error() {
     let scene = pressed(4, Friction::coulomb(0.3));
     let error = |settings: Settings| {
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
-        let level = step(&mut simulation);
+        let result = step(&mut simulation);
         let energy = energy_of_difference(
             fine_scene.mesh(),
             scene.materials(),
             &fine.displacement,
             scene.mesh(),
-            &level.displacement,
+            &result.displacement,
         )
         .expect("energy");
         let estimate = simulation
             .result()
-            .expect("a level")
+            .expect("a step")
             .discretisation_error()
             .expect("estimate");
         let truth = (energy / estimate.elastic_energy()).sqrt();
@@ -102,7 +102,7 @@ fn balanced_saves_products_and_keeps_the_error() {
             truth,
             estimate.relative(),
             simulation.counters().products,
-            level.report,
+            result.report,
         )
     };
     let (fixed, _, products, _) = error(at(1e-6));
@@ -156,14 +156,14 @@ fn what_weighs_little_in_the_energy_is_certified_too() {
                     .with_method(Method::paper());
                 let scene = pulled(cells, pressure, friction);
                 let mut simulation = Simulation::new(scene, settings).expect("set-up");
-                let level = step(&mut simulation);
-                let report = level.report.accuracy.expect("a report");
-                let c = level.certificate;
+                let result = step(&mut simulation);
+                let report = result.report.accuracy.expect("a report");
+                let c = result.certificate;
                 let largest = [c.gap, c.sign, c.complementarity, c.cone, c.direction]
                     .iter()
                     .map(|v| v.relative())
                     .fold(0.0, f64::max);
-                if level.report.status == StepStatus::Converged {
+                if result.report.status == StepStatus::Converged {
                     worst = worst.max(largest / report.target);
                     assert!(report.reached && report.certified);
                 }
@@ -175,7 +175,7 @@ fn what_weighs_little_in_the_energy_is_certified_too() {
 }
 
 #[test]
-fn an_accuracy_asked_for_is_kept_over_many_levels() {
+fn an_accuracy_asked_for_is_kept_over_many_steps() {
     let scene = benchmark(up_down_up(), 50);
     let exact = rest(&mut Simulation::new(scene.clone(), at(1e-10)).expect("set-up"));
     println!("accuracy | products | largest true error over target | likely over target");
@@ -187,14 +187,14 @@ fn an_accuracy_asked_for_is_kept_over_many_levels() {
         let settings = Settings::default().with_accuracy(accuracy);
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
         let (mut worst, mut likely) = (0.0_f64, 0.0_f64);
-        for level in &exact {
+        for result in &exact {
             let frame = simulation.step().expect("step");
             let report = frame.report().accuracy.expect("a report");
             assert!(report.reached && frame.report().status.converged());
             let truth = relative_distance(
                 &scene,
                 frame.displacement().as_flattened(),
-                &level.displacement,
+                &result.displacement,
             );
             worst = worst.max(truth / report.target);
             likely = likely.max(report.accumulated.likely() / report.target);

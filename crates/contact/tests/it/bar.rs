@@ -34,15 +34,15 @@ fn the_reaction_of_the_bar() {
                 (2.0, 3.0),
                 (0.2, 1.0),
             ] {
-                let level = solve(bar(mesh.clone(), force, body).with_boxes(boxes), tight());
+                let result = solve(bar(mesh.clone(), force, body).with_boxes(boxes), tight());
                 let expected = (force + body / 2.0 - YOUNG * GAP).max(0.0);
-                let found = level.summary.normal_force;
+                let found = result.summary.normal_force;
                 assert!(
                     (found - expected).abs() <= 1e-9 * expected.max(1.0),
                     "P {force}, b {body}, {boxes:?}: {found} instead of {expected}"
                 );
-                let touching = level.points.len() * usize::from(expected > 0.0);
-                assert_eq!(level.summary.active, touching, "P {force}, b {body}");
+                let touching = result.points.len() * usize::from(expected > 0.0);
+                assert_eq!(result.summary.active, touching, "P {force}, b {body}");
             }
         }
     }
@@ -52,8 +52,8 @@ fn the_reaction_of_the_bar() {
 fn every_method_finds_the_reaction() {
     for method in methods() {
         let scene = bar(block([1.0; 3], [4, 2, 2]), 3.0, 0.0).with_boxes([2, 1, 1]);
-        let level = solve(scene, tight().with_method(method.clone()));
-        let error = level.summary.normal_force / 2.0 - 1.0;
+        let result = solve(scene, tight().with_method(method.clone()));
+        let error = result.summary.normal_force / 2.0 - 1.0;
         assert!(error.abs() <= 1e-9, "{}: {error:e}", method.kind());
     }
 }
@@ -61,12 +61,12 @@ fn every_method_finds_the_reaction() {
 /// Where the end just touches, the force is zero and the gap closed: neither side of the condition may win by rounding.
 #[test]
 fn the_end_that_just_touches() {
-    let level = solve(
+    let result = solve(
         bar(block([1.0; 3], [4, 2, 2]), YOUNG * GAP, 0.0).with_boxes([2, 1, 1]),
         tight(),
     );
-    assert!(level.summary.normal_force.abs() <= 1e-9);
-    for p in &level.points {
+    assert!(result.summary.normal_force.abs() <= 1e-9);
+    for p in &result.points {
         assert!(p.gap.abs() <= 1e-9 * GAP, "{:e}", p.gap);
     }
 }

@@ -56,7 +56,7 @@ fn both(young: f64) -> Scene {
     Scene::new(mesh.with_regions(regions).expect("regions"), materials)
 }
 
-/// Points of the last level that belong to a body, which must be certified.
+/// Points of the last step that belong to a body, which must be certified.
 fn last(
     scene: Scene,
     settings: Settings,
@@ -71,9 +71,9 @@ fn last(
         .collect();
     let mut points = Vec::new();
     while !simulation.is_finished() {
-        let level = step(&mut simulation);
-        assert_certified(&level, what);
-        points = level.points;
+        let result = step(&mut simulation);
+        assert_certified(&result, what);
+        points = result.points;
     }
     let kept = points.into_iter().zip(positions).filter(|(_, y)| keep(*y));
     kept.map(|(p, _)| p).collect()
@@ -269,15 +269,15 @@ fn a_lever_rests_on_a_floor() {
                 .with_contact(Contact::rigid(second(brick::Z_MIN)))
                 .with_boxes(boxes);
             let place = scene.mesh().points().to_vec();
-            let (_, levels) = run(scene, at(1e-9).with_method(method.clone()));
-            let moment: f64 = levels[0]
+            let (_, results) = run(scene, at(1e-9).with_method(method.clone()));
+            let moment: f64 = results[0]
                 .points
                 .iter()
                 .map(|p| -p.normal_force * (place[p.node as usize][0] - 1.0))
                 .sum();
             let what = format!("{boxes:?} {}", method.kind());
             assert!((moment / weight - 1.0).abs() < 1e-6, "{what}: {moment}");
-            let u = &levels[0].displacement;
+            let u = &results[0].displacement;
             let first = reference.get_or_insert_with(|| u.clone());
             assert_close(u, first, 1e-5, &what);
         }
@@ -302,6 +302,6 @@ fn a_ball_joint_carries_its_share() {
             [false, true, true],
         ))
         .with_boxes([2, 1, 2]);
-    let (_, levels) = run(held, at(1e-9));
-    assert!(norm(&levels[0].displacement) > 0.0);
+    let (_, results) = run(held, at(1e-9));
+    assert!(norm(&results[0].displacement) > 0.0);
 }

@@ -74,11 +74,11 @@ fn column(steps: usize, formula: DifferenceFormula, exact: &Point) -> Scene {
 fn compare(steps: usize, formula: DifferenceFormula, method: Method) -> (f64, f64) {
     let exact = one_point(steps, formula);
     let settings = at(1e-9).with_method(method);
-    let (_, levels) = run(column(steps, formula, &exact), settings);
+    let (_, results) = run(column(steps, formula, &exact), settings);
     let area = 0.5;
     let (mut loss, mut dissipation) = (0.0, 0.0);
-    for (i, level) in levels.iter().enumerate() {
-        for p in &level.points {
+    for (i, result) in results.iter().enumerate() {
+        for p in &result.points {
             let (slip, force) = (p.tangential_displacement[0], -p.friction_force[0] / p.area);
             assert!(
                 (slip - exact.slip[i]).abs() < 1e-8 * AMPLITUDE,
@@ -90,10 +90,10 @@ fn compare(steps: usize, formula: DifferenceFormula, method: Method) -> (f64, f6
             );
             assert!((p.normal_force / (-PRESSURE * p.area) - 1.0).abs() < 1e-7);
         }
-        assert!(level.summary.dissipation >= -1e-12);
+        assert!(result.summary.dissipation >= -1e-12);
         if i >= steps {
-            loss += level.summary.friction_work / area;
-            dissipation += level.summary.dissipation / area;
+            loss += result.summary.friction_work / area;
+            dissipation += result.summary.dissipation / area;
         }
     }
     // the last cycle, from +1 over -1 to +1

@@ -36,38 +36,38 @@ pub(crate) struct Solved {
     pub(crate) load: [f64; 3],
 }
 
-/// Solves all levels that are left.
+/// Solves all steps that are left.
 pub(crate) fn rest(simulation: &mut Simulation) -> Vec<Solved> {
-    let mut levels = Vec::new();
+    let mut results = Vec::new();
     while !simulation.is_finished() {
-        levels.push(step(simulation));
+        results.push(step(simulation));
     }
-    levels
+    results
 }
 
-/// Solves all levels, each of which must converge with a certificate of at most 1e-6.
+/// Solves all steps, each of which must converge with a certificate of at most 1e-6.
 pub(crate) fn run(scene: Scene, settings: Settings) -> (Simulation, Vec<Solved>) {
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
-    let levels = rest(&mut simulation);
-    for (k, level) in levels.iter().enumerate() {
-        assert_certified(level, &format!("level {k}"));
+    let results = rest(&mut simulation);
+    for (k, result) in results.iter().enumerate() {
+        assert_certified(result, &format!("step {k}"));
     }
-    (simulation, levels)
+    (simulation, results)
 }
 
-/// Solves a scene of one level.
+/// Solves a scene of one step.
 pub(crate) fn solve(scene: Scene, settings: Settings) -> Solved {
-    let (_, mut levels) = run(scene, settings);
-    assert_eq!(levels.len(), 1);
-    levels.remove(0)
+    let (_, mut results) = run(scene, settings);
+    assert_eq!(results.len(), 1);
+    results.remove(0)
 }
 
-pub(crate) fn assert_certified(level: &Solved, what: &str) {
+pub(crate) fn assert_certified(result: &Solved, what: &str) {
     assert!(
-        level.report.status.converged() && level.certificate.largest() <= 1e-6,
+        result.report.status.converged() && result.certificate.largest() <= 1e-6,
         "{what}: {:?}, {:?}",
-        level.report,
-        level.certificate.parts().map(|(n, v)| (n, v.relative()))
+        result.report,
+        result.certificate.parts().map(|(n, v)| (n, v.relative()))
     );
 }
 
@@ -247,13 +247,13 @@ pub(crate) fn assert_close(a: &[f64], b: &[f64], tolerance: f64, what: &str) {
     assert!(d <= tolerance, "{what}: relative distance {d:e}");
 }
 
-/// All bits of a level's numbers.
-pub(crate) fn bits(level: &Solved) -> Vec<u64> {
-    level
+/// All bits of a step's numbers.
+pub(crate) fn bits(result: &Solved) -> Vec<u64> {
+    result
         .torn
         .iter()
-        .chain(&level.displacement)
-        .chain(&forces(&level.points))
+        .chain(&result.displacement)
+        .chain(&forces(&result.points))
         .map(|v| v.to_bits())
         .collect()
 }

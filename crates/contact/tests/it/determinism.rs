@@ -19,7 +19,7 @@ fn the_number_of_threads_changes_no_bit() {
             })
         };
         let one = run(1);
-        assert!(one.0.iter().all(|level| !level.is_empty()) && one.1.memory() > 0);
+        assert!(one.0.iter().all(|result| !result.is_empty()) && one.1.memory() > 0);
         for threads in [2, 3] {
             assert!(one == run(threads), "{}, {threads} threads", method.kind());
         }
@@ -42,8 +42,8 @@ fn threads_change_no_bit_where_every_loop_is_cut() {
             assert!(tfeti.dual_dim() >= signorini_qp::vector::PARALLEL);
             let classes = tfeti.report().classes.iter();
             assert!(classes.map(|c| c.members * c.boundary).sum::<usize>() >= 3 * 8000);
-            let levels: Vec<_> = rest(&mut simulation).iter().map(bits).collect();
-            (levels, simulation.state().clone())
+            let results: Vec<_> = rest(&mut simulation).iter().map(bits).collect();
+            (results, simulation.state().clone())
         })
     };
     assert!(run(1) == run(2));

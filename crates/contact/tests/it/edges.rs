@@ -39,23 +39,23 @@ fn hydrostatic(contacts: &[Contact], boxes: [usize; 3], method: Method) {
     let strain = -(1.0 - 2.0 * POISSON) * 1e3 / YOUNG;
     let scene = cornered(contacts, cells).with_boxes(boxes);
     let mesh = scene.mesh().clone();
-    let (simulation, levels) = run(scene, at(1e-9).with_method(method));
+    let (simulation, results) = run(scene, at(1e-9).with_method(method));
     let gluing = simulation.tfeti().gluing();
     assert_eq!(gluing.ranges().normal.len(), 3 * (cells + 1).pow(2));
     assert_eq!(simulation.plan().normal_rows, gluing.ranges().normal.len());
     // three perpendicular normals are orthonormal rows
     assert!(gluing.is_orthonormal());
-    let off = worst(&levels[0].displacement, &mesh, |x| x.map(|c| strain * c));
+    let off = worst(&results[0].displacement, &mesh, |x| x.map(|c| strain * c));
     assert!(off < 1e-6, "{off:e}");
-    for point in &levels[0].points {
+    for point in &results[0].points {
         let pressure = -point.normal_force / point.area;
         assert!((pressure / 1e3 - 1.0).abs() < 1e-6, "{pressure}");
     }
-    let corner = levels[0].points.iter().filter(|p| p.node == 0).count();
+    let corner = results[0].points.iter().filter(|p| p.node == 0).count();
     assert_eq!(corner, 3);
     let error = simulation
         .result()
-        .expect("a level")
+        .expect("a step")
         .algebraic_error()
         .relative();
     assert!(error < 1e-5, "estimate {error:e}");
@@ -103,8 +103,8 @@ fn a_cube_in_a_box_is_under_uniaxial_strain() {
             .with_load(Load::pressure(brick::Z_MAX, pressure))
             .with_boxes(boxes);
         let mesh = scene.mesh().clone();
-        let level = solve(scene, at(1e-9));
-        let off = worst(&level.displacement, &mesh, |x| [0.0, 0.0, strain * x[2]]);
+        let result = solve(scene, at(1e-9));
+        let off = worst(&result.displacement, &mesh, |x| [0.0, 0.0, strain * x[2]]);
         assert!(off < 1e-6, "{boxes:?}: {off:e}");
     }
 }
@@ -125,16 +125,16 @@ fn a_corner_with_friction_does_not_depend_on_the_cut() {
     let scene = rough_corner(Friction::tresca(150.0));
     let reference = run(scene.clone(), at(1e-9)).1;
     for boxes in [[1, 1, 1], [3, 1, 1], [2, 2, 2]] {
-        let levels = run(scene.clone().with_boxes(boxes), at(1e-9)).1;
-        for (a, b) in levels.iter().zip(&reference) {
+        let results = run(scene.clone().with_boxes(boxes), at(1e-9)).1;
+        for (a, b) in results.iter().zip(&reference) {
             let off = distance(&a.displacement, &b.displacement);
             assert!(off < 1e-5, "{boxes:?}: {off:e}");
             assert!(!a.report.fallback, "{boxes:?}");
         }
         // with Coulomb's law bounds follow the forces: one of several solutions, certified
         let scene = rough_corner(Friction::coulomb(0.3)).with_boxes(boxes);
-        for level in run(scene, at(1e-9)).1 {
-            assert!(!level.report.fallback, "{boxes:?}");
+        for result in run(scene, at(1e-9)).1 {
+            assert!(!result.report.fallback, "{boxes:?}");
         }
     }
 }
@@ -164,15 +164,15 @@ fn a_block_slides_along_a_groove() {
                     Support::components(back.clone(), [true, false, false])
                         .with_motion([0.1, 0.0, 0.0], History::constant(1.0)),
                 );
-            let level = solve(scene, at(1e-9).with_method(method.clone()));
-            let found = -level.summary.friction_force[0];
+            let result = solve(scene, at(1e-9).with_method(method.clone()));
+            let found = -result.summary.friction_force[0];
             let expected = 2.0_f64.sqrt() * coefficient;
             assert!(
                 (found / expected - 1.0).abs() < 1e-5,
                 "{}: {found} {expected}",
                 method.kind()
             );
-            let up = level.summary.resultant[2];
+            let up = result.summary.resultant[2];
             assert!((up - 1.0).abs() < 1e-6, "{up}");
         }
     }
@@ -204,13 +204,13 @@ fn each_surface_has_its_own_law() {
         (Friction::tresca(0.05), 0.05 * 2.0),
     ];
     for (wall, own) in walls {
-        let (simulation, levels) = run(scene(wall.clone()), at(1e-9));
-        let level = &levels[0];
-        let found = -level.summary.friction_force[0];
+        let (simulation, results) = run(scene(wall.clone()), at(1e-9));
+        let result = &results[0];
+        let found = -result.summary.friction_force[0];
         let expected = coefficient * weight + own;
         assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
         let of = |surface: usize| {
-            let points = level.points.iter().filter(move |p| p.surface == surface);
+            let points = result.points.iter().filter(move |p| p.surface == surface);
             points.map(|p| p.normal_force).sum::<f64>()
         };
         assert!((of(0) + weight).abs() < 1e-6 && (of(1) + side).abs() < 1e-6);
@@ -245,20 +245,20 @@ fn parts_of_a_floor_share_their_nodes() {
         .with_support(
             Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -1e-3], History::constant(1.0)),
         );
-    let level = solve(scene, at(1e-9));
-    assert_eq!(level.points.len(), 15);
-    let area: f64 = level.points.iter().map(|p| p.area).sum();
+    let result = solve(scene, at(1e-9));
+    assert_eq!(result.points.len(), 15);
+    let area: f64 = result.points.iter().map(|p| p.area).sum();
     assert!((area - 2.0).abs() < 1e-12);
-    for point in &level.points {
+    for point in &result.points {
         let mu = if point.surface == 0 { 0.4 } else { 0.1 };
         assert!((point.slip_bound + mu * point.normal_force).abs() < 1e-9);
         assert_eq!(point.state, ContactState::Slip);
     }
-    assert_eq!(level.points.iter().filter(|p| p.surface == 0).count(), 9);
+    assert_eq!(result.points.iter().filter(|p| p.surface == 0).count(), 9);
 }
 
-/// A block that sticks on the floor, slides, and runs against a wall within one step: there floor and wall want the edge at
-/// different places.
+/// A block that sticks on the floor, slides, and runs against a wall within one step: there floor and wall want the
+/// edge at different places.
 #[test]
 fn a_sliding_block_runs_against_a_wall() {
     let gap = 1e-3;
@@ -276,11 +276,11 @@ fn a_sliding_block_runs_against_a_wall() {
     };
     for steps in [1, 3, 8] {
         for boxes in [[1, 1, 1], [2, 1, 1]] {
-            let (_, levels) = run(scene(steps, boxes), Settings::default());
-            for level in &levels {
-                assert!(!level.report.fallback, "{steps} {boxes:?}");
+            let (_, results) = run(scene(steps, boxes), Settings::default());
+            for result in &results {
+                assert!(!result.report.fallback, "{steps} {boxes:?}");
             }
-            let last = &levels[levels.len() - 1];
+            let last = &results[results.len() - 1];
             let wall: f64 = last
                 .points
                 .iter()
@@ -305,15 +305,15 @@ fn one_tag_may_meet_two_obstacles() {
         .with_contact(floor.clone())
         .with_contact(wall)
         .with_load(Load::body([500.0, 0.0, -1000.0]));
-    let level = solve(scene, at(1e-9));
-    assert_eq!(level.points.len(), 18);
-    let wall: f64 = level
+    let result = solve(scene, at(1e-9));
+    assert_eq!(result.points.len(), 18);
+    let wall: f64 = result
         .points
         .iter()
         .filter(|p| p.surface == 1)
         .map(|p| p.normal_force)
         .sum();
-    let along = 500.0 + wall / 2.0_f64.sqrt() + level.summary.friction_force[0];
+    let along = 500.0 + wall / 2.0_f64.sqrt() + result.summary.friction_force[0];
     assert!(along.abs() < 1e-4, "{along}");
     assert!(wall < -100.0, "{wall}");
     let same = Scene::new(cube(2), uniform(YOUNG, POISSON))
@@ -376,8 +376,8 @@ fn a_rough_corner_has_the_same_bits_on_any_number_of_threads() {
     }
 }
 
-/// A wall pushes a block along a floor, and the nodes in the edge with it, however friction wants to hold them. Planes of
-/// symmetry leave some of them one direction along each.
+/// A wall pushes a block along a floor, and the nodes in the edge with it, however friction wants to hold them. Planes
+/// of symmetry leave some of them one direction along each.
 #[test]
 fn a_wall_pushes_a_rough_edge_along_a_floor() {
     let ramp = History::ramp(1.0, 1.0).expect("ramp");

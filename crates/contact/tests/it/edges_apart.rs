@@ -1,12 +1,12 @@
-//! Contacts that a scene names apart stay apart where they share nodes, at any angle between them; on a flat side the nearer
-//! obstacle acts with its own law.
+//! Contacts that a scene names apart stay apart where they share nodes, at any angle between them; on a flat side the
+//! nearer obstacle acts with its own law.
 
 use crate::common::*;
 
 /// How deep nodes are inside an obstacle with one normal, over the largest displacement.
-fn depth(scene: &Scene, level: &Solved, tag: FacetTag, normal: [f64; 3], gap: f64) -> f64 {
-    let u = level.displacement.as_chunks::<3>().0;
-    let size = level
+fn depth(scene: &Scene, result: &Solved, tag: FacetTag, normal: [f64; 3], gap: f64) -> f64 {
+    let u = result.displacement.as_chunks::<3>().0;
+    let size = result
         .displacement
         .iter()
         .fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -41,10 +41,10 @@ fn edges_of_any_angle_stay_outside_both_obstacles() {
     for degrees in [20.0, 35.0, 50.0, 59.9, 65.0, 90.0] {
         for friction in [0.0, 0.3] {
             let (scene, wall) = leaning(degrees, friction, 2e-3);
-            let level = solve(scene.clone(), Settings::default());
-            assert_eq!(level.points.len(), 45);
-            let floor = depth(&scene, &level, brick::Z_MIN, [0.0, 0.0, -1.0], 0.0);
-            let wall = depth(&scene, &level, brick::X_MAX, wall, 2e-3);
+            let result = solve(scene.clone(), Settings::default());
+            assert_eq!(result.points.len(), 45);
+            let floor = depth(&scene, &result, brick::Z_MIN, [0.0, 0.0, -1.0], 0.0);
+            let wall = depth(&scene, &result, brick::X_MAX, wall, 2e-3);
             assert!(
                 floor < 1e-6 && wall < 1e-6,
                 "{degrees} {friction}: {floor:e} {wall:e}"
@@ -85,30 +85,34 @@ fn pressed(mesh: TetMesh, left: Contact, right: Contact) -> Scene {
         .with_boxes([2, 1, 1])
 }
 
-/// Normals that hardly differ are rows that hardly differ: solved for at any angle, with the result of a flat side in the end.
+/// Normals that hardly differ are rows that hardly differ: solved for at any angle, with the result of a flat side in
+/// the end.
 #[test]
 fn the_smaller_the_angle_the_more_it_is_one_side() {
     let of = |angle: f64, friction: f64, settings: Settings| {
         let side = |tag| Contact::rigid(tag).with_friction(Friction::coulomb(friction));
         let scene = pressed(kinked(angle), side(brick::Z_MIN), side(RIGHT));
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
-        let level = step(&mut simulation);
-        let found = level.certificate.largest();
+        let result = step(&mut simulation);
+        let found = result.certificate.largest();
         // rows that nearly depend on one another leave the certificate above the tolerance, not above its limit
-        assert!(level.report.status.converged() && found < 3e-5, "{found:e}");
+        assert!(
+            result.report.status.converged() && found < 3e-5,
+            "{found:e}"
+        );
         for (tag, normal) in [
             (brick::Z_MIN, [0.0, 0.0, -1.0]),
             (RIGHT, [angle.sin(), 0.0, -angle.cos()]),
         ] {
-            let depth = depth(&scene, &level, tag, normal, 0.0);
+            let depth = depth(&scene, &result, tag, normal, 0.0);
             assert!(depth < 3e-5, "{angle:e}: {depth:e}");
         }
-        (level.points.len(), level.summary.normal_force)
+        (result.points.len(), result.summary.normal_force)
     };
     for friction in [0.0, 0.3] {
         let (points, flat) = of(0.0, friction, Settings::default());
         assert_eq!(points, 27);
-        for settings in methods().map(|m| by(m)) {
+        for settings in methods().map(by) {
             for exponent in 1..9 {
                 let angle = 10.0_f64.powi(-exponent);
                 let (points, force) = of(angle, friction, settings.clone());
@@ -141,8 +145,8 @@ fn on_a_flat_side_the_law_is_that_of_the_obstacle_that_is_touched() {
             let (a, b) = if swap { (b, a) } else { (a, b) };
             let mesh = kinked(0.0);
             let places = mesh.points().to_vec();
-            let (_, levels) = run(pressed(mesh, a, b), Settings::default());
-            assert_eq!(levels[0].points.len(), 27);
+            let (_, results) = run(pressed(mesh, a, b), Settings::default());
+            assert_eq!(results[0].points.len(), 27);
             let as_far = (left[0] - right[0]).abs() < 1e-12;
             // which of them is the left one, and whose the edge is
             let of_left = usize::from(swap);
@@ -152,7 +156,7 @@ fn on_a_flat_side_the_law_is_that_of_the_obstacle_that_is_touched() {
                 (false, false) => 1 - of_left,
             };
             let mut edge = 0.0;
-            for point in &levels[0].points {
+            for point in &results[0].points {
                 let x = places[point.node as usize][0];
                 let expected = match x - 1.0 {
                     d if d.abs() < 1e-9 => of_edge,
@@ -169,7 +173,7 @@ fn on_a_flat_side_the_law_is_that_of_the_obstacle_that_is_touched() {
             // a strip of half a cell on each side that is touched
             let strips = if as_far { 2.0 } else { 1.0 };
             assert!((edge - 0.125 * strips).abs() < 1e-12, "{edge}");
-            let deep = levels[0].points.iter().map(|p| -p.gap).fold(0.0, f64::max);
+            let deep = results[0].points.iter().map(|p| -p.gap).fold(0.0, f64::max);
             assert!(deep < 1e-9, "{deep:e}");
         }
     }
@@ -193,8 +197,8 @@ fn a_partner_and_an_obstacle_are_two() {
         let simulation = Simulation::new(scene.clone(), Settings::default()).expect("set-up");
         // 5 x 3 pairs and as many on the floor, 3 nodes in both
         assert_eq!(simulation.constrained_points().len(), 30);
-        let level = solve(scene.clone(), Settings::default());
-        let floor = depth(&scene, &level, RIGHT, [0.0, 0.0, -1.0], 0.0);
+        let result = solve(scene.clone(), Settings::default());
+        let floor = depth(&scene, &result, RIGHT, [0.0, 0.0, -1.0], 0.0);
         assert!(floor < 1e-6, "{floor:e}");
     }
 }
@@ -238,12 +242,12 @@ fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
             Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -press], History::constant(1.0)),
         );
         let scene = contacts.into_iter().fold(scene, Scene::with_contact);
-        let level = solve(scene, tight());
+        let result = solve(scene, tight());
         for &node in &border {
             // no deeper than the nearer obstacle lets it
-            let down = -level.displacement[3 * node as usize + 2];
+            let down = -result.displacement[3 * node as usize + 2];
             assert!(down <= near + 1e-9 * press, "node {node}: {down:e}");
-            let pressed = level
+            let pressed = result
                 .points
                 .iter()
                 .filter(|p| p.node == node && p.normal_force < -1e-3);
@@ -256,7 +260,7 @@ fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
             assert!((friction - 0.4 * force).abs() <= 1e-6 * force, "{point:?}");
         }
         // beyond the border the other part counts
-        let beyond = level.points.iter().filter(|p| Some(p.surface) != nearer);
+        let beyond = result.points.iter().filter(|p| Some(p.surface) != nearer);
         assert!(beyond.clone().count() >= 6);
         for point in beyond {
             assert!((point.slip_bound + 0.1 * point.normal_force).abs() < 1e-9);

@@ -22,11 +22,11 @@ fn without_friction_there_are_no_tangential_rows() {
         bare.tfeti().dual_dim() + 2 * ranges.normal.len()
     );
     for method in methods() {
-        let level = solve(statics(Friction::None), by(method));
-        assert_eq!(level.report.counters.slip_bound_updates, 0);
-        assert!(level.report.fixed_point.is_none());
+        let result = solve(statics(Friction::None), by(method));
+        assert_eq!(result.report.counters.slip_bound_updates, 0);
+        assert!(result.report.fixed_point.is_none());
         assert!(
-            level
+            result
                 .points
                 .iter()
                 .all(|p| p.friction_force == [0.0; 3] && p.slip_bound == 0.0)
@@ -39,20 +39,20 @@ fn given_friction_is_one_quadratic_program_a_step() {
     let steps = 5;
     let scene = || small_benchmark(Friction::tresca(3e8), steps);
     for method in [Method::paper(), Method::one_loop()] {
-        let (_, levels) = run(scene(), by(method));
-        for level in &levels {
-            assert_eq!(level.report.counters.quadratic_programs, 1);
-            assert_eq!(level.report.counters.slip_bound_updates, 1);
-            assert!(level.report.fixed_point.is_none());
+        let (_, results) = run(scene(), by(method));
+        for result in &results {
+            assert_eq!(result.report.counters.quadratic_programs, 1);
+            assert_eq!(result.report.counters.slip_bound_updates, 1);
+            assert!(result.report.fixed_point.is_none());
         }
     }
-    let (_, levels) = run(scene(), Settings::default());
-    for level in &levels {
+    let (_, results) = run(scene(), Settings::default());
+    for result in &results {
         assert_eq!(
-            level.report.counters.slip_bound_updates - set_by_hook(level),
+            result.report.counters.slip_bound_updates - set_by_hook(result),
             0
         );
-        assert!(level.report.fixed_point.is_none());
+        assert!(result.report.fixed_point.is_none());
     }
     // Coulomb friction needs more than one, so that the counter can tell
     let coulomb = small_benchmark(Friction::coulomb(0.3), steps);
@@ -60,9 +60,9 @@ fn given_friction_is_one_quadratic_program_a_step() {
     assert!(simulation.counters().quadratic_programs > steps);
 }
 
-/// The face method writes given bounds once a level.
-fn set_by_hook(level: &Solved) -> usize {
-    assert!(!level.report.fallback);
+/// The face method writes given bounds once a step.
+fn set_by_hook(result: &Solved) -> usize {
+    assert!(!result.report.fallback);
     1
 }
 
@@ -74,11 +74,11 @@ fn static_scenes_hold_no_history() {
         Friction::coulomb(0.3),
         weakening(),
     ] {
-        let (simulation, levels) = run(statics(friction.clone()), Settings::default());
+        let (simulation, results) = run(statics(friction.clone()), Settings::default());
         assert!(!simulation.plan().effects.history, "{friction:?}");
         assert_eq!(simulation.state().memory(), 0, "{friction:?}");
-        assert_eq!(levels[0].report.counters.rate_updates, 0, "{friction:?}");
-        assert!(levels[0].points.iter().all(|p| p.slip_rate == 0.0));
+        assert_eq!(results[0].report.counters.rate_updates, 0, "{friction:?}");
+        assert!(results[0].points.iter().all(|p| p.slip_rate == 0.0));
     }
     // one quasistatic step does keep something
     let (simulation, _) = run(
@@ -89,7 +89,7 @@ fn static_scenes_hold_no_history() {
 }
 
 #[test]
-fn without_friction_quasistatic_levels_keep_no_traces() {
+fn without_friction_quasistatic_steps_keep_no_traces() {
     let bytes = |friction| {
         let (simulation, _) = run(small_benchmark(friction, 3), Settings::default());
         (
@@ -99,7 +99,7 @@ fn without_friction_quasistatic_levels_keep_no_traces() {
     };
     let ((bare, none), (rough, rows)) = (bytes(Friction::None), bytes(Friction::coulomb(0.3)));
     assert_eq!(none, 0);
-    // multipliers and products, two levels each, on the additional rows; two traces; one flag a point
+    // multipliers and products, two steps each, on the additional rows; two traces; one flag a point
     assert_eq!(rough - bare, 8 * (4 * rows + 2 * rows) + rows / 2);
 }
 
@@ -110,7 +110,7 @@ fn a_body_without_foundation_never_enters_an_inequality_solver() {
             .with_boxes([3, 1, 1])
             .with_analysis(paper_steps(1.0, 3));
         let settings = by(method);
-        let (simulation, levels) = run(scene, settings);
+        let (simulation, results) = run(scene, settings);
         assert_eq!(simulation.plan().method, MethodKind::Linear);
         assert!(!simulation.plan().effects.contact);
         let counters = simulation.counters();
@@ -121,7 +121,7 @@ fn a_body_without_foundation_never_enters_an_inequality_solver() {
             (counters.setup_products, counters.slip_bound_updates),
             (0, 0)
         );
-        assert!(counters.products > 0 && levels.iter().all(|l| l.points.is_empty()));
+        assert!(counters.products > 0 && results.iter().all(|l| l.points.is_empty()));
     }
     let (simulation, _) = run(small_benchmark(Friction::None, 3), Settings::default());
     assert_eq!(simulation.counters().inequality_solves, 3);

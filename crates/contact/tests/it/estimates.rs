@@ -1,9 +1,9 @@
-//! Estimates of the algebraic error against references, where they are easily wrong: oblique motions, several subdomains,
-//! bodies at rest, pairs, errors that add up over the steps.
+//! Estimates of the algebraic error against references, where they are easily wrong: oblique motions, several
+//! subdomains, bodies at rest, pairs, errors that add up over the steps.
 
 use crate::common::*;
 
-/// Levels with their estimates.
+/// Steps with their estimates.
 pub(crate) fn estimated(
     scene: &Scene,
     settings: Settings,
@@ -12,16 +12,16 @@ pub(crate) fn estimated(
     let mut sum = AccumulatedError::default();
     let mut out = Vec::new();
     while !simulation.is_finished() {
-        let level = step(&mut simulation);
-        let frame = simulation.result().expect("a level");
-        sum.add(&frame);
-        out.push((level, frame.algebraic_error(), sum));
+        let result = step(&mut simulation);
+        let frame = simulation.result().expect("a step");
+        sum.add(frame);
+        out.push((result, frame.algebraic_error(), sum));
     }
     out
 }
 
 /// A clamped brick on a rough floor; its other end is moved along one or two oblique directions.
-fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, levels: usize) -> Scene {
+fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, steps: usize) -> Scene {
     let end = Support::partial(brick::X_MAX, Directions::Vectors(directions.to_vec()));
     Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), uniform(1e9, 0.3))
         .with_support(Support::fixed(brick::X_MIN))
@@ -29,7 +29,7 @@ fn oblique(directions: &[[f64; 3]], moved: [f64; 3], friction: f64, levels: usiz
         .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp()))
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(friction)))
         .with_boxes([2, 1, 2])
-        .with_analysis(Analysis::quasistatic(1.0, levels))
+        .with_analysis(Analysis::quasistatic(1.0, steps))
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn motions_oblique_to_the_normal_count_once() {
                 let truth = energy_distance(&scene, &own.0.displacement, &exact[k].0.displacement);
                 let index = own.2.likely() * own.1.scale.sqrt() / truth;
                 println!(
-                    "{} directions, {tolerance:e}, level {k}: {index:.2}",
+                    "{} directions, {tolerance:e}, step {k}: {index:.2}",
                     directions.len()
                 );
                 assert!((0.6..5.0).contains(&index), "{index}");
@@ -99,11 +99,11 @@ fn random_scene(seed: u64) -> Scene {
         1 + dice.random_range(0..2),
         1 + dice.random_range(0..2),
     ];
-    let levels = 1 + dice.random_range(0..4);
+    let steps = 1 + dice.random_range(0..4);
     scene
         .with_contact(contact)
         .with_boxes(boxes)
-        .with_analysis(Analysis::quasistatic(1.0, levels))
+        .with_analysis(Analysis::quasistatic(1.0, steps))
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn random_scenes_keep_what_they_promise() {
         let largest = exact.iter().map(|l| l.1.elastic).fold(0.0, f64::max);
         let truth = |k: usize, u: &[f64]| energy_distance(&scene, u, &exact[k].0.displacement);
         for tolerance in [1e-2, 1e-5] {
-            // later levels inherit errors, and forget some
+            // later steps inherit errors, and forget some
             let own = &estimated(&scene, at(tolerance))[0];
             let truth = truth(0, &own.0.displacement);
             if truth > 1e-11 * largest.sqrt() {
@@ -131,13 +131,13 @@ fn random_scenes_keep_what_they_promise() {
         }
         for accuracy in [Accuracy::balanced(), Accuracy::Relative(1e-5)] {
             let settings = Settings::default().with_accuracy(accuracy);
-            for (k, (level, error, _)) in estimated(&scene, settings).iter().enumerate() {
-                let report = level.report.accuracy.expect("a report");
-                let truth = truth(k, &level.displacement) / error.scale.sqrt();
-                let name = format!("seed {seed}, {accuracy:?}, level {k}");
-                assert_eq!(level.report.status, StepStatus::Converged, "{name}");
+            for (k, (result, error, _)) in estimated(&scene, settings).iter().enumerate() {
+                let report = result.report.accuracy.expect("a report");
+                let truth = truth(k, &result.displacement) / error.scale.sqrt();
+                let name = format!("seed {seed}, {accuracy:?}, step {k}");
+                assert_eq!(result.report.status, StepStatus::Converged, "{name}");
                 assert!(report.reached && report.certified, "{name}");
-                assert!(level.certificate.largest() <= report.certificate_limit);
+                assert!(result.certificate.largest() <= report.certificate_limit);
                 assert!(truth <= 1.3 * report.target, "{name}: {truth:e}");
             }
         }
@@ -165,7 +165,8 @@ fn press(table: &[(f64, f64)]) -> Load {
 /// A load that is taken away again.
 const OFF: [(f64, f64); 4] = [(0.0, 0.0), (0.5, 1.0), (0.75, 0.0), (1.0, 0.0)];
 
-/// Estimates are relative to a scale at steps without any displacement, too; `rounding` is the relative error that rounding leaves.
+/// Estimates are relative to a scale at steps without any displacement, too; `rounding` is the relative error that
+/// rounding leaves.
 fn has_a_scale(scene: Scene, rounding: f64) {
     let scene = scene
         .with_boxes([2, 1, 1])
@@ -177,11 +178,11 @@ fn has_a_scale(scene: Scene, rounding: f64) {
         Accuracy::Relative(1e-8),
     ] {
         let settings = Settings::default().with_accuracy(accuracy);
-        for (k, (level, error, sum)) in estimated(&scene, settings).iter().enumerate() {
+        for (k, (result, error, sum)) in estimated(&scene, settings).iter().enumerate() {
             let found = error.relative();
             let (likely, most) = (sum.likely(), sum.at_most());
             let what = format!("{accuracy:?}, step {k}: {found:e} {error:?}");
-            match level.report.status {
+            match result.report.status {
                 StepStatus::Stagnated if accuracy == Accuracy::Relative(1e-8) => {
                     assert!(found < rounding, "{what}")
                 }
@@ -259,9 +260,9 @@ fn the_gap_bounds_the_error_and_is_not_far_above_it() {
                 let settings = at(tolerance).with_method(method.clone());
                 let name = format!("{friction:?} {} {tolerance:e}", method.kind());
                 let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
-                let level = step(&mut simulation);
-                let gap = simulation.result().expect("a level").algebraic_error();
-                let difference: Vec<f64> = level
+                let result = step(&mut simulation);
+                let gap = simulation.result().expect("a step").algebraic_error();
+                let difference: Vec<f64> = result
                     .displacement
                     .iter()
                     .zip(&reference.displacement)
@@ -291,9 +292,9 @@ fn the_gap_bounds_the_error_and_is_not_far_above_it() {
 }
 
 #[test]
-fn errors_of_earlier_levels_add_up() {
-    println!("estimated over true error at the end and, least and most, over the levels");
-    println!("steps tolerance true | last level | likely | at most");
+fn errors_of_earlier_steps_add_up() {
+    println!("estimated over true error at the end and, least and most, over the steps");
+    println!("steps tolerance true | last step | likely | at most");
     for (steps, tolerances) in [(10, vec![1e-2, 1e-4]), (50, vec![1e-2, 1e-3, 1e-4, 1e-5])] {
         let scene = benchmark(up_down_up(), steps);
         let exact = rest(&mut Simulation::new(scene.clone(), at(1e-10)).expect("set-up"));
@@ -302,13 +303,13 @@ fn errors_of_earlier_levels_add_up() {
             let mut sum = AccumulatedError::default();
             let mut indices = Vec::new();
             let mut truth = 0.0;
-            for level in &exact {
+            for result in &exact {
                 let frame = simulation.step().expect("step");
                 sum.add(&frame);
                 truth = relative_distance(
                     &scene,
                     frame.displacement().as_flattened(),
-                    &level.displacement,
+                    &result.displacement,
                 );
                 let estimates = [
                     frame.algebraic_error().relative(),
@@ -336,7 +337,8 @@ fn errors_of_earlier_levels_add_up() {
     }
 }
 
-/// Nodes in an edge that touch neither floor nor wall have rows that depend on one another, and no plane to be moved to.
+/// Nodes in an edge that touch neither floor nor wall have rows that depend on one another, and no plane to be moved
+/// to.
 #[test]
 fn an_open_edge_has_an_estimate() {
     for friction in [Friction::None, Friction::coulomb(0.3)] {

@@ -54,17 +54,17 @@ fn the_force_on_a_free_body_is_its_load() {
         let scene = cube()
             .with_load(Load::pressure(brick::Z_MAX, 1e7))
             .with_boxes(boxes);
-        let (level, body, mode, force) = not_held(scene);
+        let (result, body, mode, force) = not_held(scene);
         close(force, 1e7);
         assert_eq!(
-            (level, body, mode.as_str()),
+            (result, body, mode.as_str()),
             (0, 0, "its translation (0.000, 0.000, -1.000)")
         );
     }
 }
 
 #[test]
-fn the_force_is_that_of_the_level_at_which_it_acts() {
+fn the_force_is_that_of_the_step_at_which_it_acts() {
     let late = History::table(vec![(0.5, 0.0), (1.0, 1.0)]).expect("history");
     let scene = cube()
         .with_load(Load::traction(brick::X_MAX, [3e6, 4e6, 0.0]).with_history(late))
@@ -72,10 +72,10 @@ fn the_force_is_that_of_the_level_at_which_it_acts() {
         .with_support(Support::components(brick::Y_MIN, [false, true, false]))
         .with_analysis(Analysis::quasistatic(1.0, 4));
     // y is held, x is not; at t = 0.75 half of it acts
-    let (level, _, mode, force) = not_held(scene);
+    let (result, _, mode, force) = not_held(scene);
     close(force, 1.5e6);
     assert_eq!(
-        (level, mode.as_str()),
+        (result, mode.as_str()),
         (2, "its translation (1.000, 0.000, 0.000)")
     );
 }
@@ -185,8 +185,8 @@ fn loads_beyond_given_slip_bounds_are_refused() {
     };
     // 30 Pa on 2 m²: 60 N, and 200 N of pressure keep the block from tipping
     for along in [0.0, 20.0, 59.0] {
-        let level = solve(scene(along), Settings::default());
-        let held = level.summary.friction_force;
+        let result = solve(scene(along), Settings::default());
+        let held = result.summary.friction_force;
         assert!((norm(&held) - along).abs() < 1e-3, "{along}: {held:?}");
     }
     for along in [60.1, 90.0] {

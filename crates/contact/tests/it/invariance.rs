@@ -42,42 +42,42 @@ fn three_parts(mesh: &TetMesh) -> Vec<u32> {
         .collect()
 }
 
-/// Everything of all levels that has a direction, turned back by the inverse of `r`, by mesh node.
-fn turned_back(levels: &[Solved], r: &Rotation, nodes: usize) -> Vec<f64> {
+/// Everything of all steps that has a direction, turned back by the inverse of `r`, by mesh node.
+fn turned_back(results: &[Solved], r: &Rotation, nodes: usize) -> Vec<f64> {
     let mut inverse = IDENTITY;
     for (i, row) in inverse.iter_mut().enumerate() {
         *row = [r[0][i], r[1][i], r[2][i]];
     }
     let mut out = Vec::new();
-    for level in levels {
-        for u in level.displacement.chunks_exact(3) {
+    for result in results {
+        for u in result.displacement.chunks_exact(3) {
             // displacements of 0.1 m beside forces of 1e8 N
             out.extend(turn(&inverse, [u[0], u[1], u[2]]).map(|v| 1e9 * v));
         }
         let mut forces = vec![0.0; 4 * nodes];
-        for p in &level.points {
+        for p in &result.points {
             let f = turn(&inverse, p.friction_force);
             forces[4 * p.node as usize..][..4].copy_from_slice(&[p.normal_force, f[0], f[1], f[2]]);
         }
         out.extend(forces);
-        out.extend(turn(&inverse, level.summary.resultant));
+        out.extend(turn(&inverse, result.summary.resultant));
     }
     out
 }
 
-fn results(mesh: &TetMesh, r: &Rotation, shift: [f64; 3], law: &Friction) -> Vec<f64> {
+fn solved(mesh: &TetMesh, r: &Rotation, shift: [f64; 3], law: &Friction) -> Vec<f64> {
     let parts = three_parts(mesh);
     let scene = scene(mesh.clone(), parts, r, shift, law.clone());
-    let (_, levels) = run(scene, at(1e-8));
-    assert!(levels.iter().any(|l| l.summary.slip > 0));
-    turned_back(&levels, r, mesh.points().len())
+    let (_, results) = run(scene, at(1e-8));
+    assert!(results.iter().any(|l| l.summary.slip > 0));
+    turned_back(&results, r, mesh.points().len())
 }
 
 #[test]
 fn quarter_turns_and_general_rotations() {
     let mesh = brick_mesh();
     for law in [Friction::tresca(3e8), Friction::coulomb(0.4), weakening()] {
-        let reference = results(&mesh, &IDENTITY, [0.0; 3], &law);
+        let reference = solved(&mesh, &IDENTITY, [0.0; 3], &law);
         let quarter = std::f64::consts::FRAC_PI_2;
         for (axis, angle) in [
             ([0.0, 0.0, 1.0], quarter),
@@ -89,7 +89,7 @@ fn quarter_turns_and_general_rotations() {
             let r = rotation(axis, angle);
             let right_handed = cross(turn(&r, [1.0, 0.0, 0.0]), turn(&r, [0.0, 1.0, 0.0]));
             assert_close(&right_handed, &turn(&r, [0.0, 0.0, 1.0]), 1e-14, "rotation");
-            let found = results(&mesh, &r, [0.3, -2.0, 5.0], &law);
+            let found = solved(&mesh, &r, [0.3, -2.0, 5.0], &law);
             assert_close(
                 &found,
                 &reference,
@@ -157,7 +157,7 @@ fn check_renumbering(seed: u64, law: &Friction) {
             .iter()
             .flat_map(|&p| a.displacement[3 * p..3 * p + 3].to_vec())
             .collect();
-        assert_close(&u, &b.displacement, 1e-7, &format!("{law:?}, level {k}"));
+        assert_close(&u, &b.displacement, 1e-7, &format!("{law:?}, step {k}"));
         let mut forces = Vec::new();
         let mut expected = Vec::new();
         for p in &b.points {
@@ -172,7 +172,7 @@ fn check_renumbering(seed: u64, law: &Friction) {
             expected.push(p.normal_force);
             expected.extend(p.friction_force);
         }
-        assert_close(&forces, &expected, 1e-6, &format!("{law:?}, level {k}"));
+        assert_close(&forces, &expected, 1e-6, &format!("{law:?}, step {k}"));
     }
 }
 
@@ -201,8 +201,8 @@ fn renumbering_subdomains() {
             [0.0; 3],
             Friction::coulomb(0.3),
         );
-        let (_, levels) = run(scene, at(1e-8));
-        turned_back(&levels, &IDENTITY, mesh.points().len())
+        let (_, results) = run(scene, at(1e-8));
+        turned_back(&results, &IDENTITY, mesh.points().len())
     };
     let reference = solve([0, 1, 2]);
     for names in [[2, 1, 0], [1, 2, 0]] {
@@ -250,8 +250,8 @@ proptest! {
     fn any_rotation(axis in prop::array::uniform3(0.1..1.0f64), angle in -3.1..3.1f64, coefficient in 0.05..0.6f64) {
         let mesh = brick_mesh();
         let law = Friction::coulomb(coefficient);
-        let reference = results(&mesh, &IDENTITY, [0.0; 3], &law);
-        let found = results(&mesh, &rotation(axis, angle), [1.0, 2.0, 3.0], &law);
+        let reference = solved(&mesh, &IDENTITY, [0.0; 3], &law);
+        let found = solved(&mesh, &rotation(axis, angle), [1.0, 2.0, 3.0], &law);
         assert_close(&found, &reference, 1e-6, "rotation");
     }
 
@@ -307,9 +307,9 @@ fn compare_units(
     time: f64,
 ) -> [usize; 2] {
     let (a, reference) = run(scene_in_units(law, 1.0, 1.0, 1.0), settings.clone());
-    let (b, levels) = run(scene_in_units(law, length, force, time), settings.clone());
-    for (k, (x, y)) in levels.iter().zip(&reference).enumerate() {
-        let what = format!("law {law}, {length:e} m, {force:e} N, {time:e} s, level {k}");
+    let (b, results) = run(scene_in_units(law, length, force, time), settings.clone());
+    for (k, (x, y)) in results.iter().zip(&reference).enumerate() {
+        let what = format!("law {law}, {length:e} m, {force:e} N, {time:e} s, step {k}");
         let u: Vec<f64> = x.displacement.iter().map(|v| v / length).collect();
         let f: Vec<f64> = forces(&x.points).iter().map(|v| v / force).collect();
         assert_close(&u, &y.displacement, 1e-7, &what);
@@ -362,8 +362,8 @@ fn powers_of_two_change_no_bit() {
         let settings = by(method.clone());
         let (length, force) = (2.0_f64.powi(-10), 2.0_f64.powi(30));
         let (_, reference) = run(scene_in_units(2, 1.0, 1.0, 1.0), settings.clone());
-        let (_, levels) = run(scene_in_units(2, length, force, 1.0), settings);
-        for (x, y) in levels.iter().zip(&reference) {
+        let (_, results) = run(scene_in_units(2, length, force, 1.0), settings);
+        for (x, y) in results.iter().zip(&reference) {
             assert_eq!(x.report.counters, y.report.counters, "{}", method.kind());
             for (a, b) in x.torn.iter().zip(&y.torn) {
                 assert_eq!(a / length, *b, "{}", method.kind());

@@ -116,8 +116,8 @@ fn orders_of_convergence() {
             )
             .with_load(Load::new(LoadDensity::body_field(force)))
             .with_boxes([2, 2, 2]);
-        let (_, levels) = run(scene, tight());
-        let u = &levels[0].displacement;
+        let (_, results) = run(scene, tight());
+        let u = &results[0].displacement;
         errors.push((
             h1_seminorm_error(&mesh, u, gradient).expect("field"),
             l2_error(&mesh, u, exact).expect("field"),

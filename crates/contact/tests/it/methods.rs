@@ -1,4 +1,5 @@
-//! The methods on the benchmark with n = 1 and where they are hard put: the same forces, certified, and products within bands.
+//! The methods on the benchmark with n = 1 and where they are hard put: the same forces, certified, and products within
+//! bands.
 
 use crate::common::*;
 use signorini_qp::ActiveSetSettings;
@@ -37,9 +38,9 @@ fn all_methods_agree_in_every_step() {
                 ];
                 for (what, p, q) in parts {
                     let d = distance(&p, &q);
-                    assert!(d <= 1e-5, "{name}, level {k}, {what}: {d:e}");
+                    assert!(d <= 1e-5, "{name}, step {k}, {what}: {d:e}");
                 }
-                assert_eq!(x.active, y.active, "{name}, level {k}");
+                assert_eq!(x.active, y.active, "{name}, step {k}");
             }
         }
         assert!(
@@ -48,11 +49,11 @@ fn all_methods_agree_in_every_step() {
     }
 }
 
-/// Products of all 50 steps, and levels that the face method handed to the fall-back.
+/// Products of all 50 steps, and steps that the face method handed to the fall-back.
 fn products(history: History, method: Method) -> (usize, usize) {
-    let (simulation, levels) = run(benchmark(history, 50), by(method));
-    let fallbacks = levels.iter().filter(|l| l.report.fallback).count();
-    let sum: usize = levels.iter().map(|l| l.report.counters.products).sum();
+    let (simulation, results) = run(benchmark(history, 50), by(method));
+    let fallbacks = results.iter().filter(|l| l.report.fallback).count();
+    let sum: usize = results.iter().map(|l| l.report.counters.products).sum();
     assert_eq!(sum, simulation.counters().products);
     (sum, fallbacks)
 }
@@ -90,7 +91,7 @@ fn accuracy_is_not_dear() {
         let settings = at(tolerance);
         let mut simulation = Simulation::new(benchmark(ramp(), 50), settings).expect("set-up");
         while !simulation.is_finished() {
-            simulation.step().expect("level");
+            simulation.step().expect("step");
         }
         simulation.counters().products
     });
@@ -105,7 +106,7 @@ fn the_state_at_the_end_depends_on_the_loading_history() {
         run(benchmark(history, 50), by(Method::default()))
             .1
             .pop()
-            .expect("levels")
+            .expect("steps")
     };
     let (b, c) = (last(ramp()), last(up_down_up()));
     assert_eq!(b.load, c.load);
@@ -122,8 +123,8 @@ fn the_state_at_the_end_depends_on_the_loading_history() {
     assert!(t > 0.05 && n > 1e-3 && u > 1e-4, "{t:e} {n:e} {u:e}");
 }
 
-/// A body that its support lowers until it just touches, and lifts again: normal forces are rounding errors there, and slip bounds
-/// follow them. Each method solves each level.
+/// A body that its support lowers until it just touches, and lifts again: normal forces are rounding errors there, and
+/// slip bounds follow them. Each method solves each step.
 #[test]
 fn a_body_that_just_touches_is_solved_by_every_method() {
     let down = History::table(vec![(0.0, 0.0), (0.5, 1.0), (0.8, 0.2), (1.0, 1.1)]);
@@ -170,7 +171,7 @@ fn soft_part(ratio: f64, friction: Friction) -> Scene {
     .with_boxes([3, 1, 1])
 }
 
-/// One level: status, certificate, products, whether SMALSE had to help.
+/// One step: status, certificate, products, whether SMALSE had to help.
 fn soft_part_solved(ratio: f64, friction: Friction) -> (StepStatus, f64, usize, bool) {
     let scene = soft_part(ratio, friction);
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
@@ -256,11 +257,11 @@ fn a_body_that_is_unloaded_again_converges_in_few_products() {
         (1e-3, Friction::coulomb(0.3), 170),
         (0.0, Friction::coulomb(0.3), 180),
     ] {
-        // `run` asks every level for a certificate of 1e-6
-        let (simulation, levels) = run(unloaded(gap, friction), Settings::default());
+        // `run` asks every step for a certificate of 1e-6
+        let (simulation, results) = run(unloaded(gap, friction), Settings::default());
         let products = simulation.counters().products;
         println!("gap {gap}: {products} products");
-        assert!(levels.iter().all(|l| !l.report.fallback));
+        assert!(results.iter().all(|l| !l.report.fallback));
         assert!(products <= most, "{products}");
     }
 }

@@ -19,9 +19,9 @@ fn scene(contact: Contact, steps: usize) -> Scene {
 }
 
 /// The x coordinate of the centre of pressure.
-fn centre(mesh: &TetMesh, level: &Solved) -> f64 {
+fn centre(mesh: &TetMesh, result: &Solved) -> f64 {
     let moment = |p: &PointState| -p.normal_force * mesh.points()[p.node as usize][0];
-    level.points.iter().map(moment).sum::<f64>() / level.summary.normal_force
+    result.points.iter().map(moment).sum::<f64>() / result.summary.normal_force
 }
 
 /// Over ways of two cells, with which the mesh repeats itself, the pressure is the same one, further along.
@@ -34,46 +34,46 @@ fn the_pressure_goes_with_a_ball_that_is_dragged() {
             .with_motion([2.0, 0.0, 0.0], ramp());
         let scene = scene(contact, 4);
         let mesh = scene.mesh().clone();
-        let (_, levels) = run(scene, at(1e-9));
-        for level in &levels {
-            let at = 2.0 + 2.0 * level.time;
-            let found = centre(&mesh, level);
+        let (_, results) = run(scene, at(1e-9));
+        for result in &results {
+            let at = 2.0 + 2.0 * result.time;
+            let found = centre(&mesh, result);
             assert!((found - at).abs() < 0.02, "{friction}: {found}, not {at}");
-            let first = levels[0].summary.normal_force;
-            let force = level.summary.normal_force / first;
+            let first = results[0].summary.normal_force;
+            let force = result.summary.normal_force / first;
             assert!((force - 1.0).abs() < 1e-3, "{friction}: {force}");
-            assert_eq!(level.summary.slip > 0, friction > 0.0);
+            assert_eq!(result.summary.slip > 0, friction > 0.0);
             // sliding as a whole
-            let drag = level.summary.friction_force[0] / level.summary.normal_force;
+            let drag = result.summary.friction_force[0] / result.summary.normal_force;
             assert!((drag - friction).abs() < 0.02, "{friction}: {drag}");
         }
     }
 }
 
-/// Without friction each level is that of an obstacle that stands where the moving one is.
+/// Without friction each step is that of an obstacle that stands where the moving one is.
 #[test]
-fn a_level_is_that_of_an_obstacle_that_stands_there() {
+fn a_step_is_that_of_an_obstacle_that_stands_there() {
     let way = [1.3, 0.2, -0.01];
     let contact = Contact::rigid(brick::Z_MIN);
     let moving = contact
         .clone()
         .with_gap_field(ball(2.0))
         .with_motion(way, ramp());
-    let (_, levels) = run(scene(moving.clone(), 3), at(1e-9));
-    for level in &levels {
-        let w = way.map(|c| level.time * c);
+    let (_, results) = run(scene(moving.clone(), 3), at(1e-9));
+    for result in &results {
+        let w = way.map(|c| result.time * c);
         let there = ball(2.0);
         let still = contact
             .clone()
             .with_gap_field(move |p| there([p[0] - w[0], p[1] - w[1], p[2]]) - w[2]);
         let (_, still) = run(scene(still, 1), at(1e-9));
         assert_close(
-            &level.displacement,
+            &result.displacement,
             &still[0].displacement,
             1e-7,
             "displacement",
         );
-        for (a, b) in level.points.iter().zip(&still[0].points) {
+        for (a, b) in result.points.iter().zip(&still[0].points) {
             assert!((a.gap - b.gap).abs() < 1e-9);
         }
     }
@@ -111,7 +111,8 @@ fn a_plane_is_where_its_point_has_moved() {
     );
 }
 
-/// What a wedge that is driven under the block does to it without friction is elastic energy, up to a part that falls with the step.
+/// What a wedge that is driven under the block does to it without friction is elastic energy, up to a part that falls
+/// with the step.
 #[test]
 fn the_work_of_a_wedge_is_stored() {
     let miss = |steps: usize| {
@@ -120,10 +121,10 @@ fn the_work_of_a_wedge_is_stored() {
             .with_motion([2.0, 0.0, 0.0], ramp());
         let scene = scene(contact, steps);
         let (mesh, materials) = (scene.mesh().clone(), scene.materials().clone());
-        let (_, levels) = run(scene, at(1e-9));
-        let last = &levels[levels.len() - 1].displacement;
+        let (_, results) = run(scene, at(1e-9));
+        let last = &results[results.len() - 1].displacement;
         let stored = fields::strain_energy(&mesh, &materials, last).expect("energy");
-        let work: f64 = levels.iter().map(|l| l.summary.obstacle_work).sum();
+        let work: f64 = results.iter().map(|l| l.summary.obstacle_work).sum();
         (work - stored) / stored
     };
     let (coarse, fine) = (miss(8), miss(32));

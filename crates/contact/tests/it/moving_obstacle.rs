@@ -78,7 +78,8 @@ fn a_plate_under_a_block_is_a_block_over_a_plate_with_a_coefficient_that_falls()
     plate_is_block(weakening());
 }
 
-/// What the plate does to the block is friction and elastic energy: with implicit steps up to a part that falls with the step.
+/// What the plate does to the block is friction and elastic energy: with implicit steps up to a part that falls with
+/// the step.
 #[test]
 fn the_work_of_the_obstacle_is_stored_or_lost() {
     let miss = |steps: usize| {
@@ -89,20 +90,20 @@ fn the_work_of_the_obstacle_is_stored_or_lost() {
             .with_analysis(Analysis::quasistatic(1.0, steps));
         let mesh = scene.mesh().clone();
         let materials = scene.materials().clone();
-        let (_, levels) = run(scene, at(1e-9));
+        let (_, results) = run(scene, at(1e-9));
         let energy = |u: &[f64]| fields::strain_energy(&mesh, &materials, u).expect("energy");
         let mut sum = 0.0;
         let (mut lost, mut dragged, mut before) = (0.0, 0.0, 0.0);
-        for level in &levels {
-            lost += level.summary.friction_work;
-            dragged += level.summary.obstacle_work;
+        for result in &results {
+            lost += result.summary.friction_work;
+            dragged += result.summary.obstacle_work;
             // the top carries what the floor pushes up
-            let down = WAY * (level.time - before);
-            sum += level.summary.normal_force * down;
-            before = level.time;
+            let down = WAY * (result.time - before);
+            sum += result.summary.normal_force * down;
+            before = result.time;
         }
         assert!(dragged > 0.0 && lost > 0.0);
-        let stored = energy(&levels[levels.len() - 1].displacement);
+        let stored = energy(&results[results.len() - 1].displacement);
         (dragged + sum - lost - stored) / dragged
     };
     let (coarse, fine) = (miss(8), miss(32));
@@ -125,18 +126,18 @@ fn an_obstacle_that_rises_closes_the_gap() {
         .with_support(Support::fixed(brick::Z_MAX))
         .with_boxes([1, 1, 2])
         .with_analysis(paper_steps(1.0, 6));
-    let (simulation, levels) = run(scene, at(1e-9));
+    let (simulation, results) = run(scene, at(1e-9));
     assert!(simulation.plan().effects.moving_obstacle);
-    for level in &levels {
-        let depth = (rise * level.time - gap).max(0.0);
-        let force = level.summary.normal_force;
+    for result in &results {
+        let depth = (rise * result.time - gap).max(0.0);
+        let force = result.summary.normal_force;
         assert!(
             (force - 1e6 * depth).abs() < 1e-4,
             "{}: {force}",
-            level.time
+            result.time
         );
-        let open = (gap - rise * level.time).max(0.0);
-        for point in &level.points {
+        let open = (gap - rise * result.time).max(0.0);
+        for point in &result.points {
             assert!((point.gap - open).abs() < 1e-10);
         }
     }
@@ -148,10 +149,10 @@ fn nodes_that_are_held_slide_on_a_plate_that_moves() {
     let plate = floor(Friction::coulomb(0.2)).with_motion([0.0, WAY, 0.0], ramp());
     let still = Support::components(brick::Z_MIN, [true, true, false]);
     let scene = scene(plate, still, DifferenceFormula::BACKWARD_EULER, [1, 1, 1]);
-    for level in run(scene, at(1e-9)).1 {
-        let friction = level.summary.friction_force[1];
+    for result in run(scene, at(1e-9)).1 {
+        let friction = result.summary.friction_force[1];
         assert!((friction - 0.2 * 2.0 * PRESSURE).abs() < 1e-5, "{friction}");
-        assert!((level.summary.obstacle_work - friction * WAY / 6.0).abs() < 1e-9);
+        assert!((result.summary.obstacle_work - friction * WAY / 6.0).abs() < 1e-9);
     }
 }
 

@@ -19,7 +19,8 @@ fn bulging() -> TetMesh {
         .expect("bulging")
 }
 
-/// Two bodies that are mirror images touch as each of them touches a plane without friction, whatever the friction between them.
+/// Two bodies that are mirror images touch as each of them touches a plane without friction, whatever the friction
+/// between them.
 #[test]
 fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
     let one = bulging();
@@ -46,9 +47,9 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
             let scene = Scene::new(both.clone(), uniform(1e9, 0.3)).with_contact(contact);
             let scene = pressed(scene, brick::Z_MAX, 1.0);
             let scene = pressed(scene, second(brick::Z_MAX), -1.0).with_boxes([2, 1, 2]);
-            let (simulation, levels) = run(scene, tight().with_method(method));
+            let (simulation, results) = run(scene, tight().with_method(method));
             assert!(simulation.plan().effects.partners && simulation.plan().effects.gap);
-            for (a, b) in levels.iter().zip(&reference) {
+            for (a, b) in results.iter().zip(&reference) {
                 let half = b.displacement.len();
                 let [upper, lower] = [&a.displacement[..half], &a.displacement[half..]];
                 assert_close(upper, &b.displacement, 1e-6, &what);
@@ -98,7 +99,7 @@ fn pressure_passes_from_body_to_body() {
             for tag in [brick::Y_MIN, second(brick::Y_MIN)] {
                 scene = scene.with_support(Support::components(tag, [false, true, false]));
             }
-            let (simulation, levels) = run(scene, tight().with_method(method));
+            let (simulation, results) = run(scene, tight().with_method(method));
             let effects = simulation.plan().effects;
             assert!(effects.partners && !effects.gap, "{what}");
             let strain = pressure / young;
@@ -107,8 +108,8 @@ fn pressure_passes_from_body_to_body() {
                 .iter()
                 .flat_map(|[x, y, z]| [poisson * strain * x, poisson * strain * y, -strain * z])
                 .collect();
-            assert_close(&levels[0].displacement, &exact, 1e-7, &what);
-            for point in &levels[0].points {
+            assert_close(&results[0].displacement, &exact, 1e-7, &what);
+            for point in &results[0].points {
                 let found = -point.normal_force / point.area;
                 assert!((found / pressure - 1.0).abs() < 1e-6, "{what}: {found:e}");
                 assert!(point.partner.is_some(), "{what}");
@@ -120,7 +121,8 @@ fn pressure_passes_from_body_to_body() {
     }
 }
 
-/// A clamped beam above a plate: with a plate much stiffer than the beam the floor is rigid, histories of sliding included.
+/// A clamped beam above a plate: with a plate much stiffer than the beam the floor is rigid, histories of sliding
+/// included.
 pub(crate) fn beam(plate: Option<f64>) -> Scene {
     let beam = block([3.0, 1.0, 1.0], [6, 2, 2]);
     let loads = |scene: Scene| {
@@ -158,18 +160,18 @@ fn a_stiff_plate_is_a_rigid_floor() {
     let mut last = f64::INFINITY;
     for stiffness in [1e3, 1e6] {
         let settings = at(1e-8);
-        let (_, levels) = run(beam(Some(211.9e9 * stiffness)), settings);
+        let (_, results) = run(beam(Some(211.9e9 * stiffness)), settings);
         let off = |a: &Solved, b: &Solved| {
             let beam = b.displacement.len();
             distance(&a.displacement[..beam], &b.displacement)
         };
-        let worst = levels.iter().zip(&reference).map(|(a, b)| off(a, b));
+        let worst = results.iter().zip(&reference).map(|(a, b)| off(a, b));
         let worst = worst.fold(0.0, f64::max);
         assert!(worst < 30.0 / stiffness, "{stiffness:e}: {worst:e}");
         assert!(worst < last);
         last = worst;
-        for level in &levels {
-            assert!(!level.report.fallback);
+        for result in &results {
+            assert!(!result.report.fallback);
         }
     }
 }
@@ -179,15 +181,15 @@ fn results_do_not_depend_on_the_partition_nor_on_which_side_comes_first() {
     let plate = 4e11;
     let (_, reference) = run(beam(Some(plate)), tight());
     for boxes in [[1, 1, 2], [3, 2, 2], [2, 1, 4]] {
-        let (_, levels) = run(beam(Some(plate)).with_boxes(boxes), tight());
-        for (a, b) in levels.iter().zip(&reference) {
+        let (_, results) = run(beam(Some(plate)).with_boxes(boxes), tight());
+        for (a, b) in results.iter().zip(&reference) {
             assert_close(&a.displacement, &b.displacement, 1e-6, "cut");
             assert_close(&forces(&a.points), &forces(&b.points), 1e-6, "cut");
         }
     }
     let swapped = Contact::between(second(brick::Z_MAX), brick::Z_MIN).with_friction(weakening());
-    let (_, levels) = run(beam(Some(plate)).replace_contact(Some(swapped)), tight());
-    for (a, b) in levels.iter().zip(&reference) {
+    let (_, results) = run(beam(Some(plate)).replace_contact(Some(swapped)), tight());
+    for (a, b) in results.iter().zip(&reference) {
         assert_close(&a.displacement, &b.displacement, 1e-6, "swapped");
     }
 }
@@ -204,8 +206,8 @@ fn friction_between_bodies_holds_up_to_its_coefficient() {
             .with_boxes([1, 1, 2])
     };
     for method in methods() {
-        let level = solve(scene(0.2), by(method));
-        let force = level.summary.resultant;
+        let result = solve(scene(0.2), by(method));
+        let force = result.summary.resultant;
         // on the upper body: it carries its pressure and its push
         for (found, exact) in force.iter().zip([0.0, -0.2e6, 1e6]) {
             assert!((found - exact).abs() < 10.0, "{force:?}");
@@ -246,7 +248,7 @@ fn a_body_drags_the_other_one() {
             "forces between bodies cancel"
         );
     }
-    let frame = simulation.result().expect("a level");
+    let frame = simulation.result().expect("a step");
     let sum = frame.summary();
     assert_eq!(sum.slip, sum.active);
     // every point slides along x, but for what bulging adds
@@ -265,10 +267,10 @@ fn bodies_come_apart() {
         .with_support(Support::fixed(second(brick::Z_MAX)).with_motion([0.0, 0.0, 0.01], ramp()))
         .with_contact(joint())
         .with_boxes([1, 1, 2]);
-    let level = solve(scene, Settings::default());
-    assert_eq!(level.summary.active, 0);
-    assert!(level.report.counters.products <= 2);
-    for point in &level.points {
+    let result = solve(scene, Settings::default());
+    assert_eq!(result.summary.active, 0);
+    assert!(result.report.counters.products <= 2);
+    for point in &result.points {
         assert!((point.gap - 0.01).abs() < 1e-9, "{}", point.gap);
     }
 }
@@ -338,7 +340,8 @@ fn what_cannot_be_paired_is_refused() {
     assert!(error.to_string().contains("999"), "{error}");
 }
 
-/// Facets so slender that neighbours are closer to a normal than is allowed for partners; a gap that a rigid contact has not told.
+/// Facets so slender that neighbours are closer to a normal than is allowed for partners; a gap that a rigid contact
+/// has not told.
 #[test]
 fn partners_are_the_nearest_nodes() {
     let lower = block([1.0, 100.0, 1.0], [40, 2, 1]);
@@ -360,8 +363,8 @@ fn partners_are_the_nearest_nodes() {
     }
 }
 
-/// Two blocks side by side under a third, in a corner of two walls with friction: nodes where three bodies or two bodies and
-/// a wall meet have several points.
+/// Two blocks side by side under a third, in a corner of two walls with friction: nodes where three bodies or two
+/// bodies and a wall meet have several points.
 fn wall(friction: &Friction) -> Scene {
     let left = block([1.0; 3], [2; 3]);
     let right = left.map_points(|[x, y, z]| [x + 1.0, y, z]).expect("moved");
@@ -405,7 +408,7 @@ fn nodes_may_meet_several_bodies_and_walls() {
             let what = format!("{boxes:?} {}", method.kind());
             let scene = wall(&Friction::None).with_boxes(boxes);
             let mesh = scene.mesh().clone();
-            let level = solve(scene, tight().with_method(method));
+            let result = solve(scene, tight().with_method(method));
             let [x, z] = [-4e5, -1e6].map(|stress| stress / young);
             let strain = [x - poisson * z, -poisson * (x + z), z - poisson * x];
             let exact: Vec<f64> = mesh
@@ -413,7 +416,7 @@ fn nodes_may_meet_several_bodies_and_walls() {
                 .iter()
                 .flat_map(|p| [0, 1, 2].map(|c| strain[c] * p[c]))
                 .collect();
-            assert_close(&level.displacement, &exact, 1e-6, &what);
+            assert_close(&result.displacement, &exact, 1e-6, &what);
         }
     }
 }
@@ -423,10 +426,10 @@ fn rough_bodies_and_walls_do_not_depend_on_the_cut() {
     let friction = Friction::tresca(2e4);
     let reference = solve(wall(&friction), tight());
     for boxes in [[2, 1, 2], [4, 2, 4]] {
-        let level = solve(wall(&friction).with_boxes(boxes), tight());
-        assert_close(&level.displacement, &reference.displacement, 1e-5, "cut");
-        assert!(!level.report.fallback);
+        let result = solve(wall(&friction).with_boxes(boxes), tight());
+        assert_close(&result.displacement, &reference.displacement, 1e-5, "cut");
+        assert!(!result.report.fallback);
     }
-    let level = solve(wall(&Friction::coulomb(0.3)), Settings::default());
-    assert!(!level.report.fallback);
+    let result = solve(wall(&Friction::coulomb(0.3)), Settings::default());
+    assert!(!result.report.fallback);
 }

@@ -40,8 +40,8 @@ fn a_surface_that_supports_move_is_an_obstacle_that_moves() {
     };
     for method in methods() {
         let what = method.kind().to_string();
-        let (_, levels) = run(scene(), tight().with_method(method));
-        for (a, b) in levels.iter().zip(&reference) {
+        let (_, results) = run(scene(), tight().with_method(method));
+        for (a, b) in results.iter().zip(&reference) {
             let upper = &a.displacement[a.displacement.len() - body..];
             assert_close(upper, &b.displacement, 1e-6, &what);
             assert_close(&forces(&a.points), &forces(&b.points), 1e-6, &what);
@@ -141,8 +141,8 @@ fn the_algebraic_error_is_estimated_where_both_sides_are_held() {
     }
 }
 
-/// Where supports fix the normal displacement of one side its rows are of the other body alone. Friction joins both all the same:
-/// a body that its supports press on another one is held by friction.
+/// Where supports fix the normal displacement of one side its rows are of the other body alone. Friction joins both all
+/// the same: a body that its supports press on another one is held by friction.
 #[test]
 fn friction_joins_bodies_that_no_normal_row_joins() {
     let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX)
@@ -160,11 +160,11 @@ fn friction_joins_bodies_that_no_normal_row_joins() {
     assert!((force.resultant[0] + 1e5).abs() < 1.0, "{force:?}");
     assert!(force.normal_force > 4e5, "{force:?}");
     for method in methods() {
-        let level = solve(
+        let result = solve(
             scene(1e5).with_boxes([2, 1, 2]),
             tight().with_method(method),
         );
-        assert_close(&level.displacement, &reference.displacement, 1e-6, "cut");
+        assert_close(&result.displacement, &reference.displacement, 1e-6, "cut");
     }
 }
 

@@ -62,9 +62,9 @@ fn without_contact_any_decomposition_equals_the_direct_solution() {
                 let scene = loaded_brick(mesh.clone(), ramp()).with_boxes(boxes);
                 // the tolerance is that of the certificate here
                 let settings = at(1e-8).with_tolerance(1e-10);
-                let level = solve(scene, settings.with_preconditioner(preconditioner));
+                let result = solve(scene, settings.with_preconditioner(preconditioner));
                 let what = format!("mesh {k}, {boxes:?}, {preconditioner:?}");
-                assert_close(&level.displacement, &exact, 1e-9, &what);
+                assert_close(&result.displacement, &exact, 1e-9, &what);
             }
         }
     }
@@ -73,10 +73,10 @@ fn without_contact_any_decomposition_equals_the_direct_solution() {
 fn compare(scene: &Scene, what: &str) {
     let mut first: Option<Vec<(Vec<f64>, Vec<f64>)>> = None;
     for boxes in BOXES {
-        let (_, levels) = run(scene.clone().with_boxes(boxes), at(1e-8));
-        let last = levels.last().expect("levels");
+        let (_, results) = run(scene.clone().with_boxes(boxes), at(1e-8));
+        let last = results.last().expect("steps");
         assert!(last.summary.active > 0, "{what}: nothing touches");
-        let found: Vec<_> = levels
+        let found: Vec<_> = results
             .iter()
             .map(|l| (l.displacement.clone(), forces(&l.points)))
             .collect();
@@ -85,17 +85,12 @@ fn compare(scene: &Scene, what: &str) {
             continue;
         };
         for (k, (a, b)) in found.iter().zip(reference).enumerate() {
-            assert_close(
-                &a.0,
-                &b.0,
-                1e-7,
-                &format!("{what}, {boxes:?}, level {k}: u"),
-            );
+            assert_close(&a.0, &b.0, 1e-7, &format!("{what}, {boxes:?}, step {k}: u"));
             assert_close(
                 &a.1,
                 &b.1,
                 1e-7,
-                &format!("{what}, {boxes:?}, level {k}: forces"),
+                &format!("{what}, {boxes:?}, step {k}: forces"),
             );
         }
     }

@@ -80,11 +80,11 @@ fn normal_patch_on_any_mesh_and_decomposition() {
             .collect();
         for (cut, scene) in cuts(&scene) {
             let what = format!("{mesh_name}, {cut}");
-            let level = solve(scene, tight());
-            assert_close(&level.displacement, &exact, 1e-9, &what);
-            let area: f64 = level.points.iter().map(|p| p.area).sum();
+            let result = solve(scene, tight());
+            assert_close(&result.displacement, &exact, 1e-9, &what);
+            let area: f64 = result.points.iter().map(|p| p.area).sum();
             assert!((area - 1.5).abs() < 1e-12);
-            for p in &level.points {
+            for p in &result.points {
                 let error = p.normal_force / (-PRESSURE * p.area) - 1.0;
                 assert!(error.abs() <= 1e-9, "{what}, node {}: {error:e}", p.node);
             }
@@ -116,7 +116,7 @@ fn friction_patch_in_all_directions() {
             let scene = sheared(mesh.clone(), t, angle, coefficient);
             let (cut, scene) = cuts(&scene).swap_remove(k);
             let what = format!("{mesh_name}, {cut}, {angle}");
-            let level = solve(scene, at(1e-11));
+            let result = solve(scene, at(1e-11));
             let exact: Vec<f64> = mesh
                 .points()
                 .iter()
@@ -125,13 +125,13 @@ fn friction_patch_in_all_directions() {
                     [c * g, s * g, -PRESSURE / YOUNG * x[2]]
                 })
                 .collect();
-            assert_close(&level.displacement, &exact, 1e-9, &what);
+            assert_close(&result.displacement, &exact, 1e-9, &what);
             assert_eq!(
-                count(&level.points, ContactState::Stick),
-                level.points.len(),
+                count(&result.points, ContactState::Stick),
+                result.points.len(),
                 "{what}"
             );
-            for p in &level.points {
+            for p in &result.points {
                 let expected = [-t * c * p.area, -t * s * p.area, 0.0];
                 let error = distance(&p.friction_force, &expected)
                     .max((p.normal_force / (-PRESSURE * p.area) - 1.0).abs());
@@ -224,9 +224,9 @@ fn held_by_friction(margin: f64) {
     for angle in [0.0, 1.1, 3.0] {
         let t = 0.3 * PRESSURE * (1.0 - margin);
         let scene = sheared(block([1.0; 3], [2, 2, 2]), t, angle, 0.3).with_boxes([2, 1, 1]);
-        let level = solve(scene, Settings::default());
+        let result = solve(scene, Settings::default());
         assert_eq!(
-            count(&level.points, ContactState::Stick),
+            count(&result.points, ContactState::Stick),
             9,
             "{angle}, {margin:e}"
         );

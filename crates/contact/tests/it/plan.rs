@@ -54,7 +54,8 @@ fn the_plan_predicts_the_rows() {
     }
 }
 
-/// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that outweighs all else.
+/// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that
+/// outweighs all else.
 #[test]
 fn the_plan_knows_what_very_small_subdomains_cost() {
     let plan = |n: usize, small: bool| {

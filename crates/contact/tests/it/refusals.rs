@@ -94,7 +94,7 @@ fn floor(gap: f64) -> Contact {
     Contact::rigid(brick::Z_MIN).with_gap(gap)
 }
 
-/// A clamp that goes down 0.2 m above a floor 0.1 m below: at the third of four levels it is 0.05 m inside.
+/// A clamp that goes down 0.2 m above a floor 0.1 m below: at the third of four steps it is 0.05 m inside.
 #[test]
 fn a_support_that_pushes_a_contact_edge_through_the_floor_is_refused() {
     let support = Support::fixed(brick::X_MIN).with_motion([0.0, 0.0, -0.2], ramp());
@@ -210,7 +210,7 @@ fn adjacent_supports_with_one_motion_agree() {
         let mut simulation =
             Simulation::new(two_sides(way, &first, &second), tight()).expect("accepted");
         while !simulation.is_finished() {
-            let frame = simulation.step().expect("level");
+            let frame = simulation.step().expect("step");
             let status = frame.report().status;
             assert!(status.converged(), "{status:?}");
             let factor = first.value(frame.time());
@@ -347,8 +347,8 @@ fn sizes_whose_squares_overflow_are_named() {
         for accuracy in [Accuracy::Tolerance, Accuracy::Relative(1e-5)] {
             let settings = Settings::default().with_accuracy(accuracy);
             let scene = scene.clone().with_analysis(Analysis::quasistatic(1.0, 2));
-            for (level, error, _) in estimated(&scene, settings) {
-                assert!(level.report.status.converged() && error.relative() < 1e-4);
+            for (result, error, _) in estimated(&scene, settings) {
+                assert!(result.report.status.converged() && error.relative() < 1e-4);
             }
         }
     }

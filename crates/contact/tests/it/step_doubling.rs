@@ -11,8 +11,8 @@ fn doubled_steps_tell_the_error_of_the_time_steps() {
     for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
         let work_at = |steps: usize| {
             let mut s = Simulation::new(scene(steps, formula), at(1e-8)).expect("set-up");
-            let levels = rest(&mut s);
-            levels.iter().map(|l| l.summary.friction_work).sum::<f64>()
+            let results = rest(&mut s);
+            results.iter().map(|l| l.summary.friction_work).sum::<f64>()
         };
         let exact = work_at(640);
         let mut doubling = StepDoubling::new(&scene(20, formula), &at(1e-8)).expect("set-up");
@@ -20,7 +20,7 @@ fn doubled_steps_tell_the_error_of_the_time_steps() {
         while !doubling.is_finished() {
             last = Some(doubling.step().expect("step"));
         }
-        let last = last.expect("a level");
+        let last = last.expect("a step");
         let half = last.dissipated_work_size;
         let index = last.dissipated_work / (half - exact);
         println!(
@@ -43,11 +43,11 @@ fn whole_steps_are_those_of_a_run_without_doubling() {
     let mut plain = Simulation::new(scene, tight()).expect("set-up");
     while !doubling.is_finished() {
         let error = doubling.step().expect("step");
-        let level = step(&mut plain);
+        let result = step(&mut plain);
         let whole = doubling.whole().result().expect("a step").displacement();
-        assert_eq!(level.displacement, whole.as_flattened());
+        assert_eq!(result.displacement, whole.as_flattened());
         let half = forces(doubling.half().result().expect("a step").points());
-        let off = distance(&half, &forces(&level.points));
+        let off = distance(&half, &forces(&result.points));
         assert!(off <= 2.0 * error.force() + 1e-12);
         assert_eq!(error.step, plain.state().step() - 1);
     }
@@ -58,7 +58,7 @@ fn whole_steps_are_those_of_a_run_without_doubling() {
 
 #[test]
 fn noise_of_the_solver_is_no_error_of_the_time_steps() {
-    // no friction: every level stands alone, and steps of any length end at the same solution
+    // no friction: every step stands alone, and steps of any length end at the same solution
     let scene = small_benchmark(Friction::None, 4);
     let mut doubling = StepDoubling::new(&scene, &Settings::default()).expect("set-up");
     while !doubling.is_finished() {
@@ -92,7 +92,7 @@ fn noise_of_the_solver_is_no_error_of_the_time_steps() {
     );
 }
 
-fn levels(scene: &Scene, settings: Settings) -> Vec<Solved> {
+fn results(scene: &Scene, settings: Settings) -> Vec<Solved> {
     rest(&mut Simulation::new(scene.clone(), settings).expect("set-up"))
 }
 
@@ -106,8 +106,8 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
             .with_analysis(Analysis::quasistatic(1.0, steps).with_formula(formula))
     };
     let most = 640;
-    let exact = levels(&scene(most, DifferenceFormula::BACKWARD_EULER), at(1e-8));
-    println!("error and estimates: root of the mean square over the levels");
+    let exact = results(&scene(most, DifferenceFormula::BACKWARD_EULER), at(1e-8));
+    println!("error and estimates: root of the mean square over the steps");
     println!("formula steps true | difference of whole and half | Twice | order, reliable");
     let mut reliable = 0;
     for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
@@ -119,9 +119,9 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
             let mut last = None;
             for k in 0..steps {
                 let error = doubling.step().expect("step");
-                let u = doubling.whole().result().expect("a level").displacement();
-                let level = &exact[(k + 1) * most / steps - 1];
-                truth += relative_distance(&scene, u.as_flattened(), &level.displacement).powi(2);
+                let u = doubling.whole().result().expect("a step").displacement();
+                let result = &exact[(k + 1) * most / steps - 1];
+                truth += relative_distance(&scene, u.as_flattened(), &result.displacement).powi(2);
                 plain += error.displacement().powi(2);
                 better += error.whole_error().powi(2);
                 assert!(error.changed_points <= doubling.whole().constrained_points().len());
@@ -138,7 +138,8 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
                 "{formula:?} {steps} {truth:.1e} | {plain:.2} | {better:.2} | {order:.1}, {trust}"
             );
             assert!((0.6..2.5).contains(&better), "{better}");
-            // trusted where the true error falls at least in half with half the steps, as for first order, and only there
+            // trusted where the true error falls at least in half with half the steps, as for first order, and only
+            // there
             if let Some((longer, trusted)) = before.replace((truth, trust)) {
                 assert_eq!(trusted, longer >= 2.0 * truth, "{longer:e} to {truth:e}");
             }

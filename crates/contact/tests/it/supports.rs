@@ -1,4 +1,5 @@
-//! Supports that move: rigid motions cost little, dragged contact nodes have the friction of the law, planes of symmetry.
+//! Supports that move: rigid motions cost little, dragged contact nodes have the friction of the law, planes of
+//! symmetry.
 
 use crate::common::*;
 
@@ -20,7 +21,8 @@ fn a_body_stretched_by_its_supports_is_certified() {
     }
 }
 
-/// A thin plate glued to the ground: its torn subdomains bend by far more than the plate moves, and are no scale for it.
+/// A thin plate glued to the ground: its torn subdomains bend by far more than the plate moves, and are no scale for
+/// it.
 #[test]
 fn the_certificate_of_a_thin_bedded_plate_tells_its_error() {
     let scene = || {
@@ -69,15 +71,15 @@ fn lowered(gap: f64, depth: f64, tilt: [f64; 2]) -> Scene {
         .with_analysis(paper_steps(1.0, 10))
 }
 
-fn assert_cheap(level: &Solved, what: &str) {
-    let report = &level.report;
-    let parts = level.certificate.parts().map(|(n, v)| (n, v.relative()));
+fn assert_cheap(result: &Solved, what: &str) {
+    let report = &result.report;
+    let parts = result.certificate.parts().map(|(n, v)| (n, v.relative()));
     assert!(report.status.converged(), "{what}: {report:?} {parts:?}");
     assert!(report.counters.products <= 60, "{what}: {report:?}");
 }
 
 #[test]
-fn a_body_that_is_lowered_touches_at_the_right_level() {
+fn a_body_that_is_lowered_touches_at_the_right_step() {
     for (gap, depth, tilt) in [
         (1e-3, 2e-3, [0.0; 2]),
         (1e-3, 2e-3, [3e-4, 1e-4]),
@@ -87,17 +89,17 @@ fn a_body_that_is_lowered_touches_at_the_right_level() {
         let mut simulation =
             Simulation::new(lowered(gap, depth, tilt), Settings::default()).expect("set-up");
         while !simulation.is_finished() {
-            let level = step(&mut simulation);
-            let reach = depth * level.time;
-            let what = format!("gap {gap}, depth {depth}, t = {}", level.time);
-            assert_cheap(&level, &what);
-            let touches = level.summary.normal_force > 1.0;
+            let result = step(&mut simulation);
+            let reach = depth * result.time;
+            let what = format!("gap {gap}, depth {depth}, t = {}", result.time);
+            assert_cheap(&result, &what);
+            let touches = result.summary.normal_force > 1.0;
             assert_eq!(touches, reach > gap * (1.0 + 1e-9), "{what}");
         }
     }
 }
 
-/// Two supports that move alike: every level is a rigid motion.
+/// Two supports that move alike: every step is a rigid motion.
 #[test]
 fn a_rigid_motion_costs_little() {
     let motion = [1e-3, -2e-3, 5e-4];
@@ -113,11 +115,11 @@ fn a_rigid_motion_costs_little() {
         }
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
         while !simulation.is_finished() {
-            let level = step(&mut simulation);
-            assert_cheap(&level, &format!("contact {contact}"));
-            for u in level.displacement.chunks_exact(3) {
+            let result = step(&mut simulation);
+            assert_cheap(&result, &format!("contact {contact}"));
+            for u in result.displacement.chunks_exact(3) {
                 for (u, m) in u.iter().zip(motion) {
-                    assert!((u - level.time * m).abs() < 1e-12, "{u:e}");
+                    assert!((u - result.time * m).abs() < 1e-12, "{u:e}");
                 }
             }
         }
@@ -139,7 +141,8 @@ fn pressed(friction: Friction, boxes: [usize; 3], steps: usize) -> Scene {
         .with_analysis(Analysis::quasistatic(1.0, steps))
 }
 
-/// All of the bottom is moved along (3, 4, 0) / 5 and back: friction mu N against it at every node, whatever the body does.
+/// All of the bottom is moved along (3, 4, 0) / 5 and back: friction mu N against it at every node, whatever the body
+/// does.
 fn dragged(method: Method, boxes: [usize; 3]) {
     let name = method.kind();
     let length = 1e-2;
@@ -148,25 +151,25 @@ fn dragged(method: Method, boxes: [usize; 3]) {
         Support::components(brick::Z_MIN, [true, true, false]).with_motion(way, there_and_back()),
     );
     let (mut work, mut before) = (0.0, 0.0);
-    let (_, levels) = run(scene, at(1e-9).with_method(method));
-    for level in &levels {
-        let what = format!("{} {boxes:?} t = {}", name, level.time);
-        let sign = if level.time <= 0.5 { -1.0 } else { 1.0 };
+    let (_, results) = run(scene, at(1e-9).with_method(method));
+    for result in &results {
+        let what = format!("{} {boxes:?} t = {}", name, result.time);
+        let sign = if result.time <= 0.5 { -1.0 } else { 1.0 };
         let total = COEFFICIENT * 2.0 * PRESSURE;
-        let friction = level.summary.friction_force;
+        let friction = result.summary.friction_force;
         for (found, part) in friction.iter().zip([0.6, 0.8, 0.0]) {
             assert!((found - sign * part * total).abs() < 1e-5 * total, "{what}");
         }
-        for point in &level.points {
+        for point in &result.points {
             assert_eq!(point.state, ContactState::Slip, "{what}");
             let size = norm(&point.friction_force);
             assert!((size + COEFFICIENT * point.normal_force).abs() < 1e-6 * size);
         }
-        let now = length * there_and_back().value(level.time);
+        let now = length * there_and_back().value(result.time);
         work += total * (now - before).abs();
         before = now;
     }
-    let found: f64 = levels.iter().map(|l| l.summary.friction_work).sum();
+    let found: f64 = results.iter().map(|l| l.summary.friction_work).sum();
     assert!((found / work - 1.0).abs() < 1e-5, "{found} {work}");
 }
 
@@ -207,8 +210,8 @@ fn what_is_dragged_moves_as_without_friction() {
     }
 }
 
-/// One direction prescribed, the other free: friction acts against the direction of both, so that any force across drives the
-/// block sideways, with s_y / s_x = F_y / sqrt((mu N)^2 - F_y^2).
+/// One direction prescribed, the other free: friction acts against the direction of both, so that any force across
+/// drives the block sideways, with s_y / s_x = F_y / sqrt((mu N)^2 - F_y^2).
 #[test]
 fn a_block_that_is_dragged_drifts_with_a_force_across() {
     let (normal, across, way) = (2.0 * PRESSURE, 0.25 * 2.0 * PRESSURE, 1e-1);
@@ -221,9 +224,9 @@ fn a_block_that_is_dragged_drifts_with_a_force_across() {
                 Support::components(brick::Z_MIN, [true, false, false])
                     .with_motion([way, 0.0, 0.0], ramp()),
             );
-        let (_, levels) = run(scene, at(1e-9));
-        let what = format!("{boxes:?}: {:?}", levels[0].report);
-        let friction = levels[0].summary.friction_force;
+        let (_, results) = run(scene, at(1e-9));
+        let what = format!("{boxes:?}: {:?}", results[0].report);
+        let friction = results[0].summary.friction_force;
         assert!(
             (friction[0] + along).abs() < 1e-4 * bound,
             "{what}: {friction:?}"
@@ -232,12 +235,12 @@ fn a_block_that_is_dragged_drifts_with_a_force_across() {
             (friction[1] + across).abs() < 1e-4 * bound,
             "{what}: {friction:?}"
         );
-        for point in &levels[0].points {
+        for point in &results[0].points {
             let [x, y, _] = point.tangential_displacement;
             assert!((x / way - 1.0).abs() < 1e-9, "{what}");
             assert!((y / x - across / along).abs() < 2e-2, "{what}: {}", y / x);
         }
-        assert!(!levels[0].report.fallback, "{what}");
+        assert!(!results[0].report.fallback, "{what}");
     }
 }
 
@@ -249,8 +252,8 @@ fn given_friction_of_what_is_dragged() {
         Support::components(brick::Z_MIN, [true, true, false])
             .with_motion([1e-2, 0.0, 0.0], ramp()),
     );
-    for level in run(scene, at(1e-9)).1 {
-        let friction = level.summary.friction_force[0];
+    for result in run(scene, at(1e-9)).1 {
+        let friction = result.summary.friction_force[0];
         assert!(
             (friction + 2.0 * stress).abs() < 1e-6 * stress,
             "{friction}"
@@ -290,9 +293,9 @@ fn sliding_nodes_in_a_plane_of_symmetry_have_the_friction_of_the_law() {
     ] {
         for method in methods() {
             let name = method.kind();
-            let (_, levels) = run(half(friction.clone()), at(1e-9).with_method(method));
+            let (_, results) = run(half(friction.clone()), at(1e-9).with_method(method));
             let mut slid = 0;
-            for point in levels.iter().flat_map(|l| &l.points) {
+            for point in results.iter().flat_map(|l| &l.points) {
                 let in_plane = point.node % 15 < 5;
                 if !in_plane || point.state != ContactState::Slip {
                     continue;

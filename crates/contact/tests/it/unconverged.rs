@@ -1,10 +1,11 @@
-//! Steps that do not converge: no method claims what it did not find, who depends on them knows it, who wants errors gets them.
+//! Steps that do not converge: no method claims what it did not find, who depends on them knows it, who wants errors
+//! gets them.
 
 use crate::common::*;
-use signorini_contact::fixed_point::Verdict;
 use signorini_qp::ActiveSetSettings;
 
-/// A cantilever pressed on an oblique obstacle, where with this coefficient successive approximations have no limit, then lifted.
+/// A cantilever pressed on an oblique obstacle, where with this coefficient successive approximations have no limit,
+/// then lifted.
 fn cantilever(friction: Friction) -> Scene {
     let lifted = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, -1.0)]).expect("table");
     let tilt = 0.02_f64;
@@ -26,7 +27,7 @@ fn rough() -> Simulation {
 }
 
 #[test]
-fn later_levels_name_the_first_level_that_did_not_converge() {
+fn later_steps_name_the_first_step_that_did_not_converge() {
     let mut simulation = rough();
     let mut seen = Vec::new();
     while !simulation.is_finished() {
@@ -48,7 +49,7 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
             )),
         }
     }
-    // lifted off the obstacle the body is certified, but where it stands along the obstacle depends on level 0
+    // lifted off the obstacle the body is certified, but where it stands along the obstacle depends on step 0
     assert_eq!(
         seen,
         [
@@ -61,7 +62,7 @@ fn later_levels_name_the_first_level_that_did_not_converge() {
 }
 
 #[test]
-fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
+fn a_run_is_no_error_and_a_strict_run_names_step_status_and_remedy() {
     let mut simulation = rough();
     let report = simulation.run(&mut Silent).expect("run");
     assert_eq!((report.steps, report.failures.len()), (3, 1));
@@ -80,7 +81,7 @@ fn a_run_is_no_error_and_a_strict_run_names_level_status_and_remedy() {
 }
 
 #[test]
-fn an_observer_can_end_a_run_at_the_first_such_level() {
+fn an_observer_can_end_a_run_at_the_first_such_step() {
     let mut simulation = rough();
     let outcome = simulation.run(&mut |frame: &StepResult| Flow::from(frame.require_converged()));
     let error = outcome.expect_err("not converged");
@@ -108,7 +109,7 @@ fn a_resumed_run_knows_what_it_continues() {
     ));
 }
 
-/// Without friction a level depends on nothing that an earlier one found.
+/// Without friction a step depends on nothing that an earlier one found.
 #[test]
 fn scenes_without_memory_never_set_it() {
     let short = Settings::default()
@@ -153,7 +154,7 @@ fn weighed_cantilever(coefficient: f64, tilt: f64, axial: f64) -> Scene {
         .with_boxes([5, 1, 1])
 }
 
-fn first_level(scene: Scene, method: Method) -> (StepStatus, Option<Verdict>, Option<f64>, f64) {
+fn first_step(scene: Scene, method: Method) -> (StepStatus, Option<Verdict>, Option<f64>, f64) {
     let settings = by(method);
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let frame = simulation.step().expect("step");
@@ -174,7 +175,7 @@ fn no_method_claims_what_it_did_not_find() {
         for (tilt, axial) in [(0.02, 0.0), (0.1, 0.1), (0.1, 1.0), (0.3, 0.0)] {
             for coefficient in [0.05, 0.3, 0.5, 0.7, 0.9, 1.1, 1.5, 3.0] {
                 let scene = weighed_cantilever(coefficient, tilt, axial);
-                let (status, _, _, certificate) = first_level(scene, method.clone());
+                let (status, _, _, certificate) = first_step(scene, method.clone());
                 let what = format!(
                     "{}, tilt {tilt}, axial {axial}, F {coefficient}",
                     method.kind()
@@ -198,7 +199,7 @@ fn no_method_claims_what_it_did_not_find() {
 fn successive_approximations_say_that_the_map_is_not_contractive() {
     for coefficient in [0.6, 0.8, 1.0] {
         let scene = weighed_cantilever(coefficient, 0.02, 0.0);
-        let (status, verdict, rate, _) = first_level(scene, Method::paper());
+        let (status, verdict, rate, _) = first_step(scene, Method::paper());
         assert_eq!(status, StepStatus::NotContractive, "F {coefficient}");
         assert_eq!(verdict, Some(Verdict::NotContractive), "F {coefficient}");
         assert!(rate.is_some_and(|r| r > 0.5), "F {coefficient}: {rate:?}");
@@ -210,7 +211,7 @@ fn successive_approximations_say_that_the_map_is_not_contractive() {
 fn outside_of_that_range_the_map_converges() {
     for coefficient in [0.05, 0.1, 3.0] {
         let scene = weighed_cantilever(coefficient, 0.02, 0.0);
-        let (status, verdict, _, certificate) = first_level(scene, Method::paper());
+        let (status, verdict, _, certificate) = first_step(scene, Method::paper());
         assert_eq!(
             (status, verdict),
             (StepStatus::Converged, Some(Verdict::Converged)),
@@ -229,7 +230,7 @@ fn a_body_that_does_not_move_is_certified() {
             .with_load(Load::traction(brick::X_MAX, [2.0, 0.0, -1.0]))
             .with_contact(Contact::rigid(brick::X_MAX).with_friction(Friction::coulomb(1.0)))
             .with_boxes([5, 1, 1]);
-        let (status, _, _, certificate) = first_level(scene, method.clone());
+        let (status, _, _, certificate) = first_step(scene, method.clone());
         assert!(
             status.converged() && certificate <= 1e-6,
             "{}: {status:?}, {certificate:e}",

@@ -1,4 +1,5 @@
-//! A block on a wedge (benchmark NAFEMS CGS-4). It slides up under the horizontal force F / G = (tan a + mu) / (1 - mu tan a).
+//! A block on a wedge (benchmark NAFEMS CGS-4). It slides up under the horizontal force F / G = (tan a + mu) / (1 - mu
+//! tan a).
 
 use crate::common::*;
 
@@ -60,9 +61,9 @@ fn the_force_that_moves_the_block() {
                     )
                     .with_support(Support::components(side, [false, true, false]));
                 let settings = at(1e-8).with_method(method.clone());
-                let level = solve(scene, settings);
+                let result = solve(scene, settings);
                 // what the contact takes horizontally, the back must give
-                let found = -level.summary.resultant[0] / WEIGHT;
+                let found = -result.summary.resultant[0] / WEIGHT;
                 let error = found / threshold(coefficient) - 1.0;
                 assert!(
                     error.abs() <= 1e-6,
@@ -112,12 +113,12 @@ fn without_friction_the_block_is_recognised_as_not_held() {
 #[test]
 fn half_of_the_threshold_is_held() {
     for (coefficient, _) in &TABLE[1..] {
-        let level = solve(
+        let result = solve(
             pushed(0.5 * threshold(*coefficient), *coefficient),
             Settings::default(),
         );
-        let normal = level.summary.normal_force;
-        assert!(norm(&level.summary.friction_force) <= coefficient * normal * (1.0 + 1e-6));
+        let normal = result.summary.normal_force;
+        assert!(norm(&result.summary.friction_force) <= coefficient * normal * (1.0 + 1e-6));
     }
 }
 

@@ -262,7 +262,6 @@ pub(crate) struct How {
     pub(crate) ending: Ending,
     /// 0 lumped, 1 Dirichlet, 2 none.
     pub(crate) preconditioner: usize,
-    pub(crate) chained: bool,
     pub(crate) extrapolate: bool,
     pub(crate) share: bool,
     /// After so many levels the run goes on in another simulation.
@@ -274,7 +273,6 @@ impl How {
         self.solver == Solver::Face
             && self.ending == Ending::Tolerance(1e-6)
             && self.preconditioner == 0
-            && !self.chained
             && self.extrapolate
             && self.share
             && self.resume.is_none()

@@ -6,7 +6,6 @@ use crate::recipe::{
 };
 use crate::vec3::{Vec3, add, scale};
 use signorini::prelude::*;
-use signorini::tfeti::{RowScaling, Sharing};
 
 fn history(course: &Course) -> Result<History, Error> {
     Ok(match course {
@@ -170,11 +169,8 @@ pub(crate) fn settings(recipe: &Recipe) -> Settings {
         Ending::Relative(target) => settings.with_accuracy(Accuracy::Relative(target)),
         Ending::Balanced(fraction) => settings.with_accuracy(Accuracy::Balanced { fraction }),
     };
-    if how.chained {
-        settings = settings.with_row_scaling(RowScaling::Chained);
-    }
     if !how.share {
-        settings = settings.with_sharing(Sharing::Never);
+        settings = settings.with_share_translates(false);
     }
     settings
 }

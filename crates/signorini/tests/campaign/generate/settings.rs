@@ -79,7 +79,6 @@ pub(crate) fn how(dice: &mut Dice, levels: usize) -> How {
         solver: Solver::Face,
         ending: Ending::Tolerance(1e-6),
         preconditioner: 0,
-        chained: false,
         extrapolate: true,
         share: true,
         resume: None,
@@ -103,7 +102,7 @@ pub(crate) fn how(dice: &mut Dice, levels: usize) -> How {
         let _ = dice.between(0.0, 0.3);
     }
     how.preconditioner = [0, 0, 1, 1, 2][dice.whole(0, 4)];
-    how.chained = dice.chance(0.1);
+    dice.chance(0.1); // keeps what earlier seeds give
     how.extrapolate = dice.chance(0.8);
     how.share = dice.chance(0.8);
     if levels > 1 && dice.chance(0.3) {
@@ -133,7 +132,6 @@ pub(crate) fn describe(recipe: &mut Recipe) {
         words.push(format!("{:?}", how.ending));
         words.push(["lumped", "dirichlet", "no preconditioner"][how.preconditioner].into());
         for (word, on) in [
-            ("chained", how.chained),
             ("no extrapolation", !how.extrapolate),
             ("no sharing", !how.share),
             ("resumed", how.resume.is_some()),

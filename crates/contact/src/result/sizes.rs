@@ -1,0 +1,91 @@
+//! What violations are measured against: sizes of each body at the end of a step.
+
+use super::certify::Measured;
+use crate::state::Peak;
+use crate::tolerances::{REST, ROUNDED, SMALL_PART};
+use signorini_qp::vector;
+
+/// What the violations of one body are measured against.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Sizes {
+    /// Displacement, m.
+    pub(super) displacement: f64,
+    /// Contact force at a node, N.
+    pub(super) contact_force: f64,
+    /// Norm of the loads and of the contact forces, then of all multipliers, too, N.
+    pub(super) forces: f64,
+    /// Norm of the multipliers, N.
+    multipliers: f64,
+    /// Norm of the residual of the equilibrium, N.
+    pub(super) residual: f64,
+    /// Norm of the displacements times the stiffness of their nodes, N.
+    stiff: f64,
+}
+
+impl Sizes {
+    /// What later steps of the body remember.
+    pub(crate) fn peak(&self) -> Peak {
+        Peak {
+            multipliers: self.multipliers,
+            force: self.contact_force,
+            displacement: self.displacement,
+        }
+    }
+}
+
+/// Sizes of every body.
+pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
+    let (model, lambda) = (m.model, m.lambda);
+    let bodies = &model.bodies;
+    let mut out = vec![Sizes::default(); bodies.count().max(1)];
+    // where nothing moves, what its load would do to a single node is the scale
+    let copies = model.copies();
+    for subdomain in 0..model.tfeti.subdomains() {
+        let own = &mut out[bodies.of_subdomain(subdomain)];
+        let range = model.tfeti.torn_range(subdomain);
+        for (k, f) in m.force[range.clone()].chunks_exact(3).enumerate() {
+            let alone = vector::max_abs(f) / copies.weight(range.start / 3 + k);
+            own.displacement = own.displacement.max(alone);
+        }
+        for (k, u) in m.u[range.clone()].chunks_exact(3).enumerate() {
+            let stiffness = copies.weight(range.start / 3 + k);
+            own.stiff += stiffness * stiffness * vector::dot(u, u);
+        }
+        own.displacement = own.displacement.max(vector::max_abs(&m.u[range.clone()]));
+        own.residual += vector::dot(&m.residual[range.clone()], &m.residual[range.clone()]);
+        own.forces += vector::dot(&m.force[range.clone()], &m.force[range]);
+    }
+    for point in &model.points {
+        let mut sum = (point.scale * lambda[point.row]).powi(2);
+        if let Some((row, count, scale)) = point.tangential_rows() {
+            let rows = lambda[row..row + count].iter();
+            sum += rows.map(|v| (scale * v).powi(2)).sum::<f64>();
+        }
+        let own = &mut out[bodies.of_row(point.row)];
+        own.contact_force = own.contact_force.max(sum.sqrt());
+        own.forces += sum;
+    }
+    // gluing forces and reactions: what displacements alone cause has no loads
+    let contact = model.tfeti.gluing().ranges().contact().end;
+    let mut inner = vec![0.0; out.len()];
+    bodies.add_squares(lambda, contact..lambda.len(), &mut inner);
+    let mut all = inner.clone();
+    bodies.add_squares(lambda, 0..contact, &mut all);
+    for (body, own) in out.iter_mut().enumerate() {
+        let peak = m.problem.peaks.get(body).copied().unwrap_or_default();
+        own.multipliers = all[body].sqrt();
+        own.residual = own.residual.sqrt();
+        own.displacement = own.displacement.max(REST * peak.displacement);
+        // likewise where no force acts, or next to none on the contact surface
+        // and where displacements leave nothing of a force but rounding errors
+        let rounding = ROUNDED * own.stiff.sqrt();
+        let outer = own.forces.sqrt().max(REST * peak.multipliers).max(rounding);
+        own.contact_force = own
+            .contact_force
+            .max(REST * peak.force)
+            .max(rounding)
+            .max(SMALL_PART * outer);
+        own.forces = outer.hypot(inner[body].sqrt());
+    }
+    out
+}

@@ -1,0 +1,173 @@
+//! The method of successive approximations (3.17) and what can be said of its contraction.
+//!
+//! The map `Phi` of (3.15) takes the normal forces that define the slip bounds to the normal forces of the
+//! given-friction problem. Its fixed point solves the Coulomb problem (3.16). The discrete map is contractive for small
+//! coefficients only; a [`Contraction`] watches the ratio of successive changes and says so when it is not.
+
+use crate::report::{FixedPointReport, Verdict};
+use crate::tolerances::GROWTH;
+
+/// A running estimate of the contraction rate: the geometric mean of the last ratios of changes.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Contraction {
+    changes: Vec<f64>,
+}
+
+/// Ratios that enter the estimate.
+const WINDOW: usize = 5;
+
+/// Evaluations without a smaller change after which a map whose changes do not shrink is called not contractive.
+const PATIENCE: usize = 12;
+
+impl Contraction {
+    /// Records the absolute change between two successive iterates.
+    pub(super) fn record(&mut self, change: f64) {
+        self.changes.push(change);
+    }
+
+    /// Estimated rate; `None` before two changes are known or after an exact fixed point.
+    pub(super) fn rate(&self) -> Option<f64> {
+        let n = self.changes.len();
+        if n < 2 {
+            return None;
+        }
+        let first = n.saturating_sub(WINDOW + 1);
+        let (a, b) = (self.changes[first], self.changes[n - 1]);
+        (a > 0.0 && b > 0.0).then(|| (b / a).powf(1.0 / (n - 1 - first) as f64))
+    }
+
+    /// Whether the last `patience` changes were no smaller than the ones before.
+    fn stalls(&self, patience: usize) -> bool {
+        let (mut best, mut at) = (f64::INFINITY, 0);
+        for (k, &change) in self.changes.iter().enumerate() {
+            if change < 0.9 * best {
+                (best, at) = (change, k);
+            }
+        }
+        self.changes.len() > at.saturating_add(patience)
+    }
+}
+
+/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance` (0/0
+/// counts as converged). `least` is the norm below which `x` is taken to vanish.
+///
+/// `map(x, change)` overwrites `x` and returns whether it evaluated with full accuracy; `change` is the last relative
+/// change, 1 at first, and tells how accurate the evaluation needs to be. Only an evaluation with full accuracy can end
+/// the iteration.
+///
+/// # Errors
+/// Those of the map.
+pub(super) fn successive_approximations<E>(
+    x: &mut [f64],
+    tolerance: f64,
+    least: f64,
+    max_evaluations: usize,
+    mut map: impl FnMut(&mut [f64], f64) -> Result<bool, E>,
+) -> Result<FixedPointReport, E> {
+    let mut contraction = Contraction::default();
+    // differences of evaluations with full accuracy only: loose ones say nothing about the map
+    let mut sharp = Contraction::default();
+    let mut old = x.to_vec();
+    let mut change = 1.0;
+    let mut verdict = Verdict::Unknown;
+    let mut evaluations = 0;
+    while evaluations < max_evaluations {
+        old.copy_from_slice(x);
+        let exact = map(x, change)?;
+        evaluations += 1;
+        let difference = signorini_qp::vector::distance(x, &old);
+        let size = signorini_qp::vector::norm(x).max(least);
+        contraction.record(difference);
+        if exact {
+            sharp.record(difference);
+        } else {
+            sharp = Contraction::default();
+        }
+        change = if difference == 0.0 {
+            0.0
+        } else {
+            difference / size
+        };
+        if change < tolerance {
+            if exact {
+                verdict = Verdict::Converged;
+                break;
+            }
+            // a loose evaluation cannot tell: the next one is exact
+            change = 0.0;
+            continue;
+        }
+        let stalls = sharp.stalls(PATIENCE) || contraction.stalls(2 * PATIENCE);
+        let grows = contraction.rate().is_none_or(|rate| rate >= GROWTH);
+        if stalls && grows || !size.is_finite() {
+            verdict = Verdict::NotContractive;
+            break;
+        }
+        verdict = if contraction.rate().is_some_and(|r| r < 1.0) {
+            Verdict::Contracting
+        } else {
+            Verdict::Unknown
+        };
+    }
+    Ok(FixedPointReport {
+        verdict,
+        evaluations,
+        change,
+        rate: contraction.rate(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_near(found: f64, expected: f64, relative: f64) -> bool {
+        (found - expected).abs() <= relative * expected.abs()
+    }
+
+    /// One node in closed form: `lambda <- -u0/a + q lambda` with `q = mu b / a`.
+    fn one_node(mu: f64) -> (f64, FixedPointReport) {
+        let (a, b, u0) = (2.0, 1.0, 1.0);
+        let mut x = [0.0];
+        let report = successive_approximations(&mut x, 1e-12, 0.0, 2000, |x, _| {
+            x[0] = -u0 / a + mu * b / a * x[0];
+            Ok::<bool, ()>(true)
+        })
+        .unwrap();
+        (x[0], report)
+    }
+
+    #[test]
+    fn the_one_node_coulomb_map_converges_at_its_rate() {
+        for (mu, q, limit) in [
+            (0.2, 0.1, -0.555556),
+            (0.5, 0.25, -0.666667),
+            (1.0, 0.5, -1.0),
+            (1.9, 0.95, -10.0),
+        ] {
+            let (x, report) = one_node(mu);
+            assert_eq!(report.verdict, Verdict::Converged);
+            assert!(is_near(x, limit, 1e-6));
+            assert!(is_near(report.rate.unwrap(), q, 1e-3));
+        }
+    }
+
+    #[test]
+    fn a_map_that_is_not_contractive_is_named_so() {
+        let (_, report) = one_node(2.1);
+        assert_eq!(report.verdict, Verdict::NotContractive);
+        assert!(is_near(report.rate.unwrap(), 1.05, 1e-6));
+        assert!(report.evaluations < 20, "{report:?}");
+    }
+
+    #[test]
+    fn nothing_in_contact_is_a_fixed_point_at_once() {
+        let mut x = [0.0; 3];
+        let report =
+            successive_approximations(&mut x, 1e-6, 0.0, 5, |_, _| Ok::<bool, ()>(true)).unwrap();
+        assert_eq!(
+            (report.verdict, report.evaluations),
+            (Verdict::Converged, 1)
+        );
+    }
+}

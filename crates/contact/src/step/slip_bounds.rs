@@ -1,0 +1,105 @@
+//! Slip bounds: what friction may take at each point, given or following the normal forces.
+
+use super::problem::StepProblem;
+use crate::error::ContactError;
+use crate::model::{ConstrainedPoint, DISCS, INTERVALS, Model};
+use crate::scene::Friction;
+use crate::state::State;
+use signorini_qp::{ProductSet, RadiusSlope};
+use signorini_tfeti::TangentialRows;
+
+impl StepProblem {
+    /// Coefficients and Tresca bounds of all points; anew only where the coefficient follows the slip rate.
+    pub(super) fn find_friction(
+        &mut self,
+        model: &Model,
+        state: &State,
+    ) -> Result<(), ContactError> {
+        let known = !self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate);
+        if known || !model.any_law(Friction::is_some) {
+            return Ok(());
+        }
+        // none where the law fails at a point: a later step must not take a part for all
+        self.coefficients.clear();
+        let value = |(k, point): (usize, &ConstrainedPoint)| -> Result<_, ContactError> {
+            let (node, place) = (point.node(), point.position());
+            let rate = state.rate.get(k).copied().unwrap_or(0.0);
+            Ok(match model.law(point) {
+                Friction::None => (0.0, 0.0),
+                Friction::Tresca(bound) => (0.0, bound.stress(node, place)? * point.area()),
+                Friction::Coulomb(law) => (law.value(node, place, rate)?, 0.0),
+            })
+        };
+        let values: Result<Vec<_>, _> = model.points.iter().enumerate().map(value).collect();
+        (self.coefficients, self.tresca) = values?.into_iter().unzip();
+        Ok(())
+    }
+
+    /// Slip bound of a point in units of force of its body (newtons): `-F_i lambda_nu,i`, or that of Tresca friction; 0
+    /// where it has no tangential rows.
+    pub(crate) fn slip_bound(&self, k: usize, point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
+        let (Some(tresca), Some(coefficient)) = (self.tresca.get(k), self.coefficients.get(k))
+        else {
+            return 0.0;
+        };
+        if point.tangential == TangentialRows::None {
+            return 0.0;
+        }
+        let unit = self.units.get(k).copied().unwrap_or(1.0);
+        // pressing force, not negative
+        let pressure = (-point.scale * lambda[point.row]).max(0.0);
+        tresca / unit + coefficient * pressure
+    }
+
+    /// Writes the slip bounds that go with `lambda` into the feasible set, in units of the rows.
+    pub(crate) fn write_slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
+        let ranges = model.tfeti.gluing().ranges();
+        for (k, point) in model.points.iter().enumerate() {
+            let bound = self.slip_bound(k, point, lambda);
+            match point.tangential {
+                TangentialRows::Disc { row, scale } => {
+                    if let Ok(radii) = set.radii_mut(DISCS) {
+                        radii[(row - ranges.discs.start) / 2] = bound / scale;
+                    }
+                }
+                TangentialRows::Interval { row, scale, .. } => {
+                    let interval = row - ranges.intervals.start;
+                    if let Ok((lower, upper)) = set.bounds_mut(INTERVALS) {
+                        (lower[interval], upper[interval]) = (-bound / scale, bound / scale);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// How the radii of discs follow the normal rows.
+    pub(crate) fn slip_slopes(&self, model: &Model) -> Vec<RadiusSlope> {
+        let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
+            TangentialRows::Disc { row, scale } => Some(RadiusSlope {
+                disc: row,
+                component: point.row,
+                // normal multipliers are negative where pressed
+                slope: -self.coefficients[k] * point.scale / scale,
+            }),
+            _ => None,
+        };
+        model.points.iter().enumerate().filter_map(slope).collect()
+    }
+
+    /// Puts the friction forces of points that slide back on their circles: extrapolation leaves them a little inside, where
+    /// they would be taken for sticking.
+    pub(crate) fn restore_sliding(&self, model: &Model, sliding: &[bool], lambda: &mut [f64]) {
+        for (k, point) in model.points.iter().enumerate() {
+            let TangentialRows::Disc { row, scale } = point.tangential else {
+                continue;
+            };
+            let length = lambda[row].hypot(lambda[row + 1]);
+            if sliding.get(k) == Some(&true) && length > 0.0 {
+                let radius = self.slip_bound(k, point, lambda) / scale;
+                lambda[row] *= radius / length;
+                lambda[row + 1] *= radius / length;
+            }
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! Assembly of `G W G^T` in blocks of six.
+
+use crate::coarse::weights::RowWeights;
+use crate::linalg::entry;
+use crate::linalg::sparse::Columns;
+use crate::rows::gluing::Gluing;
+use crate::subdomain::kernel::Kernel;
+use crate::subdomain::matrices::{ClassBase, Subdomains};
+use rayon::prelude::*;
+use signorini_fem_mesh::buckets;
+
+/// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
+#[derive(Debug)]
+pub(crate) struct CoarseMatrix {
+    /// Block rows of each block column, ascending, the diagonal first.
+    pointers: Vec<usize>,
+    neighbours: Vec<u32>,
+    interface: Columns,
+}
+
+type Modes = [[f64; 6]; 3];
+
+/// Rows of `R` at all nodes of each class.
+pub(crate) struct ModeTable<'a> {
+    tables: Vec<Vec<Modes>>,
+    subdomains: &'a Subdomains,
+}
+
+impl<'a> ModeTable<'a> {
+    pub(crate) fn new(subdomains: &'a Subdomains) -> Self {
+        let table = |base: &ClassBase| {
+            let nodes = 0..base.kernel.nodes();
+            nodes.map(|n| base.kernel.node_modes(n)).collect()
+        };
+        let tables = subdomains.bases.iter().map(table).collect();
+        Self { tables, subdomains }
+    }
+
+    fn kernel(&self, subdomain: u32) -> &Kernel {
+        self.subdomains.kernel(subdomain as usize)
+    }
+
+    fn at(&self, subdomain: u32, local: u32) -> &Modes {
+        &self.tables[self.subdomains.class(subdomain as usize)][local as usize]
+    }
+
+    /// Row of `G^T`: `(subdomain, six coefficients)`, times `factor`, added to `out`.
+    pub(crate) fn row(
+        &self,
+        gluing: &Gluing,
+        nodal: usize,
+        factor: f64,
+        out: &mut Vec<(u32, [f64; 6])>,
+    ) {
+        for e in gluing.nodal(nodal) {
+            let modes = self.at(e.subdomain, e.local);
+            let sum = entry(out, e.subdomain, [0.0; 6]);
+            for m in 0..6 {
+                sum[m] += factor * (0..3).map(|c| e.vector[c] * modes[c][m]).sum::<f64>();
+            }
+        }
+    }
+}
+
+/// Rows of each subdomain, by their buckets.
+struct Touching {
+    starts: Vec<u32>,
+    rows: Vec<u32>,
+}
+
+impl Touching {
+    /// From pairs of a subdomain and a row, in the order of the rows.
+    fn new(subdomains: usize, pairs: impl Iterator<Item = (u32, u32)>) -> Self {
+        let (keys, numbers): (Vec<u32>, Vec<u32>) = pairs.unzip();
+        let (starts, positions) = buckets(subdomains, &keys);
+        let rows = positions.into_iter().map(|k| numbers[k as usize]).collect();
+        Self { starts, rows }
+    }
+
+    fn blocks(gluing: &Gluing, subdomains: usize) -> Self {
+        let pairs = (0..gluing.blocks()).flat_map(|b| {
+            let entries = gluing.block(b).iter();
+            entries.map(move |e| (e.subdomain, b as u32))
+        });
+        Self::new(subdomains, pairs)
+    }
+
+    fn nodal(gluing: &Gluing, subdomains: usize) -> Self {
+        let pairs = (0..gluing.nodal_rows()).flat_map(|k| {
+            let entries = gluing.nodal(k).iter();
+            entries.map(move |e| (e.subdomain, k as u32))
+        });
+        Self::new(subdomains, pairs)
+    }
+
+    fn of(&self, subdomain: usize) -> &[u32] {
+        &self.rows[self.starts[subdomain] as usize..self.starts[subdomain + 1] as usize]
+    }
+}
+
+impl CoarseMatrix {
+    pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>) -> Self {
+        let subdomains = modes.subdomains.count();
+        let touching = [
+            Touching::blocks(gluing, subdomains),
+            Touching::nodal(gluing, subdomains),
+        ];
+        let columns: Vec<(Vec<u32>, Vec<f64>)> = (0..subdomains)
+            .into_par_iter()
+            .map(|s| block_column(gluing, modes, &touching, s))
+            .collect();
+        let mut matrix = Self {
+            pointers: vec![0],
+            neighbours: Vec::new(),
+            interface: Columns {
+                dim: 6 * subdomains,
+                pointers: vec![0],
+                rows: Vec::new(),
+                values: Vec::new(),
+            },
+        };
+        for (list, values) in columns {
+            for _ in 0..6 {
+                matrix.interface.rows.extend(
+                    list.iter()
+                        .flat_map(|&i| (0..6).map(move |r| 6 * i as usize + r)),
+                );
+                matrix.interface.pointers.push(matrix.interface.rows.len());
+            }
+            matrix.neighbours.extend(list);
+            matrix.pointers.push(matrix.neighbours.len());
+            matrix.interface.values.extend(values);
+        }
+        matrix
+    }
+
+    /// Neighbours of each subdomain, without itself, ascending.
+    pub(crate) fn graph(&self) -> Vec<Vec<u32>> {
+        let mut graph: Vec<Vec<u32>> = vec![Vec::new(); self.pointers.len() - 1];
+        for (a, pair) in self.pointers.windows(2).enumerate() {
+            for &b in &self.neighbours[pair[0] + 1..pair[1]] {
+                graph[a].push(b);
+                graph[b as usize].push(a as u32);
+            }
+        }
+        graph.iter_mut().for_each(|list| list.sort_unstable());
+        graph
+    }
+
+    /// The diagonal of a matrix with these values.
+    pub(crate) fn diagonal<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        // Columns hold the rows from those of the diagonal block on.
+        let pointers = self.interface.pointers.iter().enumerate();
+        let columns = pointers.take(self.interface.dim);
+        columns.map(|(column, &start)| values[start + column % 6])
+    }
+
+    pub(crate) fn pattern(&self) -> &Columns {
+        &self.interface
+    }
+
+    /// Position of entry (0, 0) of a block and the distance between its columns.
+    pub(crate) fn place(&self, i: u32, j: u32) -> (usize, usize) {
+        let list = &self.neighbours[self.pointers[j as usize]..self.pointers[j as usize + 1]];
+        let k = list.partition_point(|&n| n < i);
+        (36 * self.pointers[j as usize] + 6 * k, 6 * list.len())
+    }
+
+    /// Adds `weight g g^T`.
+    pub(crate) fn add_row(&self, row: &[(u32, [f64; 6])], weight: f64, values: &mut [f64]) {
+        for (i, gi) in row {
+            for (j, gj) in row.iter().filter(|(j, _)| i >= j) {
+                let (start, stride) = self.place(*i, *j);
+                for c in 0..6 {
+                    let column = &mut values[start + c * stride..][..6];
+                    for r in 0..6 {
+                        column[r] += weight * gi[r] * gj[c];
+                    }
+                }
+            }
+        }
+    }
+
+    /// `G W G^T`; weight one for all rows if there are no weights.
+    pub(crate) fn assemble(
+        &self,
+        gluing: &Gluing,
+        modes: &ModeTable<'_>,
+        weights: Option<&RowWeights>,
+    ) -> Columns {
+        let mut matrix = self.interface.clone();
+        let values = &mut matrix.values;
+        let start = gluing.ranges().interface.start;
+        if let Some(weights) = weights {
+            for block in 0..gluing.blocks() {
+                let triple = &weights.diagonal[start + 3 * block..][..3];
+                if triple == [1.0; 3] {
+                    continue;
+                }
+                self.add_block_components(gluing, block, triple, modes, values);
+            }
+        }
+        let mut row = Vec::new();
+        for nodal in 0..gluing.nodal_rows() {
+            let number = gluing.nodal_row(nodal);
+            let weight = weights.map_or(1.0, |w| w.diagonal[number]);
+            let in_line = weights.is_some_and(|w| w.in_line(number));
+            if weight != 0.0 && !in_line {
+                row.clear();
+                modes.row(gluing, nodal, 1.0, &mut row);
+                self.add_row(&row, weight, values);
+            }
+        }
+        for line in weights.iter().flat_map(|w| &w.lines) {
+            row.clear();
+            // Pairs of tangential rows stand before the interface, where row and number among nodal rows agree.
+            modes.row(gluing, line.first, line.direction[0], &mut row);
+            modes.row(gluing, line.first + 1, line.direction[1], &mut row);
+            self.add_row(&row, line.weight, values);
+        }
+        matrix
+    }
+
+    /// Corrects one interface block for weights other than one.
+    fn add_block_components(
+        &self,
+        gluing: &Gluing,
+        block: usize,
+        weights: &[f64],
+        modes: &ModeTable<'_>,
+        values: &mut [f64],
+    ) {
+        for (c, weight) in weights.iter().enumerate() {
+            let row: Vec<(u32, [f64; 6])> = gluing
+                .block(block)
+                .iter()
+                .map(|e| {
+                    (
+                        e.subdomain,
+                        modes.at(e.subdomain, e.local)[c].map(|v| v * e.coefficient),
+                    )
+                })
+                .collect();
+            self.add_row(&row, weight - 1.0, values);
+        }
+    }
+}
+
+/// `sum f`, `sum f a`, `sum f b` and `sum f a b^T` over pairs of copies of nodes with the arms `a` and `b`.
+#[derive(Clone, Copy, Default)]
+struct Moments {
+    sum: f64,
+    first: [f64; 3],
+    second: [f64; 3],
+    both: [[f64; 3]; 3],
+}
+
+impl Moments {
+    fn add(&mut self, factor: f64, a: &[f64; 3], b: &[f64; 3]) {
+        self.sum += factor;
+        for i in 0..3 {
+            let scaled = factor * a[i];
+            self.first[i] += scaled;
+            self.second[i] += factor * b[i];
+            for j in 0..3 {
+                self.both[i][j] += scaled * b[j];
+            }
+        }
+    }
+
+    /// `sum f Q_a Q_b^T`, by columns: `Q` takes a force to its wrench.
+    fn wrenches(&self) -> [[f64; 6]; 6] {
+        let mut out = [[0.0; 6]; 6];
+        let trace = self.both[0][0] + self.both[1][1] + self.both[2][2];
+        for i in 0..3 {
+            out[i][i] = self.sum;
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            // Moments of unit forces, and their transpose.
+            out[j][3 + k] = self.first[i];
+            out[k][3 + j] = -self.first[i];
+            out[3 + k][j] = self.second[i];
+            out[3 + j][k] = -self.second[i];
+            for (r, row) in self.both.iter().enumerate() {
+                out[3 + r][3 + i] = -row[i];
+            }
+        }
+        for i in 0..3 {
+            out[3 + i][3 + i] += trace;
+        }
+        out
+    }
+}
+
+/// Neighbours of a subdomain with numbers not below its own, and what the interface rows contribute to its columns.
+fn block_column(
+    gluing: &Gluing,
+    modes: &ModeTable<'_>,
+    [blocks, nodal]: &[Touching; 2],
+    subdomain: usize,
+) -> (Vec<u32>, Vec<f64>) {
+    let own = subdomain as u32;
+    let kernel = modes.kernel(own);
+    let mut moments: Vec<(u32, Moments)> = vec![(own, Moments::default())];
+    for &block in blocks.of(subdomain) {
+        let entries = gluing.block(block as usize);
+        for b in entries.iter().filter(|e| e.subdomain == own) {
+            for a in entries.iter().filter(|e| e.subdomain >= own) {
+                let sums = entry(&mut moments, a.subdomain, Moments::default());
+                let arm = modes.kernel(a.subdomain).arm(a.local as usize);
+                let factor = a.coefficient * b.coefficient;
+                sums.add(factor, arm, kernel.arm(b.local as usize));
+            }
+        }
+    }
+    for &nodal in nodal.of(subdomain) {
+        for e in gluing
+            .nodal(nodal as usize)
+            .iter()
+            .filter(|e| e.subdomain > own)
+        {
+            entry(&mut moments, e.subdomain, Moments::default());
+        }
+    }
+    moments.sort_unstable_by_key(|m| m.0);
+    let stride = 6 * moments.len();
+    let mut values = vec![0.0; 6 * stride];
+    for (k, (other, sums)) in moments.iter().enumerate() {
+        let other = modes.kernel(*other);
+        let columns = sums.wrenches().map(|column| other.project_wrench(&column));
+        for r in 0..6 {
+            let row = kernel.project_wrench(&std::array::from_fn(|c| columns[c][r]));
+            for c in 0..6 {
+                values[6 * k + r + c * stride] = row[c];
+            }
+        }
+    }
+    (moments.into_iter().map(|m| m.0).collect(), values)
+}

@@ -1,0 +1,260 @@
+//! The natural coarse space: `G = R^T B^T`, its products and factors of `G W G^T`.
+
+use crate::coarse::matrix::{CoarseMatrix, ModeTable};
+use crate::coarse::mobility::{FreeMotion, Mobility};
+use crate::coarse::products::{RigidTables, Wrench};
+use crate::coarse::weights::RowWeights;
+use crate::dual::boundary::BoundaryMap;
+use crate::error::TfetiError;
+use crate::linalg::sparse::{SolveMemory, SparseCholesky, Symbolic};
+use crate::linalg::tiles::Digits;
+use crate::rows::gluing::Gluing;
+use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::SUPPORTED;
+use signorini_qp::LooseMode;
+use std::sync::Arc;
+
+/// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.
+#[derive(Debug, Clone)]
+pub struct Coarse(pub(crate) Arc<CoarseData>);
+
+#[derive(Debug)]
+pub(crate) struct CoarseData {
+    map: Arc<BoundaryMap>,
+    tables: RigidTables,
+    pub(crate) subdomains: Arc<Subdomains>,
+    pub(crate) gluing: Arc<Gluing>,
+    pub(crate) matrix: CoarseMatrix,
+    pub(crate) symbolic: Symbolic,
+    pub(crate) mobility: Mobility,
+    /// Whether the support rows alone hold all bodies.
+    held: bool,
+}
+
+/// Work memory of all operations with `G` and its factors.
+#[derive(Debug)]
+pub struct CoarseScratch {
+    /// Wrenches by glob and subdomain.
+    pub(crate) sides: Vec<Wrench>,
+    /// Motions by subdomain.
+    pub(crate) motions: Vec<[f64; 6]>,
+    pub(crate) first: Vec<f64>,
+    pub(crate) second: Vec<f64>,
+    pub(crate) dual: Vec<f64>,
+    pub(crate) memory: SolveMemory,
+    /// What split factors are read with.
+    pub(crate) digits: Digits,
+    /// For split factors.
+    pub(crate) split: Vec<f64>,
+    /// Entries of the rows that stand in lines.
+    pub(crate) pairs: Vec<[f64; 2]>,
+}
+
+impl Coarse {
+    pub(crate) fn new(
+        map: Arc<BoundaryMap>,
+        subdomains: Arc<Subdomains>,
+        gluing: Arc<Gluing>,
+        centres: Vec<[f64; 3]>,
+    ) -> Result<Self, TfetiError> {
+        let modes = ModeTable::new(&subdomains);
+        let matrix = CoarseMatrix::new(&gluing, &modes);
+        drop(modes);
+        let count = 6 * subdomains.count();
+        let too_large = |_| TfetiError::TooLarge {
+            what: "coarse unknowns",
+            count,
+        };
+        let (symbolic, (mobility, tables)) = rayon::join(
+            || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
+            || {
+                let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
+                (
+                    mobility,
+                    RigidTables::new(&map, subdomains.clone(), &gluing),
+                )
+            },
+        );
+        let symbolic = symbolic?;
+        let mut data = CoarseData {
+            tables,
+            map,
+            subdomains,
+            gluing,
+            matrix,
+            symbolic,
+            mobility,
+            held: false,
+        };
+        let mut supports = RowWeights::diagonal(vec![1.0; data.map.rows()]);
+        supports.diagonal[data.gluing.ranges().contact()].fill(0.0);
+        data.held = data.free_motions(Some(&supports)).is_empty();
+        Ok(Self(Arc::new(data)))
+    }
+
+    /// Number of rows of `G`: six per subdomain.
+    pub fn rows(&self) -> usize {
+        6 * self.0.subdomains.count()
+    }
+
+    /// Length of dual vectors.
+    pub fn dim(&self) -> usize {
+        self.0.map.rows()
+    }
+
+    /// Number of bodies: sets of subdomains that interface rows join, be it by a hinge.
+    pub fn bodies(&self) -> usize {
+        self.0.mobility.bodies()
+    }
+
+    /// The body of each subdomain; bodies are numbered by their first subdomains.
+    pub fn body_of(&self) -> &[u32] {
+        self.0.mobility.body_of()
+    }
+
+    /// Numbers stored for a factor of `G W G^T`.
+    pub fn factor_size(&self) -> usize {
+        self.0.symbolic.stored()
+    }
+
+    /// Creates the work memory.
+    pub fn scratch(&self) -> CoarseScratch {
+        let rows = self.rows();
+        CoarseScratch {
+            sides: vec![Wrench::default(); self.0.tables.work()],
+            motions: vec![[0.0; 6]; rows / 6],
+            first: vec![0.0; rows],
+            second: vec![0.0; rows],
+            dual: vec![0.0; self.dim()],
+            memory: SolveMemory::new(SparseCholesky::need_of(&self.0.symbolic, 1)),
+            digits: Digits::Double,
+            split: Vec::new(),
+            pairs: Vec::with_capacity(self.0.gluing.ranges().discs.len() / 2),
+        }
+    }
+
+    /// `out = G x`: the wrenches of the multipliers on the subdomains.
+    pub fn apply(&self, x: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
+        self.0.product(x, None, out, &mut s.sides);
+    }
+
+    /// `out = G^T y`.
+    pub fn apply_transpose(&self, y: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
+        self.0.product_transpose(y, out, &mut s.motions);
+    }
+
+    /// A motion of bodies as a mode of the leading `contact` rows.
+    pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
+        let mut row = vec![0.0; self.dim()];
+        let mut scratch = self.scratch();
+        self.0
+            .product_transpose(amplitudes, &mut row, &mut scratch.motions);
+        row.truncate(contact);
+        LooseMode::new(amplitudes.to_vec(), row)
+    }
+
+    /// Rigid motions of bodies that rows of positive weight leave free; all rows count if there are no weights.
+    ///
+    /// # Errors
+    /// [`TfetiError::Setting`] and [`TfetiError::Length`] for weights that cannot be used.
+    pub fn free_motions(
+        &self,
+        weights: Option<&RowWeights>,
+    ) -> Result<Vec<FreeMotion>, TfetiError> {
+        if let Some(weights) = weights {
+            weights.validate(self.0.gluing.ranges())?;
+        }
+        Ok(self.0.free_motions(weights))
+    }
+}
+
+impl CoarseData {
+    /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
+    pub(crate) fn product(
+        &self,
+        x: &[f64],
+        weights: Option<&[f64]>,
+        out: &mut [f64],
+        sides: &mut [Wrench],
+    ) {
+        self.tables.wrenches(&self.map, x, weights, out, sides);
+    }
+
+    /// `out = G x` for a vector of which `contact` are the leading entries, the contact rows, and the others are zero.
+    pub(crate) fn contact_product(&self, contact: &[f64], out: &mut [f64]) {
+        self.tables.contact_wrenches(contact, out);
+    }
+
+    /// Whether work on all interface rows is worth several threads.
+    pub(crate) fn is_large(&self) -> bool {
+        self.map.is_large()
+    }
+
+    /// Motions of the subdomains from amplitudes.
+    fn motions(&self, y: &[f64], motions: &mut [[f64; 6]]) {
+        let both = y.chunks_exact(6).zip(motions);
+        for (s, (amplitudes, target)) in both.enumerate() {
+            let kernel = self.subdomains.kernel(s);
+            *target = kernel.motion(amplitudes);
+            target[3..].iter_mut().for_each(|w| *w /= kernel.radius());
+        }
+    }
+
+    /// `out = G^T y`.
+    pub(crate) fn product_transpose(&self, y: &[f64], out: &mut [f64], motions: &mut [[f64; 6]]) {
+        self.with_transpose(y, out, true, motions, |x, v| *x = v, |_, x, v| *x = v);
+    }
+
+    /// Hands `G^T y` to `interface(x, value)` and, on other rows, `other(row, x, value)`; to the latter without contact
+    /// rows if there is no need of them.
+    pub(crate) fn with_transpose(
+        &self,
+        y: &[f64],
+        x: &mut [f64],
+        contact: bool,
+        motions: &mut [[f64; 6]],
+        interface: impl Fn(&mut f64, f64) + Sync,
+        other: impl Fn(usize, &mut f64, f64) + Sync,
+    ) {
+        self.motions(y, motions);
+        self.tables
+            .for_motions(&self.map, motions, x, contact, interface, other);
+    }
+
+    pub(crate) fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {
+        let gluing = &self.gluing;
+        // The usual case needs no look at the contact rows.
+        let supported = |w: &RowWeights| {
+            w.diagonal[gluing.ranges().dirichlet.clone()]
+                .iter()
+                .all(|w| *w >= SUPPORTED)
+        };
+        if self.held && weights.is_none_or(supported) {
+            return Vec::new();
+        }
+        let weight = |row: usize| weights.map_or(1.0, |w| w.diagonal[row]);
+        let lines = weights.map_or(&[][..], |w| &w.lines);
+        let plain = (0..gluing.nodal_rows()).filter_map(|nodal| {
+            let row = gluing.nodal_row(nodal);
+            if weight(row) == 0.0 || weights.is_some_and(|w| w.in_line(row)) {
+                return None;
+            }
+            let mut out = Vec::new();
+            self.mobility
+                .act(gluing.nodal(nodal), weight(row).sqrt(), &mut out);
+            Some(out)
+        });
+        let combined = lines.iter().filter(|l| l.weight > 0.0).map(|line| {
+            let mut out = Vec::new();
+            for k in 0..2 {
+                self.mobility.act(
+                    gluing.nodal(line.first + k),
+                    line.weight.sqrt() * line.direction[k],
+                    &mut out,
+                );
+            }
+            out
+        });
+        self.mobility.free(plain.chain(combined))
+    }
+}

@@ -1,0 +1,338 @@
+//! Gather tables between dual vectors and the boundary unknowns of all subdomains.
+//!
+//! A *boundary vector* holds the components at the boundary nodes of all members of all classes, in panels of up to
+//! `PANEL` members: component `c` of boundary node `b` of member `m` of a panel of `w` members stands at `(3 b + c) w +
+//! m` of the panel. With the members next to one another, products with a small matrix run at full speed and loops over
+//! nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather (each
+//! result is summed by one task in a fixed order), so results do not depend on the number of threads.
+
+use crate::linalg::both;
+use crate::linalg::sparse::{MemoryNeed, SolveMemory};
+use crate::tolerances::{BLOCKS, LARGE, PARTS};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Boundary of one class.
+#[derive(Debug, Clone)]
+pub(crate) struct BoundaryClass {
+    /// Local numbers of the nodes that `B` touches in some member, ascending.
+    pub(crate) nodes: Vec<u32>,
+    /// Subdomains, in the order of the columns.
+    pub(crate) members: Vec<u32>,
+}
+
+/// Some columns of one class, worked on together.
+#[derive(Debug, Clone)]
+pub(crate) struct Panel {
+    pub(crate) class: usize,
+    /// Columns, counted within the class.
+    pub(crate) columns: Range<usize>,
+    /// Node copies of these columns.
+    pub(crate) copies: Range<usize>,
+    /// Positions in the list of copies that carry contact or support rows.
+    pub(crate) nodal: Range<usize>,
+}
+
+/// Consecutive panels that share one work memory.
+#[derive(Debug, Clone)]
+pub(crate) struct Lane {
+    pub(crate) panels: Range<usize>,
+    pub(super) copy: usize,
+}
+
+/// The tables.
+#[derive(Debug, Default)]
+pub(crate) struct BoundaryMap {
+    pub(crate) classes: Vec<BoundaryClass>,
+    pub(crate) panels: Vec<Panel>,
+    pub(crate) lanes: Vec<Lane>,
+    pub(super) copies: usize,
+    pub(crate) interface: Range<usize>,
+    pub(super) rows: usize,
+    /// Interface blocks of each copy.
+    pub(super) spread_pointers: Vec<u32>,
+    pub(super) spread_blocks: Vec<u32>,
+    pub(super) spread_weights: Vec<f64>,
+    /// Other rows, for the copies that have some.
+    pub(crate) nodal_copies: Vec<u32>,
+    pub(crate) nodal_pointers: Vec<u32>,
+    pub(crate) nodal_rows: Vec<u32>,
+    pub(crate) nodal_vectors: Vec<[f64; 3]>,
+    /// Copies of each interface block.
+    pub(super) block_pointers: Vec<u32>,
+    pub(super) block_places: Vec<Place>,
+    pub(super) block_weights: Vec<f64>,
+    /// Copies of each other row.
+    pub(super) row_pointers: Vec<u32>,
+    pub(super) row_places: Vec<Place>,
+    pub(super) row_vectors: Vec<[f64; 3]>,
+}
+
+/// Where the three components of a copy stand in a boundary vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) first: u32,
+    pub(super) stride: u32,
+}
+
+impl Place {
+    #[inline]
+    fn read(self, y: &[f64]) -> [f64; 3] {
+        let (first, stride) = (self.first as usize, self.stride as usize);
+        [y[first], y[first + stride], y[first + 2 * stride]]
+    }
+}
+
+/// Work memory of products by panels: a boundary vector, and what each lane needs.
+#[derive(Debug)]
+pub(crate) struct PanelScratch {
+    boundary: Vec<f64>,
+    lanes: Vec<LaneScratch>,
+}
+
+#[derive(Debug)]
+struct LaneScratch {
+    gathered: Vec<f64>,
+    full: Vec<f64>,
+    memory: Option<SolveMemory>,
+}
+
+/// What a product does to a panel.
+pub(crate) type PanelWork<'a> =
+    dyn Fn(&Panel, &mut [f64], &mut [f64], &mut [f64], Option<&mut SolveMemory>) + Sync + 'a;
+
+impl BoundaryMap {
+    /// Length of dual vectors.
+    pub(crate) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        let words = self.spread_pointers.len()
+            + self.spread_blocks.len()
+            + self.block_pointers.len()
+            + 2 * self.block_places.len();
+        let numbers = self.spread_weights.len() + self.block_weights.len();
+        (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
+    }
+
+    /// A number for each boundary copy, from its subdomain and local node.
+    pub(crate) fn copy_values(&self, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.copies);
+        for panel in &self.panels {
+            let class = &self.classes[panel.class];
+            for &node in &class.nodes {
+                let members = &class.members[panel.columns.clone()];
+                out.extend(members.iter().map(|&s| value(s as usize, node as usize)));
+            }
+        }
+        out
+    }
+
+    /// `B^T x` on the copies of a panel.
+    fn spread(&self, x: &[f64], panel: &Panel, out: &mut [f64]) {
+        let interface = &x[self.interface.clone()];
+        let width = panel.columns.len();
+        let pointers = &self.spread_pointers[panel.copies.start..=panel.copies.end];
+        for (target, node) in out.chunks_exact_mut(3 * width).zip(0..) {
+            let (first, rest) = target.split_at_mut(width);
+            let (second, third) = rest.split_at_mut(width);
+            let pointers = &pointers[node * width..=(node + 1) * width];
+            for m in 0..width {
+                let range = pointers[m] as usize..pointers[m + 1] as usize;
+                let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+                let blocks = self.spread_blocks[range.clone()].iter();
+                for (&block, &weight) in blocks.zip(&self.spread_weights[range]) {
+                    let value = &interface[3 * block as usize..][..3];
+                    a += weight * value[0];
+                    b += weight * value[1];
+                    c += weight * value[2];
+                }
+                first[m] = a;
+                second[m] = b;
+                third[m] = c;
+            }
+        }
+        for k in panel.nodal.clone() {
+            let copy = self.nodal_copies[k] as usize - panel.copies.start;
+            let start = 2 * (copy / width) * width + copy;
+            for e in self.nodal_pointers[k] as usize..self.nodal_pointers[k + 1] as usize {
+                let value = x[self.nodal_rows[e] as usize];
+                for c in 0..3 {
+                    out[start + c * width] += self.nodal_vectors[e][c] * value;
+                }
+            }
+        }
+    }
+
+    /// `out = B y` for a boundary vector.
+    fn collect(&self, y: &[f64], out: &mut [f64]) {
+        let (contact, rest) = out.split_at_mut(self.interface.start);
+        let (interface, dirichlet) = rest.split_at_mut(self.interface.len());
+        let blocks = || match self.is_large() {
+            false => self.collect_blocks(y, 0, interface),
+            true => interface
+                .par_chunks_mut(3 * BLOCKS)
+                .enumerate()
+                .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part)),
+        };
+        let others = || {
+            self.collect_rows(y, 0, contact);
+            self.collect_rows(y, self.interface.start, dirichlet);
+        };
+        both(self.is_large(), blocks, others);
+    }
+
+    fn collect_blocks(&self, y: &[f64], first: usize, out: &mut [f64]) {
+        let pointers = &self.block_pointers[first..=first + out.len() / 3];
+        for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
+            let range = pair[0] as usize..pair[1] as usize;
+            let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+            for (place, &weight) in self.block_places[range.clone()]
+                .iter()
+                .zip(&self.block_weights[range])
+            {
+                let value = place.read(y);
+                a += weight * value[0];
+                b += weight * value[1];
+                c += weight * value[2];
+            }
+            target[0] = a;
+            target[1] = b;
+            target[2] = c;
+        }
+    }
+
+    fn collect_rows(&self, y: &[f64], first: usize, out: &mut [f64]) {
+        for (k, target) in out.iter_mut().enumerate() {
+            let range =
+                self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
+            let entry = |e: usize| {
+                let value = self.row_places[e].read(y);
+                let v = &self.row_vectors[e];
+                v[0] * value[0] + v[1] * value[1] + v[2] * value[2]
+            };
+            *target = range.map(entry).sum();
+        }
+    }
+
+    /// Work memory of [`by_panels`](Self::by_panels); `more` tells how many numbers a panel needs besides those on the
+    /// boundary, and what memory of solves.
+    pub(crate) fn scratch(
+        &self,
+        more: impl Fn(&Panel) -> Option<(usize, MemoryNeed)>,
+    ) -> PanelScratch {
+        let lane = |lane: &Lane| {
+            let (mut gathered, mut full, mut need) = (0, 0, None);
+            for panel in &self.panels[lane.panels.clone()] {
+                gathered = gathered.max(3 * panel.copies.len());
+                if let Some((numbers, own)) = more(panel) {
+                    full = full.max(numbers);
+                    need = Some(need.map_or(own, |n: MemoryNeed| n.or(own)));
+                }
+            }
+            LaneScratch {
+                gathered: vec![0.0; gathered],
+                full: vec![0.0; full],
+                memory: need.map(SolveMemory::new),
+            }
+        };
+        PanelScratch {
+            boundary: vec![0.0; 3 * self.copies],
+            lanes: self.lanes.iter().map(lane).collect(),
+        }
+    }
+
+    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does.
+    pub(crate) fn by_panels(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        parallel: bool,
+        s: &mut PanelScratch,
+        work: &PanelWork<'_>,
+    ) {
+        let task = |lane: &Lane, s: &mut LaneScratch, part: &mut [f64]| {
+            let mut rest = part;
+            for panel in &self.panels[lane.panels.clone()] {
+                let (out, tail) = std::mem::take(&mut rest).split_at_mut(3 * panel.copies.len());
+                rest = tail;
+                let gathered = &mut s.gathered[..out.len()];
+                self.spread(x, panel, gathered);
+                work(panel, gathered, out, &mut s.full, s.memory.as_mut());
+            }
+        };
+        let offset = |lane: &Lane| 3 * lane.copy;
+        over_lanes(
+            &self.lanes,
+            &mut s.lanes,
+            &mut s.boundary,
+            &offset,
+            parallel,
+            &task,
+        );
+        self.collect(&s.boundary, y);
+    }
+
+    /// Whether loops over all copies are worth several threads.
+    pub(crate) fn is_large(&self) -> bool {
+        self.copies >= LARGE
+    }
+}
+
+fn over_lanes<L: Sync, W: Send, T: Send>(
+    lanes: &[L],
+    work: &mut [W],
+    y: &mut [T],
+    offset: &(impl Fn(&L) -> usize + Sync),
+    parallel: bool,
+    task: &(impl Fn(&L, &mut W, &mut [T]) + Sync),
+) {
+    match lanes {
+        [] => {}
+        [lane] => {
+            if let Some(work) = work.first_mut() {
+                task(lane, work, y);
+            }
+        }
+        _ => {
+            let middle = lanes.len() / 2;
+            let (left, right) = lanes.split_at(middle);
+            let (work_left, work_right) = work.split_at_mut(middle);
+            let (y_left, y_right) = y.split_at_mut(offset(&right[0]) - offset(&left[0]));
+            both(
+                parallel,
+                || over_lanes(left, work_left, y_left, offset, parallel, task),
+                || over_lanes(right, work_right, y_right, offset, parallel, task),
+            );
+        }
+    }
+}
+
+/// Runs `task` on every task with its part of `y`, which begins at its offset.
+pub(crate) fn over_tasks<L: Sync, T: Send>(
+    tasks: &[L],
+    y: &mut [T],
+    offset: &(impl Fn(&L) -> usize + Sync),
+    parallel: bool,
+    task: &(impl Fn(&L, &mut [T]) + Sync),
+) {
+    let work = &mut [(); PARTS][..tasks.len()];
+    over_lanes(tasks, work, y, offset, parallel, &|one, (), y| task(one, y));
+}
+
+/// Consecutive items in ranges of about equal work, of which no one is below `least` and there are no more than `most`.
+/// They depend on the problem only, not on the number of threads.
+pub(crate) fn shares(work: &[u64], least: u64, most: usize) -> Vec<Range<usize>> {
+    let total: u64 = work.iter().sum();
+    let parts = (total / least).clamp(1, most.clamp(1, PARTS) as u64);
+    let (mut out, mut done, mut start) = (Vec::new(), 0, 0);
+    for (k, own) in work.iter().enumerate() {
+        done += own;
+        if done * parts >= total * (out.len() as u64 + 1) || k + 1 == work.len() {
+            out.push(start..k + 1);
+            start = k + 1;
+        }
+    }
+    out
+}

@@ -1,0 +1,201 @@
+//! Building the gather tables.
+
+use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
+use crate::rows::gluing::Gluing;
+use crate::subdomain::class::{Class, Classes};
+use crate::tolerances::PANEL;
+use signorini_fem_mesh::buckets;
+use std::ops::Range;
+
+/// For each class: place of each node on the boundary, first panel, and first member of each panel.
+struct Numbering<'a> {
+    classes: &'a Classes,
+    places: Vec<Vec<u32>>,
+    panels: Vec<Vec<(usize, usize, usize)>>,
+}
+
+impl Numbering<'_> {
+    /// Number of the copy and its place in boundary vectors.
+    fn copy(&self, subdomain: u32, local: u32) -> (u32, Place) {
+        let (class, member) = self.classes.place(subdomain as usize);
+        let node = self.places[class][local as usize] as usize;
+        let panels = &self.panels[class];
+        let k = panels.partition_point(|&(first, _, _)| first <= member) - 1;
+        let (first, width, start) = panels[k];
+        let offset = node * width + (member - first);
+        let place = Place {
+            first: (3 * start + 2 * node * width + offset) as u32,
+            stride: width as u32,
+        };
+        ((start + offset) as u32, place)
+    }
+}
+
+impl BoundaryMap {
+    pub(crate) fn new(classes: &Classes, gluing: &Gluing) -> Self {
+        let mut map = Self {
+            classes: boundaries(classes, gluing),
+            interface: gluing.ranges().interface.clone(),
+            rows: gluing.ranges().total(),
+            nodal_pointers: vec![0],
+            block_pointers: vec![0],
+            row_pointers: vec![0],
+            ..Self::default()
+        };
+        map.fill_panels();
+        let copies = map.fill_collect(gluing, &map.numbering(classes));
+        map.fill_spread(gluing, &copies);
+        let place = |copy: usize| map.nodal_copies.partition_point(|&c| (c as usize) < copy);
+        for panel in &mut map.panels {
+            panel.nodal = place(panel.copies.start)..place(panel.copies.end);
+        }
+        map
+    }
+
+    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work.
+    fn fill_panels(&mut self) {
+        let mut work = Vec::new();
+        let touched = self
+            .classes
+            .iter()
+            .enumerate()
+            .filter(|(_, b)| !b.nodes.is_empty());
+        for (class, boundary) in touched {
+            let (members, nodes) = (boundary.members.len(), boundary.nodes.len());
+            let count = members.div_ceil(PANEL);
+            for k in 0..count {
+                let columns = members * k / count..members * (k + 1) / count;
+                let copies = self.copies..self.copies + columns.len() * nodes;
+                self.copies = copies.end;
+                work.push((columns.len() * nodes * (nodes + 64)) as u64);
+                let nodal = 0..0;
+                self.panels.push(Panel {
+                    class,
+                    columns,
+                    copies,
+                    nodal,
+                });
+            }
+        }
+        let lane = |panels: Range<usize>| Lane {
+            copy: self.panels[panels.start].copies.start,
+            panels,
+        };
+        self.lanes = shares(&work, 1, self.panels.len())
+            .into_iter()
+            .map(lane)
+            .collect();
+    }
+
+    fn numbering<'a>(&self, classes: &'a Classes) -> Numbering<'a> {
+        let places = self
+            .classes
+            .iter()
+            .zip(classes.classes())
+            .map(|(boundary, class)| {
+                let mut place = vec![u32::MAX; class.nodes];
+                for (k, &node) in boundary.nodes.iter().enumerate() {
+                    place[node as usize] = k as u32;
+                }
+                place
+            });
+        let mut panels = vec![Vec::new(); self.classes.len()];
+        for p in &self.panels {
+            panels[p.class].push((p.columns.start, p.columns.len(), p.copies.start));
+        }
+        let places = places.collect();
+        Numbering {
+            classes,
+            places,
+            panels,
+        }
+    }
+
+    /// Fills the tables by row; returns the copies of the blocks' entries and of the other rows' entries.
+    fn fill_collect(&mut self, gluing: &Gluing, numbering: &Numbering<'_>) -> [Vec<u32>; 2] {
+        let mut copies = [Vec::new(), Vec::new()];
+        for block in 0..gluing.blocks() {
+            for e in gluing.block(block) {
+                let (copy, place) = numbering.copy(e.subdomain, e.local);
+                copies[0].push(copy);
+                self.block_places.push(place);
+                self.block_weights.push(e.coefficient);
+            }
+            self.block_pointers.push(self.block_places.len() as u32);
+        }
+        for nodal in 0..gluing.nodal_rows() {
+            for e in gluing.nodal(nodal) {
+                let (copy, place) = numbering.copy(e.subdomain, e.local);
+                copies[1].push(copy);
+                self.row_places.push(place);
+                self.row_vectors.push(e.vector);
+            }
+            self.row_pointers.push(self.row_places.len() as u32);
+        }
+        copies
+    }
+
+    /// Fills the tables by copy: the transposes of the tables by row.
+    fn fill_spread(&mut self, gluing: &Gluing, copies: &[Vec<u32>; 2]) {
+        let (pointers, order) = transpose(&self.block_pointers, &copies[0], self.copies);
+        self.spread_pointers = pointers;
+        self.spread_blocks = order.iter().map(|&(block, _)| block).collect();
+        let weights = order
+            .iter()
+            .map(|&(_, entry)| self.block_weights[entry as usize]);
+        self.spread_weights = weights.collect();
+        let (pointers, order) = transpose(&self.row_pointers, &copies[1], self.copies);
+        for copy in 0..self.copies {
+            let range = pointers[copy] as usize..pointers[copy + 1] as usize;
+            if range.is_empty() {
+                continue;
+            }
+            self.nodal_copies.push(copy as u32);
+            for &(nodal, entry) in &order[range] {
+                self.nodal_rows
+                    .push(gluing.nodal_row(nodal as usize) as u32);
+                self.nodal_vectors.push(self.row_vectors[entry as usize]);
+            }
+            self.nodal_pointers.push(self.nodal_rows.len() as u32);
+        }
+    }
+}
+
+/// Boundary nodes of each class: those touched in any member.
+fn boundaries(classes: &Classes, gluing: &Gluing) -> Vec<BoundaryClass> {
+    let list = classes.classes();
+    let mut touched: Vec<Vec<bool>> = list.iter().map(|c| vec![false; c.nodes]).collect();
+    let mut touch = |subdomain: u32, local: u32| {
+        touched[classes.place(subdomain as usize).0][local as usize] = true;
+    };
+    for block in 0..gluing.blocks() {
+        gluing
+            .block(block)
+            .iter()
+            .for_each(|e| touch(e.subdomain, e.local));
+    }
+    for nodal in 0..gluing.nodal_rows() {
+        gluing
+            .nodal(nodal)
+            .iter()
+            .for_each(|e| touch(e.subdomain, e.local));
+    }
+    let boundary = |(class, touched): (&Class, Vec<bool>)| BoundaryClass {
+        nodes: (0..class.nodes as u32)
+            .filter(|&n| touched[n as usize])
+            .collect(),
+        members: class.members.clone(),
+    };
+    list.iter().zip(touched).map(boundary).collect()
+}
+
+/// Transposes a table of rows: pointers by column, and for each entry its row and its position.
+fn transpose(pointers: &[u32], columns: &[u32], count: usize) -> (Vec<u32>, Vec<(u32, u32)>) {
+    let mut row_of = Vec::with_capacity(columns.len());
+    for (row, pair) in pointers.windows(2).enumerate() {
+        row_of.extend((pair[0]..pair[1]).map(|_| row as u32));
+    }
+    let (starts, entries) = buckets(count, columns);
+    let order = entries.into_iter().map(|e| (row_of[e as usize], e));
+    (starts, order.collect())
+}

@@ -1,0 +1,141 @@
+//! The dual operator `F = B K+ B^T`.
+
+use crate::dual::boundary::{BoundaryMap, PanelScratch};
+use crate::dual::inverses::ClassInverse;
+use crate::linalg::dense;
+use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::PRODUCT;
+use signorini_qp::SymmetricOperator;
+use std::sync::Arc;
+
+/// `F = B K+ B^T`, applied without forming it.
+///
+/// Each product gathers the multipliers of every subdomain into the columns of one matrix per class, multiplies it by
+/// the class's boundary inverse (or solves with its sparse factor) and gathers the rows of `B` from the result.
+#[derive(Debug, Clone)]
+pub struct DualOperator {
+    pub(crate) map: Arc<BoundaryMap>,
+    pub(crate) subdomains: Arc<Subdomains>,
+    pub(crate) inverses: Arc<Vec<ClassInverse>>,
+    parallel: bool,
+}
+
+/// Work memory of a product with `F`.
+#[derive(Debug)]
+pub struct DualScratch(PanelScratch);
+
+impl DualOperator {
+    pub(crate) fn new(
+        map: Arc<BoundaryMap>,
+        subdomains: Arc<Subdomains>,
+        inverses: Arc<Vec<ClassInverse>>,
+    ) -> Self {
+        let parallel = product_flops(&map, &inverses) > PRODUCT;
+        Self {
+            map,
+            subdomains,
+            inverses,
+            parallel,
+        }
+    }
+
+    /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
+    pub fn flops(&self) -> u64 {
+        product_flops(&self.map, &self.inverses)
+    }
+}
+
+/// Floating-point operations in the dense or sparse kernels.
+fn product_flops(map: &BoundaryMap, inverses: &[ClassInverse]) -> u64 {
+    let class = |k: usize| {
+        let size = 3 * map.classes[k].nodes.len();
+        let dense = inverses[k].boundary.is_some();
+        let per_member = if dense {
+            2 * size * size
+        } else {
+            4 * inverses[k].full.stored()
+        };
+        (per_member * map.classes[k].members.len()) as u64
+    };
+    (0..inverses.len()).map(class).sum()
+}
+
+/// `out = a x` for each member of a panel: `a` is symmetric, members are rows.
+pub(crate) fn multiply_members(out: &mut [f64], x: &[f64], a: &[f64], members: usize, size: usize) {
+    if members == 1 {
+        dense::multiply(out, a, x, size, size, 1);
+    } else {
+        dense::multiply(out, x, a, members, size, size);
+    }
+}
+
+/// Writes the boundary rows of a panel into full columns.
+fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
+    let width = full.len() / dim;
+    for (&node, values) in nodes.iter().zip(boundary.chunks_exact(3 * width)) {
+        for (k, value) in values.iter().enumerate() {
+            full[(k % width) * dim + 3 * node as usize + k / width] = *value;
+        }
+    }
+}
+
+/// Reads the boundary rows of full columns.
+fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
+    let width = full.len() / dim;
+    for (&node, values) in nodes.iter().zip(boundary.chunks_exact_mut(3 * width)) {
+        for (k, value) in values.iter_mut().enumerate() {
+            *value = full[(k % width) * dim + 3 * node as usize + k / width];
+        }
+    }
+}
+
+impl SymmetricOperator for DualOperator {
+    type Scratch = DualScratch;
+
+    fn dim(&self) -> usize {
+        self.map.rows()
+    }
+
+    fn scratch(&self) -> DualScratch {
+        DualScratch(self.map.scratch(|panel| {
+            let (inverse, columns) = (&self.inverses[panel.class], panel.columns.len());
+            let dim = self.subdomains.bases[panel.class].stiffness.dim;
+            let full = if inverse.full.is_packed() {
+                0
+            } else {
+                dim * columns
+            };
+            inverse
+                .boundary
+                .is_none()
+                .then(|| (full, inverse.full.need(columns)))
+        }))
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
+        self.map.by_panels(
+            x,
+            y,
+            self.parallel,
+            &mut s.0,
+            &|panel, x, y, full, memory| {
+                let (columns, class) = (panel.columns.len(), panel.class);
+                let inverse = &self.inverses[class];
+                if let Some(matrix) = &inverse.boundary {
+                    multiply_members(y, x, matrix, columns, x.len() / columns);
+                } else if let Some(memory) = memory {
+                    let base = &self.subdomains.bases[class];
+                    let (nodes, dim) = (&self.map.classes[class].nodes, base.stiffness.dim);
+                    if inverse.full.apply_at(&base.kernel, nodes, x, y, memory) {
+                        return;
+                    }
+                    let full = &mut full[..dim * columns];
+                    full.fill(0.0);
+                    expand(nodes, x, full, dim);
+                    inverse.full.apply(&base.kernel, full, columns, memory);
+                    restrict(nodes, full, y, dim);
+                }
+            },
+        );
+    }
+}

@@ -1,0 +1,35 @@
+//! Linear algebra of single matrices: nothing here knows of subdomains or of `B`.
+//!
+//! Uses no other room. `dense` and `sparse` are the only files that name the library behind them (faer). In go matrices
+//! by columns, out come factors, inverses and products with work memory of the caller; everything runs on the calling
+//! thread.
+//!
+//! `elimination` finds the pattern of a factor, `supernodes` and `tiles` store one for solves with one right-hand side
+//! (see [`split`](crate::projector::split) for what they are worth), `block_rows` multiplies one matrix with many
+//! vectors.
+
+pub(crate) mod block_rows;
+pub(crate) mod dense;
+pub(crate) mod elimination;
+pub(crate) mod sparse;
+pub(crate) mod supernodes;
+pub(crate) mod tiles;
+pub(crate) mod vec3;
+
+/// Both, at the same time if that is `worth` it.
+pub(crate) fn both<A: Send, B: Send>(
+    worth: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if worth { rayon::join(a, b) } else { (a(), b()) }
+}
+
+/// The value of a key in a short list; `new` if it is not there yet.
+pub(crate) fn entry<K: PartialEq, V>(list: &mut Vec<(K, V)>, key: K, new: V) -> &mut V {
+    let at = list.iter().position(|v| v.0 == key).unwrap_or(list.len());
+    if at == list.len() {
+        list.push((key, new));
+    }
+    &mut list[at].1
+}

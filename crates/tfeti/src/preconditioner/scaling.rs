@@ -1,0 +1,233 @@
+//! Scaling of the preconditioners where copies of a node differ in stiffness or the rows of `B` are not orthonormal.
+
+use crate::error::TfetiError;
+use crate::linalg::dense;
+use crate::system::tfeti::Tfeti;
+use crate::tolerances::{DEPENDENT, GROUP_ROWS, SINGULAR};
+use signorini_qp::{ActiveSetView, Freedom};
+
+/// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or
+/// to a contact pair) are coupled by a small matrix, which is inverted once.
+#[derive(Debug)]
+pub(crate) struct Scaling {
+    /// `1 / D` of each boundary copy, relative to the stiffest.
+    weights: Vec<f64>,
+    /// Groups with contact or support rows.
+    groups: Groups,
+    /// Groups of interface rows only: their components do not couple, and have the same matrix. First rows of the
+    /// triples.
+    triples: Groups,
+    /// Group of each contact row, and its place there.
+    contact: Vec<(u32, u32)>,
+}
+
+/// Groups of rows, and the inverse of the matrix of each.
+#[derive(Debug)]
+struct Groups {
+    pointers: Vec<usize>,
+    rows: Vec<u32>,
+    /// Column-major.
+    inverse_pointers: Vec<usize>,
+    inverses: Vec<f64>,
+}
+
+impl Default for Groups {
+    fn default() -> Self {
+        Self {
+            pointers: vec![0],
+            rows: Vec::new(),
+            inverse_pointers: vec![0],
+            inverses: Vec::new(),
+        }
+    }
+}
+
+impl Groups {
+    fn count(&self) -> usize {
+        self.pointers.len() - 1
+    }
+
+    fn push(&mut self, rows: impl Iterator<Item = u32>, inverse: Vec<f64>) {
+        self.rows.extend(rows);
+        self.pointers.push(self.rows.len());
+        self.inverses.extend(inverse);
+        self.inverse_pointers.push(self.inverses.len());
+    }
+
+    /// Calls `f` with the rows of each group and its part of `inverses`.
+    fn for_each(&self, inverses: &[f64], mut f: impl FnMut(&[u32], &[f64])) {
+        for (rows, inverse) in self
+            .pointers
+            .windows(2)
+            .zip(self.inverse_pointers.windows(2))
+        {
+            f(
+                &self.rows[rows[0]..rows[1]],
+                &inverses[inverse[0]..inverse[1]],
+            );
+        }
+    }
+}
+
+impl Scaling {
+    pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
+        let gluing = system.gluing();
+        let stiffness = system.copy_stiffness();
+        let mut compliance: Vec<f64> = (0..system.torn_dim() / 3)
+            .map(|k| 1.0 / stiffness.weight(k))
+            .collect();
+        let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
+        compliance.iter_mut().for_each(|v| *v /= smallest);
+        // Rows by group: a mesh node, or nodes that contact points join.
+        let groups = gluing.node_groups();
+        let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
+            .filter_map(|row| gluing.node(row).map(|node| (groups.of(node), row as u32)))
+            .collect();
+        members.sort_unstable();
+        let mut out = Self {
+            weights: Vec::new(),
+            groups: Groups::default(),
+            triples: Groups::default(),
+            contact: vec![(0, 0); gluing.ranges().contact().end],
+        };
+        let interface = &gluing.ranges().interface;
+        for group in members.chunk_by(|a, b| a.0 == b.0) {
+            let plain = group.iter().all(|r| interface.contains(&(r.1 as usize)));
+            let step = if plain { 3 } else { 1 };
+            let rows: Vec<(u32, u32)> = group.iter().copied().step_by(step).collect();
+            let count = rows.len();
+            let entry = |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
+            let row = |row: u32| gluing.row(row as usize).into_iter().map(entry).collect();
+            let entries: Vec<Vec<(usize, f64)>> = rows.iter().map(|r| row(r.1)).collect();
+            if count > GROUP_ROWS {
+                let node = rows[0].0;
+                return Err(TfetiError::JoinedRows {
+                    node,
+                    rows: count,
+                    limit: GROUP_ROWS,
+                });
+            }
+            let mut matrix = vec![0.0; count * count];
+            for i in 0..count {
+                for j in 0..count {
+                    let weight = |(dof, v): &(usize, f64)| {
+                        let same = entries[j].iter().filter(|(other, _)| other == dof);
+                        v * compliance[dof / 3] * same.map(|(_, w)| w).sum::<f64>()
+                    };
+                    matrix[i + j * count] = entries[i].iter().map(weight).sum();
+                }
+            }
+            if gluing.is_dependent(rows[0].0) {
+                let size = (0..count)
+                    .map(|k| matrix[k * (count + 1)])
+                    .fold(0.0, f64::max);
+                (0..count).for_each(|k| matrix[k * (count + 1)] += DEPENDENT * size);
+            }
+            let node = rows[0].0;
+            let inverse = dense::inverse(matrix, count, 0.0);
+            let inverse = inverse.map_err(|_| TfetiError::DependentRows { node })?;
+            for (place, &(_, row)) in rows.iter().enumerate() {
+                if let Some(contact) = out.contact.get_mut(row as usize) {
+                    *contact = (out.groups.count() as u32, place as u32);
+                }
+            }
+            let target = if plain {
+                &mut out.triples
+            } else {
+                &mut out.groups
+            };
+            target.push(rows.iter().map(|r| r.1), inverse);
+        }
+        out.weights = system.parts.map.copy_values(|subdomain, local| {
+            compliance[system.torn_range(subdomain).start / 3 + local]
+        });
+        Ok(out)
+    }
+
+    /// `1 / D` of each boundary copy.
+    pub(crate) fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The matrices of the groups without the directions that a face holds: with `H` these directions, `N - N H (H^T N
+    /// H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a stiff and a soft
+    /// subdomain follows the soft one, but the stiff one where contact holds the mean of the copies. (Rows that weigh
+    /// the copies by stiffness do not need it, chained ones do.)
+    pub(crate) fn on_face(&self, face: &ActiveSetView<'_>, groups: &mut Vec<f64>) {
+        groups.clear();
+        groups.extend_from_slice(&self.groups.inverses);
+        let mut held = Vec::new();
+        face.for_each(|row, count, freedom| match freedom {
+            Freedom::Free => {}
+            Freedom::Held => {
+                for row in row..row + count {
+                    self.drop_direction(groups, row, &[1.0], &mut held);
+                }
+            }
+            Freedom::Along(tau) => self.drop_direction(groups, row, &[-tau[1], tau[0]], &mut held),
+        });
+    }
+
+    /// Takes the direction with `values` on the rows from `row` on out of the matrix of its group.
+    fn drop_direction(&self, groups: &mut [f64], row: usize, values: &[f64], image: &mut Vec<f64>) {
+        let Some(&(group, _)) = self.contact.get(row) else {
+            return;
+        };
+        let group = group as usize;
+        let own = &self.groups;
+        let range = own.inverse_pointers[group]..own.inverse_pointers[group + 1];
+        let matrix = &mut groups[range];
+        let count = own.pointers[group + 1] - own.pointers[group];
+        image.clear();
+        image.resize(count, 0.0);
+        let places = || {
+            values
+                .iter()
+                .enumerate()
+                .map(|(k, v)| (self.contact[row + k].1 as usize, v))
+        };
+        for (place, value) in places() {
+            for (out, entry) in image.iter_mut().zip(&matrix[place * count..]) {
+                *out += value * entry;
+            }
+        }
+        let own: f64 = places().map(|(place, value)| value * image[place]).sum();
+        let size = (0..count)
+            .map(|k| matrix[k * (count + 1)])
+            .fold(0.0, f64::max);
+        if own <= SINGULAR * size {
+            return;
+        }
+        for (j, &b) in image.iter().enumerate() {
+            for (i, &a) in image.iter().enumerate() {
+                matrix[i + j * count] -= a * b / own;
+            }
+        }
+    }
+
+    /// `y = N x` with `N = (B D^-1 B^T)^-1`, or with the matrices in `groups` unless empty.
+    pub(crate) fn solve(&self, groups: &[f64], x: &[f64], y: &mut [f64]) {
+        let inverses = if groups.is_empty() {
+            &self.groups.inverses
+        } else {
+            groups
+        };
+        self.groups.for_each(inverses, |rows, inverse| {
+            for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
+                let products = column.iter().zip(rows);
+                y[target as usize] = products.map(|(v, &row)| v * x[row as usize]).sum();
+            }
+        });
+        self.triples
+            .for_each(&self.triples.inverses, |rows, inverse| {
+                for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
+                    let mut sum = [0.0; 3];
+                    for (v, &row) in column.iter().zip(rows) {
+                        let x = &x[row as usize..][..3];
+                        (0..3).for_each(|c| sum[c] += v * x[c]);
+                    }
+                    y[target as usize..][..3].copy_from_slice(&sum);
+                }
+            });
+    }
+}

@@ -1,0 +1,341 @@
+//! The projector of the active set method of `signorini-qp`: `G` weighted by the rows that are free.
+
+use crate::coarse::space::{Coarse, CoarseScratch};
+use crate::coarse::weights::RowWeights;
+use crate::error::TfetiError;
+use crate::linalg::tiles::Digits;
+use crate::projector::factor::{CoarseFactor, Factor};
+use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
+use crate::projector::split::fronts::ContactWeights;
+use crate::tolerances::{ROUNDED_STEP, WORK};
+use signorini_qp::vector::{dot, norm};
+use signorini_qp::{EqualityProjector, Line, LooseMode, QpError};
+use std::sync::Arc;
+
+/// How `G W G^T` is factored when the active set changes.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ActiveSetFactor {
+    /// The cheaper of the others by size.
+    #[default]
+    Auto,
+    /// A sparse factor of the whole matrix each time.
+    Sparse,
+    /// What no subdomain with contact rows leads to is eliminated once; the rest of the tree is factored each time.
+    Split,
+}
+
+/// `G x = e` with projectors weighted by the free rows of the current active set, see [`EqualityProjector`].
+///
+/// Repairs use the interface and support rows only, so they never touch a contact row. Motions of bodies that these
+/// rows do not stop are [loose](EqualityProjector::loose).
+#[derive(Debug)]
+pub struct ActiveSetProjector {
+    coarse: Coarse,
+    /// Factor with the weights of always free rows.
+    always: CoarseFactor,
+    /// What these do not hold.
+    loose: Vec<LooseMode>,
+    /// Factor of the last active set.
+    active: CoarseFactor,
+    weights: Vec<f64>,
+    /// Directions of the last active set besides its weights.
+    lines: Vec<Line>,
+    parts: SplitParts,
+    /// Memory of the last but one factor.
+    spare: Option<SplitFactor>,
+    /// Weight of each row where it is free; `None` means 1.
+    metric: Option<Vec<f64>>,
+    coarse_rhs: Vec<f64>,
+    alpha: Vec<f64>,
+    scratch: CoarseScratch,
+    /// What the steps of an iteration read.
+    digits: Digits,
+}
+
+/// What split factors are made from.
+#[derive(Debug)]
+struct SplitParts {
+    base: Option<Arc<SplitBase>>,
+    /// Leading rows with constraints.
+    contact_rows: usize,
+    fronts: Fronts,
+    contact: ContactWeights,
+}
+
+impl ActiveSetProjector {
+    /// For the coarse space of a system; `contact_rows` is the number of leading rows with constraints.
+    ///
+    /// `metric` gives free rows another weight than 1, see [`Tfeti::row_weights`](crate::Tfeti::row_weights).
+    ///
+    /// # Errors
+    /// [`TfetiError::Setting`] if there are fewer contact rows or a weight is not usable, [`TfetiError::Length`] if
+    /// `metric` is not as long as dual vectors, others if a factorisation fails.
+    pub fn new(
+        coarse: &Coarse,
+        contact_rows: usize,
+        metric: Option<Vec<f64>>,
+    ) -> Result<Self, TfetiError> {
+        Self::with_factor(coarse, contact_rows, metric, ActiveSetFactor::Auto)
+    }
+
+    /// The same with a given kind of factor: for benches, and for tests of one kind against the other.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    #[doc(hidden)]
+    pub fn with_factor(
+        coarse: &Coarse,
+        contact_rows: usize,
+        metric: Option<Vec<f64>>,
+        kind: ActiveSetFactor,
+    ) -> Result<Self, TfetiError> {
+        let ranges = coarse.0.gluing.ranges();
+        if contact_rows > ranges.contact().end {
+            return Err(TfetiError::Setting {
+                name: "contact rows of a projector",
+                value: contact_rows as f64,
+                range: "at most the contact rows of the system",
+            });
+        }
+        if let Some(metric) = &metric {
+            RowWeights::diagonal(metric.clone()).validate(ranges)?;
+        }
+        let mut weights = vec![1.0; coarse.dim()];
+        weights[..contact_rows].fill(0.0);
+        let base = match kind {
+            ActiveSetFactor::Sparse => None,
+            _ => coarse.split(contact_rows, metric.as_deref()),
+        };
+        let pays = |base: &SplitBase| {
+            kind == ActiveSetFactor::Split || base.pays(coarse.rows(), coarse.factor_size())
+        };
+        let mut parts = SplitParts {
+            base: base.filter(pays).map(Arc::new),
+            contact_rows,
+            fronts: Fronts::default(),
+            contact: ContactWeights::default(),
+        };
+        let diagonal = weighted(&weights, metric.as_deref());
+        let factor = parts.factor(coarse, RowWeights::diagonal(diagonal), None)?;
+        let mut scratch = factor.scratch();
+        let motions = factor.free_motions().iter();
+        let loose: Vec<_> = motions
+            .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
+            .collect();
+        // weights that are added to those that hold every body leave the matrix better conditioned
+        let single = loose.is_empty()
+            && factor.has_short()
+            && factor.single_error(&mut scratch) <= ROUNDED_STEP;
+        Ok(Self {
+            digits: if single {
+                Digits::Single
+            } else {
+                Digits::Double
+            },
+            scratch,
+            coarse: coarse.clone(),
+            always: factor.clone(),
+            loose,
+            active: factor,
+            weights,
+            lines: Vec::new(),
+            parts,
+            spare: None,
+            metric,
+            coarse_rhs: vec![0.0; coarse.rows()],
+            alpha: vec![0.0; coarse.rows()],
+        })
+    }
+
+    /// The factor of the last active set.
+    pub fn factor(&self) -> &CoarseFactor {
+        &self.active
+    }
+
+    /// Tells the right side `e` of the next problem: rigid motions that no free row stops are harmless as long as `e`
+    /// does no work on them.
+    ///
+    /// # Panics
+    /// If `e` does not have one entry for each row of `G`.
+    pub fn set_coarse_rhs(&mut self, e: &[f64]) {
+        self.coarse_rhs.copy_from_slice(e);
+    }
+
+    /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
+    pub fn amplitudes(&mut self, residual: &[f64], alpha: &mut [f64]) {
+        self.active.amplitudes(residual, alpha, &mut self.scratch);
+    }
+
+    /// An error if the right side does work on a free motion of a factor.
+    fn check(&self, factor: &CoarseFactor) -> Result<(), QpError> {
+        let size = norm(&self.coarse_rhs);
+        let works = |a: &[f64]| dot(a, &self.coarse_rhs).abs() > WORK * size * norm(a);
+        match factor
+            .free_motions()
+            .iter()
+            .find(|motion| works(&motion.amplitudes))
+        {
+            Some(motion) => Err(QpError::CoarseDeficient {
+                motion: motion.to_string(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Work of a step on the factor of the last active set, with its digits.
+    fn step(&mut self, work: impl FnOnce(&CoarseFactor, &mut [f64], &mut CoarseScratch)) {
+        self.scratch.digits = self.digits;
+        work(&self.active, &mut self.alpha, &mut self.scratch);
+        self.scratch.digits = Digits::Double;
+    }
+}
+
+impl SplitParts {
+    /// The factor for `weights` on this basis; of the whole matrix if there is no basis, if free motions ask for a
+    /// generalised inverse, or if the matrix is singular to working precision.
+    fn factor(
+        &mut self,
+        coarse: &Coarse,
+        weights: RowWeights,
+        spare: Option<SplitFactor>,
+    ) -> Result<CoarseFactor, TfetiError> {
+        weights.validate(coarse.0.gluing.ranges())?;
+        let usable = |base: &&Arc<SplitBase>| {
+            base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty()
+        };
+        if let Some(base) = self.base.as_ref().filter(usable) {
+            self.contact
+                .set(&weights.diagonal[..self.contact_rows], &weights.lines);
+            if let Ok(factor) = base.factor(&self.contact, spare, &mut self.fronts) {
+                let factor = Factor::Split(base.clone(), factor);
+                return Ok(CoarseFactor::new(
+                    coarse.clone(),
+                    factor,
+                    Some(weights),
+                    Vec::new(),
+                ));
+            }
+        }
+        coarse.factor_weighted(weights)
+    }
+}
+
+fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
+    match metric {
+        Some(metric) => free.iter().zip(metric).map(|(w, m)| w * m).collect(),
+        None => free.to_vec(),
+    }
+}
+
+impl EqualityProjector for ActiveSetProjector {
+    fn dim(&self) -> usize {
+        self.coarse.dim()
+    }
+
+    fn rows(&self) -> usize {
+        self.coarse.rows()
+    }
+
+    fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
+        self.set_weights_and_lines(w, &[])
+    }
+
+    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[Line]) -> Result<bool, QpError> {
+        if w == self.weights && lines == self.lines {
+            return self.check(&self.active).map(|()| false);
+        }
+        let (expected, found) = (self.coarse.dim(), w.len());
+        if found != expected {
+            let what = "the weights of an active set";
+            return Err(QpError::Length {
+                what,
+                found,
+                expected,
+            });
+        }
+        let mut weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
+        let metric = |row: usize| {
+            let metric = self.metric.as_ref();
+            metric.and_then(|m| m.get(row)).copied().unwrap_or(1.0)
+        };
+        weights.lines.extend_from_slice(lines);
+        for line in &mut weights.lines {
+            line.weight *= metric(line.first);
+        }
+        let fixed = w[self.parts.contact_rows..].iter().all(|w| *w == 1.0);
+        let factor = match fixed {
+            true => self.parts.factor(&self.coarse, weights, self.spare.take()),
+            false => self.coarse.factor_weighted(weights),
+        };
+        let motion = |error: TfetiError| QpError::CoarseDeficient {
+            motion: error.to_string(),
+        };
+        let factor = factor.map_err(motion)?;
+        self.check(&factor)?;
+        self.weights.copy_from_slice(w);
+        self.lines.clear();
+        self.lines.extend_from_slice(lines);
+        let last = std::mem::replace(&mut self.active, factor);
+        self.spare = last.into_split();
+        Ok(true)
+    }
+
+    fn balances(&mut self, x: &[f64], e: &[f64]) -> bool {
+        if self.active.free_motions().is_empty() {
+            return true;
+        }
+        self.coarse.apply(x, &mut self.alpha, &mut self.scratch);
+        let size = norm(e).max(norm(x));
+        let off = |a: &[f64]| -> f64 {
+            let both = self.alpha.iter().zip(e);
+            a.iter().zip(both).map(|(a, (g, e))| a * (g - e)).sum()
+        };
+        let mut motions = self.active.free_motions().iter().map(|m| &m.amplitudes);
+        motions.all(|a| off(a).abs() <= WORK * size * norm(a))
+    }
+
+    fn project(&mut self, x: &mut [f64]) {
+        self.active.project(x, None, &mut self.scratch);
+    }
+
+    fn project_transpose(&mut self, g: &mut [f64]) {
+        self.active
+            .project_transpose(g, &mut self.alpha, &mut self.scratch);
+    }
+
+    fn rounds_steps(&self) -> bool {
+        self.digits == Digits::Single
+    }
+
+    fn project_step(&mut self, x: &mut [f64]) {
+        self.step(|factor, _, scratch| factor.project(x, None, scratch));
+    }
+
+    fn project_step_transpose(&mut self, g: &mut [f64]) {
+        self.step(|factor, alpha, scratch| factor.project_transpose(g, alpha, scratch));
+    }
+
+    fn multiplier(&mut self, g: &[f64], out: &mut [f64]) {
+        self.active.amplitudes(g, out, &mut self.scratch);
+    }
+
+    fn loose(&self) -> &[LooseMode] {
+        &self.loose
+    }
+
+    fn balance(&mut self, x: &mut [f64], e: &[f64]) {
+        self.active.project(x, Some(e), &mut self.scratch);
+    }
+
+    fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
+        self.scratch.digits = self.digits;
+        self.always.compensate(from, change, to, &mut self.scratch);
+        self.scratch.digits = Digits::Double;
+    }
+
+    fn repair(&mut self, x: &mut [f64], e: &[f64]) {
+        self.always.project(x, Some(e), &mut self.scratch);
+    }
+}

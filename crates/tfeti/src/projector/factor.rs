@@ -1,0 +1,369 @@
+//! Factors of `G W G^T` and their projectors.
+
+use crate::coarse::matrix::ModeTable;
+use crate::coarse::mobility::FreeMotion;
+use crate::coarse::space::{Coarse, CoarseScratch};
+use crate::coarse::weights::{RowWeights, along};
+use crate::error::TfetiError;
+use crate::linalg::both;
+use crate::linalg::sparse::{FactorError, SparseCholesky};
+use crate::linalg::tiles::Digits;
+use crate::projector::split::factor::{SplitBase, SplitFactor};
+use crate::projector::split::tree::cheapest_tree;
+use signorini_qp::Line;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A Cholesky factor of `G W G^T` and the projectors that belong to it.
+///
+/// With `W = I` (no weights): `P = I - G^T (G G^T)^-1 G` and `Q = I - P` are the paper's orthogonal projectors. With
+/// weights the projector `I - W G^T (G W G^T)^-1 G` maps to the kernel of `G` by changing only rows of positive weight.
+///
+/// All methods panic if a vector does not have the length that belongs to it.
+#[derive(Debug, Clone)]
+pub struct CoarseFactor(Arc<FactorData>);
+
+#[derive(Debug)]
+struct FactorData {
+    coarse: Coarse,
+    factor: Factor,
+    weights: Option<RowWeights>,
+    /// Whether interface rows have weight one.
+    plain: bool,
+    /// Whether contact rows have weights.
+    contact: bool,
+    free: Vec<FreeMotion>,
+}
+
+#[derive(Debug)]
+pub(super) enum Factor {
+    Sparse(Arc<SparseCholesky>),
+    Split(Arc<SplitBase>, SplitFactor),
+}
+
+impl Coarse {
+    /// Factor of `G G^T`.
+    ///
+    /// # Errors
+    /// [`TfetiError::CoarseSingular`] if a pivot is not positive, [`TfetiError::TooLarge`].
+    pub fn factor(&self) -> Result<CoarseFactor, TfetiError> {
+        self.factor_with(None)
+    }
+
+    /// Factor of `G W G^T`.
+    ///
+    /// If some rigid motions of bodies escape all rows of positive weight (see [`CoarseFactor::free_motions`]), the
+    /// matrix is singular; it is then regularised such that solves apply a generalised inverse, exact for right-hand
+    /// sides that do no work on the free motions.
+    ///
+    /// # Errors
+    /// [`TfetiError::Setting`] and [`TfetiError::Length`] for unusable weights, and those of [`factor`](Self::factor).
+    pub fn factor_weighted(&self, weights: RowWeights) -> Result<CoarseFactor, TfetiError> {
+        weights.validate(self.0.gluing.ranges())?;
+        self.factor_with(Some(weights))
+    }
+
+    fn factor_with(&self, weights: Option<RowWeights>) -> Result<CoarseFactor, TfetiError> {
+        let data = &self.0;
+        let modes = ModeTable::new(&data.subdomains);
+        let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
+        let free = data.free_motions(weights.as_ref());
+        if !free.is_empty() {
+            let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
+            let mean = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
+            let strength = if mean > 0.0 { mean } else { 1.0 };
+            for (subdomain, spring) in data.mobility.springs(&free) {
+                let row = [(subdomain as u32, spring)];
+                data.matrix.add_row(&row, strength, &mut matrix.values);
+            }
+        }
+        let (what, count) = ("coarse unknowns", matrix.dim);
+        let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
+            FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },
+            FactorError::Pattern => TfetiError::TooLarge { what, count },
+        })?;
+        let factor = Factor::Sparse(Arc::new(factor));
+        Ok(CoarseFactor::new(self.clone(), factor, weights, free))
+    }
+
+    /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
+    /// factor can be split. `metric` is the weight of each row where it counts, one if `None`.
+    pub(super) fn split(&self, rows: usize, metric: Option<&[f64]>) -> Option<SplitBase> {
+        let data = &self.0;
+        let gluing = &data.gluing;
+        let ones = || vec![1.0; self.dim()];
+        let mut weights = RowWeights::diagonal(metric.map_or_else(ones, <[f64]>::to_vec));
+        let all = metric.is_some().then_some(&weights);
+        if rows > gluing.ranges().interface.start || !data.free_motions(all).is_empty() {
+            return None;
+        }
+        let mut changing = vec![false; data.subdomains.count()];
+        for e in (0..rows).flat_map(|row| gluing.nodal(row)) {
+            changing[e.subdomain as usize] = true;
+        }
+        let graph = data.matrix.graph();
+        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
+        let modes = ModeTable::new(&data.subdomains);
+        weights.diagonal[..rows].fill(0.0);
+        let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
+        SplitBase::new(tree, &data.matrix, &graph, &values, gluing, &modes, rows).ok()
+    }
+}
+
+impl CoarseFactor {
+    pub(super) fn new(
+        coarse: Coarse,
+        factor: Factor,
+        mut weights: Option<RowWeights>,
+        free: Vec<FreeMotion>,
+    ) -> Self {
+        let ranges = coarse.0.gluing.ranges();
+        if let Some(RowWeights { diagonal, lines }) = &mut weights {
+            // products count these rows in full and are corrected by what the lines leave out
+            lines
+                .iter()
+                .for_each(|l| diagonal[l.first..l.first + 2].fill(1.0));
+        }
+        let all = |range: Range<usize>, of: fn(&f64) -> bool| {
+            weights
+                .as_ref()
+                .is_none_or(|w: &RowWeights| w.diagonal[range].iter().all(of))
+        };
+        let plain = all(ranges.interface.clone(), |w| *w == 1.0);
+        let contact = weights.is_none() || !all(ranges.contact(), |w| *w == 0.0);
+        Self(Arc::new(FactorData {
+            coarse,
+            factor,
+            weights,
+            plain,
+            contact,
+            free,
+        }))
+    }
+
+    /// The memory of a split factor that nobody else uses.
+    pub(super) fn into_split(self) -> Option<SplitFactor> {
+        match Arc::into_inner(self.0)?.factor {
+            Factor::Split(_, factor) => Some(factor),
+            Factor::Sparse(_) => None,
+        }
+    }
+
+    /// Numbers stored.
+    pub fn stored(&self) -> usize {
+        match &self.0.factor {
+            Factor::Sparse(factor) => factor.stored(),
+            Factor::Split(base, _) => base.stored(),
+        }
+    }
+
+    /// The coarse space.
+    pub fn coarse(&self) -> &Coarse {
+        &self.0.coarse
+    }
+
+    /// Rigid motions that the rows of positive weight do not stop. Empty if `G W G^T` is regular.
+    pub fn free_motions(&self) -> &[FreeMotion] {
+        &self.0.free
+    }
+
+    /// The weights; `None` for `W = I`.
+    pub fn weights(&self) -> Option<&RowWeights> {
+        self.0.weights.as_ref()
+    }
+
+    /// Creates the work memory.
+    pub fn scratch(&self) -> CoarseScratch {
+        let mut scratch = self.0.coarse.scratch();
+        if let Factor::Split(base, _) = &self.0.factor {
+            scratch.split.resize(base.work(), 0.0);
+        }
+        scratch
+    }
+
+    /// `y = (G W G^T)^-1 y`.
+    pub fn solve(&self, y: &mut [f64], s: &mut CoarseScratch) {
+        self.solve_some(y, s, false);
+    }
+
+    /// The same; `y` may be told to be zero but for blocks that a change of contact rows reaches.
+    fn solve_some(&self, y: &mut [f64], s: &mut CoarseScratch, changing: bool) {
+        match &self.0.factor {
+            Factor::Sparse(factor) => factor.solve(y, 1, &mut s.memory),
+            Factor::Split(base, factor) => {
+                if s.split.len() < base.work() {
+                    s.split.resize(base.work(), 0.0);
+                }
+                base.solve(factor, y, &mut s.split, changing, s.digits);
+            }
+        }
+    }
+
+    /// Replaces the first vector of the memory by the solution for it.
+    fn solve_first(&self, s: &mut CoarseScratch, changing: bool) {
+        let mut first = std::mem::take(&mut s.first);
+        self.solve_some(&mut first, s, changing);
+        s.first = first;
+    }
+
+    /// Whether the factor is stored in single precision, too.
+    pub(super) fn has_short(&self) -> bool {
+        matches!(self.0.factor, Factor::Split(..))
+    }
+
+    /// How far `G W G^T` times a solve in single precision is from the right side, relative, for one in which all
+    /// motions are: what steps do to the equality.
+    pub(super) fn single_error(&self, s: &mut CoarseScratch) -> f64 {
+        let data = &self.0.coarse.0;
+        let rows = 0..self.0.coarse.rows();
+        let side: Vec<f64> = rows.map(|k| ((k * k + 1) as f64).sin()).collect();
+        let (mut x, mut found) = (vec![0.0; self.0.coarse.dim()], side.clone());
+        s.digits = Digits::Single;
+        self.particular(&side, &mut x, s);
+        s.digits = Digits::Double;
+        data.product(&x, None, &mut found, &mut s.sides);
+        signorini_qp::vector::distance(&found, &side) / signorini_qp::vector::norm(&side)
+    }
+
+    fn lines(&self) -> &[Line] {
+        self.0.weights.as_ref().map_or(&[], |w| &w.lines)
+    }
+
+    fn weigh(&self, x: &mut [f64]) {
+        if let Some(weights) = &self.0.weights {
+            weights.apply(x);
+        }
+    }
+
+    /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if
+    /// `None`.
+    pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
+        self.0.coarse.0.product(x, None, &mut s.first, &mut s.sides);
+        if let Some(e) = e {
+            s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
+        }
+        self.solve_first(s, false);
+        self.subtract_weighted(x, s);
+    }
+
+    /// `to = from + c - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper
+    /// than [`project`](Self::project) where these are the contact rows.
+    pub fn compensate(&self, from: &[f64], change: &[f64], to: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        let contact = change.len() == data.gluing.ranges().contact().end;
+        if contact {
+            let first = &mut s.first;
+            both(
+                data.is_large(),
+                || data.contact_product(change, first),
+                || signorini_qp::vector::copy(from, to),
+            );
+        } else {
+            s.dual.fill(0.0);
+            s.dual[..change.len()].copy_from_slice(change);
+            data.product(&s.dual, None, &mut s.first, &mut s.sides);
+            signorini_qp::vector::copy(from, to);
+        }
+        to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
+        let reaches = |base: &SplitBase| contact && base.rows() >= change.len();
+        let changing = matches!(&self.0.factor, Factor::Split(base, _) if reaches(base));
+        self.solve_first(s, changing);
+        self.subtract_weighted(to, s);
+    }
+
+    /// `x = x - W G^T y`, `y` the first vector of the memory.
+    fn subtract_weighted(&self, x: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.0.coarse.0;
+        if !self.0.plain {
+            data.product_transpose(&s.first, &mut s.dual, &mut s.motions);
+            self.weigh(&mut s.dual);
+            signorini_qp::vector::subtract(&s.dual, x);
+            return;
+        }
+        keep(self.lines(), x, &mut s.pairs);
+        let weight = |row: usize| self.0.weights.as_ref().map_or(1.0, |w| w.diagonal[row]);
+        data.with_transpose(
+            &s.first,
+            x,
+            self.0.contact,
+            &mut s.motions,
+            |x, v| *x -= v,
+            |row, x, v| *x -= weight(row) * v,
+        );
+        for (line, old) in self.lines().iter().zip(&s.pairs) {
+            let (k, l) = (line.first, line.first + 1);
+            let change = along(line, [old[0] - x[k], old[1] - x[l]]);
+            (x[k], x[l]) = (old[0] - change[0], old[1] - change[1]);
+        }
+    }
+
+    /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha`
+    /// the amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
+    pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        if self.0.plain {
+            keep(self.lines(), r, &mut s.pairs);
+            for (line, old) in self.lines().iter().zip(&s.pairs) {
+                r[line.first..line.first + 2].copy_from_slice(&along(line, *old));
+            }
+            self.plain_amplitudes(r, alpha, s);
+            for (line, old) in self.lines().iter().zip(&s.pairs) {
+                r[line.first..line.first + 2].copy_from_slice(old);
+            }
+        } else {
+            self.amplitudes(r, alpha, s);
+        }
+        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
+        let data = &self.0.coarse.0;
+        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
+    }
+
+    /// Rigid amplitudes that make the residual of the rows `r + G^T alpha` smallest in the metric of `W`:
+    /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
+    /// equality (open contact, sliding).
+    pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        if self.0.plain && self.lines().is_empty() {
+            self.plain_amplitudes(r, alpha, s);
+            return;
+        }
+        s.dual.copy_from_slice(r);
+        self.weigh(&mut s.dual);
+        self.0.coarse.0.product(&s.dual, None, alpha, &mut s.sides);
+        self.solve(alpha, s);
+        alpha.iter_mut().for_each(|a| *a = -*a);
+    }
+
+    /// The same for interface rows of weight one and rows in lines that are weighted already.
+    fn plain_amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let weights = self.0.weights.as_ref().map(|w| &w.diagonal[..]);
+        self.0.coarse.0.product(r, weights, alpha, &mut s.sides);
+        self.solve(alpha, s);
+        alpha.iter_mut().for_each(|a| *a = -*a);
+    }
+
+    /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
+    pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
+        s.first.copy_from_slice(e);
+        self.solve_first(s, false);
+        self.0
+            .coarse
+            .0
+            .product_transpose(&s.first, x, &mut s.motions);
+        self.weigh(x);
+    }
+
+    /// The sparse factor of a regular `G G^T`.
+    pub(super) fn unweighted(&self) -> Option<&Arc<SparseCholesky>> {
+        match &self.0.factor {
+            Factor::Sparse(factor) if self.0.weights.is_none() && self.0.free.is_empty() => {
+                Some(factor)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Remembers the entries of the rows in lines.
+fn keep(lines: &[Line], x: &[f64], pairs: &mut Vec<[f64; 2]>) {
+    pairs.clear();
+    pairs.extend(lines.iter().map(|l| [x[l.first], x[l.first + 1]]));
+}

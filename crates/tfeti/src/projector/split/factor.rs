@@ -1,0 +1,338 @@
+//! The factorisation along a tree of dense *fronts*: the columns of a node and what their elimination does to later
+//! unknowns.
+//!
+//! Fronts that no changing block leads to are eliminated once; of the others the sum of what is steady is kept, and a
+//! new active set adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut run
+//! on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
+
+use crate::coarse::matrix::{CoarseMatrix, ModeTable};
+use crate::linalg::both;
+use crate::linalg::dense;
+use crate::linalg::supernodes::Supernodes;
+use crate::linalg::tiles::Tile;
+use crate::projector::split::fronts::{ContactFronts, ContactWeights};
+use crate::projector::split::tiles::Tiles;
+use crate::projector::split::tree::{CoarseTree, TreeRegion};
+use crate::rows::gluing::Gluing;
+use crate::tolerances::{OPERATIONS, READ, SINGULAR, SOLVES, SPARSE};
+use signorini_qp::Line;
+
+/// What does not depend on the weights of contact rows.
+#[derive(Debug)]
+pub(crate) struct SplitBase {
+    pub(crate) tree: CoarseTree,
+    /// For each region of the tree.
+    pub(crate) pieces: Vec<Piece>,
+    /// Steady part of the columns of each node that changes; empty for the others.
+    base: Vec<Vec<f64>>,
+    contact: ContactFronts,
+    /// Leading rows whose weights change.
+    rows: usize,
+    /// Pivots up to this size count as zero.
+    threshold: f64,
+}
+
+/// Storage of one region.
+#[derive(Debug)]
+pub(crate) struct Piece {
+    pub(crate) steady: Supernodes,
+    pub(crate) tiles: Tiles,
+    pub(crate) changing: Supernodes,
+    /// Whether nothing changes in the region and those within.
+    pub(crate) is_steady: bool,
+    /// Length of its own work memory, behind that of the regions within.
+    pub(crate) slot: usize,
+    /// Length of the work memory with that of the regions within.
+    pub(crate) work: usize,
+    /// Numbers that a solve reads in the region and those within.
+    pub(crate) reads: usize,
+    /// Operations of a change of the face in the region and those within.
+    operations: f64,
+}
+
+/// A factor for certain weights of the contact rows: tiles of each region.
+#[derive(Debug)]
+pub(crate) struct SplitFactor {
+    pub(crate) tiles: Vec<Tiles>,
+}
+
+/// Work memory of factorisations.
+#[derive(Debug, Default)]
+pub(crate) struct Fronts(Vec<Front>);
+
+/// Columns of a node, and what is subtracted from the later unknowns of its border: lower triangles.
+#[derive(Debug, Clone, Default)]
+struct Front {
+    columns: Vec<f64>,
+    update: Vec<f64>,
+}
+
+impl SplitBase {
+    /// From the `values` of the matrix without its first `contact` rows, which are contact rows.
+    pub(crate) fn new(
+        tree: CoarseTree,
+        matrix: &CoarseMatrix,
+        graph: &[Vec<u32>],
+        values: &[f64],
+        gluing: &Gluing,
+        modes: &ModeTable<'_>,
+        contact: usize,
+    ) -> Result<Self, usize> {
+        let mut pieces = Vec::with_capacity(tree.regions.len());
+        for region in &tree.regions {
+            pieces.push(Piece::new(&tree, region, &pieces));
+        }
+        let mut out = Self {
+            threshold: 0.0,
+            base: Vec::new(),
+            pieces,
+            contact: ContactFronts::new(&tree, gluing, modes, contact),
+            rows: contact,
+            tree,
+        };
+        let mut fronts = vec![Front::default(); out.tree.nodes.len()];
+        let mut tiles = vec![Tiles::default(); out.pieces.len()];
+        let load = |k: usize, front: &mut Front| {
+            let node = &out.tree.nodes[k];
+            let (width, height) = (node.width(), node.height());
+            front.columns.resize(width * height, 0.0);
+            front
+                .update
+                .resize((height - width) * (height - width), 0.0);
+            load_columns(matrix, &out.tree, graph, k, values, &mut front.columns);
+        };
+        let work = Growth {
+            base: &out,
+            changing: false,
+            load: &load,
+        };
+        work.grow(out.pieces.len().wrapping_sub(1), &mut fronts, &mut tiles)?;
+        out.base = fronts.into_iter().map(|f| f.columns).collect();
+        for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
+            piece.tiles = tiles;
+        }
+        let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
+        out.threshold = SINGULAR * diagonal;
+        Ok(out)
+    }
+
+    /// Length of the work memory of a solve.
+    pub(crate) fn work(&self) -> usize {
+        self.tree.dim() + self.pieces.last().map_or(0, |p| p.work)
+    }
+
+    /// Leading rows whose weights change: others do not lead to blocks that change.
+    pub(crate) fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Numbers stored.
+    pub(crate) fn stored(&self) -> usize {
+        // a rounded tile is half a tile
+        let tiles = |p: &Piece| Tile::NUMBERS * (p.steady.tiles() + p.changing.tiles()) * 3 / 2;
+        self.pieces.iter().map(tiles).sum::<usize>() + self.base.iter().map(Vec::len).sum::<usize>()
+    }
+
+    /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows`
+    /// unknowns, counted for one change of the active set and the solves until the next.
+    pub(crate) fn pays(&self, rows: usize, stored: usize) -> bool {
+        let whole = stored as f64;
+        self.tree.cost() < SOLVES * READ * whole + SPARSE * whole * whole / rows.max(1) as f64
+    }
+
+    /// Whether pairs of contact rows may stand in these lines.
+    pub(crate) fn allows(&self, lines: &[Line]) -> bool {
+        self.contact.allow(lines)
+    }
+
+    /// Factor for other weights of the contact rows; reuses the memory of `old`.
+    pub(crate) fn factor(
+        &self,
+        weights: &ContactWeights,
+        old: Option<SplitFactor>,
+        fronts: &mut Fronts,
+    ) -> Result<SplitFactor, usize> {
+        let mut tiles = old.map(|old| old.tiles).unwrap_or_default();
+        tiles.resize(self.pieces.len(), Tiles::default());
+        tiles.iter_mut().for_each(Tiles::clear);
+        fronts.0.resize(self.tree.nodes.len(), Front::default());
+        let load = |k: usize, front: &mut Front| {
+            let node = &self.tree.nodes[k];
+            let behind = node.height() - node.width();
+            front.columns.clear();
+            front.columns.extend_from_slice(&self.base[k]);
+            front.update.clear();
+            front.update.resize(behind * behind, 0.0);
+            self.contact
+                .add(k, node.height(), weights, &mut front.columns);
+        };
+        let work = Growth {
+            base: self,
+            changing: true,
+            load: &load,
+        };
+        work.grow(self.pieces.len().wrapping_sub(1), &mut fronts.0, &mut tiles)?;
+        Ok(SplitFactor { tiles })
+    }
+}
+
+impl Piece {
+    fn new(tree: &CoarseTree, region: &TreeRegion, before: &[Self]) -> Self {
+        let group = |nodes: std::ops::Range<usize>| {
+            let mut out = Supernodes::new(6);
+            for node in &tree.nodes[nodes] {
+                let first = region.region.own.start;
+                let columns = 6 * (node.columns.start - first)..6 * (node.columns.end - first);
+                out.push(columns, node.border.iter().map(|&p| region.local(p)));
+            }
+            out
+        };
+        let (steady, changing) = (group(region.steady.clone()), group(region.changing.clone()));
+        let children = || {
+            region
+                .region
+                .children
+                .into_iter()
+                .flatten()
+                .map(|k| &before[k])
+        };
+        let slot = 6 * region.behind.len() + steady.buffer().max(changing.buffer());
+        let own = tree.nodes[region.changing.clone()].iter();
+        Self {
+            is_steady: region.changing.is_empty() && children().all(|c| c.is_steady),
+            slot,
+            work: slot + children().map(|c| c.work).sum::<usize>(),
+            reads: Tile::NUMBERS * (steady.tiles() + changing.tiles())
+                + children().map(|c| c.reads).sum::<usize>(),
+            operations: own.map(|n| n.operations()).sum::<f64>()
+                + children().map(|c| c.operations).sum::<f64>(),
+            tiles: Tiles::default(),
+            steady,
+            changing,
+        }
+    }
+}
+
+/// A factorisation of the steady or of the changing nodes. `load` begins a front.
+struct Growth<'a, L: Fn(usize, &mut Front) + Sync> {
+    base: &'a SplitBase,
+    changing: bool,
+    load: &'a L,
+}
+
+impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
+    /// Works on a region after those within. `fronts` and `tiles` are those of the regions within and its own.
+    fn grow(&self, r: usize, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
+        let (tree, pieces) = (&self.base.tree, &self.base.pieces);
+        let Some(region) = tree.regions.get(r) else {
+            return Ok(());
+        };
+        if let Some([left, right]) = region.region.children {
+            let nodes = tree.regions[right].first_node - region.first_node;
+            let own = region.steady.start - region.first_node;
+            let (a, b) = fronts[..own].split_at_mut(nodes);
+            let (s, rest) = tiles.split_at_mut(left + 1 - region.first_region);
+            let t = &mut rest[..right - left];
+            let worth = !self.changing || pieces[r].operations >= OPERATIONS;
+            let (a, b) = both(worth, || self.grow(left, a, s), || self.grow(right, b, t));
+            a?;
+            b?;
+        }
+        let nodes = match self.changing {
+            true => region.changing.clone(),
+            false => region.steady.start..region.changing.end,
+        };
+        for k in nodes {
+            let node = &tree.nodes[k];
+            let (width, height) = (node.width(), node.height());
+            let (before, rest) = fronts.split_at_mut(k - region.first_node);
+            let front = &mut rest[0];
+            (self.load)(k, front);
+            for &child in &node.children {
+                if self.changing && !tree.nodes[child].changing {
+                    continue;
+                }
+                let update = &mut before[child - region.first_node].update;
+                extend(update, &tree.nodes[child].into, front, width, height);
+                if !self.changing {
+                    *update = Vec::new();
+                }
+            }
+            if node.changing != self.changing {
+                continue;
+            }
+            let threshold = self.base.threshold;
+            dense::cholesky_columns(&mut front.columns, height, width, threshold)
+                .map_err(|pivot| 6 * node.columns.start + pivot)?;
+            dense::subtract_columns(&mut front.update, &front.columns, height, width);
+            let (group, first) = match self.changing {
+                true => (&pieces[r].changing, region.changing.start),
+                false => (&pieces[r].steady, region.steady.start),
+            };
+            let tiles = &mut tiles[r - region.first_region];
+            group.pack(k - first, &front.columns, &mut tiles.exact);
+            if !self.changing {
+                front.columns = Vec::new();
+            }
+        }
+        tiles[r - region.first_region].round();
+        Ok(())
+    }
+}
+
+/// Adds the entries of the columns of node `k` of a tree of this `graph`.
+fn load_columns(
+    matrix: &CoarseMatrix,
+    tree: &CoarseTree,
+    graph: &[Vec<u32>],
+    k: usize,
+    values: &[f64],
+    columns: &mut [f64],
+) {
+    let node = &tree.nodes[k];
+    for q in node.columns.clone() {
+        let a = tree.blocks[q];
+        for &b in graph[a as usize].iter().chain([&a]) {
+            let p = tree.place[b as usize];
+            if (p as usize) < q {
+                continue;
+            }
+            let target = &mut columns[node.place(p, q as u32)..];
+            let (start, stride) = matrix.place(a.max(b), a.min(b));
+            for c in 0..6 {
+                for r in 0..6 {
+                    let (row, column) = if a <= b { (r, c) } else { (c, r) };
+                    target[c * node.height() + r] += values[start + column * stride + row];
+                }
+            }
+        }
+    }
+}
+
+/// Adds the update of a child, whose border blocks stand at the places `into`, to a front.
+fn extend(update: &[f64], into: &[u32], front: &mut Front, width: usize, height: usize) {
+    let (size, behind) = (6 * into.len(), height - width);
+    for (j, &column) in into.iter().enumerate() {
+        for c in 0..6 {
+            let source = &update[(6 * j + c) * size..][..size];
+            let start = 6 * column as usize + c;
+            let target = match start < width {
+                true => &mut front.columns[start * height..][..height],
+                false => &mut front.update[(start - width) * behind..][..behind],
+            };
+            let skip = if start < width { 0 } else { width };
+            let mut i = j;
+            while i < into.len() {
+                let first = i;
+                i += 1;
+                while i < into.len() && into[i] == into[i - 1] + 1 {
+                    i += 1;
+                }
+                let target = &mut target[6 * into[first] as usize - skip..][..6 * (i - first)];
+                for (t, s) in target.iter_mut().zip(&source[6 * first..6 * i]) {
+                    *t += s;
+                }
+            }
+        }
+    }
+}

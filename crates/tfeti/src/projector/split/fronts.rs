@@ -1,0 +1,144 @@
+//! What the contact rows add to the fronts of the coarse matrix.
+
+use crate::coarse::matrix::ModeTable;
+use crate::projector::split::tree::CoarseTree;
+use crate::rows::gluing::Gluing;
+use signorini_qp::Line;
+
+/// The terms `w_r g_r g_r^T` of the contact rows `r`, by the node to whose columns they belong.
+#[derive(Debug)]
+pub(crate) struct ContactFronts {
+    /// Coefficients `g_r` on one subdomain each.
+    vectors: Vec<[f64; 6]>,
+    terms: Vec<Term>,
+    /// First term of each node.
+    pointers: Vec<usize>,
+    /// Whether the row after a row stands on the same subdomains.
+    paired: Vec<bool>,
+}
+
+/// Weights of the contact rows: a diagonal, and `c c^T` on some pairs of rows, whose diagonal counts nothing.
+#[derive(Debug, Default)]
+pub(crate) struct ContactWeights {
+    diagonal: Vec<f64>,
+    /// `c` for the first row of a pair, else zero; empty without pairs.
+    lines: Vec<[f64; 2]>,
+}
+
+impl ContactWeights {
+    pub(crate) fn set(&mut self, diagonal: &[f64], lines: &[Line]) {
+        self.diagonal.clear();
+        self.diagonal.extend_from_slice(diagonal);
+        self.lines.clear();
+        if lines.is_empty() {
+            return;
+        }
+        self.lines.resize(diagonal.len(), [0.0; 2]);
+        for line in lines {
+            self.diagonal[line.first..line.first + 2].fill(0.0);
+            self.lines[line.first] = line.direction.map(|c| c * line.weight.sqrt());
+        }
+    }
+}
+
+/// A block of one row's term.
+#[derive(Debug, Clone, Copy)]
+struct Term {
+    row: u32,
+    /// Coefficients along its rows and its columns.
+    vectors: [u32; 2],
+    /// From them to those of the next row.
+    next: u32,
+    /// Its first entry in the columns of the node.
+    place: usize,
+}
+
+impl ContactFronts {
+    pub(crate) fn new(
+        tree: &CoarseTree,
+        gluing: &Gluing,
+        modes: &ModeTable<'_>,
+        rows: usize,
+    ) -> Self {
+        let mut vectors: Vec<[f64; 6]> = Vec::new();
+        let mut terms: Vec<(usize, Term)> = Vec::new();
+        let (mut row, mut before) = (Vec::new(), Vec::new());
+        let mut paired = vec![false; rows];
+        for nodal in 0..rows {
+            row.clear();
+            modes.row(gluing, nodal, 1.0, &mut row);
+            let subdomains: Vec<u32> = row.iter().map(|(s, _)| *s).collect();
+            if nodal > 0 {
+                paired[nodal - 1] = subdomains == before;
+            }
+            before = subdomains;
+            let first = vectors.len();
+            vectors.extend(row.iter().map(|(_, g)| *g));
+            for (i, &(a, _)) in row.iter().enumerate() {
+                for (j, &(b, _)) in row.iter().enumerate() {
+                    let (p, q) = (tree.place[a as usize], tree.place[b as usize]);
+                    if p < q {
+                        continue;
+                    }
+                    let k = tree.node_of(q as usize);
+                    let term = Term {
+                        row: nodal as u32,
+                        vectors: [i, j].map(|v| (first + v) as u32),
+                        next: row.len() as u32,
+                        place: tree.nodes[k].place(p, q),
+                    };
+                    terms.push((k, term));
+                }
+            }
+        }
+        terms.sort_by_key(|(k, term)| (*k, term.place));
+        let pointers = (0..=tree.nodes.len()).map(|k| terms.partition_point(|t| t.0 < k));
+        Self {
+            pointers: pointers.collect(),
+            terms: terms.into_iter().map(|(_, term)| term).collect(),
+            vectors,
+            paired,
+        }
+    }
+
+    /// Whether pairs of rows may stand in these lines.
+    pub(crate) fn allow(&self, lines: &[Line]) -> bool {
+        lines
+            .iter()
+            .all(|l| self.paired.get(l.first) == Some(&true))
+    }
+
+    /// Adds the terms of one node to its columns of the given height.
+    pub(crate) fn add(
+        &self,
+        node: usize,
+        height: usize,
+        weights: &ContactWeights,
+        columns: &mut [f64],
+    ) {
+        for term in &self.terms[self.pointers[node]..self.pointers[node + 1]] {
+            let row = term.row as usize;
+            let weight = weights.diagonal[row];
+            let [mut a, mut b] = term.vectors.map(|v| self.vectors[v as usize]);
+            match weights.lines.get(row) {
+                Some(&[c, d]) if c != 0.0 || d != 0.0 => {
+                    let both = term
+                        .vectors
+                        .map(|v| &self.vectors[(v + term.next) as usize]);
+                    for k in 0..6 {
+                        a[k] = c * a[k] + d * both[0][k];
+                        b[k] = c * b[k] + d * both[1][k];
+                    }
+                }
+                _ if weight == 0.0 => continue,
+                _ => b.iter_mut().for_each(|b| *b *= weight),
+            }
+            for c in 0..6 {
+                let target = &mut columns[term.place + c * height..][..6];
+                for r in 0..6 {
+                    target[r] += b[c] * a[r];
+                }
+            }
+        }
+    }
+}

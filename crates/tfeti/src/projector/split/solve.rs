@@ -1,0 +1,142 @@
+//! Solves with a [split factor](crate::split_factor), in double or in single precision.
+//!
+//! A solve waits for the factor, which is read twice. Steps of an iteration, whose errors are relative to the step,
+//! read one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a
+//! solve is symmetric and exact for a matrix next to the one given.
+
+use crate::linalg::both;
+use crate::linalg::tiles::{Digits, ShortTile, Tile};
+use crate::projector::split::factor::{SplitBase, SplitFactor};
+use crate::projector::split::tiles::Reads;
+use crate::tolerances::SOLVE_READS;
+
+impl SplitBase {
+    /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for
+    /// blocks that change, and nothing steady is read on the way up.
+    pub(crate) fn solve(
+        &self,
+        factor: &SplitFactor,
+        y: &mut [f64],
+        work: &mut [f64],
+        changing: bool,
+        digits: Digits,
+    ) {
+        match digits {
+            Digits::Double => self.solve_with::<Tile>(factor, y, work, changing),
+            Digits::Single => self.solve_with::<ShortTile>(factor, y, work, changing),
+        }
+    }
+
+    fn solve_with<T: Reads>(
+        &self,
+        factor: &SplitFactor,
+        y: &mut [f64],
+        work: &mut [f64],
+        changing: bool,
+    ) {
+        let Some(root) = self.pieces.len().checked_sub(1) else {
+            return;
+        };
+        let (x, rest) = work.split_at_mut(self.tree.dim());
+        for (x, &block) in x.chunks_exact_mut(6).zip(&self.tree.blocks) {
+            x.copy_from_slice(&y[6 * block as usize..][..6]);
+        }
+        let rest = &mut rest[..self.pieces[root].work];
+        self.forward::<T>(root, factor, x, rest, changing);
+        self.backward::<T>(root, factor, x, rest);
+        for (x, &block) in x.chunks_exact(6).zip(&self.tree.blocks) {
+            y[6 * block as usize..][..6].copy_from_slice(x);
+        }
+    }
+
+    /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If
+    /// only blocks that are `changing` differ from zero, steady ones are left out.
+    fn forward<T: Reads>(
+        &self,
+        r: usize,
+        factor: &SplitFactor,
+        x: &mut [f64],
+        work: &mut [f64],
+        changing: bool,
+    ) {
+        let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
+        let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
+        let (work, slot) = work.split_at_mut(piece.work - piece.slot);
+        let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
+        behind.fill(0.0);
+        if changing && piece.is_steady {
+            return;
+        }
+        if let Some([left, right]) = region.region.children {
+            let (x, y) = self.divide(left, x);
+            let (a, b) = work.split_at_mut(self.pieces[left].work);
+            both(
+                piece.reads >= SOLVE_READS,
+                || self.forward::<T>(left, factor, x, a, changing),
+                || self.forward::<T>(right, factor, y, b, changing),
+            );
+            for (child, memory) in [(left, &*a), (right, &*b)] {
+                let sums = &memory[memory.len() - self.pieces[child].slot..];
+                let lift = &self.tree.regions[child].lift;
+                for (&place, sum) in lift.iter().zip(sums.chunks_exact(6)) {
+                    let start = 6 * place as usize;
+                    let target = match start < own.len() {
+                        true => &mut own[start..][..6],
+                        false => &mut behind[start - own.len()..][..6],
+                    };
+                    for k in 0..6 {
+                        target[k] += sum[k];
+                    }
+                }
+            }
+        }
+        if !changing {
+            piece
+                .steady
+                .forward(T::of(&piece.tiles), own, behind, buffer);
+        }
+        piece
+            .changing
+            .forward(T::of(&factor.tiles[r]), own, behind, buffer);
+    }
+
+    /// Back substitution in a region and those within; the blocks behind stand first in its slot of the memory.
+    fn backward<T: Reads>(&self, r: usize, factor: &SplitFactor, x: &mut [f64], work: &mut [f64]) {
+        let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
+        let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
+        let (work, slot) = work.split_at_mut(piece.work - piece.slot);
+        let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
+        piece
+            .changing
+            .backward(T::of(&factor.tiles[r]), own, behind, buffer);
+        piece
+            .steady
+            .backward(T::of(&piece.tiles), own, behind, buffer);
+        if let Some([left, right]) = region.region.children {
+            let (x, y) = self.divide(left, x);
+            let (a, b) = work.split_at_mut(self.pieces[left].work);
+            for (child, memory) in [(left, &mut *a), (right, &mut *b)] {
+                let start = memory.len() - self.pieces[child].slot;
+                let lift = &self.tree.regions[child].lift;
+                for (&place, v) in lift.iter().zip(memory[start..].chunks_exact_mut(6)) {
+                    let start = 6 * place as usize;
+                    v.copy_from_slice(match start < own.len() {
+                        true => &own[start..][..6],
+                        false => &behind[start - own.len()..][..6],
+                    });
+                }
+            }
+            both(
+                piece.reads >= SOLVE_READS,
+                || self.backward::<T>(left, factor, x, a),
+                || self.backward::<T>(right, factor, y, b),
+            );
+        }
+    }
+
+    /// The unknowns of both sides of a cut.
+    fn divide<'a>(&self, left: usize, x: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
+        let region = &self.tree.regions[left].region;
+        x.split_at_mut(6 * (region.own.end - region.start))
+    }
+}

@@ -1,0 +1,216 @@
+//! Building the rows: contact rows, interface blocks glob by glob, support rows.
+
+use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows};
+use crate::linalg::vec3::dot;
+use crate::rows::contact::{ContactRow, PointRows};
+use crate::rows::side::{ContactConstraint, ContactConstraints};
+use crate::rows::supports::MergedSupports;
+use crate::subdomain::copy_stiffness::CopyStiffness;
+use crate::tolerances::SAME;
+use signorini_fem_mesh::{Decomposition, NodeCopy};
+
+pub(super) struct Builder<'a> {
+    decomposition: &'a Decomposition,
+    stiffness: &'a CopyStiffness,
+    /// Shares of the copies of a node.
+    shares: Vec<f64>,
+    gluing: &'a mut Gluing,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(
+        decomposition: &'a Decomposition,
+        stiffness: &'a CopyStiffness,
+        gluing: &'a mut Gluing,
+    ) -> Self {
+        let shares = Vec::new();
+        Self {
+            decomposition,
+            stiffness,
+            shares,
+            gluing,
+        }
+    }
+
+    /// Spreads a vector that multiplies the mean displacement of a node over its copies.
+    fn spread(&mut self, node: u32, vector: [f64; 3]) {
+        if vector == [0.0; 3] {
+            return;
+        }
+        let copies = self.decomposition.copies(node as usize);
+        self.stiffness.unit_shares(copies, &mut self.shares);
+        let entries = copies.iter().zip(&self.shares).map(|(c, share)| CopyEntry {
+            subdomain: c.subdomain,
+            local: c.local,
+            vector: vector.map(|v| v * share),
+        });
+        self.gluing.row_entries.extend(entries);
+    }
+
+    fn close(&mut self, node: u32) -> usize {
+        self.gluing
+            .row_pointers
+            .push(self.gluing.row_entries.len() as u32);
+        self.gluing.row_nodes.push(node);
+        self.gluing.row_pointers.len() - 2
+    }
+
+    fn contact_row(
+        &mut self,
+        point: &ContactConstraint,
+        row: &ContactRow,
+        prescribed: &[(u32, [f64; 3])],
+    ) -> usize {
+        for ((node, _), part) in point.nodes().zip(&row.parts) {
+            self.spread(node, *part);
+        }
+        let number = self.close(point.side.first());
+        for &(case, moved) in prescribed {
+            let along = dot(row.direction, moved);
+            if along != 0.0 {
+                self.gluing.prescribed[case as usize].push((number as u32, -row.scale * along));
+            }
+        }
+        number
+    }
+
+    /// Normal rows, then pairs of tangential rows, then single ones.
+    pub(super) fn contact(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
+        let of = |p: &PointRows| &contact.points[p.point];
+        for p in points {
+            let row = self.contact_row(of(p), &p.normal, &p.prescribed);
+            self.gluing.contact.push(ContactRows {
+                point: p.point,
+                row,
+                scale: p.normal.scale,
+                tangential: TangentialRows::None,
+            });
+            let skew = |r: &ContactRow| {
+                let length: f64 = r.parts.iter().map(|&v| dot(v, v)).sum();
+                (length - 1.0).abs() > SAME
+            };
+            if skew(&p.normal) || p.tangential.iter().any(skew) {
+                (self.gluing.orthonormal, self.gluing.aligned) = (false, false);
+            }
+        }
+        self.gluing.groups = NodeGroups::new(points.iter().map(of));
+        self.dependent(contact, points);
+        let normal = self.gluing.nodal_rows();
+        let mut ends = [normal; 2];
+        for (end, count) in ends.iter_mut().zip([2, 1]) {
+            let with = points
+                .iter()
+                .enumerate()
+                .filter(|(_, p)| p.tangential.len() == count);
+            for (k, p) in with {
+                let rows = p
+                    .tangential
+                    .iter()
+                    .map(|t| self.contact_row(of(p), t, &p.prescribed));
+                let row = rows.min().unwrap_or_default();
+                let (direction, scale) = (p.tangential[0].direction, p.tangential[0].scale);
+                self.gluing.contact[k].tangential = match count {
+                    2 => TangentialRows::Disc { row, scale },
+                    _ => TangentialRows::Interval {
+                        row,
+                        direction,
+                        scale,
+                    },
+                };
+            }
+            *end = self.gluing.nodal_rows();
+        }
+        let ([discs, end], ranges) = (ends, &mut self.gluing.ranges);
+        (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
+        ranges.interface = end..end;
+    }
+
+    /// Notes the nodes whose rows may depend on one another.
+    fn dependent(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
+        let of = |k: &usize| &contact.points[points[*k].point];
+        let group = |k: &usize| self.gluing.groups.of(of(k).side.first());
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by_key(group);
+        let mut orthonormal = true;
+        for same in order.chunk_by(|a, b| group(a) == group(b)) {
+            let dragged = same.iter().any(|&k| points[k].dragged);
+            if same.len() > 1 || dragged {
+                let nodes = same.iter().flat_map(|k| of(k).nodes());
+                self.gluing.dependent.extend(nodes.map(|n| n.0));
+                let single = same.iter().all(|k| of(k).is_single());
+                orthonormal &= !dragged && single && separate(points, same);
+            }
+        }
+        self.gluing.orthonormal &= orthonormal;
+        self.gluing.dependent.sort_unstable();
+        self.gluing.dependent.dedup();
+    }
+
+    pub(super) fn interface(&mut self, nodes: usize) {
+        let decomposition = self.decomposition;
+        let copies = |node: u32| decomposition.copies(node as usize);
+        let sharers = |node: u32| copies(node).iter().map(|c| c.subdomain);
+        // number of copies and the first two subdomains, which tell most globs apart
+        let mut shared: Vec<([u32; 3], u32)> = (0..nodes as u32)
+            .filter_map(|node| match copies(node) {
+                all @ [a, b, ..] => Some(([all.len() as u32, a.subdomain, b.subdomain], node)),
+                _ => None,
+            })
+            .collect();
+        shared.sort_unstable_by(|&(i, a), &(j, b)| {
+            let by_list = || sharers(a).cmp(sharers(b));
+            i.cmp(&j).then_with(by_list).then(a.cmp(&b))
+        });
+        let shared: Vec<u32> = shared.into_iter().map(|(_, node)| node).collect();
+        for glob in shared.chunk_by(|&a, &b| sharers(a).eq(sharers(b))) {
+            let runs = copies(glob[0]).len() - 1;
+            self.gluing.globs.push(Glob {
+                first_block: self.gluing.block_nodes.len() as u32,
+                nodes: glob.len() as u32,
+                runs: runs as u32,
+            });
+            for run in 1..=runs {
+                for &node in glob {
+                    self.interface_block(node, copies(node), run);
+                }
+            }
+        }
+    }
+
+    /// Row `j` of a node's Helmert matrix.
+    fn interface_block(&mut self, node: u32, copies: &[NodeCopy], j: usize) {
+        let entry = |k: usize, coefficient: f64| BlockEntry {
+            subdomain: copies[k].subdomain,
+            local: copies[k].local,
+            coefficient,
+        };
+        let entries = &mut self.gluing.block_entries;
+        let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
+        entries.extend((0..j).map(|k| entry(k, scale)));
+        entries.push(entry(j, -(j as f64) * scale));
+        self.gluing.block_pointers.push(entries.len() as u32);
+        self.gluing.block_nodes.push(node);
+    }
+
+    pub(super) fn dirichlet(&mut self, merged: &MergedSupports) {
+        for fixed in &merged.nodes {
+            let copies = self.decomposition.copies(fixed.node as usize);
+            let scale = self.stiffness.squares(copies).sqrt().recip();
+            for direction in &fixed.directions {
+                self.spread(fixed.node, direction.direction);
+                let number = self.close(fixed.node);
+                for &(case, value) in &direction.values {
+                    self.gluing.prescribed[case as usize].push((number as u32, scale * value));
+                }
+            }
+        }
+    }
+}
+
+/// Whether the rows of different points of one node are orthogonal.
+fn separate(points: &[PointRows], same: &[usize]) -> bool {
+    let rows = |k: usize| std::iter::once(&points[k].normal).chain(&points[k].tangential);
+    let apart = |x: &ContactRow, y: &ContactRow| dot(x.parts[0], y.parts[0]).abs() <= SAME;
+    let orthogonal = |a: usize, b: usize| rows(a).all(|x| rows(b).all(|y| apart(x, y)));
+    (1..same.len()).all(|i| (0..i).all(|j| orthogonal(same[i], same[j])))
+}

@@ -1,0 +1,255 @@
+//! The rows of contact constraints: the directions in which they can still move once supports are taken into account.
+
+use crate::error::TfetiError;
+use crate::linalg::entry;
+use crate::linalg::vec3::dot;
+use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+use crate::rows::side::{ContactConstraint, ContactConstraints};
+use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
+use crate::tolerances::{ANGLE, FIXED};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+/// A contact point whose normal displacement is fixed by supports, so that it has no normal row.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct PrescribedPoint {
+    /// Position in the list of contact points.
+    pub point: usize,
+    /// Its first mesh node.
+    pub node: u32,
+    /// `(case, relative normal displacement in metres)`: what supports prescribe for a factor of one, cases ascending.
+    pub normal: Vec<(u32, f64)>,
+}
+
+/// The contact points whose normal displacement supports fix at all nodes, in the order of the points.
+///
+/// No contact force acts on them. Whether they stay outside the obstacle is to be judged by whoever knows the gap: the
+/// normal displacement at a time is the sum over cases of `factor(case, t) * value`.
+///
+/// # Errors
+/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong supports, unknown nodes, wrong frames.
+pub fn prescribed_points(
+    contact: &ContactConstraints,
+    supports: &[NodeSupport],
+    nodes: usize,
+) -> Result<Vec<PrescribedPoint>, TfetiError> {
+    let merged = MergedSupports::new(supports, nodes)?;
+    Ok(contact_rows(contact, &merged, nodes, |_| 1.0)?.prescribed)
+}
+
+/// One contact row: what it does to the mean displacements of the nodes of both sides.
+#[derive(Debug, Clone)]
+pub(super) struct ContactRow {
+    /// Coefficients on the displacement of each node (to be spread over its copies), those of the partner last.
+    pub(super) parts: Vec<[f64; 3]>,
+    /// The physical direction: the row stands for `scale * direction . (u_side - u_partner)`.
+    pub(super) direction: [f64; 3],
+    pub(super) scale: f64,
+}
+
+/// The rows of one contact point.
+#[derive(Debug, Clone)]
+pub(super) struct PointRows {
+    /// Position in the list of points.
+    pub(super) point: usize,
+    pub(super) normal: ContactRow,
+    pub(super) tangential: Vec<ContactRow>,
+    /// Whether the rows keep directions that supports fix.
+    pub(super) dragged: bool,
+    /// `(case, relative displacement prescribed by supports)`.
+    pub(super) prescribed: Vec<(u32, [f64; 3])>,
+}
+
+/// Rows of all points, what was left out, and the points without normal row.
+#[derive(Debug, Default)]
+pub(super) struct AllRows {
+    pub(super) rows: Vec<PointRows>,
+    pub(super) removed: Vec<RemovedRow>,
+    prescribed: Vec<PrescribedPoint>,
+}
+
+/// Rows of all points. `squares(node)` is the sum of the squared shares of the copies of a node in their mean: one over
+/// their number where all count alike.
+pub(super) fn contact_rows(
+    contact: &ContactConstraints,
+    supports: &MergedSupports,
+    nodes: usize,
+    squares: impl Fn(u32) -> f64,
+) -> Result<AllRows, TfetiError> {
+    contact.check(nodes)?;
+    let mut out = AllRows::default();
+    for (index, point) in contact.points.iter().enumerate() {
+        out.add(index, point, Space::new(point, supports, &squares));
+    }
+    Ok(out)
+}
+
+/// Free part of the relative displacement of the sides of a point.
+struct Space {
+    /// Of each node its coefficient, signed, on the mean of its copies (as a unit vector of these), and the projector
+    /// on what supports leave free.
+    nodes: Vec<(f64, Matrix3<f64>)>,
+    /// Scale of a row of length one if there are no supports.
+    scale: f64,
+    /// Gram matrix of the rows `direction -> coefficient * projector * direction`.
+    gram: Matrix3<f64>,
+    prescribed: Vec<(u32, [f64; 3])>,
+}
+
+impl Space {
+    fn new(
+        point: &ContactConstraint,
+        supports: &MergedSupports,
+        squares: &impl Fn(u32) -> f64,
+    ) -> Self {
+        // A unit row on weighted means of copies: c w_i sqrt(s_i) with c = (sum w_i^2 s_i)^(-1/2).
+        let sum: f64 = point.nodes().map(|(n, w)| w * w * squares(n)).sum();
+        let scale = sum.sqrt().recip();
+        let mut prescribed: Vec<(u32, [f64; 3])> = Vec::new();
+        let mut nodes = Vec::with_capacity(2);
+        for (node, weight) in point.nodes() {
+            let fixed = supports.at(node);
+            let mut free = Matrix3::identity();
+            for direction in fixed.iter().flat_map(|f| &f.directions) {
+                let d = Vector3::from(direction.direction);
+                free -= d * d.transpose();
+            }
+            nodes.push((scale * squares(node).sqrt() * weight, free));
+            for (case, value) in fixed.map(FixedNode::prescribed).unwrap_or_default() {
+                let sum = entry(&mut prescribed, case, [0.0; 3]);
+                (0..3).for_each(|c| sum[c] += weight * value[c]);
+            }
+        }
+        prescribed.sort_by_key(|v| v.0);
+        let gram = nodes.iter().map(|(c, free)| free * (c * c)).sum();
+        Self {
+            nodes,
+            scale,
+            gram,
+            prescribed,
+        }
+    }
+
+    /// The row of a direction times a factor, without what supports fix.
+    fn row(&self, direction: Vector3<f64>, factor: f64) -> ContactRow {
+        let part = |(c, free): &(f64, Matrix3<f64>)| (free * direction * (c * factor)).into();
+        ContactRow {
+            parts: self.nodes.iter().map(part).collect(),
+            direction: direction.into(),
+            scale: self.scale * factor,
+        }
+    }
+
+    /// The row of a direction that does not leave out what supports fix.
+    fn full_row(&self, direction: Vector3<f64>) -> ContactRow {
+        ContactRow {
+            parts: self
+                .nodes
+                .iter()
+                .map(|(c, _)| (direction * *c).into())
+                .collect(),
+            direction: direction.into(),
+            scale: self.scale,
+        }
+    }
+
+    /// The row of a direction, divided by its length.
+    fn unit_row(&self, direction: Vector3<f64>) -> ContactRow {
+        let length = direction.dot(&(self.gram * direction)).sqrt();
+        self.row(direction, length.recip())
+    }
+
+    /// Directions that supports fix at all nodes.
+    fn fixed(&self) -> Vec<Vector3<f64>> {
+        let eigen = SymmetricEigen::new(self.gram);
+        let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();
+        let fixed = (0..3).filter(|&k| eigen.eigenvalues[k] <= zero);
+        fixed.map(|k| eigen.eigenvectors.column(k).into()).collect()
+    }
+
+    /// Whether supports move the point along the surface, or fix a direction that is neither normal nor tangential, so
+    /// that friction works where they act.
+    fn is_dragged(&self, normal: &Vector3<f64>, fixed: &[Vector3<f64>]) -> bool {
+        let moved = self.prescribed.iter().any(|(_, value)| {
+            let value = Vector3::from(*value);
+            let length = value.norm();
+            (value - normal * value.dot(normal)).norm() > FIXED * length
+        });
+        // all fixed directions are tangential: then what is left is the normal, or the normal and a tangent
+        moved || fixed.iter().any(|d| d.dot(normal).abs() > ANGLE)
+    }
+}
+
+impl AllRows {
+    fn remove(&mut self, point: &ContactConstraint, kind: RowKind, reason: RemovalReason) {
+        let node = point.side.first();
+        self.removed.push(RemovedRow { node, kind, reason });
+    }
+
+    fn add(&mut self, index: usize, point: &ContactConstraint, space: Space) {
+        let normal = Vector3::from(point.frame.normal);
+        let tangents = point.frame.tangents.map(Vector3::from);
+        let fixed = space.fixed();
+        let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
+        if fixed.len() == 3 || (normal - along).norm() <= FIXED {
+            self.remove(point, RowKind::Normal, RemovalReason::NormalFixed);
+            let reason = match fixed.len() {
+                3 => RemovalReason::TangentFixed,
+                _ => RemovalReason::NoNormalRow,
+            };
+            for _ in 0..if point.friction { 2 } else { 0 } {
+                self.remove(point, RowKind::Tangential, reason);
+            }
+            let value = |(case, v): &(u32, [f64; 3])| (*case, dot(*v, point.frame.normal));
+            self.prescribed.push(PrescribedPoint {
+                point: index,
+                node: point.side.first(),
+                normal: space.prescribed.iter().map(value).collect(),
+            });
+            return;
+        }
+        let dragged = point.friction
+            && !fixed.is_empty()
+            && (point.moving || space.is_dragged(&normal, &fixed));
+        let mut tangential = Vec::new();
+        // With all three directions free the rows keep one common scale, so that the friction disc stays a disc. Where
+        // friction and support act along the same directions, all rows are as without support.
+        let normal = match fixed.len() {
+            _ if dragged => {
+                tangential.extend(tangents.map(|t| space.full_row(t)));
+                space.full_row(normal)
+            }
+            0 => {
+                if point.friction {
+                    tangential.extend(tangents.map(|t| space.row(t, 1.0)));
+                }
+                space.row(normal, 1.0)
+            }
+            count => {
+                if point.friction && count == 1 {
+                    // The one tangential direction orthogonal to the fixed one.
+                    let along = [tangents[0].dot(&fixed[0]), tangents[1].dot(&fixed[0])];
+                    let length = along[0].hypot(along[1]);
+                    let free = (tangents[0] * along[1] - tangents[1] * along[0]) / length;
+                    tangential.push(space.unit_row(free));
+                }
+                for _ in 0..if point.friction { count } else { 0 } {
+                    self.remove(point, RowKind::Tangential, RemovalReason::TangentFixed);
+                }
+                space.unit_row(normal)
+            }
+        };
+        let prescribed = if dragged {
+            Vec::new()
+        } else {
+            space.prescribed
+        };
+        self.rows.push(PointRows {
+            point: index,
+            normal,
+            tangential,
+            dragged,
+            prescribed,
+        });
+    }
+}

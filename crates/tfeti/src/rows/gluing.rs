@@ -1,0 +1,343 @@
+//! The gluing matrix `B = (N, T, B_int, B_Dir)` of the torn body.
+//!
+//! It is stored by what its rows do: an *interface block* is three rows (x, y, z) that combine the copies of one node
+//! with the same coefficients; every other row, a *nodal row*, is a list of (copy, vector). Supports and contact act on
+//! the mean of the copies, the interface rows on its complement, so the rows are independent by construction, except at
+//! [dependent nodes](Gluing::dependent_nodes); what else would depend is reported in [`Gluing::removed`].
+
+use super::build::Builder;
+use crate::error::TfetiError;
+use crate::rows::contact::contact_rows;
+use crate::rows::kinds::{RemovedRow, RowRanges};
+use crate::rows::side::{ContactConstraint, ContactConstraints};
+use crate::rows::supports::{MergedSupports, NodeSupport};
+use crate::subdomain::copy_stiffness::CopyStiffness;
+use signorini_fem_mesh::{Decomposition, DisjointSets};
+
+/// Tangential rows of a contact point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum TangentialRows {
+    /// None: no friction, or supports hold the point along the surface.
+    None,
+    /// One row; the friction force is bounded by an interval.
+    Interval {
+        /// The row.
+        row: usize,
+        /// Its unit direction in space.
+        direction: [f64; 3],
+        /// The row is `scale` times the displacement along the direction.
+        scale: f64,
+    },
+    /// Two rows `row, row + 1` along the frame's tangents; the friction force is bounded by a disc.
+    Disc {
+        /// The first row.
+        row: usize,
+        /// The rows are `scale` times the displacements along the tangents.
+        scale: f64,
+    },
+}
+
+/// The rows of a contact point that has a normal row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactRows {
+    /// Position in the list of contact points given.
+    pub point: usize,
+    /// The normal row.
+    pub row: usize,
+    /// The normal row is `scale` times the normal displacement; the force of the point is `scale * lambda`, the offset
+    /// of the row `scale * gap`. The square root of the number of copies at an unsupported node.
+    pub scale: f64,
+    /// The tangential rows.
+    pub tangential: TangentialRows,
+}
+
+/// An entry of a row that is no interface row: a copy and the vector that multiplies its displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CopyEntry {
+    pub(crate) subdomain: u32,
+    pub(crate) local: u32,
+    pub(crate) vector: [f64; 3],
+}
+
+/// An entry of an interface block: a copy and the coefficient that multiplies its displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct BlockEntry {
+    pub(crate) subdomain: u32,
+    pub(crate) local: u32,
+    pub(crate) coefficient: f64,
+}
+
+/// A *glob*: nodes that the same subdomains share, such as those inside a face or an edge of a subdomain.
+///
+/// Its interface blocks stand together: one run of `nodes` blocks after the other, each of the same coefficients.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Glob {
+    pub(crate) first_block: u32,
+    pub(crate) nodes: u32,
+    pub(crate) runs: u32,
+}
+
+impl Glob {
+    /// Block of a node in a run.
+    pub(crate) fn block(&self, run: usize, node: usize) -> usize {
+        self.first_block as usize + run * self.nodes as usize + node
+    }
+}
+
+/// The rows of `B`, their names and their counts.
+#[derive(Debug, Clone, Default)]
+pub struct Gluing {
+    pub(super) ranges: RowRanges,
+    pub(super) block_pointers: Vec<u32>,
+    pub(super) block_entries: Vec<BlockEntry>,
+    pub(super) block_nodes: Vec<u32>,
+    pub(super) globs: Vec<Glob>,
+    pub(super) row_pointers: Vec<u32>,
+    pub(super) row_entries: Vec<CopyEntry>,
+    pub(super) row_nodes: Vec<u32>,
+    pub(super) contact: Vec<ContactRows>,
+    pub(super) removed: Vec<RemovedRow>,
+    pub(super) prescribed: Vec<Vec<(u32, f64)>>,
+    /// Mesh nodes that contact points join.
+    pub(super) groups: NodeGroups,
+    pub(super) paper_rows: usize,
+    pub(super) orthonormal: bool,
+    /// The same without rows that depend on others of their node.
+    pub(super) aligned: bool,
+    /// Nodes whose rows may depend on one another, ascending.
+    pub(super) dependent: Vec<u32>,
+}
+
+impl Gluing {
+    /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
+    /// orthonormal contact and support rows, its default all alike. `nodes` is the number of mesh nodes.
+    ///
+    /// # Errors
+    /// [`TfetiError`] for bad supports or contact points, and where `nodes` or `stiffness` belong to another
+    /// decomposition.
+    pub fn new(
+        decomposition: &Decomposition,
+        nodes: usize,
+        supports: &[NodeSupport],
+        contact: Option<&ContactConstraints>,
+        stiffness: &CopyStiffness,
+    ) -> Result<Self, TfetiError> {
+        let (what, found, expected) = ("nodes", decomposition.nodes(), nodes);
+        if found != expected {
+            return Err(TfetiError::DecompositionMismatch {
+                what,
+                found,
+                expected,
+            });
+        }
+        stiffness.check(decomposition)?;
+        let merged = MergedSupports::new(supports, nodes)?;
+        let none = ContactConstraints::default();
+        let contact = contact.unwrap_or(&none);
+        let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
+        let found = contact_rows(contact, &merged, nodes, squares)?;
+        let mut gluing = Self {
+            block_pointers: vec![0],
+            row_pointers: vec![0],
+            prescribed: vec![Vec::new(); merged.cases],
+            orthonormal: stiffness.is_plain(),
+            aligned: stiffness.is_plain(),
+            removed: [found.removed, merged.removed.clone()].concat(),
+            ..Self::default()
+        };
+        let mut builder = Builder::new(decomposition, stiffness, &mut gluing);
+        builder.contact(contact, &found.rows);
+        builder.interface(nodes);
+        builder.dirichlet(&merged);
+        let supported = gluing.nodal_rows() - gluing.ranges.contact().len();
+        let interface = gluing.ranges.interface.start;
+        let supports = interface + 3 * gluing.blocks();
+        gluing.ranges.interface.end = supports;
+        gluing.ranges.dirichlet = supports..supports + supported;
+        for case in &mut gluing.prescribed {
+            let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
+            later.for_each(|v| v.0 += (supports - interface) as u32);
+            case.sort_by_key(|v| v.0);
+        }
+        let torn = decomposition.torn_dofs();
+        let of_contact = contact
+            .points
+            .iter()
+            .map(|p| if p.friction { 3 } else { 1 });
+        gluing.paper_rows =
+            torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
+        let count = gluing.block_entries.len().max(gluing.row_entries.len());
+        if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
+            let what = "entries of B";
+            return Err(TfetiError::TooLarge { what, count });
+        }
+        Ok(gluing)
+    }
+
+    /// Where each kind of row stands.
+    pub fn ranges(&self) -> &RowRanges {
+        &self.ranges
+    }
+
+    /// Number of rows of `B`: the length of dual vectors. `B` has full rank, except at [dependent
+    /// nodes](Self::dependent_nodes).
+    pub fn rows_full_rank(&self) -> usize {
+        self.ranges.total()
+    }
+
+    /// Number of rows as the paper counts them: three for each additional copy of a node, three for each supported node
+    /// and three (without friction one) for each contact point, supported or not.
+    pub fn rows_as_paper(&self) -> usize {
+        self.paper_rows
+    }
+
+    /// Whether `B B^T = I`.
+    pub fn is_orthonormal(&self) -> bool {
+        self.orthonormal
+    }
+
+    /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a
+    /// support drags along an obstacle with friction, where the friction force is wanted although the support takes it.
+    pub fn dependent_nodes(&self) -> &[u32] {
+        &self.dependent
+    }
+
+    /// Whether a node is one of the [dependent nodes](Self::dependent_nodes).
+    pub fn is_dependent(&self, node: u32) -> bool {
+        self.dependent.binary_search(&node).is_ok()
+    }
+
+    /// Mesh nodes that contact points join.
+    pub(crate) fn node_groups(&self) -> &NodeGroups {
+        &self.groups
+    }
+
+    /// Whether `B B^T` is the identity, but for rows of dependent nodes.
+    pub(crate) fn is_aligned(&self) -> bool {
+        self.aligned
+    }
+
+    /// The contact points that have a normal row, in the order of the normal rows.
+    pub fn contact(&self) -> &[ContactRows] {
+        &self.contact
+    }
+
+    /// Rows left out because they would depend on others, with the reason.
+    pub fn removed(&self) -> &[RemovedRow] {
+        &self.removed
+    }
+
+    /// Row offsets `(row, value)` of displacement case `case` with factor one, rows ascending.
+    ///
+    /// They belong to support rows and, where a support also moves a contact point, to contact rows: the offset of a
+    /// contact row is `scale * (gap or slip) + sum factor * value`, and the physical displacement is
+    /// `(B u - sum factor * value) / scale`. Empty for a case that does not exist.
+    pub fn prescribed(&self, case: usize) -> &[(u32, f64)] {
+        self.prescribed.get(case).map_or(&[], Vec::as_slice)
+    }
+
+    /// Mesh node to which a row belongs (for a contact row the first of its side). `None` beyond the last row.
+    pub fn node(&self, row: usize) -> Option<u32> {
+        let range = &self.ranges.interface;
+        if range.contains(&row) {
+            self.block_nodes.get((row - range.start) / 3).copied()
+        } else {
+            self.row_nodes.get(self.nodal_of(row)).copied()
+        }
+    }
+
+    /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.
+    pub fn row(&self, row: usize) -> Vec<(usize, usize, f64)> {
+        let (range, mut out) = (&self.ranges.interface, Vec::new());
+        let mut push = |subdomain: u32, local: u32, c: usize, value: f64| {
+            out.push((subdomain as usize, 3 * local as usize + c, value));
+        };
+        if range.contains(&row) {
+            let (block, c) = ((row - range.start) / 3, (row - range.start) % 3);
+            for e in self.block(block) {
+                push(e.subdomain, e.local, c, e.coefficient);
+            }
+        } else if row < self.ranges.total() {
+            for e in self.nodal(self.nodal_of(row)) {
+                let nonzero = (0..3).filter(|&c| e.vector[c] != 0.0);
+                nonzero.for_each(|c| push(e.subdomain, e.local, c, e.vector[c]));
+            }
+        }
+        out
+    }
+
+    /// What a row does to a displacement that is the same everywhere: the sum of its coefficients by component. For a
+    /// support row, and a contact row against a rigid obstacle, that is its direction in space times its scale; a
+    /// contact row between two sides, and an interface row, give zero.
+    pub fn direction(&self, row: usize) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (_, dof, coefficient) in self.row(row) {
+            sum[dof % 3] += coefficient;
+        }
+        sum
+    }
+
+    /// Number of interface blocks.
+    pub(crate) fn blocks(&self) -> usize {
+        self.block_pointers.len() - 1
+    }
+
+    pub(crate) fn block(&self, block: usize) -> &[BlockEntry] {
+        &self.block_entries
+            [self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
+    }
+
+    /// The globs, in the order of their blocks.
+    pub(crate) fn globs(&self) -> &[Glob] {
+        &self.globs
+    }
+
+    /// Number of rows that are not interface rows: contact rows, then support rows.
+    pub(crate) fn nodal_rows(&self) -> usize {
+        self.row_pointers.len() - 1
+    }
+
+    pub(crate) fn nodal(&self, nodal: usize) -> &[CopyEntry] {
+        &self.row_entries[self.row_pointers[nodal] as usize..self.row_pointers[nodal + 1] as usize]
+    }
+
+    /// Row number of a nodal row.
+    pub(crate) fn nodal_row(&self, nodal: usize) -> usize {
+        if nodal < self.ranges.interface.start {
+            nodal
+        } else {
+            nodal + self.ranges.interface.len()
+        }
+    }
+
+    fn nodal_of(&self, row: usize) -> usize {
+        if row < self.ranges.interface.start {
+            row
+        } else {
+            row - self.ranges.interface.len()
+        }
+    }
+}
+
+/// For each mesh node the first of those that contact points join with it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct NodeGroups(Vec<u32>);
+
+impl NodeGroups {
+    pub(super) fn new<'a>(points: impl Iterator<Item = &'a ContactConstraint>) -> Self {
+        let joined: Vec<_> = points.filter(|p| !p.is_single()).collect();
+        let nodes = joined.iter().flat_map(|p| p.nodes()).map(|n| n.0);
+        let count = nodes.max().map_or(0, |most| most + 1);
+        let mut sets = DisjointSets::new(count as usize);
+        for point in joined {
+            let first = point.side.first() as usize;
+            point.nodes().for_each(|n| sets.join(first, n.0 as usize));
+        }
+        Self((0..count).map(|n| sets.first(n as usize) as u32).collect())
+    }
+
+    pub(crate) fn of(&self, node: u32) -> u32 {
+        self.0.get(node as usize).copied().unwrap_or(node)
+    }
+}

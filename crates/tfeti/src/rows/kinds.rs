@@ -1,0 +1,90 @@
+//! Names of the rows of `B` and of those that were left out.
+
+use std::fmt;
+use std::ops::Range;
+
+/// The four groups of rows, in the order in which they stand in `B`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum RowKind {
+    /// Non-penetration, one row per contact point: `N`.
+    Normal,
+    /// Friction, one or two rows per contact point: `T`.
+    Tangential,
+    /// Gluing of the copies of a node: `B_int`.
+    Interface,
+    /// Supports: `B_Dir`.
+    Dirichlet,
+}
+
+/// Why a row that the paper counts is not in `B`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum RemovalReason {
+    /// The support (its number) repeats a direction that is fixed already, with the same prescribed value.
+    DoubledSupport {
+        /// Position in the list of supports.
+        support: usize,
+    },
+    /// The normal direction of a contact point is fixed by supports: the point cannot open or close.
+    NormalFixed,
+    /// A tangential direction of a contact point is fixed by supports.
+    TangentFixed,
+    /// Friction cannot act where there is no contact row.
+    NoNormalRow,
+}
+
+impl fmt::Display for RemovalReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DoubledSupport { support } => {
+                write!(f, "direction supported twice (support {support})")
+            }
+            Self::NormalFixed => f.write_str("normal direction supported"),
+            Self::TangentFixed => f.write_str("tangential direction supported"),
+            Self::NoNormalRow => f.write_str("no normal row"),
+        }
+    }
+}
+
+/// A row that would make `B` lose rank and was therefore left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RemovedRow {
+    /// Mesh node.
+    pub node: u32,
+    /// Kind of the row.
+    pub kind: RowKind,
+    /// Why it was left out.
+    pub reason: RemovalReason,
+}
+
+/// Where each kind of row stands in a dual vector.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct RowRanges {
+    /// Normal rows.
+    pub normal: Range<usize>,
+    /// Tangential rows of the points with two tangential directions: pairs `t1, t2`.
+    pub discs: Range<usize>,
+    /// Tangential rows of the points with one tangential direction.
+    pub intervals: Range<usize>,
+    /// Interface rows: triples (x, y, z) of one node.
+    pub interface: Range<usize>,
+    /// Support rows.
+    pub dirichlet: Range<usize>,
+}
+
+impl RowRanges {
+    /// All tangential rows.
+    pub fn tangential(&self) -> Range<usize> {
+        self.discs.start..self.intervals.end
+    }
+
+    /// All contact rows: normal and tangential.
+    pub fn contact(&self) -> Range<usize> {
+        self.normal.start..self.intervals.end
+    }
+
+    /// Number of rows of `B`.
+    pub fn total(&self) -> usize {
+        self.dirichlet.end
+    }
+}

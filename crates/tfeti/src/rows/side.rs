@@ -1,0 +1,210 @@
+//! The sides of contact constraints, and the list of constraints.
+
+use crate::error::TfetiError;
+use crate::linalg::vec3::dot;
+use crate::rows::supports::check_node;
+use crate::tolerances::{SAME, UNIT};
+use signorini_fem_mesh::SurfaceFrame;
+
+/// One side of a contact constraint: nodes with weights that sum to one. It moves by the weighted mean of their
+/// displacements.
+///
+/// A side of node-to-node contact is the list of length one. Weights may be negative, as those of dual shape functions
+/// and of quadratic facets are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Side(Vec<(u32, f64)>);
+
+impl Side {
+    /// A single node.
+    #[must_use]
+    pub fn node(node: u32) -> Self {
+        Self(vec![(node, 1.0)])
+    }
+
+    /// Mesh nodes with their weights; they are checked where rows are made of them.
+    #[must_use]
+    pub fn new(nodes: Vec<(u32, f64)>) -> Self {
+        Self(nodes)
+    }
+
+    /// The nodes and their weights.
+    pub fn nodes(&self) -> &[(u32, f64)] {
+        &self.0
+    }
+
+    /// The first node, which names the side.
+    pub(crate) fn first(&self) -> u32 {
+        self.0.first().map_or(0, |n| n.0)
+    }
+
+    fn check(&self, point: usize, nodes: usize) -> Result<(), TfetiError> {
+        let refuse = |what| Err(TfetiError::BadSide { point, what });
+        for (k, &(node, weight)) in self.0.iter().enumerate() {
+            check_node(node, nodes, || format!("contact point {point}"))?;
+            if !weight.is_finite() || weight == 0.0 {
+                return refuse("a weight is zero or not finite");
+            }
+            if self.0[..k].iter().any(|other| other.0 == node) {
+                return refuse("a node stands twice in it");
+            }
+        }
+        if (self.0.iter().map(|n| n.1).sum::<f64>() - 1.0).abs() > UNIT {
+            return refuse("the weights do not sum to one");
+        }
+        Ok(())
+    }
+}
+
+impl From<u32> for Side {
+    fn from(node: u32) -> Self {
+        Self::node(node)
+    }
+}
+
+/// A side that may touch a rigid obstacle, or a side of another body.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ContactConstraint {
+    /// Nodes on the body whose outward normal is given.
+    pub side: Side,
+    /// Nodes of the other body; `None` for a rigid obstacle. Rows act on the displacement of the side minus this one.
+    pub partner: Option<Side>,
+    /// Outward normal and two tangents, orthonormal.
+    pub frame: SurfaceFrame,
+    /// Whether there is friction. Without it there are no tangential rows.
+    pub friction: bool,
+    /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
+    pub moving: bool,
+}
+
+impl ContactConstraint {
+    /// A node, or a side of several, that may touch a rigid obstacle that does not move, without friction.
+    #[must_use]
+    pub fn new(side: impl Into<Side>, frame: SurfaceFrame) -> Self {
+        let (side, partner) = (side.into(), None);
+        Self {
+            side,
+            partner,
+            frame,
+            friction: false,
+            moving: false,
+        }
+    }
+
+    /// Against a node or a side of another body; `None` for a rigid obstacle.
+    #[must_use]
+    pub fn with_partner(mut self, partner: Option<impl Into<Side>>) -> Self {
+        self.partner = partner.map(Into::into);
+        self
+    }
+
+    /// With friction or without.
+    #[must_use]
+    pub fn with_friction(mut self, friction: bool) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// Whether the obstacle moves along the surface.
+    #[must_use]
+    pub fn with_moving_obstacle(mut self, moving: bool) -> Self {
+        self.moving = moving;
+        self
+    }
+
+    /// All nodes with their weights, those of the partner with the sign reversed.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = (u32, f64)> {
+        let partner = self.partner.iter().flat_map(Side::nodes);
+        self.side
+            .nodes()
+            .iter()
+            .copied()
+            .chain(partner.map(|&(node, weight)| (node, -weight)))
+    }
+
+    /// Whether it is of a single node and a rigid obstacle.
+    pub(crate) fn is_single(&self) -> bool {
+        self.partner.is_none() && self.side.nodes().len() == 1
+    }
+
+    /// Whether it says the same as another one, seen from either side.
+    fn is_same(&self, other: &Self) -> bool {
+        let cosine = dot(self.frame.normal, other.frame.normal);
+        let seen = self.side == other.side && self.partner == other.partner;
+        let reversed = self.partner.as_ref() == Some(&other.side)
+            && other.partner.as_ref() == Some(&self.side);
+        seen && cosine > 1.0 - SAME || reversed && -cosine > 1.0 - SAME
+    }
+
+    fn check(&self, point: usize, nodes: usize) -> Result<(), TfetiError> {
+        for side in std::iter::once(&self.side).chain(&self.partner) {
+            side.check(point, nodes)?;
+        }
+        let [t1, t2] = self.frame.tangents;
+        let axes = [self.frame.normal, t1, t2];
+        for (i, j) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            let error = (dot(axes[i], axes[j]) - expected).abs();
+            if error.is_nan() || error > UNIT {
+                let node = self.side.first();
+                return Err(TfetiError::BadFrame { point, node });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The contact constraints of a system.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ContactConstraints {
+    /// A node in an edge or a corner appears several times, with other normals or partners; rows of such a node may
+    /// depend on one another.
+    pub points: Vec<ContactConstraint>,
+}
+
+impl ContactConstraints {
+    /// Points against a rigid obstacle, one frame per node.
+    #[must_use]
+    pub fn rigid(nodes: &[u32], frames: &[SurfaceFrame], friction: bool) -> Self {
+        let point = |(&node, frame): (&u32, &SurfaceFrame)| {
+            ContactConstraint::new(node, *frame).with_friction(friction)
+        };
+        nodes.iter().zip(frames).map(point).collect()
+    }
+
+    /// Checks each constraint against a mesh with so many nodes, and that none is said twice.
+    pub(super) fn check(&self, nodes: usize) -> Result<(), TfetiError> {
+        // Last point of each smallest node, and the point of the same node before each point; plus one, 0 for none.
+        let (mut last, mut before) = (vec![0; nodes], vec![0; self.points.len()]);
+        for (index, point) in self.points.iter().enumerate() {
+            point.check(index, nodes)?;
+            let twice = TfetiError::ContactNodeTwice {
+                node: point.side.first(),
+            };
+            let other = point.partner.as_ref().map_or(&[][..], Side::nodes);
+            let (mut own, all) = (point.side.nodes().iter(), point.nodes().map(|n| n.0));
+            if own.any(|n| other.iter().any(|o| o.0 == n.0)) {
+                return Err(twice);
+            }
+            let last: &mut u32 = &mut last[all.min().unwrap_or(0) as usize];
+            let mut earlier = *last as usize;
+            while earlier > 0 {
+                if self.points[earlier - 1].is_same(point) {
+                    return Err(twice);
+                }
+                earlier = before[earlier - 1] as usize;
+            }
+            before[index] = *last;
+            *last = index as u32 + 1;
+        }
+        Ok(())
+    }
+}
+
+impl FromIterator<ContactConstraint> for ContactConstraints {
+    fn from_iter<I: IntoIterator<Item = ContactConstraint>>(points: I) -> Self {
+        let points = points.into_iter().collect();
+        Self { points }
+    }
+}

@@ -1,0 +1,328 @@
+//! Supports: which directions of which nodes are fixed, and by how much they are moved.
+
+use crate::error::TfetiError;
+use crate::linalg::entry;
+use crate::linalg::vec3::{dot, norm};
+use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+use crate::tolerances::{AGREEING, FIXED};
+
+/// Directions fixed by a support.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Directions {
+    /// All three components.
+    All,
+    /// Single components x, y, z.
+    Components([bool; 3]),
+    /// Any directions; they are normalised, and dependent ones are removed and reported.
+    Vectors(Vec<[f64; 3]>),
+}
+
+impl Directions {
+    /// The directions as vectors, not normalised.
+    pub fn vectors(&self) -> Vec<[f64; 3]> {
+        const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        match self {
+            Self::All => AXES.to_vec(),
+            Self::Components(on) => (0..3).filter(|&c| on[c]).map(|c| AXES[c]).collect(),
+            Self::Vectors(vectors) => vectors.clone(),
+        }
+    }
+}
+
+/// Prescribed displacement of a support.
+///
+/// The displacement of a node at time `t` is the sum over cases of `factor(case, t) * value`; only its part along the
+/// fixed directions counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Number of the displacement case. Cases are numbered from 0, below the number of supports; several supports may
+    /// belong to one case.
+    pub case: u32,
+    /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
+    pub values: Vec<[f64; 3]>,
+}
+
+impl Motion {
+    fn check(&self, support: usize, nodes: usize, supports: usize) -> Result<(), TfetiError> {
+        let (found, case) = (self.values.len(), self.case);
+        if found != 1 && found != nodes {
+            return Err(TfetiError::MotionLength {
+                support,
+                found,
+                nodes,
+            });
+        }
+        match (case as usize) < supports {
+            true => Ok(()),
+            false => Err(TfetiError::CaseNumber {
+                support,
+                case,
+                supports,
+            }),
+        }
+    }
+
+    /// Displacement of the node `k` of the support.
+    fn of(&self, k: usize) -> [f64; 3] {
+        self.values[if self.values.len() == 1 { 0 } else { k }]
+    }
+}
+
+/// Nodes with fixed directions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodeSupport {
+    /// Mesh nodes.
+    pub nodes: Vec<u32>,
+    /// The directions in which they are fixed.
+    pub directions: Directions,
+    /// Prescribed displacement; `None` means zero.
+    pub motion: Option<Motion>,
+}
+
+impl NodeSupport {
+    /// Fixes all components of the nodes at zero.
+    #[must_use]
+    pub fn fixed(nodes: Vec<u32>) -> Self {
+        Self {
+            nodes,
+            directions: Directions::All,
+            motion: None,
+        }
+    }
+
+    /// Fixes some directions of the nodes at zero.
+    #[must_use]
+    pub fn partial(nodes: Vec<u32>, directions: Directions) -> Self {
+        Self {
+            nodes,
+            directions,
+            motion: None,
+        }
+    }
+
+    /// The same support, moved.
+    #[must_use]
+    pub fn with_motion(mut self, motion: Motion) -> Self {
+        self.motion = Some(motion);
+        self
+    }
+}
+
+/// One orthonormal fixed direction of a node.
+#[derive(Debug, Clone)]
+pub(super) struct FixedDirection {
+    pub(super) direction: [f64; 3],
+    /// `(case, value in metres)` along the direction, cases ascending, no zeros.
+    pub(super) values: Vec<(u32, f64)>,
+    support: usize,
+}
+
+/// What all supports together fix at one node.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FixedNode {
+    pub(super) node: u32,
+    pub(super) directions: Vec<FixedDirection>,
+}
+
+impl FixedNode {
+    /// Prescribed displacement vector of each case: the sum of value times direction.
+    pub(super) fn prescribed(&self) -> Vec<(u32, [f64; 3])> {
+        let mut out: Vec<(u32, [f64; 3])> = Vec::new();
+        for fixed in &self.directions {
+            for &(case, value) in &fixed.values {
+                let sum = entry(&mut out, case, [0.0; 3]);
+                (0..3).for_each(|c| sum[c] += value * fixed.direction[c]);
+            }
+        }
+        out
+    }
+}
+
+/// All supports merged by node.
+#[derive(Debug, Clone, Default)]
+pub(super) struct MergedSupports {
+    /// Nodes with at least one fixed direction, ascending (each counts three rows in the paper).
+    pub(super) nodes: Vec<FixedNode>,
+    pub(super) removed: Vec<RemovedRow>,
+    pub(super) cases: usize,
+}
+
+/// A direction that supports fix at a node, and the first of them that does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PrescribedDirection {
+    /// Mesh node.
+    pub node: u32,
+    /// Unit direction, at right angles to the other ones of the node.
+    pub direction: [f64; 3],
+    /// Position of the support in the list.
+    pub support: usize,
+}
+
+/// The directions that supports fix, nodes ascending, each once.
+///
+/// # Errors
+/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
+pub fn prescribed_directions(
+    supports: &[NodeSupport],
+    nodes: usize,
+) -> Result<Vec<PrescribedDirection>, TfetiError> {
+    let merged = MergedSupports::new(supports, nodes)?;
+    let of = |node: &FixedNode| {
+        let directions = node.directions.iter();
+        let (node, of) = (node.node, |d: &FixedDirection| (d.direction, d.support));
+        directions
+            .map(of)
+            .map(move |(direction, support)| PrescribedDirection {
+                node,
+                direction,
+                support,
+            })
+            .collect::<Vec<_>>()
+    };
+    Ok(merged.nodes.iter().flat_map(of).collect())
+}
+
+pub(super) fn check_node(
+    node: u32,
+    nodes: usize,
+    place: impl FnOnce() -> String,
+) -> Result<(), TfetiError> {
+    match (node as usize) < nodes {
+        true => Ok(()),
+        false => Err(TfetiError::UnknownNode {
+            place: place(),
+            node,
+            nodes,
+        }),
+    }
+}
+
+impl MergedSupports {
+    pub(super) fn at(&self, node: u32) -> Option<&FixedNode> {
+        let at = self.nodes.binary_search_by_key(&node, |n| n.node);
+        at.ok().map(|k| &self.nodes[k])
+    }
+
+    pub(super) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
+        let mut fixed: Vec<Option<FixedNode>> = vec![None; nodes];
+        let mut merged = Self::default();
+        for (s, support) in supports.iter().enumerate() {
+            let directions = unit_directions(s, support)?;
+            if let Some(motion) = &support.motion {
+                motion.check(s, support.nodes.len(), supports.len())?;
+                merged.cases = merged.cases.max(motion.case as usize + 1);
+            }
+            for (k, &node) in support.nodes.iter().enumerate() {
+                check_node(node, nodes, || format!("support {s}"))?;
+                let motion = support.motion.as_ref().map(|m| (m.case, m.of(k)));
+                if motion.is_some_and(|(_, value)| !value.iter().all(|v| v.is_finite())) {
+                    return Err(TfetiError::BadMotion { support: s, node });
+                }
+                let directions_of = || FixedNode {
+                    node,
+                    directions: Vec::new(),
+                };
+                let entry = fixed[node as usize].get_or_insert_with(directions_of);
+                for direction in &directions {
+                    merged
+                        .removed
+                        .extend(add_direction(entry, s, *direction, motion)?);
+                }
+            }
+        }
+        merged.nodes = fixed.into_iter().flatten().collect();
+        Ok(merged)
+    }
+}
+
+fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, TfetiError> {
+    let mut directions = support.directions.vectors();
+    for (none, what) in [
+        (support.nodes.is_empty(), "nodes"),
+        (directions.is_empty(), "directions"),
+    ] {
+        if none {
+            return Err(TfetiError::EmptySupport { support: s, what });
+        }
+    }
+    for (k, direction) in directions.iter_mut().enumerate() {
+        // Scaled first, so that neither tiny nor huge vectors lose their length.
+        let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let finite = direction.iter().all(|v| v.is_finite());
+        if !finite || largest == 0.0 {
+            return Err(TfetiError::BadDirection {
+                support: s,
+                direction: k,
+            });
+        }
+        let scaled = direction.map(|v| v / largest);
+        let length = norm(scaled);
+        *direction = scaled.map(|v| v / length);
+    }
+    Ok(directions)
+}
+
+/// Orthonormalises a direction against those already fixed; `Some` if it adds nothing.
+fn add_direction(
+    fixed_node: &mut FixedNode,
+    support: usize,
+    direction: [f64; 3],
+    motion: Option<(u32, [f64; 3])>,
+) -> Result<Option<RemovedRow>, TfetiError> {
+    let mut rest = direction;
+    let mut values: Vec<(u32, f64)> = Vec::new();
+    let mut size = 0.0_f64;
+    if let Some((case, vector)) = motion {
+        let value = dot(direction, vector);
+        size = norm(vector);
+        values.push((case, value));
+    }
+    let mut first = support;
+    // Twice, so that rounding leaves the new direction orthogonal; the second pass changes no value noticeably.
+    for _ in 0..2 {
+        for fixed in &fixed_node.directions {
+            let along = dot(rest, fixed.direction);
+            for c in 0..3 {
+                rest[c] -= along * fixed.direction[c];
+            }
+            if along.abs() > FIXED {
+                first = fixed.support;
+            }
+            for &(case, value) in &fixed.values {
+                size = size.max(value.abs());
+                *entry(&mut values, case, 0.0) -= along * value;
+            }
+        }
+    }
+    let length = norm(rest);
+    if length > FIXED {
+        values.sort_by_key(|v| v.0);
+        values.retain(|v| v.1.abs() > f64::EPSILON * size);
+        for value in &mut values {
+            value.1 /= length;
+        }
+        let direction = rest.map(|v| v / length);
+        fixed_node.directions.push(FixedDirection {
+            direction,
+            values,
+            support,
+        });
+        return Ok(None);
+    }
+    if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > AGREEING * size) {
+        return Err(TfetiError::ContradictorySupports {
+            node: fixed_node.node,
+            first,
+            second: support,
+            case,
+            difference,
+        });
+    }
+    Ok(Some(RemovedRow {
+        node: fixed_node.node,
+        kind: RowKind::Dirichlet,
+        reason: RemovalReason::DoubledSupport { support },
+    }))
+}

@@ -1,0 +1,220 @@
+//! What a set-up will need, from counts alone: classes are found, no matrix is assembled.
+
+use crate::error::TfetiError;
+use crate::linalg::dense;
+use crate::linalg::elimination::patterns;
+use crate::linalg::sparse::{Columns, FactorError, Symbolic, minimum_degree, quotient};
+use crate::subdomain::class::Classes;
+use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
+use crate::subdomain::packed;
+use rayon::prelude::*;
+use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
+use std::time::Instant;
+
+/// Forecast of memory and work of a T-FETI system: what [`SetupReport`](crate::SetupReport) will say.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Forecast {
+    /// The classes.
+    pub classes: Vec<ClassReport>,
+    /// Bytes of all inverses.
+    pub inverse_bytes: u64,
+    /// Bytes of the coarse factor, but for what contact pairs add to it.
+    pub coarse_bytes: u64,
+    /// Operations to factor the coarse matrix.
+    pub coarse_flops: f64,
+    /// Bytes of the gather tables, if there are three rows at each node that is touched.
+    pub table_bytes: u64,
+}
+
+impl Forecast {
+    /// Counts. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from
+    /// the decomposition.
+    ///
+    /// # Errors
+    /// [`TfetiError::Material`] for elements without material, and those of patterns too large to be analysed. A memory
+    /// limit that is too low is left to the set-up.
+    pub fn new(
+        mesh: &TetMesh,
+        decomposition: &Decomposition,
+        materials: &Materials,
+        share_translates: bool,
+        settings: &InverseSettings,
+        touched: impl Fn(u32) -> bool,
+    ) -> Result<Self, TfetiError> {
+        let classes = Classes::find(mesh, decomposition, materials, share_translates)?;
+        let subdomains = decomposition.subdomains();
+        let list = classes.classes();
+        let analysed = list.par_iter().map(|class| {
+            let s = class.members[0] as usize;
+            let pattern = nodal_pattern(class.nodes, &subdomains[s].tets);
+            let symbolic = Symbolic::new(&pattern, 3).map_err(|e| TfetiError::pattern(e, s))?;
+            Ok((pattern, symbolic))
+        });
+        let analysed: Vec<(Columns, Symbolic)> = analysed.collect::<Result<_, _>>()?;
+        let (mut sizes, mut copies, mut others) = (Vec::with_capacity(list.len()), 0, 0);
+        for (class, (_, symbolic)) in list.iter().zip(&analysed) {
+            let mut boundary = vec![false; class.nodes];
+            for &s in &class.members {
+                for (mark, &node) in boundary.iter_mut().zip(&subdomains[s as usize].nodes) {
+                    let own = touched(node);
+                    *mark |= own || decomposition.copies(node as usize).len() > 1;
+                    others += usize::from(own);
+                }
+            }
+            let boundary = boundary.iter().filter(|b| **b).count();
+            let members = class.members.len();
+            copies += members * boundary;
+            let (dim, boundary, factor) = (3 * class.nodes, 3 * boundary, symbolic.stored());
+            sizes.push(Size {
+                dim,
+                boundary,
+                members,
+                factor,
+            });
+        }
+        let dense = choose(&sizes, settings).unwrap_or_else(|_| vec![false; sizes.len()]);
+        let report = |(k, size): (usize, &Size)| {
+            let mut report = size.report(dense[k]);
+            if size.is_packed(dense[k]) {
+                let (pattern, symbolic) = &analysed[k];
+                report.bytes = 8 * packed::stored(pattern, &symbolic.order(), 3) as u64;
+            }
+            report
+        };
+        let classes: Vec<ClassReport> = sizes.iter().enumerate().map(report).collect();
+        let (stored, coarse_flops) = coarse_factor(decomposition).map_err(|_| {
+            let (what, count) = ("coarse unknowns", 6 * subdomains.len());
+            TfetiError::TooLarge { what, count }
+        })?;
+        // interface blocks and their entries: k - 1 Helmert rows over 2 to k copies
+        let counts = (0..decomposition.nodes()).map(|n| decomposition.copies(n).len());
+        let (blocks, entries) = counts
+            .filter(|k| *k > 1)
+            .fold((0, 0), |(blocks, entries), k| {
+                (blocks + k - 1, entries + (k - 1) * (k + 2) / 2)
+            });
+        let words = copies + blocks + 2 + 3 * entries;
+        Ok(Self {
+            inverse_bytes: classes.iter().map(|c| c.bytes).sum(),
+            coarse_bytes: 8 * stored as u64,
+            coarse_flops,
+            table_bytes: (4 * words + 16 * entries + 56 * 3 * others) as u64,
+            classes,
+        })
+    }
+
+    /// Operations of a product with `F`.
+    pub fn product_flops(&self) -> f64 {
+        self.classes
+            .iter()
+            .map(|c| c.members as f64 * c.flops())
+            .sum()
+    }
+
+    /// Operations to form all inverses.
+    pub fn setup_flops(&self) -> f64 {
+        // solves with few columns run at less than half the speed of dense products
+        let of = |c: &ClassReport| {
+            let (square, columns) = if c.dense {
+                (c.boundary.pow(2), c.boundary)
+            } else {
+                (0, 0)
+            };
+            let factor = c.bytes as f64 / 8.0 - square as f64;
+            factor * factor / c.unknowns.max(1) as f64 + 10.0 * factor * columns as f64
+        };
+        self.classes.iter().map(of).sum()
+    }
+}
+
+/// Pattern of the stiffness of some tetrahedra: full blocks for all pairs of nodes of an element.
+fn nodal_pattern(nodes: usize, tets: &[[u32; 4]]) -> Columns {
+    let mut graph: Vec<Vec<u32>> = (0..nodes as u32).map(|n| vec![n]).collect();
+    for tet in tets {
+        tet.iter().for_each(|&n| graph[n as usize].extend(tet));
+    }
+    Columns::of_blocks(&mut graph, 3)
+}
+
+/// Numbers and operations of the factor of the coarse matrix: subdomains that share a node are coupled, be it by a
+/// corner only.
+fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorError> {
+    let count = decomposition.subdomains().len() as u32;
+    // the lower triangle, as the matrix is stored
+    let mut lower: Vec<Vec<u32>> = (0..count).map(|s| vec![s]).collect();
+    let mut before: Vec<u32> = Vec::new();
+    for node in 0..decomposition.nodes() {
+        let copies = decomposition.copies(node).iter();
+        let own: Vec<u32> = copies.map(|copy| copy.subdomain).collect();
+        // nodes of a facet follow one another
+        if own.len() > 1 && own != before {
+            for &a in &own {
+                lower[a as usize].extend(own.iter().filter(|b| **b > a));
+            }
+            before = own;
+        }
+    }
+    let pattern = Columns::of_blocks(&mut lower, 6);
+    let (pointers, rows) = quotient(&pattern, 6);
+    let order: Vec<u32> = minimum_degree(&pointers, &rows)?
+        .into_iter()
+        .map(|b| b as u32)
+        .collect();
+    let stored = Symbolic::ordered(&pattern, &order, 6)?.stored();
+    let mut graph = lower.clone();
+    for (a, list) in lower.iter().enumerate() {
+        list.iter().for_each(|&b| graph[b as usize].push(a as u32));
+    }
+    let columns = patterns(&graph, &order);
+    let border = columns.iter().map(|below| 6.0 * below.len() as f64);
+    Ok((stored, border.map(|b| 6.0 * b * b + 36.0 * b + 72.0).sum()))
+}
+
+/// What a processor does a second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rate {
+    /// Operations of dense products.
+    pub flops: f64,
+    /// Numbers that a vector operation reads and writes.
+    pub numbers: f64,
+}
+
+impl Default for Rate {
+    /// One core of a desktop processor with 256 bit vectors.
+    fn default() -> Self {
+        Self {
+            flops: 6e10,
+            numbers: 5e9,
+        }
+    }
+}
+
+impl Rate {
+    /// Measures this machine with one small dense product and one vector operation, in about ten milliseconds.
+    #[must_use]
+    pub fn measure() -> Self {
+        const SIZE: usize = 240;
+        const COLUMNS: usize = 48;
+        const LENGTH: usize = 1 << 18;
+        let a: Vec<f64> = (0..SIZE * SIZE).map(|i| (i % 17) as f64).collect();
+        let b: Vec<f64> = (0..SIZE * COLUMNS).map(|i| (i % 13) as f64).collect();
+        let mut c = vec![0.0; SIZE * COLUMNS];
+        let best = |work: &mut dyn FnMut()| {
+            let time = |_| {
+                let start = Instant::now();
+                work();
+                start.elapsed().as_secs_f64().max(1e-9)
+            };
+            (0..6).map(time).fold(f64::INFINITY, f64::min)
+        };
+        let product = best(&mut || dense::multiply(&mut c, &a, &b, SIZE, SIZE, COLUMNS));
+        let x: Vec<f64> = (0..LENGTH).map(|i| (i % 11) as f64).collect();
+        let mut y = vec![0.0; LENGTH];
+        let stream = best(&mut || y.iter_mut().zip(&x).for_each(|(y, x)| *y += 1.5 * x));
+        Self {
+            flops: (2 * SIZE * SIZE * COLUMNS) as f64 / product,
+            numbers: 3.0 * LENGTH as f64 / stream,
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! Generalised inverses of the stiffness matrix of one class.
+//!
+//! `K` plus six springs on three nodes (the 3-2-1 rule) is positive definite, and its inverse `K^-` is a generalised
+//! inverse of `K`: the springs stop the rigid motions and carry no force when the loads are in balance. Between two
+//! projections `I - R R^T` it becomes the Moore-Penrose inverse. Products with many columns use the dense block of it
+//! on the boundary.
+
+use crate::error::TfetiError;
+use crate::linalg::dense;
+use crate::linalg::sparse::{Columns, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
+use crate::linalg::vec3::{cross, dot, norm, sub};
+use crate::subdomain::kernel::Kernel;
+use crate::subdomain::packed::PackedFactor;
+use crate::tolerances::COLUMNS;
+
+/// A generalised inverse of the whole matrix of one subdomain.
+#[derive(Debug)]
+pub(crate) enum Inverse {
+    /// A factor of the regularised matrix for many columns at once.
+    Sparse(SparseCholesky),
+    /// For one column.
+    Packed(PackedFactor),
+}
+
+impl Inverse {
+    /// Factorises the regularised matrix. The symbolic factor is that of [`regularised`].
+    pub(crate) fn new(
+        stiffness: &Columns,
+        kernel: &Kernel,
+        symbolic: &Symbolic,
+        subdomain: usize,
+    ) -> Result<Self, TfetiError> {
+        let matrix = regularised(stiffness, kernel);
+        let factor = SparseCholesky::new(symbolic, &matrix)
+            .map_err(|error| TfetiError::pattern(error, subdomain))?;
+        let (smallest, pivot, largest) = factor.pivots();
+        if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
+            return Err(TfetiError::Singular { subdomain, pivot });
+        }
+        Ok(Self::Sparse(factor))
+    }
+
+    /// Whether it is stored for products with one column.
+    pub(crate) fn is_packed(&self) -> bool {
+        matches!(self, Self::Packed(_))
+    }
+
+    /// `u = K+ f` for forces and displacements at some `nodes`, if it is stored for products with one column.
+    pub(crate) fn apply_at(
+        &self,
+        kernel: &Kernel,
+        nodes: &[u32],
+        f: &[f64],
+        u: &mut [f64],
+        memory: &mut SolveMemory,
+    ) -> bool {
+        if let Self::Packed(factor) = self {
+            factor.product(kernel, nodes, f, u, &mut memory.numbers);
+        }
+        self.is_packed()
+    }
+
+    /// The same, stored for products with one column.
+    pub(crate) fn packed(self, stiffness: &Columns) -> Self {
+        match self {
+            Self::Sparse(factor) => Self::Packed(PackedFactor::new(&factor, stiffness, 3)),
+            packed => packed,
+        }
+    }
+
+    /// Work memory that products with so many columns need.
+    pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
+        match self {
+            Self::Sparse(factor) => factor.need(columns),
+            Self::Packed(factor) => factor.need(),
+        }
+    }
+
+    /// Numbers stored.
+    pub(crate) fn stored(&self) -> usize {
+        match self {
+            Self::Sparse(factor) => factor.stored(),
+            Self::Packed(factor) => factor.stored(),
+        }
+    }
+
+    fn solve(&self, x: &mut [f64], columns: usize, memory: &mut SolveMemory) {
+        match self {
+            Self::Sparse(factor) => factor.solve(x, columns, memory),
+            Self::Packed(factor) => factor.solve(x, &mut memory.numbers),
+        }
+    }
+
+    /// `X = K+ X` in place for column-major blocks.
+    pub(crate) fn apply(
+        &self,
+        kernel: &Kernel,
+        x: &mut [f64],
+        columns: usize,
+        memory: &mut SolveMemory,
+    ) {
+        remove_rigid(kernel, x);
+        self.solve(x, columns, memory);
+        remove_rigid(kernel, x);
+    }
+
+    /// Rows and columns of the Moore-Penrose inverse that belong to the boundary nodes, column-major.
+    ///
+    /// With `Z = K^- R` and `S = R^T Z`, `(I - R R^T) K^- (I - R R^T) = K^- - R W^T - W R^T`, `W = Z - R S / 2`.
+    pub(crate) fn boundary_block(&self, kernel: &Kernel, boundary: &[u32]) -> Vec<f64> {
+        let (dim, size) = (3 * kernel.nodes(), 3 * boundary.len());
+        let dof = |b: usize| 3 * boundary[b / 3] as usize + b % 3;
+        let columns = COLUMNS;
+        let mut memory = SolveMemory::new(self.need(columns));
+        let mut out = vec![0.0; size * size];
+        let mut x = vec![0.0; dim * columns];
+        for start in (0..size).step_by(columns) {
+            let count = columns.min(size - start);
+            let x = &mut x[..dim * count];
+            x.fill(0.0);
+            (0..count).for_each(|j| x[j * dim + dof(start + j)] = 1.0);
+            self.solve(x, count, &mut memory);
+            for (column, target) in x
+                .chunks_exact(dim)
+                .zip(out[start * size..].chunks_exact_mut(size))
+            {
+                target
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(i, v)| *v = column[dof(i)]);
+            }
+        }
+        // The rank-six correction by the rigid motions.
+        let modes = kernel.modes();
+        let z = &mut x[..6 * dim];
+        z.copy_from_slice(&modes);
+        self.solve(z, 6, &mut memory);
+        let mut s = [[0.0; 6]; 6];
+        for (m, z) in z.chunks_exact(dim).enumerate() {
+            let products = kernel.transpose_times(z);
+            (0..6).for_each(|k| s[k][m] = products[k]);
+        }
+        let (mut r, mut w) = (vec![0.0; 6 * size], vec![0.0; 6 * size]);
+        for m in 0..6 {
+            for i in 0..size {
+                r[m * size + i] = modes[m * dim + dof(i)];
+                let half: f64 = (0..6).map(|k| modes[k * dim + dof(i)] * s[k][m]).sum();
+                w[m * size + i] = z[m * dim + dof(i)] - 0.5 * half;
+            }
+        }
+        dense::add_product_transposed(&mut out, -1.0, &r, &w, size, 6, size);
+        dense::add_product_transposed(&mut out, -1.0, &w, &r, size, 6, size);
+        // Rounding makes the solved columns unsymmetric in the last digits.
+        for j in 0..size {
+            for i in j + 1..size {
+                out[i + j * size] = 0.5 * (out[i + j * size] + out[j + i * size]);
+            }
+        }
+        dense::mirror_lower(&mut out, size);
+        out
+    }
+}
+
+/// `x = (I - R R^T) x` for every column.
+fn remove_rigid(kernel: &Kernel, x: &mut [f64]) {
+    for column in x.chunks_exact_mut(3 * kernel.nodes()) {
+        let amplitudes = kernel.transpose_times(column);
+        kernel.add_motion(-1.0, &amplitudes, column);
+    }
+}
+
+/// Mean of the diagonal: the scale of the matrix.
+fn scale(stiffness: &Columns) -> f64 {
+    let trace: f64 = (0..stiffness.dim).map(|i| stiffness.diagonal(i)).sum();
+    trace / stiffness.dim.max(1) as f64
+}
+
+/// Pivots below this share of the scale mean a further motion without strain.
+fn threshold(dim: usize) -> f64 {
+    dim as f64 * f64::EPSILON
+}
+
+/// Three nodes that span the subdomain, for the springs of the 3-2-1 rule.
+fn anchors(kernel: &Kernel) -> [usize; 3] {
+    let farthest = |distance: &dyn Fn(&[f64; 3]) -> f64| {
+        let mut best = (0, f64::NEG_INFINITY);
+        for node in 0..kernel.nodes() {
+            let d = distance(kernel.arm(node));
+            if d > best.1 {
+                best = (node, d);
+            }
+        }
+        best.0
+    };
+    let square = |v| dot(v, v);
+    let first = farthest(&|p| square(*p));
+    let a = *kernel.arm(first);
+    let second = farthest(&|p| square(sub(*p, a)));
+    let axis = unit(sub(*kernel.arm(second), a));
+    let third = farthest(&|p| square(cross(axis, sub(*p, a))));
+    [first, second, third]
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = norm(v);
+    if length > 0.0 {
+        v.map(|c| c / length)
+    } else {
+        [1.0, 0.0, 0.0]
+    }
+}
+
+/// `K` plus springs of mean stiffness that stop the six rigid motions and nothing else.
+pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
+    let mut matrix = stiffness.clone();
+    let strength = scale(stiffness);
+    let [first, second, third] = anchors(kernel);
+    let from_first = |node: usize| sub(*kernel.arm(node), *kernel.arm(first));
+    let axis = unit(from_first(second));
+    let normal = unit(cross(axis, from_first(third)));
+    let mut spring = |node: usize, block: &dyn Fn(usize, usize) -> f64| {
+        for i in 0..3 {
+            for j in 0..3 {
+                if let Some(k) = matrix.find(3 * node + i, 3 * node + j) {
+                    matrix.values[k] += strength * block(i, j);
+                }
+            }
+        }
+    };
+    let identity = |i: usize, j: usize| f64::from(u8::from(i == j));
+    spring(first, &identity);
+    spring(second, &|i, j| identity(i, j) - axis[i] * axis[j]);
+    spring(third, &|i, j| normal[i] * normal[j]);
+    matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::sparse::FactorError;
+    use signorini_fem_mesh::{Hooke, assemble_stiffness};
+
+    fn inverse(
+        points: &[[f64; 3]],
+        tets: &[[u32; 4]],
+    ) -> Result<(Columns, Kernel, Inverse), TfetiError> {
+        let hooke = Hooke::isotropic(2.0e11, 0.3).unwrap();
+        let stiffness =
+            Columns::from_symmetric(&assemble_stiffness(points, tets, |_| &hooke).unwrap());
+        let kernel = Kernel::new(points, 4).unwrap();
+        let symbolic = Symbolic::new(&regularised(&stiffness, &kernel), 3).unwrap();
+        let inverse = Inverse::new(&stiffness, &kernel, &symbolic, 4)?;
+        Ok((stiffness, kernel, inverse))
+    }
+
+    const TET: [[f64; 3]; 4] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ];
+
+    /// The four laws of Moore and Penrose, on the whole matrix.
+    #[test]
+    fn dense_block_of_all_nodes_is_the_moore_penrose_inverse() {
+        let points: Vec<[f64; 3]> = TET.into_iter().chain([[1.0, 1.0, 1.0]]).collect();
+        let (stiffness, kernel, inverse) = inverse(&points, &[[0, 1, 2, 3], [4, 2, 1, 3]]).unwrap();
+        let n = stiffness.dim;
+        let block = inverse.boundary_block(&kernel, &[0, 1, 2, 3, 4]);
+        let mut k = vec![0.0; n * n];
+        for j in 0..n {
+            let (rows, values) = stiffness.column(j);
+            rows.iter()
+                .zip(values)
+                .for_each(|(&i, v)| k[i + j * n] = *v);
+        }
+        let times = |a: &[f64], b: &[f64]| {
+            let mut out = vec![0.0; n * n];
+            dense::multiply(&mut out, a, b, n, n, n);
+            out
+        };
+        let close = |a: &[f64], b: &[f64]| {
+            let size = b.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-11 * size)
+        };
+        let (left, right) = (times(&k, &block), times(&block, &k));
+        assert!(close(&times(&left, &k), &k) && close(&times(&right, &block), &block));
+        assert!(close(&left, &right), "K K+ = K+ K is symmetric");
+        // The solver gives the same columns.
+        let mut memory = SolveMemory::new(inverse.need(1));
+        let mut x = vec![0.0; n];
+        x[7] = 1.0;
+        inverse.apply(&kernel, &mut x, 1, &mut memory);
+        assert!(close(&x, &block[7 * n..8 * n]));
+    }
+
+    #[test]
+    fn a_pattern_error_names_the_subdomain() {
+        let text = TfetiError::pattern(FactorError::Pattern, 7).to_string();
+        assert!(text.starts_with("subdomain 7: "), "{text}");
+    }
+
+    #[test]
+    fn a_hinge_is_named() {
+        // Two tetrahedra that share one edge turn about it without strain.
+        let points: Vec<[f64; 3]> = TET
+            .into_iter()
+            .chain([[-1.0, -1.0, 0.2], [-1.0, 0.1, -1.0]])
+            .collect();
+        let error = inverse(&points, &[[0, 1, 2, 3], [0, 1, 4, 5]]).unwrap_err();
+        assert!(
+            matches!(error, TfetiError::Singular { subdomain: 4, .. }),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,84 @@
+//! The matrices of the subdomains: stiffness and kernel, one set a class.
+
+use crate::error::TfetiError;
+use crate::linalg::block_rows::BlockRows;
+use crate::linalg::sparse::Columns;
+use crate::subdomain::class::{Class, Classes};
+use crate::subdomain::kernel::Kernel;
+use rayon::prelude::*;
+use signorini_fem_mesh::{Decomposition, Materials, TetMesh, assemble_stiffness};
+use std::sync::OnceLock;
+
+/// All subdomains with their matrices.
+#[derive(Debug)]
+pub(crate) struct Subdomains {
+    pub(crate) classes: Classes,
+    /// One for each class.
+    pub(crate) bases: Vec<ClassBase>,
+}
+
+/// Stiffness and kernel of a class.
+#[derive(Debug)]
+pub(crate) struct ClassBase {
+    pub(crate) stiffness: Columns,
+    /// The same for products with several members, made when first needed.
+    pub(crate) blocks: OnceLock<BlockRows>,
+    pub(crate) kernel: Kernel,
+}
+
+impl Subdomains {
+    /// Assembles stiffness and kernel of every class from its first member.
+    pub(crate) fn assemble(
+        mesh: &TetMesh,
+        decomposition: &Decomposition,
+        materials: &Materials,
+        classes: Classes,
+    ) -> Result<Self, TfetiError> {
+        let base = |class: &Class| {
+            let s = class.members[0] as usize;
+            let subdomain = &decomposition.subdomains()[s];
+            let nodes = subdomain.nodes.iter();
+            let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
+            let elements = subdomain.elements.iter();
+            let regions: Vec<u32> = elements.map(|&e| mesh.regions()[e as usize]).collect();
+            let element = subdomain.elements[0] as usize;
+            let material = |message| TfetiError::Material { element, message };
+            let hooke = materials
+                .of_tets(&regions)
+                .map_err(|e| material(e.to_string()))?;
+            let matrix = assemble_stiffness(&points, &subdomain.tets, |t| hooke[t])
+                .map_err(|e| material(e.to_string()))?;
+            Ok(ClassBase {
+                stiffness: Columns::from_symmetric(&matrix),
+                blocks: OnceLock::new(),
+                kernel: Kernel::new(&points, s)?,
+            })
+        };
+        let bases = classes
+            .classes()
+            .par_iter()
+            .map(base)
+            .collect::<Result<_, _>>()?;
+        Ok(Self { classes, bases })
+    }
+
+    /// Number of subdomains.
+    pub(crate) fn count(&self) -> usize {
+        self.classes.subdomains()
+    }
+
+    /// Class of a subdomain.
+    pub(crate) fn class(&self, subdomain: usize) -> usize {
+        self.classes.place(subdomain).0
+    }
+
+    /// Matrices of a subdomain.
+    pub(crate) fn of(&self, subdomain: usize) -> &ClassBase {
+        &self.bases[self.class(subdomain)]
+    }
+
+    /// Rigid motions of a subdomain.
+    pub(crate) fn kernel(&self, subdomain: usize) -> &Kernel {
+        &self.of(subdomain).kernel
+    }
+}

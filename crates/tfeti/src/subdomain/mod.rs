@@ -1,0 +1,15 @@
+//! What belongs to a single subdomain, or to all translates of it.
+//!
+//! Uses `linalg`. In go mesh, decomposition and materials. Out come classes of translates (`class`), stiffness matrix
+//! and rigid motions of each (`matrices`, `kernel`), a generalised inverse (`inverse`; `packed` for one right-hand
+//! side), the choice between a dense and a sparse one (`cost`), the stiffness of the copies of a node
+//! (`copy_stiffness`) and the sizes that a set-up will have (`forecast`).
+
+pub(crate) mod class;
+pub(crate) mod copy_stiffness;
+pub(crate) mod cost;
+pub(crate) mod forecast;
+pub(crate) mod inverse;
+pub(crate) mod kernel;
+pub(crate) mod matrices;
+pub(crate) mod packed;

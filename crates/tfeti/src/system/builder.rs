@@ -1,0 +1,198 @@
+//! Building a T-FETI system.
+
+use crate::coarse::space::Coarse;
+use crate::dual::boundary::BoundaryMap;
+use crate::dual::inverses::{ClassInverse, invert};
+use crate::dual::operator::DualOperator;
+use crate::error::TfetiError;
+use crate::rows::gluing::Gluing;
+use crate::rows::side::ContactConstraints;
+use crate::rows::supports::NodeSupport;
+use crate::subdomain::class::Classes;
+use crate::subdomain::copy_stiffness::CopyStiffness;
+use crate::subdomain::cost::InverseSettings;
+use crate::subdomain::kernel::mean;
+use crate::subdomain::matrices::Subdomains;
+use crate::system::report::{SetupReport, class_reports, count};
+use crate::system::tfeti::{Parts, Tfeti};
+use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a T-FETI system is built from. All fields are borrowed while it is built only.
+#[derive(Debug, Clone, Copy)]
+pub struct TfetiBuilder<'a> {
+    mesh: &'a TetMesh,
+    decomposition: &'a Decomposition,
+    materials: &'a Materials,
+    supports: &'a [NodeSupport],
+    contact: Option<&'a ContactConstraints>,
+    share_translates: bool,
+    inverse: InverseSettings,
+}
+
+impl<'a> TfetiBuilder<'a> {
+    /// A body without supports and contact.
+    #[must_use]
+    pub fn new(
+        mesh: &'a TetMesh,
+        decomposition: &'a Decomposition,
+        materials: &'a Materials,
+    ) -> Self {
+        Self {
+            mesh,
+            decomposition,
+            materials,
+            supports: &[],
+            contact: None,
+            share_translates: true,
+            inverse: InverseSettings::default(),
+        }
+    }
+
+    /// Sets the supports.
+    #[must_use]
+    pub fn with_supports(mut self, supports: &'a [NodeSupport]) -> Self {
+        self.supports = supports;
+        self
+    }
+
+    /// Sets the contact constraints.
+    #[must_use]
+    pub fn with_contact(mut self, contact: &'a ContactConstraints) -> Self {
+        self.contact = Some(contact);
+        self
+    }
+
+    /// Sets whether subdomains that are translations of one another share their matrices. Default: they do.
+    #[must_use]
+    pub fn with_share_translates(mut self, share: bool) -> Self {
+        self.share_translates = share;
+        self
+    }
+
+    /// Sets how the generalised inverses are chosen.
+    #[must_use]
+    pub fn with_inverse(mut self, settings: InverseSettings) -> Self {
+        self.inverse = settings;
+        self
+    }
+
+    /// Builds the system. A body that nothing holds is no error: see [`Tfeti::coarse_factor`] and its free motions.
+    ///
+    /// # Errors
+    /// Any of [`TfetiError`]: bad supports or contact constraints, unknown materials, subdomains whose stiffness is
+    /// singular beyond the rigid motions, not enough memory.
+    pub fn build(self) -> Result<Tfeti, TfetiError> {
+        let (mesh, decomposition) = (self.mesh, self.decomposition);
+        self.inverse.validate()?;
+        let check = |what, found, expected| match found == expected {
+            true => Ok(()),
+            false => Err(TfetiError::DecompositionMismatch {
+                what,
+                found,
+                expected,
+            }),
+        };
+        check("nodes", decomposition.nodes(), mesh.points().len())?;
+        check("elements", decomposition.parts().len(), mesh.tets().len())?;
+        let mut clock = Clock(Instant::now());
+        let classes = Classes::find(mesh, decomposition, self.materials, self.share_translates)?;
+        let classes_seconds = clock.lap();
+        let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes)?;
+        let subdomains = Arc::new(subdomains);
+        let assembly_seconds = clock.lap();
+        let mut stiffness = CopyStiffness::new(&subdomains);
+        if !has_several_laws(mesh, self.materials) {
+            stiffness = stiffness.unless_alike(decomposition);
+        }
+        let (nodes, supports) = (mesh.points().len(), self.supports);
+        let gluing = Gluing::new(decomposition, nodes, supports, self.contact, &stiffness)?;
+        let gluing = Arc::new(gluing);
+        let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing));
+        let gluing_seconds = clock.lap();
+        let points = mesh.points();
+        let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
+        let centres = || {
+            decomposition
+                .subdomains()
+                .iter()
+                .map(|s| centre(&s.nodes))
+                .collect()
+        };
+        let ((inverses, inverse_seconds), coarse) = rayon::join(
+            || {
+                let started = Instant::now();
+                let inverses = invert(&subdomains, &map, &self.inverse);
+                (inverses, started.elapsed().as_secs_f64())
+            },
+            || {
+                let (map, gluing) = (map.clone(), gluing.clone());
+                let coarse = Coarse::new(map, subdomains.clone(), gluing, centres())?;
+                let factor = coarse.factor()?;
+                Ok::<_, TfetiError>((coarse, factor))
+            },
+        );
+        let inverses = Arc::new(inverses?);
+        let (coarse, factor) = coarse?;
+        let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
+        let report = SetupReport {
+            subdomains: subdomains.count(),
+            classes: class_reports(&subdomains.classes, &map, &inverses),
+            primal_unknowns: decomposition.torn_dofs(),
+            rows: gluing.ranges().clone(),
+            rows_as_paper: gluing.rows_as_paper(),
+            removed: count(gluing.removed()),
+            inverse_bytes: inverses.iter().map(ClassInverse::bytes).sum(),
+            coarse_bytes: 8 * coarse.factor_size() as u64,
+            table_bytes: map.bytes(),
+            factorisations: 1 + subdomains.bases.len(),
+            free_motions: factor
+                .free_motions()
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
+            classes_seconds,
+            gluing_seconds,
+            assembly_seconds,
+            inverse_seconds,
+            coarse_seconds,
+        };
+        let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone());
+        let parts = Parts {
+            subdomains,
+            gluing,
+            map,
+            inverses,
+        };
+        Ok(Tfeti::new(
+            parts,
+            dual,
+            coarse,
+            factor,
+            report,
+            decomposition,
+            stiffness,
+        ))
+    }
+}
+
+/// Whether regions in use have different Hooke tensors.
+fn has_several_laws(mesh: &TetMesh, materials: &Materials) -> bool {
+    let law = |region: u32| materials.get(region).ok().map(|h| *h.voigt());
+    let mut regions = mesh.regions().to_vec();
+    regions.dedup();
+    regions.sort_unstable();
+    regions.dedup();
+    regions.windows(2).any(|pair| law(pair[0]) != law(pair[1]))
+}
+
+struct Clock(Instant);
+
+impl Clock {
+    /// Seconds since the last call.
+    fn lap(&mut self) -> f64 {
+        let last = std::mem::replace(&mut self.0, Instant::now());
+        last.elapsed().as_secs_f64()
+    }
+}

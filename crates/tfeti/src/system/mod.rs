@@ -1,0 +1,13 @@
+//! The whole system of a body: built once, immutable.
+//!
+//! Uses all rooms but `preconditioner`. In go mesh, decomposition, materials, supports and contact constraints
+//! (`builder`); out comes [`Tfeti`](crate::Tfeti) with its operators and a `report`. `recovery` goes between loads,
+//! displacements and dual vectors, `torn` applies stiffness and inverse subdomain by subdomain, `row_stiffness` tells
+//! what single rows feel.
+
+pub(crate) mod builder;
+pub(crate) mod recovery;
+pub(crate) mod report;
+pub(crate) mod row_stiffness;
+pub(crate) mod tfeti;
+pub(crate) mod torn;

@@ -1,0 +1,193 @@
+//! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
+
+use crate::error::TfetiError;
+use crate::rows::gluing::CopyEntry;
+use crate::system::tfeti::Tfeti;
+
+/// Response of the torn body to one load: what a time step needs to combine.
+///
+/// For loads `f = sum h_j f_j` the dual load is `d = c - sum h_j dual_j` and `e = sum h_j coarse_j`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadResponse {
+    /// `B K+ f`.
+    pub dual: Vec<f64>,
+    /// `e = -R^T f`.
+    pub coarse: Vec<f64>,
+    /// The load itself, a torn vector in newtons.
+    pub force: Vec<f64>,
+}
+
+impl Tfeti {
+    fn check(&self, what: &'static str, x: &[f64], expected: usize) -> Result<(), TfetiError> {
+        TfetiError::check_length(what, x.len(), expected)?;
+        match x.iter().position(|v| !v.is_finite()) {
+            Some(index) => Err(TfetiError::NotFinite { what, index }),
+            None => Ok(()),
+        }
+    }
+
+    /// Response to a load given by local vectors (as `signorini_fem_mesh::assemble_load` returns them).
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn load_response(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
+        TfetiError::check_length("local vectors", local.len(), self.subdomains())?;
+        for (s, part) in local.iter().enumerate() {
+            self.check("local vector", part, self.torn_range(s).len())?;
+        }
+        let force = local.concat();
+        let mut displaced = vec![0.0; self.torn_dim()];
+        self.generalised_inverse(&force, &mut displaced);
+        let mut dual = vec![0.0; self.dual_dim()];
+        self.rows_times(&displaced, &mut dual);
+        let wrench = |s: usize| self.kernel(s).transpose_times(&force[self.torn_range(s)]);
+        let coarse = (0..self.subdomains())
+            .flat_map(|s| wrench(s).map(|v| -v))
+            .collect();
+        Ok(LoadResponse {
+            dual,
+            coarse,
+            force,
+        })
+    }
+
+    /// Place of the three components of a node copy in torn vectors.
+    fn place(&self, subdomain: u32, local: u32) -> std::ops::Range<usize> {
+        let start = self.torn_range(subdomain as usize).start + 3 * local as usize;
+        start..start + 3
+    }
+
+    /// `out = B u` for a torn vector.
+    ///
+    /// # Panics
+    /// If a vector is too short.
+    pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
+        let gluing = self.gluing();
+        let interface = gluing.ranges().interface.clone();
+        for (block, target) in out[interface].chunks_exact_mut(3).enumerate() {
+            target.fill(0.0);
+            for e in gluing.block(block) {
+                let value = &u[self.place(e.subdomain, e.local)];
+                (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
+            }
+        }
+        for nodal in 0..gluing.nodal_rows() {
+            let entry = |e: &CopyEntry| {
+                let value = &u[self.place(e.subdomain, e.local)];
+                (0..3).map(|c| e.vector[c] * value[c]).sum::<f64>()
+            };
+            out[gluing.nodal_row(nodal)] = gluing.nodal(nodal).iter().map(entry).sum();
+        }
+    }
+
+    /// `f += B^T x` for a torn vector.
+    ///
+    /// # Panics
+    /// If a vector is too short.
+    pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
+        let gluing = self.gluing();
+        let interface = &x[gluing.ranges().interface.clone()];
+        for (block, value) in interface.chunks_exact(3).enumerate() {
+            for e in gluing.block(block) {
+                let target = &mut f[self.place(e.subdomain, e.local)];
+                (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
+            }
+        }
+        for nodal in 0..gluing.nodal_rows() {
+            let value = x[gluing.nodal_row(nodal)];
+            for e in gluing.nodal(nodal) {
+                let target = &mut f[self.place(e.subdomain, e.local)];
+                (0..3).for_each(|c| target[c] += e.vector[c] * value);
+            }
+        }
+    }
+
+    /// Sum of loads: `sum factor * force`.
+    pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+        let mut force = vec![0.0; self.torn_dim()];
+        for (factor, load) in loads {
+            signorini_qp::vector::axpy(*factor, &load.force, &mut force);
+        }
+        force
+    }
+
+    /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27).
+    ///
+    /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
+    /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn recover(
+        &self,
+        force: &[f64],
+        lambda: &[f64],
+        alpha: &[f64],
+    ) -> Result<Vec<f64>, TfetiError> {
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
+        self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
+        let mut total = force.to_vec();
+        self.add_rows_transposed(lambda, &mut total);
+        let mut u = vec![0.0; self.torn_dim()];
+        self.generalised_inverse(&total, &mut u);
+        for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
+            let range = self.torn_range(s);
+            self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
+        }
+        Ok(u)
+    }
+
+    /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
+    /// their [stiffness](Self::copy_stiffness).
+    ///
+    /// # Panics
+    /// If `u` is shorter than a torn vector.
+    pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; 3 * self.nodes];
+        let mut sums = vec![0.0; self.nodes];
+        for (k, &node) in self.node_of.iter().enumerate() {
+            let weight = self.copy_stiffness().weight(k);
+            sums[node as usize] += weight;
+            for c in 0..3 {
+                out[3 * node as usize + c] += weight * u[3 * k + c];
+            }
+        }
+        for (value, sum) in out.chunks_exact_mut(3).zip(&sums) {
+            value.iter_mut().for_each(|v| *v /= sum);
+        }
+        out
+    }
+
+    /// Residual of equilibrium `K u - f - B^T lambda` in newtons, a torn vector.
+    ///
+    /// # Errors
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
+    pub fn equilibrium_residual(
+        &self,
+        u: &[f64],
+        force: &[f64],
+        lambda: &[f64],
+    ) -> Result<Vec<f64>, TfetiError> {
+        self.check("displacement", u, self.torn_dim())?;
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
+        let mut known = force.to_vec();
+        self.add_rows_transposed(lambda, &mut known);
+        let mut residual = vec![0.0; u.len()];
+        self.stiffness_times(u, &mut residual);
+        signorini_qp::vector::subtract(&known, &mut residual);
+        Ok(residual)
+    }
+
+    /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.
+    pub fn prescribed_offsets(&self, factors: &[(usize, f64)]) -> Vec<f64> {
+        let mut c = vec![0.0; self.dual_dim()];
+        for &(case, factor) in factors {
+            for &(row, value) in self.gluing().prescribed(case) {
+                c[row as usize] += factor * value;
+            }
+        }
+        c
+    }
+}

@@ -1,0 +1,139 @@
+//! The stiffness that a single row of `B` feels, with all other unknowns held or with its subdomains free.
+
+use crate::linalg::sparse::SolveMemory;
+use crate::system::tfeti::Tfeti;
+use crate::tolerances::SAMPLE;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What is known of the compliance of a class.
+enum Compliance<'a> {
+    /// The Moore-Penrose inverse on the boundary nodes.
+    Block(&'a [f64]),
+    /// Its diagonal times that of the stiffness, the smallest of some nodes, by direction.
+    Sample([f64; 3]),
+}
+
+impl Tfeti {
+    /// `out[k] = b K+ bᵀ` for the rows `b` of `B` in `rows`, in m/N: the diagonal of `F`, `K+` the Moore-Penrose
+    /// inverse. Exact for subdomains with a dense inverse; for others a lower estimate from a few of their nodes.
+    ///
+    /// Over the inverse of [`row_stiffness`](Self::row_stiffness) it is 1 to 4 in a well shaped, compressible body. It
+    /// is large where single nodes can hardly move with all others held: near incompressibility, and in thin elements.
+    ///
+    /// `out` has the length of `rows`; rows beyond the last are 0.
+    pub fn row_compliance(&self, rows: Range<usize>, out: &mut [f64]) {
+        let parts = &self.parts;
+        let subdomains = &parts.subdomains;
+        let entries: Vec<_> = rows.map(|row| self.gluing().row(row)).collect();
+        let mut nodes = vec![Vec::new(); subdomains.bases.len()];
+        for &(subdomain, dof, _) in entries.iter().flatten() {
+            nodes[subdomains.class(subdomain)].push(dof / 3);
+        }
+        let of_class =
+            |(class, mut nodes): (usize, Vec<usize>)| match &parts.inverses[class].boundary {
+                Some(block) => Compliance::Block(block),
+                None => {
+                    nodes.sort_unstable();
+                    nodes.dedup();
+                    Compliance::Sample(self.sample_compliance(class, &nodes))
+                }
+            };
+        let compliance: Vec<Compliance<'_>> =
+            nodes.into_par_iter().enumerate().map(of_class).collect();
+        for (entries, target) in entries.iter().zip(out) {
+            *target = 0.0;
+            for &(subdomain, dof, value) in entries {
+                let class = subdomains.class(subdomain);
+                let own = entries.iter().filter(|e| e.0 == subdomain);
+                match &compliance[class] {
+                    Compliance::Block(block) => {
+                        let nodes = &parts.map.classes[class].nodes;
+                        let place = |dof: usize| {
+                            let node = nodes.binary_search(&((dof / 3) as u32));
+                            node.ok().map(|node| 3 * node + dof % 3)
+                        };
+                        for &(_, other, factor) in own {
+                            if let (Some(i), Some(j)) = (place(dof), place(other)) {
+                                *target += value * factor * block[i + j * 3 * nodes.len()];
+                            }
+                        }
+                    }
+                    Compliance::Sample(ratios) => {
+                        let diagonal = subdomains.bases[class].stiffness.diagonal(dof);
+                        if diagonal > 0.0 {
+                            *target += value * value * ratios[dof % 3] / diagonal;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Smallest diagonal entry of `K+` times that of `K` at some of these nodes, by direction.
+    fn sample_compliance(&self, class: usize, nodes: &[usize]) -> [f64; 3] {
+        let base = &self.parts.subdomains.bases[class];
+        let inverse = &self.parts.inverses[class].full;
+        let mut memory = SolveMemory::new(inverse.need(1));
+        let mut out = [f64::INFINITY; 3];
+        let count = nodes.len().min(SAMPLE);
+        let mut x = vec![0.0; base.stiffness.dim];
+        for k in 0..count {
+            let node = nodes[(2 * k + 1) * nodes.len() / (2 * count)];
+            for (c, smallest) in out.iter_mut().enumerate() {
+                let dof = 3 * node + c;
+                x.fill(0.0);
+                x[dof] = 1.0;
+                inverse.apply(&base.kernel, &mut x, 1, &mut memory);
+                *smallest = smallest.min(x[dof] * base.stiffness.diagonal(dof));
+            }
+        }
+        out
+    }
+
+    /// `out[k] = b K bᵀ` for the rows `b` of `B` in `rows`, in N/m: the diagonal of the lumped preconditioner without
+    /// scaling. Its inverse is the scale on which displacements of that row turn into multipliers.
+    ///
+    /// `out` has the length of `rows`; rows beyond the last are 0.
+    pub fn row_stiffness(&self, rows: Range<usize>, out: &mut [f64]) {
+        for (row, target) in rows.zip(out) {
+            let entries = self.gluing().row(row);
+            *target = 0.0;
+            for &(subdomain, dof, value) in &entries {
+                let stiffness = &self.parts.subdomains.of(subdomain).stiffness;
+                for &(_, other, factor) in entries.iter().filter(|e| e.0 == subdomain) {
+                    if let Some(at) = stiffness.find(other, dof) {
+                        *target += value * stiffness.values[at] * factor;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one. `None` where all
+    /// copies [count alike](Self::copy_stiffness).
+    pub fn row_weights(&self) -> Option<Vec<f64>> {
+        if self.copy_stiffness().is_plain() {
+            return None;
+        }
+        let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
+            let diagonal = self.parts.subdomains.of(subdomain).stiffness.diagonal(dof);
+            if diagonal > 0.0 {
+                value * value / diagonal
+            } else {
+                0.0
+            }
+        };
+        let weight = |row: usize| {
+            let sum: f64 = self.gluing().row(row).into_iter().map(compliance).sum();
+            if sum > 0.0 { 1.0 / sum } else { 0.0 }
+        };
+        let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
+        let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
+        for w in &mut weights {
+            *w = if *w > 0.0 { *w / largest } else { 1.0 };
+        }
+        Some(weights)
+    }
+}

@@ -1,0 +1,148 @@
+//! The T-FETI system of a body, built once and immutable.
+
+use crate::coarse::space::Coarse;
+use crate::dual::boundary::BoundaryMap;
+use crate::dual::inverses::ClassInverse;
+use crate::dual::operator::DualOperator;
+use crate::projector::factor::CoarseFactor;
+use crate::rows::gluing::Gluing;
+use crate::subdomain::class::Classes;
+use crate::subdomain::copy_stiffness::CopyStiffness;
+use crate::subdomain::kernel::Kernel;
+use crate::subdomain::matrices::Subdomains;
+use crate::system::report::SetupReport;
+use signorini_fem_mesh::Decomposition;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What operators share.
+#[derive(Debug)]
+pub(crate) struct Parts {
+    pub(crate) subdomains: Arc<Subdomains>,
+    pub(crate) gluing: Arc<Gluing>,
+    pub(crate) map: Arc<BoundaryMap>,
+    pub(crate) inverses: Arc<Vec<ClassInverse>>,
+}
+
+/// A T-FETI system: the rows of `B`, the dual operator `F`, the coarse space `G` and what is needed to recover
+/// displacements. Immutable, and shared freely between threads.
+///
+/// *Torn* vectors hold the unknowns of all subdomains one after another (`3 local node + component`).
+#[derive(Debug)]
+pub struct Tfeti {
+    pub(crate) parts: Parts,
+    dual: DualOperator,
+    coarse: Coarse,
+    factor: CoarseFactor,
+    report: SetupReport,
+    stiffness: CopyStiffness,
+    /// First unknown of each subdomain in torn vectors, and their length.
+    offsets: Vec<usize>,
+    /// Mesh node of each node copy, in torn order.
+    pub(super) node_of: Vec<u32>,
+    /// Mesh nodes.
+    pub(super) nodes: usize,
+}
+
+impl Tfeti {
+    pub(super) fn new(
+        parts: Parts,
+        dual: DualOperator,
+        coarse: Coarse,
+        factor: CoarseFactor,
+        report: SetupReport,
+        decomposition: &Decomposition,
+        stiffness: CopyStiffness,
+    ) -> Self {
+        let (mut offsets, mut node_of) = (vec![0], Vec::new());
+        for subdomain in decomposition.subdomains() {
+            node_of.extend_from_slice(&subdomain.nodes);
+            offsets.push(3 * node_of.len());
+        }
+        let nodes = decomposition.nodes();
+        Self {
+            parts,
+            dual,
+            coarse,
+            factor,
+            report,
+            stiffness,
+            offsets,
+            node_of,
+            nodes,
+        }
+    }
+
+    /// The rows of `B`.
+    pub fn gluing(&self) -> &Gluing {
+        &self.parts.gluing
+    }
+
+    /// How the copies of a node count in contact and support rows: by their stiffness in a body of several materials,
+    /// and where that of the copies of a node differs by more than a factor of four, as in ragged cuts; alike
+    /// otherwise.
+    pub fn copy_stiffness(&self) -> &CopyStiffness {
+        &self.stiffness
+    }
+
+    /// The stiffness of the copies of each node, whether or not they differ.
+    pub fn all_copy_stiffness(&self) -> CopyStiffness {
+        CopyStiffness::new(&self.parts.subdomains)
+    }
+
+    /// The classes of subdomains.
+    pub fn classes(&self) -> &Classes {
+        &self.parts.subdomains.classes
+    }
+
+    /// `F = B K+ B^T`.
+    pub fn dual(&self) -> &DualOperator {
+        &self.dual
+    }
+
+    /// `G = R^T B^T`.
+    pub fn coarse(&self) -> &Coarse {
+        &self.coarse
+    }
+
+    /// The factor of `G G^T`. If its free motions are not empty, no row stops the body from moving that way.
+    pub fn coarse_factor(&self) -> &CoarseFactor {
+        &self.factor
+    }
+
+    /// What was built, how large it is and how long it took.
+    pub fn report(&self) -> &SetupReport {
+        &self.report
+    }
+
+    /// Number of subdomains.
+    pub fn subdomains(&self) -> usize {
+        self.parts.subdomains.count()
+    }
+
+    /// Length of dual vectors.
+    pub fn dual_dim(&self) -> usize {
+        self.parts.gluing.rows_full_rank()
+    }
+
+    /// Length of torn vectors: the paper's `n_p`.
+    pub fn torn_dim(&self) -> usize {
+        3 * self.node_of.len()
+    }
+
+    /// Unknowns of a subdomain in torn vectors.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
+    pub fn torn_range(&self, subdomain: usize) -> Range<usize> {
+        self.offsets[subdomain]..self.offsets[subdomain + 1]
+    }
+
+    /// Rigid motions of a subdomain.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
+    pub fn kernel(&self, subdomain: usize) -> &Kernel {
+        self.parts.subdomains.kernel(subdomain)
+    }
+}

@@ -1,0 +1,90 @@
+//! Stiffness and generalised inverse of the torn body: class by class, some members of a class at a time.
+
+use crate::linalg::block_rows::BlockRows;
+use crate::linalg::sparse::SolveMemory;
+use crate::system::tfeti::Tfeti;
+use crate::tolerances::{PANEL, SHARED};
+use rayon::prelude::*;
+
+impl Tfeti {
+    /// `y = K x` for torn vectors.
+    ///
+    /// # Panics
+    /// If the vectors are shorter than [`torn_dim`](Self::torn_dim).
+    pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
+        let parts = &self.parts;
+        self.by_class(y, |class, members, columns| {
+            let base = &parts.subdomains.bases[class];
+            if parts.subdomains.classes.classes()[class].members.len() < SHARED {
+                for (&s, y) in members.iter().zip(columns) {
+                    let x = &x[self.torn_range(s as usize)];
+                    for (j, target) in y.iter_mut().enumerate() {
+                        // Symmetric: column j is row j.
+                        let (rows, values) = base.stiffness.column(j);
+                        *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
+                    }
+                }
+                return;
+            }
+            let blocks = base.blocks.get_or_init(|| BlockRows::new(&base.stiffness));
+            let (dim, count) = (base.stiffness.dim, members.len());
+            let mut panel = vec![0.0; dim * count];
+            let mut product = vec![0.0; dim * count];
+            for (m, &s) in members.iter().enumerate() {
+                let x = &x[self.torn_range(s as usize)];
+                x.iter()
+                    .enumerate()
+                    .for_each(|(i, v)| panel[i * count + m] = *v);
+            }
+            blocks.apply(&panel, &mut product, count);
+            for (m, y) in columns.into_iter().enumerate() {
+                let values = product.iter().skip(m).step_by(count);
+                y.iter_mut().zip(values).for_each(|(y, v)| *y = *v);
+            }
+        });
+    }
+
+    /// `u = K+ f` for torn vectors.
+    ///
+    /// # Panics
+    /// If the vectors are shorter than [`torn_dim`](Self::torn_dim).
+    pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
+        let parts = &self.parts;
+        self.by_class(u, |class, members, columns| {
+            let (base, inverse) = (&parts.subdomains.bases[class], &parts.inverses[class].full);
+            let (dim, count) = (base.stiffness.dim, members.len());
+            let mut memory = SolveMemory::new(inverse.need(count));
+            let mut x = vec![0.0; dim * count];
+            for (&s, column) in members.iter().zip(x.chunks_exact_mut(dim)) {
+                column.copy_from_slice(&f[self.torn_range(s as usize)]);
+            }
+            inverse.apply(&base.kernel, &mut x, count, &mut memory);
+            for (column, target) in x.chunks_exact(dim).zip(columns) {
+                target.copy_from_slice(column);
+            }
+        });
+    }
+
+    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`.
+    fn by_class(&self, out: &mut [f64], work: impl Fn(usize, &[u32], Vec<&mut [f64]>) + Sync) {
+        let mut targets: Vec<Option<&mut [f64]>> = Vec::with_capacity(self.subdomains());
+        let mut rest = out;
+        for s in 0..self.subdomains() {
+            let (own, tail) = std::mem::take(&mut rest).split_at_mut(self.torn_range(s).len());
+            targets.push(Some(own));
+            rest = tail;
+        }
+        let mut list = Vec::new();
+        for (class, own) in self.classes().classes().iter().enumerate() {
+            for members in own.members.chunks(PANEL) {
+                let columns: Vec<&mut [f64]> = members
+                    .iter()
+                    .filter_map(|&s| targets[s as usize].take())
+                    .collect();
+                list.push((class, members, columns));
+            }
+        }
+        list.into_par_iter()
+            .for_each(|(class, members, columns)| work(class, members, columns));
+    }
+}

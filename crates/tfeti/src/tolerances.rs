@@ -1,0 +1,83 @@
+//! All numbers of the crate that are judgements: what counts as zero, and what work is worth.
+//!
+//! The first part decides results, the second speed only.
+
+// ---- what counts as zero, alike or singular ----
+
+/// Unit vectors given by a user: largest error of their lengths and of right angles between them.
+pub(crate) const UNIT: f64 = 1e-10;
+/// Unit vectors and unit rows: up to this they are one, or at right angles.
+pub(crate) const SAME: f64 = 1e-12;
+/// Translates: largest difference of positions, relative to the size of a subdomain.
+pub(crate) const TRANSLATE: f64 = 1e-12;
+/// Directions: the share that is left of one that depends on others, or that supports fix.
+pub(crate) const FIXED: f64 = 1e-8;
+/// Prescribed displacements in one direction: relative difference that supports may have.
+pub(crate) const AGREEING: f64 = 1e-7;
+/// Sine of an angle that counts as none: a direction in a plane, nodes on a line.
+pub(crate) const ANGLE: f64 = 1e-6;
+/// Pivots and eigenvalues of small matrices, relative to the largest.
+pub(crate) const PIVOT: f64 = 1e-13;
+/// Pivots of coarse factors and of matrices from which directions are taken out, relative to the largest diagonal
+/// entry.
+pub(crate) const SINGULAR: f64 = 1e-14;
+/// Eigenvalues of free motions, relative to the largest: a support of extent `h` on a body of length `L` gives
+/// `(h/L)^2`.
+pub(crate) const FREE: f64 = 1e-11;
+/// Components of a free motion that is described, relative to its length.
+pub(crate) const MOVING: f64 = 1e-9;
+/// Work on a free motion, relative to the norms of both, above which a load is not in balance with it.
+pub(crate) const WORK: f64 = 1e-9;
+/// Weight of support rows that leaves the question alone whether they hold the bodies.
+pub(crate) const SUPPORTED: f64 = 0.01;
+/// Error in the equality of a solve with a factor in single precision with which steps are projected, relative.
+pub(crate) const ROUNDED_STEP: f64 = 1e-4;
+/// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular
+/// mesh, 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
+pub(crate) const ALIKE: f64 = 4.0;
+/// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
+/// large, but `B^T` takes them to zero.
+pub(crate) const DEPENDENT: f64 = 0.3;
+/// Nodes of a class without dense inverse at which it is asked for its compliance.
+pub(crate) const SAMPLE: usize = 3;
+/// Rows of one group that the scaling of preconditioners inverts as a dense matrix.
+pub(crate) const GROUP_ROWS: usize = 3000;
+
+// ---- what is worth a table, a cut or a thread; seconds are those of one core ----
+
+/// Members worked on at once: the height of the fastest dense kernels.
+pub(crate) const PANEL: usize = 24;
+/// Members of a class from which on preconditioners form dense matrices, and products use blocks.
+pub(crate) const SHARED: usize = 4;
+/// Operations a second of dense products, and bytes a second of matrices in cache and in memory.
+pub(crate) const FLOPS: f64 = 8e10;
+pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
+/// Bytes of dense matrices that still stay in the caches of one processor.
+pub(crate) const CACHE: u64 = 16 << 20;
+/// Columns solved at once when a dense block is formed, at least six.
+pub(crate) const COLUMNS: usize = 48;
+/// Node copies of a loop, operations of a product with `F`, numbers of a coarse solve and operations of a coarse factor
+/// that are worth a second thread.
+pub(crate) const LARGE: usize = 8000;
+pub(crate) const PRODUCT: u64 = 1_500_000;
+pub(crate) const SOLVE_READS: usize = 25_000;
+pub(crate) const OPERATIONS: f64 = 3e5;
+/// Most parts of a loop over subdomains: bounds work memory and useful threads. Blocks and entries of a part.
+pub(crate) const PARTS: usize = 64;
+pub(crate) const BLOCKS: usize = 2048;
+pub(crate) const GLOB_TASK: u64 = 4096;
+pub(crate) const SUBDOMAIN_TASK: u64 = 512;
+/// Coarse solves between two changes of the active set; seconds for a number that they read, for an operation of a
+/// change and for a number of a sparse factor over its mean column.
+pub(crate) const SOLVES: f64 = 12.0;
+pub(crate) const READ: f64 = 0.4e-9;
+pub(crate) const OPERATION: f64 = 0.04e-9;
+pub(crate) const SPARSE: f64 = 0.1e-9;
+/// Most levels of cuts through coarse blocks that change, and fewest blocks worth a cut.
+pub(crate) const CUTS: usize = 4;
+pub(crate) const CUT: usize = 36;
+/// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.
+pub(crate) const NODE: usize = 90;
+pub(crate) const BORDER: usize = 12;
+/// What a group of a subdomain's factor costs a solve besides its tiles, in tiles.
+pub(crate) const GROUP: usize = 4;

@@ -1,0 +1,17 @@
+//! The promises of the crate, one module each.
+
+mod active_set;
+mod classes;
+mod coarse;
+mod common;
+mod forecast;
+mod kernel;
+mod linear;
+mod operators;
+mod preconditioners;
+mod refusals;
+mod rows;
+mod scratch;
+mod sides;
+mod single_precision;
+mod supports;

@@ -1,0 +1,85 @@
+//! The lumped and the Dirichlet preconditioner.
+
+use crate::common::{Brick, build, dot, noise, norm};
+use signorini_fem_mesh::{Hooke, Materials};
+use signorini_qp::SymmetricOperator;
+use signorini_tfeti::internal::InverseKind;
+use signorini_tfeti::{DualPreconditioner, Tfeti};
+
+/// Iterations of preconditioned projected conjugate gradients to a relative residual of 1e-8.
+fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&DualPreconditioner>) -> usize {
+    let (f, factor) = (system.dual(), system.coarse_factor());
+    let (mut fs, mut cs) = (f.scratch(), factor.scratch());
+    let dim = f.dim();
+    let mut r = noise(dim, 17);
+    let mut f_r = vec![0.0; dim];
+    f.apply(&r, &mut f_r, &mut fs);
+    std::mem::swap(&mut r, &mut f_r);
+    factor.project(&mut r, None, &mut cs);
+    let start = norm(&r);
+    let mut ps = preconditioner.map(SymmetricOperator::scratch);
+    let mut precondition = |r: &[f64], cs: &mut signorini_tfeti::internal::CoarseScratch| {
+        let mut z = r.to_vec();
+        if let (Some(m), Some(s)) = (preconditioner, ps.as_mut()) {
+            m.apply(r, &mut z, s);
+            factor.project(&mut z, None, cs);
+        }
+        z
+    };
+    let mut z = precondition(&r, &mut cs);
+    let (mut p, mut rz) = (z.clone(), dot(&r, &z));
+    let mut fp = vec![0.0; dim];
+    for iteration in 1..500 {
+        f.apply(&p, &mut fp, &mut fs);
+        factor.project(&mut fp, None, &mut cs);
+        let step = rz / dot(&p, &fp);
+        (0..dim).for_each(|k| r[k] -= step * fp[k]);
+        if norm(&r) < 1e-8 * start {
+            return iteration;
+        }
+        z = precondition(&r, &mut cs);
+        let new = dot(&r, &z);
+        (0..dim).for_each(|k| p[k] = z[k] + new / rz * p[k]);
+        rz = new;
+    }
+    500
+}
+
+#[test]
+fn preconditioners_are_symmetric_and_help() {
+    let b = Brick::new(2, 4);
+    let counts = |system: &Tfeti| {
+        let (lumped, dirichlet) = (system.lumped().unwrap(), system.dirichlet().unwrap());
+        for m in [&lumped, &dirichlet] {
+            let (x, y) = (noise(m.dim(), 1), noise(m.dim(), 2));
+            let (mut mx, mut my, mut s) = (vec![0.0; m.dim()], vec![0.0; m.dim()], m.scratch());
+            m.apply(&x, &mut mx, &mut s);
+            m.apply(&y, &mut my, &mut s);
+            assert!((dot(&mx, &y) - dot(&my, &x)).abs() < 1e-11 * norm(&mx) * norm(&y));
+            assert!(dot(&mx, &x) > 0.0);
+        }
+        [None, Some(&lumped), Some(&dirichlet)].map(|m| preconditioned_iterations(system, m))
+    };
+    for sharing in [true, false] {
+        let [none, lumped, dirichlet] = counts(&build(&b, InverseKind::Auto, sharing));
+        assert!(
+            dirichlet < lumped && lumped < none,
+            "{none} {lumped} {dirichlet}"
+        );
+        assert!(dirichlet < 25, "{none} {lumped} {dirichlet}");
+    }
+}
+
+#[test]
+fn stiffness_scaling_copes_with_several_materials() {
+    let mut b = Brick::new(2, 4);
+    let regions: Vec<u32> = b.decomposition.parts().iter().map(|p| p % 2).collect();
+    b.mesh = b.mesh.clone().with_regions(regions).unwrap();
+    let law = |young| Hooke::isotropic(young, 0.3).unwrap();
+    b.materials = Materials::new(vec![(0, law(1e9)), (1, law(1e12))]).unwrap();
+    let system = b.system();
+    assert_eq!(system.classes().classes().len(), 2);
+    let dirichlet = system.dirichlet().unwrap();
+    let [with, without] = [Some(&dirichlet), None].map(|m| preconditioned_iterations(&system, m));
+    assert!(3 * with < without, "{with} {without}");
+}

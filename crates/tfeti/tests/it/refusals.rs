@@ -1,0 +1,134 @@
+//! Arguments that do not fit are refused by errors.
+
+use crate::common::Brick;
+use signorini_fem_mesh::Decomposition;
+use signorini_qp::{EqualityProjector, Line, QpError};
+use signorini_tfeti::internal::{ActiveSetFactor, CopyStiffness};
+use signorini_tfeti::{ActiveSetProjector, Gluing, Motion, NodeSupport, RowWeights, TfetiError};
+
+#[test]
+fn face_spaces_check_their_arguments() {
+    let system = Brick::new(1, 2).system();
+    let (coarse, dim) = (system.coarse(), system.dual_dim());
+    let contact = system.gluing().ranges().contact().end;
+    for kind in [
+        ActiveSetFactor::Auto,
+        ActiveSetFactor::Sparse,
+        ActiveSetFactor::Split,
+    ] {
+        let new = |rows, metric| ActiveSetProjector::with_factor(coarse, rows, metric, kind);
+        for rows in [contact + 1, dim + 1, usize::MAX] {
+            let error = new(rows, None).unwrap_err();
+            assert!(matches!(error, TfetiError::Setting { .. }), "{error}");
+        }
+        for length in [0, dim - 1, dim + 1] {
+            let error = new(contact, Some(vec![1.0; length])).unwrap_err();
+            assert!(matches!(error, TfetiError::Length { .. }), "{error}");
+        }
+        let mut metric = vec![1.0; dim];
+        metric[0] = -1.0;
+        let error = new(contact, Some(metric)).unwrap_err();
+        assert!(matches!(error, TfetiError::Setting { .. }), "{error}");
+        let mut space = new(contact, Some(vec![1.0; dim])).unwrap();
+        for length in [0, dim - 1, dim + 1] {
+            let error = space.set_weights(&vec![1.0; length]).unwrap_err();
+            assert!(matches!(error, QpError::Length { .. }), "{error}");
+        }
+        let line = |first, direction| Line {
+            first,
+            direction,
+            weight: 1.0,
+        };
+        let disc = system.gluing().ranges().discs.start;
+        let mut w = vec![1.0; dim];
+        w[disc..disc + 2].fill(0.0);
+        for line in [line(dim, [1.0, 0.0]), line(disc, [1.0, 1.0])] {
+            assert!(space.set_weights_and_lines(&w, &[line]).is_err());
+        }
+        assert_eq!(
+            space.set_weights_and_lines(&w, &[line(disc, [0.6, 0.8])]),
+            Ok(true)
+        );
+    }
+}
+
+#[test]
+fn line_directions_are_unit_vectors() {
+    let system = Brick::new(1, 2).system();
+    let factor = |direction| {
+        let mut weights = RowWeights::diagonal(vec![1.0; system.dual_dim()]);
+        let row = system.gluing().ranges().discs.start;
+        let weight = 1.0;
+        weights.lines.push(Line {
+            first: row,
+            direction,
+            weight,
+        });
+        system.coarse().factor_weighted(weights)
+    };
+    assert!(factor([0.6, -0.8]).is_ok());
+    let huge = [f64::INFINITY, 0.0];
+    for direction in [[0.0; 2], [1.0, 1e-4], [f64::NAN, 1.0], huge] {
+        let error = factor(direction).unwrap_err();
+        assert!(matches!(error, TfetiError::Setting { .. }), "{error}");
+    }
+}
+
+#[test]
+fn cases_beyond_the_supports_are_refused() {
+    let b = Brick::new(1, 2);
+    let gluing = |case| {
+        let values = vec![[0.0; 3]];
+        let support = NodeSupport::fixed(b.fixed.clone()).with_motion(Motion { case, values });
+        let nodes = b.mesh.points().len();
+        let stiffness = CopyStiffness::default();
+        Gluing::new(&b.decomposition, nodes, &[support], None, &stiffness)
+    };
+    assert!(gluing(0).is_ok());
+    for case in [1, u32::MAX] {
+        let error = gluing(case).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                TfetiError::CaseNumber {
+                    support: 0,
+                    supports: 1,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn gluing_checks_what_belongs_to_the_decomposition() {
+    let b = Brick::new(1, 2);
+    let stiffness = b.system().all_copy_stiffness();
+    let gluing = |decomposition: &Decomposition, nodes, stiffness: &CopyStiffness| {
+        let (supports, contact) = (b.supports(), b.contact(true));
+        Gluing::new(decomposition, nodes, &supports, Some(&contact), stiffness)
+    };
+    let nodes = b.mesh.points().len();
+    assert!(gluing(&b.decomposition, nodes, &stiffness).is_ok());
+    for wrong in [0, nodes - 1, nodes + 1] {
+        let error = gluing(&b.decomposition, wrong, &stiffness).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                TfetiError::DecompositionMismatch { what: "nodes", .. }
+            ),
+            "{error}"
+        );
+    }
+    for other in [
+        Decomposition::whole(&b.mesh),
+        Decomposition::boxes(&b.mesh, [6, 1, 1]).unwrap(),
+    ] {
+        let error = gluing(&other, nodes, &stiffness).unwrap_err();
+        assert!(
+            matches!(error, TfetiError::ForeignStiffness { subdomain: 0, .. }),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,248 @@
+//! Sides of several nodes: rows are the weighted mean of the jump, whatever the nodes, copies and supports.
+
+use crate::common::{Brick, column, distance, dot, gluing, noise, norm, product};
+use signorini_fem_mesh::{SurfaceFrame, brick};
+use signorini_qp::EqualityProjector;
+use signorini_tfeti::internal::{ActiveSetFactor, prescribed_points};
+use signorini_tfeti::{
+    ActiveSetProjector, ContactConstraint, ContactConstraints, Directions, Motion, NodeSupport,
+    Side, TangentialRows, Tfeti, TfetiError,
+};
+
+const WEIGHTS: [f64; 3] = [0.2, 0.3, 0.5];
+const DUAL: [f64; 4] = [0.7, -0.25, 0.65, -0.1];
+
+fn frame() -> SurfaceFrame {
+    SurfaceFrame::from_normal([0.6, 0.0, -0.8]).unwrap()
+}
+
+/// Nodes of the bottom of which some are shared by two and four subdomains.
+fn own(b: &Brick) -> [u32; 3] {
+    let most = |n: &&u32| b.decomposition.copies(**n as usize).len();
+    let mut nodes: Vec<&u32> = b.bottom.iter().filter(|n| !b.fixed.contains(n)).collect();
+    nodes.sort_by_key(most);
+    let [first, middle, last] = [0, nodes.len() - 3, nodes.len() - 1].map(|k| *nodes[k]);
+    assert_eq!(b.decomposition.copies(last as usize).len(), 4);
+    [first, middle, last]
+}
+
+fn side(nodes: &[u32], weights: &[f64]) -> Side {
+    Side::new(nodes.iter().copied().zip(weights.iter().copied()).collect())
+}
+
+/// Three nodes against four with dual weights, and the same three against a rigid wall.
+fn contact(b: &Brick) -> ContactConstraints {
+    let partner = &b.mesh.nodes_on(brick::Z_MAX)[5..9];
+    let own = side(&own(b), &WEIGHTS);
+    let against = ContactConstraint::new(own.clone(), frame()).with_friction(true);
+    [
+        against.clone().with_partner(Some(side(partner, &DUAL))),
+        against,
+    ]
+    .into_iter()
+    .collect()
+}
+
+fn system(b: &Brick, supports: &[NodeSupport]) -> Tfeti {
+    let contact = contact(b);
+    b.builder(supports).with_contact(&contact).build().unwrap()
+}
+
+/// The weighted mean of the jump of a torn displacement, by copies that count alike.
+fn jump(b: &Brick, system: &Tfeti, point: &ContactConstraint, u: &[f64]) -> [f64; 3] {
+    let mean = |side: &Side| {
+        let mut sum = [0.0; 3];
+        for &(node, weight) in side.nodes() {
+            let copies = b.decomposition.copies(node as usize);
+            for copy in copies {
+                let first =
+                    system.torn_range(copy.subdomain as usize).start + 3 * copy.local as usize;
+                (0..3).for_each(|c| sum[c] += weight * u[first + c] / copies.len() as f64);
+            }
+        }
+        sum
+    };
+    let other = point.partner.as_ref().map_or([0.0; 3], mean);
+    let own = mean(&point.side);
+    [0, 1, 2].map(|c| own[c] - other[c])
+}
+
+#[test]
+fn rows_are_the_weighted_mean_of_the_jump() {
+    let b = Brick::new(2, 3);
+    let (system, contact) = (system(&b, &b.supports()), contact(&b));
+    let u = noise(system.torn_dim(), 4);
+    let mut rows = vec![0.0; system.dual_dim()];
+    system.rows_times(&u, &mut rows);
+    assert_eq!(system.gluing().contact().len(), 2);
+    for info in system.gluing().contact() {
+        let point = &contact.points[info.point];
+        let jump = jump(&b, &system, point, &u);
+        let close = |row: usize, scale: f64, direction: &[f64; 3]| {
+            let length: f64 = system.gluing().row(row).iter().map(|e| e.2 * e.2).sum();
+            (rows[row] / scale - dot(&jump, direction)).abs() < 1e-14
+                && (length - 1.0).abs() < 1e-14
+        };
+        assert!(close(info.row, info.scale, &point.frame.normal));
+        let TangentialRows::Disc { row, scale } = info.tangential else {
+            panic!("friction in both directions");
+        };
+        assert!(close(row, scale, &point.frame.tangents[0]));
+        assert!(close(row + 1, scale, &point.frame.tangents[1]));
+    }
+    // B and its transpose are adjoint
+    let (x, mut f) = (noise(rows.len(), 5), vec![0.0; u.len()]);
+    system.add_rows_transposed(&x, &mut f);
+    assert!((dot(&x, &rows) - dot(&f, &u)).abs() < 1e-12 * norm(&x) * norm(&rows));
+    // a rigid translation does nothing to two sides, and its part along the normal to one
+    let [pair, wall] = [0, 1].map(|k| &system.gluing().contact()[k]);
+    assert!(
+        system
+            .gluing()
+            .direction(pair.row)
+            .iter()
+            .all(|v| v.abs() < 1e-15)
+    );
+    let direction = system.gluing().direction(wall.row).map(|v| v / wall.scale);
+    assert!(distance(&direction, &frame().normal) < 1e-15);
+}
+
+/// The tables of `F`, of `G` and of the split factor take rows on many copies as any others.
+#[test]
+fn operators_agree_with_the_rows() {
+    let b = Brick::new(2, 3);
+    let system = system(&b, &b.supports());
+    let x = noise(system.dual_dim(), 1);
+    let (mut f, mut u) = (vec![0.0; system.torn_dim()], vec![0.0; system.torn_dim()]);
+    system.add_rows_transposed(&x, &mut f);
+    system.generalised_inverse(&f, &mut u);
+    let mut y = vec![0.0; x.len()];
+    system.rows_times(&u, &mut y);
+    assert!(distance(&y, &product(&system, &x)) < 1e-12 * norm(&y));
+    let (coarse, mut s) = (system.coarse(), system.coarse().scratch());
+    let (mut g, mut expected) = (vec![0.0; coarse.rows()], vec![0.0; coarse.rows()]);
+    coarse.apply(&x, &mut g, &mut s);
+    for (row, value) in x.iter().enumerate() {
+        for (s, modes) in column(&system, row) {
+            (0..6).for_each(|k| expected[6 * s + k] += value * modes[k]);
+        }
+    }
+    assert!(distance(&g, &expected) < 1e-13 * norm(&g));
+    let contact = system.gluing().ranges().contact().end;
+    let projected = [ActiveSetFactor::Split, ActiveSetFactor::Sparse].map(|kind| {
+        let mut space = ActiveSetProjector::with_factor(coarse, contact, None, kind).unwrap();
+        let mut weights = vec![1.0; x.len()];
+        weights[1] = 0.0;
+        space.set_weights(&weights).unwrap();
+        let mut p = x.clone();
+        space.project(&mut p);
+        p
+    });
+    assert!(distance(&projected[0], &projected[1]) < 1e-12 * norm(&x));
+    assert!(system.lumped().is_ok() && system.dirichlet().is_ok());
+}
+
+/// A direction that is supported at all nodes is prescribed; otherwise the row stays and knows what supports do to it.
+#[test]
+fn supports_at_some_nodes_leave_the_row() {
+    let b = Brick::new(2, 3);
+    let (own, contact) = (own(&b), contact(&b));
+    let partner = b.mesh.nodes_on(brick::Z_MAX)[5..9].to_vec();
+    let motion = |case, z| Motion {
+        case,
+        values: vec![[0.0, 0.0, z]],
+    };
+    let held = |nodes: &[u32], case, z| {
+        let z_only = Directions::Components([false, false, true]);
+        NodeSupport::partial(nodes.to_vec(), z_only).with_motion(motion(case, z))
+    };
+    let some = [held(&own[..2], 0, 2e-3), held(&partner[1..], 1, -1e-3)];
+    let system = system(&b, &some);
+    let g = system.gluing();
+    assert_eq!(g.contact().len(), 2);
+    let mut u = noise(system.torn_dim(), 3);
+    for (nodes, z) in [(&own[..2], 2e-3), (&partner[1..], -1e-3)] {
+        for copy in nodes
+            .iter()
+            .flat_map(|n| b.decomposition.copies(*n as usize))
+        {
+            let start = system.torn_range(copy.subdomain as usize).start;
+            u[start + 3 * copy.local as usize + 2] = z;
+        }
+    }
+    let (mut rows, offsets) = (
+        vec![0.0; system.dual_dim()],
+        system.prescribed_offsets(&[(0, 1.0), (1, 1.0)]),
+    );
+    system.rows_times(&u, &mut rows);
+    for info in g.contact() {
+        let point = &contact.points[info.point];
+        let found = (rows[info.row] - offsets[info.row]) / info.scale;
+        let expected = dot(&jump(&b, &system, point, &u), &point.frame.normal);
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+    // both sides held in all directions: the weighted mean of what supports prescribe
+    let all = [(&own[..], 0, 2e-3), (&partner[..], 1, -1e-3)]
+        .map(|(nodes, case, z)| NodeSupport::fixed(nodes.to_vec()).with_motion(motion(case, z)));
+    let points = prescribed_points(&contact, &all, b.mesh.points().len()).unwrap();
+    assert_eq!(
+        points.iter().map(|p| (p.point, p.node)).collect::<Vec<_>>(),
+        [(0, own[0]), (1, own[0])]
+    );
+    let [(0, a), (1, c)] = points[0].normal[..] else {
+        panic!("{points:?}");
+    };
+    assert!(
+        (a + 0.8 * 2e-3).abs() < 1e-16 && (c - 0.8 * -1e-3).abs() < 1e-16,
+        "{a} {c}"
+    );
+}
+
+#[test]
+fn a_list_of_one_node_is_the_node() {
+    let b = Brick::new(1, 2);
+    let (node, other) = (b.bottom[7], b.mesh.nodes_on(brick::Z_MAX)[4]);
+    let entries = |own: Side, partner: Side| {
+        let point = ContactConstraint::new(own, frame()).with_partner(Some(partner));
+        let g = gluing(&b, &[], Some(&std::iter::once(point).collect())).unwrap();
+        (g.row(0), g.contact().to_vec(), g.is_orthonormal())
+    };
+    let list = entries(side(&[node], &[1.0]), side(&[other], &[1.0]));
+    assert_eq!(entries(node.into(), other.into()), list);
+}
+
+#[test]
+fn bad_sides_are_named() {
+    let b = Brick::new(1, 2);
+    let make = |points: Vec<ContactConstraint>| {
+        gluing(&b, &[], Some(&points.into_iter().collect())).unwrap_err()
+    };
+    let point =
+        |nodes: &[u32], weights: &[f64]| ContactConstraint::new(side(nodes, weights), frame());
+    for (nodes, weights) in [
+        (&[][..], &[][..]),
+        (&[3, 4], &[0.5, 0.6]),
+        (&[3, 4], &[1.0, 0.0]),
+        (&[3, 4], &[f64::NAN, 1.0]),
+        (&[3, 3], &[0.5, 0.5]),
+    ] {
+        let error = make(vec![point(&[1], &[1.0]), point(nodes, weights)]);
+        assert!(
+            matches!(error, TfetiError::BadSide { point: 1, .. }),
+            "{error}"
+        );
+    }
+    let error = make(vec![point(&[3, 1 << 20], &[0.5, 0.5])]);
+    assert!(matches!(error, TfetiError::UnknownNode { .. }), "{error}");
+    let twice = point(&[3, 4], &[0.5, 0.5]);
+    for points in [
+        vec![twice.clone(), twice.clone()],
+        vec![twice.with_partner(Some(side(&[4, 5], &[0.5, 0.5])))],
+    ] {
+        let error = make(points);
+        assert!(
+            matches!(error, TfetiError::ContactNodeTwice { .. }),
+            "{error}"
+        );
+    }
+}
