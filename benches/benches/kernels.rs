@@ -6,8 +6,8 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use signorini::fem_mesh::{Hooke, StrainRecovery, assemble_stiffness};
 use signorini::qp::{Equality, EqualityProjector, SymmetricOperator};
-use signorini::tfeti::internal::{ActiveSetFactor, InverseKind};
 use signorini::tfeti::ActiveSetProjector;
+use signorini::tfeti::internal::{ActiveSetFactor, InverseKind};
 use signorini_benches::{Body, Failure, wave};
 use signorini_studies::brick::{POISSON, YOUNG};
 use std::hint::black_box;

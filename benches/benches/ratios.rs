@@ -83,11 +83,8 @@ fn main() -> Result<(), Failure> {
             let time = product(quick, &system, threads)?;
             let [left, right] = gemm(quick, system.dual().flops(), size.unwrap_or(1), threads)?;
             let [m, p, v, follow, change] = parts(quick, &system, threads)?;
-            let setup = pool.install(|| {
-                seconds(quick, || {
-                    drop(body.system(true, InverseKind::Auto))
-                })
-            });
+            let setup =
+                pool.install(|| seconds(quick, || drop(body.system(true, InverseKind::Auto))));
             println!(
                 "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.2} | \
                  {:.3} | {:.1} |",
