@@ -4,7 +4,8 @@
 //! - projectors and vector work as a share of an iteration (with the product and the preconditioner),
 //! - for subdomains that share nothing: one product over the time to stream their factors or blocks once.
 //!
-//! `cargo bench -p signorini-benches --bench ratios`; with `-- --test` everything runs once and the figures mean nothing.
+//! `cargo bench -p signorini-benches --bench ratios`; with `-- --test` everything runs once and the figures mean
+//! nothing.
 
 use signorini::qp::{EqualityProjector, SymmetricOperator, vector};
 use signorini::tfeti::internal::InverseKind;
@@ -21,7 +22,7 @@ fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> 
 }
 
 /// Seconds of the lumped preconditioner, of both projectors and of the vector work of an iteration, of what a step that
-/// follows slip bounds does besides, and of a change of the face.
+/// follows slip bounds does besides, and of a change of the active set.
 fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failure> {
     let (mut x, mut y) = (wave(system.dual_dim()), wave(system.dual_dim()));
     let mut z = x.clone();
@@ -38,7 +39,7 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
             space.project_step(&mut x);
             space.project_step_transpose(&mut y);
         });
-        // what a step of `qp::face` does besides
+        // what a step of `qp::active_set` does besides
         let v = seconds(quick, || {
             let step = 1e-9 * vector::dot(&x, &y).clamp(0.0, 1.0);
             vector::axpy(step, &x, &mut y);
@@ -67,7 +68,8 @@ fn main() -> Result<(), Failure> {
         "Shared subdomains. Times in ms; ratio = F over the better of both dense products A X and X A.\n"
     );
     println!(
-        "| n | threads | F | A X | X A | ratio | lumped | both projectors | vectors | share of an iteration | slip bounds followed | share | change of face | set-up / F |"
+        "| n | threads | F | A X | X A | ratio | lumped | both projectors | vectors | share of an iteration | slip \
+         bounds followed | share | change of active set | set-up / F |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for n in sizes.clone() {
@@ -84,7 +86,8 @@ fn main() -> Result<(), Failure> {
             let setup =
                 pool.install(|| seconds(quick, || drop(body.system(true, InverseKind::Auto))));
             println!(
-                "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.2} | {:.3} | {:.1} |",
+                "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.2} | \
+                 {:.3} | {:.1} |",
                 1e3 * time,
                 1e3 * left,
                 1e3 * right,
@@ -101,10 +104,12 @@ fn main() -> Result<(), Failure> {
         }
     }
     println!(
-        "\nNo shared subdomains: F over the time to read factors or blocks once, at the bandwidth of the triad on arrays of 201 MB (memory) and of the same size.\n"
+        "\nNo shared subdomains: F over the time to read factors or blocks once, at the bandwidth of the triad on \
+         arrays of 201 MB (memory) and of the same size.\n"
     );
     println!(
-        "| n | inverse | threads | MB | F | GB/s of memory | ratio | GB/s of that size | ratio |\n|---|---|---|---|---|---|---|---|---|"
+        "| n | inverse | threads | MB | F | GB/s of memory | ratio | GB/s of that size | ratio \
+         |\n|---|---|---|---|---|---|---|---|---|"
     );
     for n in sizes.clone().take_while(|n| *n <= 4) {
         let body = Body::new(n)?;

@@ -1,0 +1,23 @@
+//! Plain programs, each in one file; `cargo run --release --example NAME` runs them.
+//!
+//! | program | shows |
+//! |---|---|
+//! | `first` | the program of the README |
+//! | `tresca` | a slip bound that is data, by two methods |
+//! | `two_bodies` | a pad on a rail |
+//! | `own_mesh` | a mesh of Gmsh, files for ParaView |
+//! | `restart` | a run that is stopped and continued |
+//! | `qp_only` | quadratic programming without mechanics |
+//!
+//! What is measured and reported about the library is in the package `signorini-studies`.
+
+/// The pieces of code in the how-to pages compile.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/how-to/loads.md")]
+#[doc = include_str!("../docs/how-to/floors-and-walls.md")]
+#[doc = include_str!("../docs/how-to/subdomains.md")]
+#[doc = include_str!("../docs/how-to/convergence.md")]
+#[doc = include_str!("../docs/how-to/accuracy.md")]
+#[doc = include_str!("../docs/how-to/results.md")]
+#[doc = include_str!("../docs/how-to/reactions.md")]
+pub struct HowTo;
