@@ -66,6 +66,9 @@ pub enum DecompositionError {
         /// Number of tetrahedra.
         tets: usize,
     },
+    /// No part at all is asked for.
+    #[error("a mesh cannot be cut into 0 parts; ask for 1 at least")]
+    NoParts,
     /// A box grid has no boxes along an axis.
     #[error("the grid of boxes {boxes:?} has none along {axis}; give at least 1 each")]
     NoBoxes {

@@ -95,6 +95,7 @@ mod compact;
 mod decomposition;
 mod disjoint;
 mod element;
+mod even_parts;
 mod files;
 mod history;
 mod hooke;
@@ -116,6 +117,7 @@ pub use decomposition::{
 };
 pub use disjoint::DisjointSets;
 pub use element::{Element, element_stiffness};
+pub use even_parts::even_parts;
 pub use fields::FieldError;
 pub use files::replace_file;
 pub use history::{History, HistoryError, interpolate};
