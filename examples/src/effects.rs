@@ -1,8 +1,7 @@
 //! Only what the scene calls for: one brick, its effects switched on one by one, each beside the plan's prediction; then
-//! the estimate against the truth and the saving by screening on the benchmark.
+//! the estimate against the truth on the benchmark.
 
 mod cases;
-pub mod far;
 pub mod shapes;
 pub mod table;
 
@@ -11,7 +10,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use serde::Serialize;
-use signorini::contact::{Rate, Screening, StepResult};
+use signorini::contact::{Rate, StepResult};
 use signorini::prelude::*;
 
 use crate::brick::{Benchmark, CELLS, Loading, STEPS};
@@ -29,7 +28,7 @@ pub struct EffectsOptions {
     /// Coarse mesh, few steps, benchmark with n = 1 only: seconds, for a first look.
     #[arg(long)]
     pub short: bool,
-    /// Sizes of the benchmark for which estimate and screening are compared with the truth.
+    /// Sizes of the benchmark for which the estimate is compared with the truth.
     #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
     pub n: Vec<usize>,
     /// Threads; 0 takes all cores.
@@ -53,7 +52,7 @@ pub struct Cost {
     pub support_rows: usize,
     /// Bytes of inverses, coarse factor and tables.
     pub bytes: u64,
-    /// Numeric factorisations of the set-up; of a run with those of rebuilds.
+    /// Numeric factorisations of the set-up; of a run those that it made.
     pub factorisations: usize,
     /// Products with F in all levels; of a plan those that are likely.
     pub products: usize,
@@ -96,10 +95,6 @@ pub struct Line {
     pub fallbacks: usize,
     /// Levels that did not converge.
     pub unconverged: usize,
-    /// Times rows of screened contact nodes came back.
-    pub rebuilds: usize,
-    /// Contact points left out of the dual problem, summed over the levels.
-    pub screened_points: usize,
     /// Seconds of stresses or error estimates.
     pub extra_seconds: f64,
     /// Largest certificate.
@@ -116,11 +111,8 @@ pub struct Results {
     pub effects: Vec<Line>,
     /// Other shapes, materials, supports and settings.
     pub shapes: Vec<Line>,
-    /// The benchmark, loading c, without screening, for the sizes asked for; then with all long sides as contact surface; then
-    /// other scenes with most of the contact surface far away.
+    /// The benchmark, loading c, for the sizes asked for.
     pub benchmark: Vec<Line>,
-    /// The same with screening.
-    pub screened: Vec<Line>,
 }
 
 /// Runs everything and prints the tables in Markdown.
@@ -135,7 +127,6 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
         effects: Vec::new(),
         shapes: Vec::new(),
         benchmark: Vec::new(),
-        screened: Vec::new(),
     };
     for case in cases(cells, steps)? {
         let line = pool.install(|| measure(&case, rate))?;
@@ -150,19 +141,14 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
             steps,
             ..Benchmark::new(n, Loading::C)
         };
-        for screening in [Screening::Off, Screening::on()] {
-            let case = Case {
-                name: format!("n = {n}"),
-                scene: benchmark.scene()?,
-                settings: Settings::default().with_screening(screening),
-                extra: Extra::None,
-            };
-            let line = pool.install(|| measure(&case, rate))?;
-            match screening {
-                Screening::Off => results.benchmark.push(line),
-                _ => results.screened.push(line),
-            }
-        }
+        let case = Case {
+            name: format!("n = {n}"),
+            scene: benchmark.scene()?,
+            settings: Settings::default(),
+            extra: Extra::None,
+        };
+        let line = pool.install(|| measure(&case, rate))?;
+        results.benchmark.push(line);
     }
     table::estimates(&results.benchmark, rate, out)?;
     let mut others = shapes::shapes()?;
@@ -172,29 +158,6 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
         results.shapes.push(line);
     }
     table::shapes(&results.shapes, out)?;
-    let mut wide = Vec::new();
-    for &n in sizes {
-        let benchmark = Benchmark {
-            cells,
-            steps,
-            ..Benchmark::new(n, Loading::C)
-        };
-        wide.push(Case {
-            name: format!("n = {n}, four sides"),
-            scene: cases::four_sides(benchmark.scene()?),
-            settings: Settings::default(),
-            extra: Extra::None,
-        });
-    }
-    wide.extend(far::far(options.short)?);
-    for mut case in wide {
-        let line = pool.install(|| measure(&case, rate))?;
-        results.benchmark.push(line);
-        case.settings = case.settings.with_screening(Screening::on());
-        let line = pool.install(|| measure(&case, rate))?;
-        results.screened.push(line);
-    }
-    table::screening(&results.benchmark, &results.screened, out)?;
     if let Some(path) = &options.json {
         let mut text = serde_json::to_string_pretty(&results)?;
         text.push('\n');
@@ -251,7 +214,7 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
             interface_rows: setup.rows.interface.len(),
             support_rows: setup.rows.dirichlet.len(),
             bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
-            factorisations: factorisations + counters.factorisations,
+            factorisations,
             products: counters.products,
             range: [counters.products; 2],
             setup_seconds: simulation.setup_time().as_secs_f64(),
@@ -263,8 +226,6 @@ pub fn measure(case: &Case, rate: Rate) -> Result<Line, ExampleError> {
         rate_updates: counters.rate_updates,
         fallbacks,
         unconverged,
-        rebuilds: counters.rebuilds,
-        screened_points: counters.screened_points,
         extra_seconds: extra,
         certificate,
         forces,

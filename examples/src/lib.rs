@@ -9,7 +9,7 @@
 //! | `bodies` | two elastic bodies: a pad pressed on a rail and pulled along it | [`bodies::execute`] |
 //! | `accuracy` | error against products and time: tolerance, mesh, time step, method, effects | [`accuracy::execute`] |
 //! | `stability` | hard cases, what the library does with them, and what has to hold | [`stability::app::execute`] |
-//! | `effects` | one brick, its effects switched on one by one beside the plan's prediction; estimates, screening | [`effects::execute`] |
+//! | `effects` | one brick, its effects switched on one by one beside the plan's prediction; estimates | [`effects::execute`] |
 //! | `performance` | from the paper's method to the default: products and time of each idea; `--cuts`: subdomains of every shape | [`performance::execute`], [`cuts::execute`] |
 //! | `qp_only` | quadratic programming without mechanics | [`qp_only::execute`] |
 //! | `first` | the program of the README | |

@@ -1,7 +1,7 @@
 //! The effects example: what is off costs nothing, and the plan's figures are those of the run.
 
 use clap::Parser;
-use signorini_examples::effects::{EffectsOptions, Line, execute, table::distance};
+use signorini_examples::effects::{EffectsOptions, Line, execute};
 
 fn find<'a>(lines: &'a [Line], name: &str) -> &'a Line {
     lines.iter().find(|l| l.name.ends_with(name)).expect("line")
@@ -17,13 +17,12 @@ fn effects_that_are_off_cost_nothing() {
     let results = execute(&options, &mut out).expect("run");
     let lines = &results.effects;
     assert!(lines.iter().all(|l| l.certificate < 1e-6));
-    // rows and factorisations are as planned; screening leaves contact rows out
-    for l in lines.iter().filter(|l| l.name != "+ screening") {
+    // rows and factorisations are as planned
+    for l in lines {
         assert_eq!(l.plan.rows(), l.truth.rows(), "{}", l.name);
         assert_eq!(l.plan.factorisations, l.truth.factorisations, "{}", l.name);
         let ratio = l.plan.products as f64 / l.truth.products as f64;
         assert!(ratio > 0.2 && ratio < 5.0, "{}: {ratio}", l.name);
-        assert_eq!((l.rebuilds, l.screened_points), (0, 0));
     }
     // the plan's range of products holds wherever the default method did not give up
     assert!(results.shapes.len() >= 13);
@@ -67,7 +66,7 @@ fn effects_that_are_off_cost_nothing() {
     );
     let cut = find(lines, "several subdomains");
     assert!(
-        lines[..lines.len() - 4]
+        lines[..lines.len() - 3]
             .iter()
             .all(|l| l.truth.interface_rows == 0)
     );
@@ -81,25 +80,6 @@ fn effects_that_are_off_cost_nothing() {
         );
         assert!(l.extra_seconds > 0.0);
     }
-    let screened = find(lines, "screening");
-    assert!(screened.screened_points > 0);
-    for (a, b) in [
-        (cut, screened),
-        (&results.benchmark[0], &results.screened[0]),
-    ] {
-        assert!(distance(&a.forces, &b.forces) < 1e-5);
-    }
-    // where most of the contact surface is far away most rows leave, and nothing else changes
-    for (a, b) in results.benchmark.iter().zip(&results.screened) {
-        assert_eq!(a.name, b.name);
-        assert!(distance(&a.forces, &b.forces) < 1e-5, "{}", a.name);
-        let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
-        assert!(contact(b) < contact(a) && b.truth.bytes <= a.truth.bytes);
-        assert_eq!(b.truth.factorisations - a.truth.factorisations, b.rebuilds);
-    }
-    let long = |lines: &[Line]| find(lines, "end bends down").truth;
-    let (a, b) = (long(&results.benchmark), long(&results.screened));
-    assert!(4 * (b.normal_rows + b.tangential_rows) < a.normal_rows + a.tangential_rows);
     let text = String::from_utf8(out).expect("text");
     assert!(text.contains("| + given friction |") && text.contains("| n = 1 |"));
     assert!(

@@ -405,7 +405,7 @@ pub enum ContactError {
         /// Its time in s.
         time: f64,
         /// How it ended.
-        status: crate::report::StepStatus,
+        status: crate::status::StepStatus,
         /// The largest relative violation of its certificate.
         certificate: f64,
     },

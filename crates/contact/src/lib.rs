@@ -17,7 +17,6 @@
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
 //! | to know how accurate it is | [`AlgebraicError`], [`AccumulatedError`], [`StepResult::discretisation_error`], [`StepDoubling`] |
 //! | to stop where more accuracy is useless | [`Accuracy`] |
-//! | less work where most of a surface stays open | [`Screening`] |
 //! | to follow or end a run | [`Observer`], [`Flow`] |
 //! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
 //!
@@ -73,69 +72,45 @@
 //! Work runs on the current [`rayon`] pool, and results have the same bits for any number of threads. For a pool that does
 //! nothing else see [`Settings::with_busy_waiting`].
 
-pub mod accumulated;
-pub mod accuracy;
-pub mod algebraic;
-mod bodies;
-mod candidates;
-mod certificate;
-mod clock;
-mod cone;
-mod contact_move;
-mod contact_surface;
-mod driven;
+// the file of a room that has its name holds its main type
+#![allow(clippy::module_inception)]
+
+mod discrete;
 mod error;
 mod estimate;
-mod exchange;
-mod face_solver;
-mod fingerprint;
-pub mod fixed_point;
-mod frame;
-mod held;
-mod law;
-mod level;
-mod linear_solver;
-mod magnitude;
 mod model;
-mod observer;
-mod paper_solver;
-mod partners;
 mod plan;
-mod point_state;
-mod pool;
-mod precheck;
-mod preconditioner;
-mod reactions;
 mod report;
+mod result;
 mod scene;
-mod screening;
 mod settings;
 mod simulation;
-mod slender;
-mod solver;
+mod solve;
 mod state;
-pub mod time_error;
+mod status;
+mod step;
+mod tolerances;
+mod vec3;
 
-pub use accumulated::AccumulatedError;
-pub use accuracy::{Accuracy, AccuracyReport};
-pub use algebraic::AlgebraicError;
-pub use certificate::{Certificate, Violation};
-pub use clock::{Analysis, DifferenceFormula};
-pub use contact_surface::{Contact, ContactNormal, Gap};
 pub use error::ContactError;
-pub use estimate::Estimate;
-pub use frame::StepResult;
-pub use law::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use model::ConstrainedPoint;
-pub use observer::{Flow, Observer, Silent};
-pub use plan::{Effects, FrictionKind, Plan};
-pub use point_state::{ContactState, ContactSummary, PointState};
-pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
-pub use report::{Counters, RunReport, StepFailure, StepReport, StepStatus};
-pub use scene::{Load, Partition, Place, Scene, Support};
-pub use screening::Screening;
-pub use settings::{InnerAccuracy, Method, Preconditioner, Settings};
+pub use plan::{Effects, Estimate, FrictionKind, Plan};
+pub use report::fixed_point;
+pub use report::{
+    AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepFailure, StepReport,
+};
+pub use result::{
+    Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant,
+    SupportReaction, Violation,
+};
+pub use scene::{
+    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load,
+    Partition, Place, PlaceField, RateField, Scene, SlipBound, Support,
+};
+pub use settings::{Accuracy, InnerAccuracy, Method, Preconditioner, Settings};
 pub use signorini_tfeti::{Directions, Rate};
-pub use simulation::Simulation;
+pub use simulation::{
+    Doubling, Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError,
+};
 pub use state::State;
-pub use time_error::{Doubling, StepDoubling, TimeError};
+pub use status::StepStatus;

@@ -4,14 +4,13 @@
 mod common;
 
 use common::{bits, methods, rest, small_benchmark, state_bits, step, weakening};
-use signorini_contact::{Accuracy, Friction, Screening, Settings, Simulation, State};
+use signorini_contact::{Accuracy, Friction, Settings, Simulation, State};
 
 #[test]
 fn a_stored_run_continues_bit_for_bit() {
     let mut settings = methods()
         .map(|m| Settings::default().with_method(m))
         .to_vec();
-    settings.push(Settings::default().with_screening(Screening::on()));
     settings.push(Settings::default().with_accuracy(Accuracy::Relative(1e-5)));
     settings.push(Settings::default().with_accuracy(Accuracy::balanced()));
     for settings in settings {

@@ -4,8 +4,8 @@ mod common;
 
 use common::{StepProblem, assert_close, block, ramp, run, uniform};
 use signorini_contact::{
-    Analysis, Contact, ContactError, DifferenceFormula, Friction, Load, Plan, Scene, Screening,
-    Settings, Simulation, Support,
+    Analysis, Contact, ContactError, DifferenceFormula, Friction, Load, Plan, Scene, Settings,
+    Simulation, Support,
 };
 use signorini_fem_mesh::{History, TetMesh, brick, fields};
 
@@ -41,27 +41,25 @@ fn centre(mesh: &TetMesh, level: &StepProblem) -> f64 {
 /// Over ways of two cells, with which the mesh repeats itself, the pressure is the same one, further along.
 #[test]
 fn the_pressure_goes_with_a_ball_that_is_dragged() {
-    for screening in [Screening::Off, Screening::on()] {
-        for friction in [0.0, 0.3] {
-            let contact = Contact::rigid(brick::Z_MIN)
-                .with_gap_field(ball(2.0))
-                .with_friction(Friction::coulomb(friction))
-                .with_motion([2.0, 0.0, 0.0], ramp());
-            let scene = scene(contact, 4);
-            let mesh = scene.mesh().clone();
-            let (_, levels) = run(scene, settings().with_screening(screening));
-            for level in &levels {
-                let at = 2.0 + 2.0 * level.time;
-                let found = centre(&mesh, level);
-                assert!((found - at).abs() < 0.02, "{friction}: {found}, not {at}");
-                let first = levels[0].summary.normal_force;
-                let force = level.summary.normal_force / first;
-                assert!((force - 1.0).abs() < 1e-3, "{friction}: {force}");
-                assert_eq!(level.summary.slip > 0, friction > 0.0);
-                // sliding as a whole
-                let drag = level.summary.friction_force[0] / level.summary.normal_force;
-                assert!((drag - friction).abs() < 0.02, "{friction}: {drag}");
-            }
+    for friction in [0.0, 0.3] {
+        let contact = Contact::rigid(brick::Z_MIN)
+            .with_gap_field(ball(2.0))
+            .with_friction(Friction::coulomb(friction))
+            .with_motion([2.0, 0.0, 0.0], ramp());
+        let scene = scene(contact, 4);
+        let mesh = scene.mesh().clone();
+        let (_, levels) = run(scene, settings());
+        for level in &levels {
+            let at = 2.0 + 2.0 * level.time;
+            let found = centre(&mesh, level);
+            assert!((found - at).abs() < 0.02, "{friction}: {found}, not {at}");
+            let first = levels[0].summary.normal_force;
+            let force = level.summary.normal_force / first;
+            assert!((force - 1.0).abs() < 1e-3, "{friction}: {force}");
+            assert_eq!(level.summary.slip > 0, friction > 0.0);
+            // sliding as a whole
+            let drag = level.summary.friction_force[0] / level.summary.normal_force;
+            assert!((drag - friction).abs() < 0.02, "{friction}: {drag}");
         }
     }
 }
@@ -75,27 +73,22 @@ fn a_level_is_that_of_an_obstacle_that_stands_there() {
         .clone()
         .with_gap_field(ball(2.0))
         .with_motion(way, ramp());
-    for screening in [Screening::Off, Screening::on()] {
-        let (_, levels) = run(
-            scene(moving.clone(), 3),
-            settings().with_screening(screening),
+    let (_, levels) = run(scene(moving.clone(), 3), settings());
+    for level in &levels {
+        let w = way.map(|c| level.time * c);
+        let there = ball(2.0);
+        let still = contact
+            .clone()
+            .with_gap_field(move |p| there([p[0] - w[0], p[1] - w[1], p[2]]) - w[2]);
+        let (_, still) = run(scene(still, 1), settings());
+        assert_close(
+            &level.displacement,
+            &still[0].displacement,
+            1e-7,
+            "displacement",
         );
-        for level in &levels {
-            let w = way.map(|c| level.time * c);
-            let there = ball(2.0);
-            let still = contact
-                .clone()
-                .with_gap_field(move |p| there([p[0] - w[0], p[1] - w[1], p[2]]) - w[2]);
-            let (_, still) = run(scene(still, 1), settings());
-            assert_close(
-                &level.displacement,
-                &still[0].displacement,
-                1e-7,
-                "displacement",
-            );
-            for (a, b) in level.points.iter().zip(&still[0].points) {
-                assert!((a.gap - b.gap).abs() < 1e-9);
-            }
+        for (a, b) in level.points.iter().zip(&still[0].points) {
+            assert!((a.gap - b.gap).abs() < 1e-9);
         }
     }
 }

@@ -5,7 +5,7 @@ mod common;
 use common::{block, methods, ramp, run, uniform};
 use signorini_contact::{
     Analysis, Contact, ContactError, ContactState, DifferenceFormula, Friction, Load, Place, Scene,
-    Screening, Settings, Simulation, Support,
+    Settings, Simulation, Support,
 };
 use signorini_fem_mesh::{History, brick, fields};
 
@@ -125,30 +125,28 @@ fn the_work_of_the_obstacle_is_stored_or_lost() {
 #[test]
 fn an_obstacle_that_rises_closes_the_gap() {
     let (gap, rise) = (1e-3, 3e-3);
-    for settings in [settings(), settings().with_screening(Screening::on())] {
-        let scene = Scene::new(block([1.0; 3], [2, 2, 2]), uniform(1e6, 0.0))
-            .with_contact(
-                floor(Friction::None)
-                    .with_gap(gap)
-                    .with_motion([0.0, 0.0, rise], ramp()),
-            )
-            .with_support(Support::fixed(brick::Z_MAX))
-            .with_boxes([1, 1, 2])
-            .with_analysis(Analysis::quasistatic(1.0, 6));
-        let (simulation, levels) = run(scene, settings);
-        assert!(simulation.plan().effects.moving_obstacle);
-        for level in &levels {
-            let depth = (rise * level.time - gap).max(0.0);
-            let force = level.summary.normal_force;
-            assert!(
-                (force - 1e6 * depth).abs() < 1e-4,
-                "{}: {force}",
-                level.time
-            );
-            let open = (gap - rise * level.time).max(0.0);
-            for point in &level.points {
-                assert!((point.gap - open).abs() < 1e-10);
-            }
+    let scene = Scene::new(block([1.0; 3], [2, 2, 2]), uniform(1e6, 0.0))
+        .with_contact(
+            floor(Friction::None)
+                .with_gap(gap)
+                .with_motion([0.0, 0.0, rise], ramp()),
+        )
+        .with_support(Support::fixed(brick::Z_MAX))
+        .with_boxes([1, 1, 2])
+        .with_analysis(Analysis::quasistatic(1.0, 6));
+    let (simulation, levels) = run(scene, settings());
+    assert!(simulation.plan().effects.moving_obstacle);
+    for level in &levels {
+        let depth = (rise * level.time - gap).max(0.0);
+        let force = level.summary.normal_force;
+        assert!(
+            (force - 1e6 * depth).abs() < 1e-4,
+            "{}: {force}",
+            level.time
+        );
+        let open = (gap - rise * level.time).max(0.0);
+        for point in &level.points {
+            assert!((point.gap - open).abs() < 1e-10);
         }
     }
 }

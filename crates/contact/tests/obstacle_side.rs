@@ -3,9 +3,7 @@
 mod common;
 
 use common::{block, steel};
-use signorini_contact::{
-    Contact, ContactError, Load, Plan, Scene, Screening, Settings, Simulation, Support,
-};
+use signorini_contact::{Contact, ContactError, Load, Plan, Scene, Settings, Simulation, Support};
 use signorini_fem_mesh::brick;
 
 fn result(contact: Contact, settings: Settings) -> Result<Simulation, ContactError> {
@@ -33,25 +31,23 @@ fn a_direction_into_the_body_or_along_its_surface_is_refused() {
         (floor().with_normal([0.0, 1.0, 0.0]), [0.0, 1.0, 0.0]),
         (plane([0.0, 0.0, -3.0]), [0.0, 0.0, 1.0]),
     ] {
-        for screening in [Screening::Off, Screening::on()] {
-            let settings = Settings::default().with_screening(screening);
-            let error = result(contact.clone(), settings).expect_err("refused");
-            let text = error.to_string();
-            assert!(
-                text.starts_with("contact 0:") && text.contains("turn the direction round"),
-                "{text}"
-            );
-            match error {
-                ContactError::ObstacleSide {
-                    contact: 0,
-                    direction,
-                    nodes,
-                } => {
-                    assert_eq!(direction.map(|c| c + 0.0), expected);
-                    assert_eq!(nodes, 9);
-                }
-                other => panic!("{other}"),
+        let settings = Settings::default();
+        let error = result(contact, settings).expect_err("refused");
+        let text = error.to_string();
+        assert!(
+            text.starts_with("contact 0:") && text.contains("turn the direction round"),
+            "{text}"
+        );
+        match error {
+            ContactError::ObstacleSide {
+                contact: 0,
+                direction,
+                nodes,
+            } => {
+                assert_eq!(direction.map(|c| c + 0.0), expected);
+                assert_eq!(nodes, 9);
             }
+            other => panic!("{other}"),
         }
     }
 }

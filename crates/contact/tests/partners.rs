@@ -198,7 +198,7 @@ fn a_stiff_plate_is_a_rigid_floor() {
 }
 
 #[test]
-fn results_do_not_depend_on_the_cut_nor_on_screening_nor_on_which_side_comes_first() {
+fn results_do_not_depend_on_the_cut_nor_on_which_side_comes_first() {
     let plate = 4e11;
     let (_, reference) = run(beam(Some(plate)), tight());
     for boxes in [[1, 1, 2], [3, 2, 2], [2, 1, 4]] {
@@ -207,11 +207,6 @@ fn results_do_not_depend_on_the_cut_nor_on_screening_nor_on_which_side_comes_fir
             assert_close(&a.displacement, &b.displacement, 1e-6, "cut");
             assert_close(&forces(&a.points), &forces(&b.points), 1e-6, "cut");
         }
-    }
-    let screened = tight().with_screening(Screening::on());
-    let (_, levels) = run(beam(Some(plate)), screened);
-    for (a, b) in levels.iter().zip(&reference) {
-        assert_close(&forces(&a.points), &forces(&b.points), 1e-6, "screened");
     }
     let swapped = Contact::between(second(brick::Z_MAX), brick::Z_MIN).with_friction(weakening());
     let (_, levels) = run(beam(Some(plate)).replace_contact(Some(swapped)), tight());

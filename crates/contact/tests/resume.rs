@@ -5,7 +5,7 @@ mod common;
 use common::{block, rest, state_bits, steel, up_down_up, weakening};
 use signorini_contact::{
     Accuracy, Analysis, Contact, ContactError, DifferenceFormula, Directions, Friction, Load,
-    Method, Scene, Screening, Settings, Simulation, State, Support,
+    Method, Scene, Settings, Simulation, State, Support,
 };
 use signorini_fem_mesh::{Facet, History, Hooke, Materials, SurfaceFrame, TetMesh, brick};
 use signorini_tfeti::RowScaling;
@@ -281,7 +281,6 @@ fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
     };
     for settings in [
         Settings::default(),
-        Settings::default().with_screening(Screening::on()),
         Settings::default().with_accuracy(Accuracy::Relative(1e-6)),
     ] {
         for steps in [5, 8] {

@@ -5,7 +5,7 @@ mod common;
 use common::{block, methods, uniform};
 use signorini_contact::{
     Analysis, Contact, ContactError, DifferenceFormula, Flow, Friction, Load, Method, Scene,
-    Screening, Settings, Silent, Simulation, StepResult, StepStatus, Support,
+    Settings, Silent, Simulation, StepResult, StepStatus, Support,
 };
 use signorini_fem_mesh::{History, brick};
 use signorini_qp::ActiveSetSettings;
@@ -107,22 +107,19 @@ fn an_observer_can_end_a_run_at_the_first_such_level() {
 fn a_resumed_run_knows_what_it_continues() {
     let mut first = rough();
     let _ = first.step().expect("step");
-    for screening in [Screening::Off, Screening::on()] {
-        let settings = Settings::default().with_screening(screening);
-        let mut second =
-            Simulation::new(cantilever(Friction::coulomb(0.8)), settings).expect("set-up");
-        second.resume(first.state().clone()).expect("resume");
-        let report = second.run(&mut Silent).expect("run");
-        assert!(report.failures.is_empty());
-        assert_eq!(report.unconverged_history, Some(0));
-        let error = report
-            .require_converged()
-            .expect_err("an unconverged history");
-        assert!(matches!(
-            error,
-            ContactError::UnconvergedHistory { level: 0 }
-        ));
-    }
+    let mut second =
+        Simulation::new(cantilever(Friction::coulomb(0.8)), Settings::default()).expect("set-up");
+    second.resume(first.state().clone()).expect("resume");
+    let report = second.run(&mut Silent).expect("run");
+    assert!(report.failures.is_empty());
+    assert_eq!(report.unconverged_history, Some(0));
+    let error = report
+        .require_converged()
+        .expect_err("an unconverged history");
+    assert!(matches!(
+        error,
+        ContactError::UnconvergedHistory { level: 0 }
+    ));
 }
 
 #[cfg(feature = "checkpoint")]

@@ -52,8 +52,8 @@ pub mod prelude {
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactState,
         DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Place, Plan,
-        PointState, Preconditioner, RunReport, Scene, Screening, Settings, Silent, Simulation,
-        SlipBound, State, StepResult, StepStatus, Support,
+        PointState, Preconditioner, RunReport, Scene, Settings, Silent, Simulation, SlipBound,
+        State, StepResult, StepStatus, Support,
     };
     pub use signorini_fem_mesh::{
         Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,

@@ -1,6 +1,5 @@
 //! The scenes: each has one effect more than the one before.
 
-use signorini::contact::Screening;
 use signorini::prelude::*;
 
 use crate::brick::{self as benchmark, DURATION, FRICTION, GAP, LENGTHS, POISSON, YOUNG};
@@ -32,18 +31,6 @@ pub struct Case {
 
 /// Bound of the given friction stress, Pa.
 const BOUND: f64 = 3e8;
-
-/// A scene of the brick in which all four long sides may touch something 0.1 m away, as if nobody had said where.
-#[must_use]
-pub(super) fn four_sides(scene: Scene) -> Scene {
-    let friction = scene.contact().map(|c| c.friction().clone());
-    let contact = [brick::Z_MAX, brick::Y_MIN, brick::Y_MAX]
-        .into_iter()
-        .fold(Contact::rigid(brick::Z_MIN), Contact::with_tag);
-    // measured with one normal a node
-    let contact = contact.with_gap(GAP).with_crease(180.0);
-    scene.replace_contact(Some(contact.with_friction(friction.unwrap_or_default())))
-}
 
 /// The brick of the benchmark with `cells` cells along the edge of each of three subdomains, and `steps` steps where it has a
 /// history.
@@ -93,15 +80,11 @@ pub fn cases(cells: usize, steps: usize) -> Result<Vec<Case>, ExampleError> {
         case("+ several subdomains", full()),
         case("+ stress output", full()),
         case("+ error estimates", full()),
-        case("+ screening", full()),
     ];
     for case in &mut out {
         match case.name.as_str() {
             "+ stress output" => case.extra = Extra::Stress,
             "+ error estimates" => case.extra = Extra::Errors,
-            "+ screening" => {
-                case.settings = Settings::default().with_screening(Screening::on());
-            }
             _ => {}
         }
     }

@@ -101,63 +101,6 @@ pub(super) fn shapes(lines: &[Line], out: &mut impl Write) -> Result<(), Example
     Ok(())
 }
 
-pub(super) fn screening(
-    off: &[Line],
-    on: &[Line],
-    out: &mut impl Write,
-) -> Result<(), ExampleError> {
-    writeln!(
-        out,
-        "\nWithout / with screening. Rows and bytes at the end; nodes left out: mean over the levels; seconds of levels and rebuilds.\n\n\
-         | scene | contact rows of all rows | nodes left out | rebuilds | factorisations | set-up MB | products | set-up s | levels s | forces differ | certificate |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|"
-    )?;
-    for (a, b) in off.iter().zip(on) {
-        let contact = |l: &Line| l.truth.normal_rows + l.truth.tangential_rows;
-        writeln!(
-            out,
-            "| {} | {} / {} of {} | {:.1} of {} | {} | {} / {} | {:.2} / {:.2} | {} / {} | {:.3} / {:.3} | {:.2} / {:.2} | {:.1e} | {:.1e} / {:.1e} |",
-            a.name,
-            contact(a),
-            contact(b),
-            a.truth.rows(),
-            b.screened_points as f64 / b.levels as f64,
-            a.truth.normal_rows,
-            b.rebuilds,
-            a.truth.factorisations,
-            b.truth.factorisations,
-            a.truth.bytes as f64 / 1e6,
-            b.truth.bytes as f64 / 1e6,
-            a.truth.products,
-            b.truth.products,
-            a.truth.setup_seconds,
-            b.truth.setup_seconds,
-            a.truth.solve_seconds,
-            b.truth.solve_seconds,
-            distance(&a.forces, &b.forces),
-            a.certificate,
-            b.certificate,
-        )?;
-    }
-    out.flush()?;
-    Ok(())
-}
-
-/// `|a - b| / |a|`; infinite for lists of different lengths.
-#[must_use]
-pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    if a.len() != b.len() {
-        return f64::INFINITY;
-    }
-    let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
-    let difference = norm(&mut a.iter().zip(b).map(|(a, b)| a - b));
-    if difference == 0.0 {
-        0.0
-    } else {
-        difference / norm(&mut a.iter().copied())
-    }
-}
-
 /// One figure if the plan is exact.
 fn pair(plan: usize, truth: usize) -> String {
     if plan == truth {

@@ -1,8 +1,7 @@
 //! Continuing from a stored state.
 
-use super::Simulation;
+use super::simulation::Simulation;
 use crate::error::ContactError;
-use crate::screening::Screen;
 use crate::state::State;
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
@@ -14,9 +13,6 @@ impl Simulation {
     /// their normals and areas, difference formula, and the times of the levels solved so far. Free to change are loads, motions of supports, materials,
     /// gap, coefficients, times to come, settings and method: the state is then where the changed scene goes on from. A start from
     /// a scene that is another one on purpose needs [`State::without_origin`]; sizes must fit in any case.
-    ///
-    /// States do not depend on [`Screening`](crate::Screening): one stored with it can be continued without, and the other
-    /// way round; bit for bit the same only with the same setting.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
@@ -35,42 +31,26 @@ impl Simulation {
             ));
         }
         let tfeti = &self.model.tfeti;
-        let own = (tfeti.dual_dim(), self.model.tangential_rows());
-        let (rows, tangential) = self.screen.as_ref().map_or(own, Screen::sizes);
-        let (coarse, points) = (tfeti.coarse().rows(), self.constrained_points().len());
-        state.fits(rows, coarse, tangential, points)?;
+        let (rows, coarse) = (tfeti.dual_dim(), tfeti.coarse().rows());
+        state.fits(
+            rows,
+            coarse,
+            self.model.tangential_rows(),
+            self.model.points.len(),
+        )?;
         state.set_origin(origin);
-        if self.screen.is_some() {
-            let active = match (state.step(), state.active()) {
-                (0, _) => vec![false; points],
-                (_, []) => vec![true; points],
-                (_, active) => active.to_vec(),
-            };
-            self.admit(active)?;
-        } else if !state.active().is_empty() {
-            state.forget_products();
-            state.set_active(&[]);
-        }
         self.check_products(&mut state);
         self.solved = false;
         self.state = Arc::new(state);
         Ok(())
     }
 
-    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its word. With
-    /// screening it is then forgotten: rows of points left out have none.
+    /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its word.
     fn check_products(&self, state: &mut State) {
         let dual = self.model.tfeti.dual();
-        let mut foreign = false;
         state.renew_products(self.operator, |lambda, f_lambda| {
-            foreign = true;
-            if self.screen.is_none() {
-                dual.apply(lambda, f_lambda, &mut dual.scratch());
-            }
+            dual.apply(lambda, f_lambda, &mut dual.scratch());
         });
-        if foreign && self.screen.is_some() {
-            state.forget_products();
-        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Solving all levels that are left.
 
-use super::Simulation;
+use super::observer::{Flow, Observer};
+use super::simulation::Simulation;
 use crate::error::ContactError;
-use crate::observer::{Flow, Observer};
 use crate::report::RunReport;
 
 impl Simulation {

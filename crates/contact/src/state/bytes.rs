@@ -1,11 +1,11 @@
 //! A state as bytes.
 
-use super::State;
+use super::state::State;
 use crate::error::ContactError;
 use std::path::Path;
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_470a;
+const MAGIC: u32 = 0x5349_470b;
 
 /// FNV-1a of 64 bits: any one changed byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {
@@ -108,7 +108,7 @@ fn file_error(path: &Path, what: &'static str, source: std::io::Error) -> Contac
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::tests::state;
+    use crate::state::state::tests::state;
 
     #[test]
     fn bytes_round_trip_and_damage_is_noticed() {

@@ -1,6 +1,6 @@
 //! What a state shows of itself.
 
-use super::State;
+use super::state::State;
 use std::fmt;
 
 /// How far it is and how large; with `{:#?}` all of its numbers.
@@ -16,8 +16,6 @@ impl fmt::Debug for State {
                 trace,
                 rate,
                 sliding,
-                active,
-                gaps,
                 controller,
                 peaks,
                 unconverged,
@@ -33,8 +31,6 @@ impl fmt::Debug for State {
                 .field("trace", trace)
                 .field("rate", rate)
                 .field("sliding", sliding)
-                .field("active", active)
-                .field("gaps", gaps)
                 .field("controller", controller)
                 .field("peaks", peaks)
                 .field("unconverged", unconverged)

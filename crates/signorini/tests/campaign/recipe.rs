@@ -260,8 +260,6 @@ pub(crate) enum Ending {
 pub(crate) struct How {
     pub(crate) solver: Solver,
     pub(crate) ending: Ending,
-    /// Margin.
-    pub(crate) screening: Option<f64>,
     /// 0 lumped, 1 Dirichlet, 2 none.
     pub(crate) preconditioner: usize,
     pub(crate) chained: bool,
@@ -275,7 +273,6 @@ impl How {
     pub(crate) fn is_default(&self) -> bool {
         self.solver == Solver::Face
             && self.ending == Ending::Tolerance(1e-6)
-            && self.screening.is_none()
             && self.preconditioner == 0
             && !self.chained
             && self.extrapolate

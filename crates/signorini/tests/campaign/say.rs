@@ -170,9 +170,6 @@ pub(crate) fn settings(recipe: &Recipe) -> Settings {
         Ending::Relative(target) => settings.with_accuracy(Accuracy::Relative(target)),
         Ending::Balanced(fraction) => settings.with_accuracy(Accuracy::Balanced { fraction }),
     };
-    if let Some(margin) = how.screening {
-        settings = settings.with_screening(Screening::On { margin });
-    }
     if how.chained {
         settings = settings.with_row_scaling(RowScaling::Chained);
     }

@@ -1,0 +1,88 @@
+//! Sides of a surface that meet at creases.
+
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use std::collections::HashMap;
+
+/// The sides that meet at each node of a crease, as frames and areas; keys are places in the surface.
+pub(super) fn creases(
+    mesh: &TetMesh,
+    surface: &Surface,
+    crease: f64,
+) -> HashMap<u32, Vec<(SurfaceFrame, f64)>> {
+    let mut out = HashMap::new();
+    if crease >= 180.0 {
+        return out;
+    }
+    let limit = crease.to_radians().cos();
+    let vectors: Vec<[f64; 3]> = surface
+        .triangles()
+        .iter()
+        .map(|t| area_vector(mesh, surface, t))
+        .collect();
+    let mut around: Vec<Vec<u32>> = vec![Vec::new(); surface.nodes().len()];
+    for (k, triangle) in surface.triangles().iter().enumerate() {
+        triangle
+            .iter()
+            .for_each(|&n| around[n as usize].push(k as u32));
+    }
+    for (node, triangles) in around.iter().enumerate() {
+        let sides = sides(surface, &vectors, triangles, limit);
+        if sides.len() < 2 {
+            continue;
+        }
+        let side = |members: &Vec<u32>| {
+            let mut sum = [0.0; 3];
+            let mut area = 0.0;
+            for &t in members {
+                let v = vectors[t as usize];
+                area += length(v) / 3.0;
+                (0..3).for_each(|c| sum[c] += v[c]);
+            }
+            SurfaceFrame::from_normal(sum).map(|frame| (frame, area))
+        };
+        out.insert(node as u32, sides.iter().filter_map(side).collect());
+    }
+    out
+}
+
+/// Triangles around a node, grouped: those that share an edge and are not separated by a crease are of one side.
+fn sides(surface: &Surface, vectors: &[[f64; 3]], triangles: &[u32], limit: f64) -> Vec<Vec<u32>> {
+    let smooth = |a: u32, b: u32| {
+        let [v, w] = [a, b].map(|t| vectors[t as usize]);
+        let [p, q] = [a, b].map(|t| surface.triangles()[t as usize]);
+        let shared = p.iter().filter(|n| q.contains(n)).count();
+        let product: f64 = v.iter().zip(&w).map(|(x, y)| x * y).sum();
+        shared == 2 && product > limit * length(v) * length(w)
+    };
+    let mut left: Vec<u32> = triangles.to_vec();
+    let mut out = Vec::new();
+    while let Some(&first) = left.first() {
+        let mut side = vec![first];
+        left.remove(0);
+        let mut next = 0;
+        while next < side.len() {
+            let from = side[next];
+            let (joined, rest) = left.iter().partition(|&&t| smooth(from, t));
+            left = rest;
+            side.extend::<Vec<u32>>(joined);
+            next += 1;
+        }
+        out.push(side);
+    }
+    out
+}
+
+/// Outward vector of a triangle, of the length of its area.
+pub(super) fn area_vector(mesh: &TetMesh, surface: &Surface, triangle: &[u32; 3]) -> [f64; 3] {
+    let [a, b, c] = triangle.map(|n| mesh.points()[surface.nodes()[n as usize] as usize]);
+    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
+    [
+        0.5 * (u[1] * v[2] - u[2] * v[1]),
+        0.5 * (u[2] * v[0] - u[0] * v[2]),
+        0.5 * (u[0] * v[1] - u[1] * v[0]),
+    ]
+}
+
+pub(super) fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}

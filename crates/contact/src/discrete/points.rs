@@ -1,0 +1,315 @@
+//! Where contact can happen: the contact points of all surfaces, with normal, area and gap.
+//!
+//! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two contacts
+//! meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all of
+//! their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the conditions follows
+//! from the other. Between bodies a node is one point, with a partner.
+//!
+//! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate judges the former.
+
+use super::creases::{area_vector, creases, length};
+use super::overflow::largest_factor;
+use super::partners::{Partner, partners};
+use super::rounding::rounding;
+use crate::error::ContactError;
+use crate::scene::{Contact, ContactNormal, Scene};
+use signorini_fem_mesh::{Surface, SurfaceFrame};
+use signorini_qp::vector;
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+/// Cosine to the outward normal below which a direction counts as along the surface.
+const ALONG: f64 = 1e-9;
+
+/// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at any
+/// angle (tests/edges_apart.rs). Within smaller ones a node would have twice the same row, which [`ContactConstraints`] refuses, and one
+/// condition keeps the other to 1.4e-6 of the way along the surface, which the certificate sees.
+const SAME: f64 = 1.0 - 1e-12;
+
+/// A contact point before any row is made.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactPoint {
+    /// Position of its contact surface in the scene.
+    pub(crate) surface: usize,
+    /// Mesh node.
+    pub(crate) node: u32,
+    /// Its partner on another body.
+    pub(crate) partner: Option<u32>,
+    pub(crate) frame: SurfaceFrame,
+    /// A third of the areas of the facets of its side, m².
+    pub(crate) area: f64,
+    /// Initial distance to the obstacle, m.
+    pub(crate) gap: f64,
+}
+
+impl ContactPoint {
+    /// The gap where the obstacle has moved by `way`, m.
+    pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
+        let contact = &scene.contacts[self.surface];
+        let at = scene.mesh.points()[self.node as usize];
+        let normal = &self.frame.normal;
+        let brought = contact.gap_brought(self.surface, self.node, at, normal, (self.gap, way))?;
+        Ok(brought + vector::dot(way, normal))
+    }
+}
+
+/// What a scene has of contact.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    /// The surfaces of its contacts.
+    pub(crate) surfaces: Vec<Surface>,
+    /// What the contacts say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
+    pub(crate) conditions: Vec<ContactPoint>,
+    /// The contact points that stand for them.
+    pub(crate) points: Vec<ContactPoint>,
+    /// What of a gap may be rounding, m.
+    pub(crate) rounding: f64,
+}
+
+impl Found {
+    pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
+        let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
+        let surfaces = scene.contacts.iter().map(surface);
+        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
+        let conditions = conditions(scene, &surfaces)?;
+        let rounding = rounding(&scene.mesh);
+        let points = points(scene, &conditions, rounding)?;
+        Ok(Self {
+            surfaces,
+            conditions,
+            points,
+            rounding,
+        })
+    }
+
+    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are those
+    /// of nodes that supports hold, judged before anything is solved ([`check_penetration`]).
+    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
+        let mut places = places.peekable();
+        let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();
+        for (place, point) in self.points.iter().enumerate() {
+            if places.next_if_eq(&place).is_none() {
+                without.entry(point.node).or_default().push(point);
+            }
+        }
+        let left = |c: &&ContactPoint| {
+            let points = without.get(&c.node);
+            !points.is_some_and(|p| p.iter().any(|p| is_same(p, c)))
+        };
+        self.conditions.iter().filter(left).cloned().collect()
+    }
+}
+
+fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
+    let mut out: Vec<ContactPoint> = Vec::new();
+    for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
+        let first = out.len();
+        let fixed = fixed_frame(index, contact, surface)?;
+        let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
+        let sides = match fixed {
+            None if partners.is_empty() => creases(&scene.mesh, surface, contact.crease),
+            _ => HashMap::new(),
+        };
+        for (local, &node) in surface.nodes().iter().enumerate() {
+            let partner = partners.get(local);
+            let measured = partner.map_or(0.0, |p: &Partner| p.gap);
+            let gap = contact.gap_at(index, node, scene.mesh.points()[node as usize], measured)?;
+            let one = [(surface.frames()[local], surface.areas()[local])];
+            let own = sides.get(&(local as u32));
+            for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
+                out.push(ContactPoint {
+                    surface: index,
+                    node,
+                    partner: partner.map(|p| p.node),
+                    frame: fixed.unwrap_or(frame),
+                    area,
+                    gap,
+                });
+            }
+        }
+        check_turn(scene, index, surface, &out[first..])?;
+    }
+    Ok(out)
+}
+
+/// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
+fn points(
+    scene: &Scene,
+    conditions: &[ContactPoint],
+    rounding: f64,
+) -> Result<Vec<ContactPoint>, ContactError> {
+    let mut out: Vec<ContactPoint> = Vec::with_capacity(conditions.len());
+    // points of each node that there may be others of
+    let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
+    let mut count = vec![0u32; scene.mesh.points().len()];
+    conditions.iter().for_each(|c| count[c.node as usize] += 1);
+    for condition in conditions {
+        if count[condition.node as usize] == 1 {
+            out.push(condition.clone());
+            continue;
+        }
+        let others = known.entry(condition.node).or_default();
+        match others
+            .iter()
+            .find(|k| condition.partner.is_none() && is_same(&out[**k], condition))
+        {
+            Some(&k) => join(scene, rounding, &mut out[k], condition)?,
+            None => {
+                others.push(out.len());
+                out.push(condition.clone());
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// The one frame of all nodes of a contact with a fixed direction.
+fn fixed_frame(
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+) -> Result<Option<SurfaceFrame>, ContactError> {
+    let ContactNormal::Fixed(normal) = contact.normal else {
+        return Ok(None);
+    };
+    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal {
+        contact: index,
+        normal,
+    })?;
+    let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
+    if !surface.frames().iter().any(outside) {
+        return Err(ContactError::ObstacleSide {
+            contact: index,
+            direction: normal,
+            nodes: surface.nodes().len(),
+        });
+    }
+    Ok(Some(frame))
+}
+
+/// Whether two conditions of a node are on the same displacement: one of them then follows from the other.
+fn is_same(a: &ContactPoint, b: &ContactPoint) -> bool {
+    a.partner == b.partner && a.frame.normal_part(b.frame.normal) > SAME
+}
+
+/// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are its own.
+/// Where both are as near the law is that of the first one, on the area of both; facets that they share count once.
+fn join(
+    scene: &Scene,
+    rounding: f64,
+    point: &mut ContactPoint,
+    other: &ContactPoint,
+) -> Result<(), ContactError> {
+    let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
+    let nearer = order(other.gap - point.gap, rounding);
+    if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
+        return Err(ContactError::SharedNode {
+            node: point.node,
+            first: point.surface,
+            second: other.surface,
+        });
+    }
+    match nearer {
+        Ordering::Equal => {
+            let shared = x.tags.iter().any(|t| y.tags.contains(t));
+            point.area = if shared && point.surface != other.surface {
+                point.area.max(other.area)
+            } else {
+                point.area + other.area
+            };
+        }
+        Ordering::Less => {
+            (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+        }
+        Ordering::Greater => {}
+    }
+    Ok(())
+}
+
+/// The sign of a difference of gaps.
+fn order(difference: f64, rounding: f64) -> Ordering {
+    if difference.abs() <= rounding {
+        Ordering::Equal
+    } else {
+        difference.total_cmp(&0.0)
+    }
+}
+
+/// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along may change that.
+fn stays(
+    scene: &Scene,
+    rounding: f64,
+    point: &ContactPoint,
+    other: &ContactPoint,
+    nearer: Ordering,
+) -> Result<bool, ContactError> {
+    let [x, y] = [point, other].map(|c| &scene.contacts[c.surface]);
+    if !x.carries_field() && !y.carries_field() {
+        return Ok(true);
+    }
+    for level in 0..scene.analysis.steps() {
+        let way = x.obstacle_at(scene.analysis.time(level).unwrap_or(0.0));
+        let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
+        if order(difference, rounding) != nearer {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a twentieth of
+/// the way.
+const TURN: f64 = 0.1;
+
+/// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
+fn check_turn(
+    scene: &Scene,
+    index: usize,
+    surface: &Surface,
+    own: &[ContactPoint],
+) -> Result<(), ContactError> {
+    let contact = &scene.contacts[index];
+    let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
+        return Ok(());
+    };
+    if contact.normal != ContactNormal::Body {
+        return Ok(());
+    }
+    let factor = largest_factor(&scene.analysis, history).0;
+    let mut worst = (0.0, 0);
+    for triangle in surface.triangles() {
+        let flat = area_vector(&scene.mesh, surface, triangle);
+        let nodes = triangle.map(|n| surface.nodes()[n as usize]);
+        let places = nodes.map(|n| scene.mesh.points()[n as usize]);
+        let edge = |a: usize| {
+            let [from, to] = [1, 2].map(|k| places[(a + k) % 3]);
+            [0, 1, 2].map(|c| to[c] - from[c])
+        };
+        // of a node in a crease the side that the facet belongs to
+        let along = |node: u32| {
+            let from = own.partition_point(|c| c.node < node);
+            let sides = own[from..].iter().take_while(|c| c.node == node);
+            let facing = |c: &&ContactPoint| c.frame.normal_part(flat);
+            let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
+            side.map_or(0.0, |c| factor * c.frame.normal_part(way))
+        };
+        // length of the gradient of `n . way` on the facet
+        let mut sum = [0.0; 3];
+        for (a, &node) in nodes.iter().enumerate() {
+            vector::axpy(along(node), &edge(a), &mut sum);
+        }
+        let turn = vector::norm(&sum) / (2.0 * length(flat));
+        if turn > worst.0 {
+            worst = (turn, nodes[0]);
+        }
+    }
+    if worst.0 > TURN {
+        return Err(ContactError::MovedField {
+            contact: index,
+            node: worst.1,
+            turn: worst.0.to_degrees(),
+            most: TURN.to_degrees(),
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,12 @@
+//! The algebraic error of a step by the duality gap: how far the solver stopped from the discrete solution.
+//!
+//! `admissible` makes a continuous displacement that obeys supports and obstacles from the torn one, node by node;
+//! `duality_gap` is the difference of its energy and the dual one.
+//!
+//! Uses: `result`, `step`, `model`, `report`.
+//! In: a solved step. Out: an [`AlgebraicError`](crate::AlgebraicError).
+
+mod admissible;
+mod duality_gap;
+
+pub(crate) use duality_gap::{Caches, Solved};

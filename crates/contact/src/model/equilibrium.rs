@@ -1,0 +1,262 @@
+//! Whether supports and contact can hold the body against its loads, judged before anything is solved.
+//!
+//! Equilibrium of the rigid motions that supports leave free is necessary: contact forces must exist with `G lambda = e`,
+//! `lambda_nu <= 0` and friction in its cone. On these motions, six a free body at most, that is a small problem: the
+//! loads `b` must lie in the cone of the contact forces. If they do not, the residual of the closest point in the cone
+//! is a motion on which the loads work and against which no contact force can. Where larger friction could, the error says so, and by which
+//! factor.
+
+use super::contact_point::ConstrainedPoint;
+use super::friction_cone::{Generators, Separation, WrenchCone};
+use super::model::Model;
+use crate::error::ContactError;
+use crate::scene::Friction;
+use signorini_qp::vector;
+use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
+
+/// Work on a free motion above this fraction of the size of the loads counts.
+const WORK: f64 = 1e-9;
+
+/// Refuses loads that push the body along a rigid motion that neither supports nor contact can stop.
+pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
+    let coarse = model.tfeti.coarse();
+    let mut weights = vec![1.0; coarse.dim()];
+    weights[..model.tfeti.gluing().ranges().contact().end].fill(0.0);
+    let motions = coarse.free_motions(Some(&RowWeights::diagonal(weights)))?;
+    if motions.is_empty() {
+        return Ok(());
+    }
+    // each body is judged alone, by its own loads, with those that it may touch
+    let mut worst: Option<Escape> = None;
+    for body in 0..model.bodies.count() {
+        let group = |b: &BodyMotion| model.bodies.of_body(b.body) == body;
+        let own = |m: &&FreeMotion| m.bodies.iter().any(group);
+        let motions: Vec<&FreeMotion> = motions.iter().filter(own).collect();
+        if motions.is_empty() {
+            continue;
+        }
+        if let Some(escape) = escapes(model, body, &motions)? {
+            let first = |w: &Escape| {
+                escape.level < w.level || escape.level == w.level && escape.force > w.force
+            };
+            if worst.as_ref().is_none_or(first) {
+                worst = Some(escape);
+            }
+        }
+    }
+    worst.map_or(Ok(()), |w| {
+        Err(ContactError::NotHeld {
+            level: w.level,
+            body: w.way.body,
+            node: model.decomposition.subdomains()[w.way.subdomain].nodes[0],
+            mode: w.mode,
+            force: w.force,
+            friction: w.friction,
+        })
+    })
+}
+
+/// Where and how a body gets away.
+struct Escape {
+    level: usize,
+    way: Part,
+    mode: String,
+    force: f64,
+    /// By which factor friction would have to be larger; `None` where no friction could hold the body.
+    friction: Option<f64>,
+}
+
+/// The first level at which nothing can hold a body.
+fn escapes(
+    model: &Model,
+    body: usize,
+    motions: &[&FreeMotion],
+) -> Result<Option<Escape>, ContactError> {
+    let mut cone = WrenchCone::new(motions.len(), generators(model, body, motions)?);
+    let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
+    let largest = largest.fold(0.0, f64::max);
+    let given = model.any_law(|law| matches!(law, Friction::Tresca(_)));
+    let loads: Vec<(Vec<f64>, f64)> = model
+        .loads
+        .iter()
+        .map(|response| {
+            let work = |m: &&FreeMotion| vector::dot(&m.amplitudes, &response.coarse);
+            let subdomains = response.coarse.chunks_exact(6).enumerate();
+            let square: f64 = subdomains
+                .filter(|(s, _)| model.bodies.of_subdomain(*s) == body)
+                .map(|(_, e)| e.iter().map(|v| v * v).sum::<f64>())
+                .sum();
+            (motions.iter().map(work).collect(), square.sqrt() * largest)
+        })
+        .collect();
+    let analysis = &model.scene.analysis;
+    let mut approved: Option<Vec<f64>> = None;
+    for level in 0..analysis.steps() {
+        let Some(time) = analysis.time(level) else {
+            break;
+        };
+        let mut b = vec![0.0; motions.len()];
+        let mut size = 0.0;
+        for (load, (work, part)) in model.scene.loads.iter().zip(&loads) {
+            let h = load.history.value(time);
+            vector::axpy(h, work, &mut b);
+            size += h.abs() * part;
+        }
+        let length = vector::norm(&b);
+        if length <= WORK * size {
+            continue;
+        }
+        if given {
+            // the size of the loads counts
+            if let Some(Separation { motion, given }) = cone.exceeded(&b) {
+                let force = vector::dot(&motion, &b);
+                let friction = cone.friction_needed(&b);
+                let escape = escape(level, motions, &motion, (force, given), friction);
+                return Ok(Some(escape));
+            }
+            continue;
+        }
+        b.iter_mut().for_each(|v| *v /= length);
+        // loads that only grow need no second look
+        let same = |old: &Vec<f64>| vector::distance(old, &b) < 1e-12;
+        if approved.as_ref().is_some_and(same) {
+            continue;
+        }
+        if let Some(motion) = cone.separates(&b) {
+            let force = length * vector::dot(&motion, &b);
+            let friction = cone.friction_needed(&b);
+            let escape = escape(level, motions, &motion, (force, 0.0), friction);
+            return Ok(Some(escape));
+        }
+        approved = Some(b);
+    }
+    Ok(None)
+}
+
+/// The way out: `given` is what given friction takes of the force.
+fn escape(
+    level: usize,
+    motions: &[&FreeMotion],
+    motion: &[f64],
+    (force, given): (f64, f64),
+    friction: Option<f64>,
+) -> Escape {
+    // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
+    let motion: Vec<f64> = motion.iter().map(|v| -v).collect();
+    let (way, mode, share) = describe(motions, &motion);
+    let mode = if given > 0.0 {
+        format!(
+            "{mode}, of which given friction holds {:.3e} N,",
+            given * share
+        )
+    } else {
+        mode
+    };
+    Escape {
+        level,
+        way,
+        mode,
+        force: force * share,
+        friction,
+    }
+}
+
+/// What a force at each touch point does on the motions: newtons to work.
+fn generators(
+    model: &Model,
+    body: usize,
+    motions: &[&FreeMotion],
+) -> Result<Vec<Generators>, ContactError> {
+    let coarse = model.tfeti.coarse();
+    let mut scratch = coarse.scratch();
+    let columns: Vec<Vec<f64>> = motions
+        .iter()
+        .map(|motion| {
+            let mut out = vec![0.0; coarse.dim()];
+            coarse.apply_transpose(&motion.amplitudes, &mut out, &mut scratch);
+            out
+        })
+        .collect();
+    let along =
+        |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
+    let mut out = Vec::new();
+    let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
+    for point in model.points.iter().filter(own) {
+        let tangents = point
+            .tangential
+            .rows()
+            .map_or_else(Vec::new, |(row, count, scale)| {
+                (row..row + count).map(|k| along(k, 1.0 / scale)).collect()
+            });
+        let (coefficient, given) = match model.law(point) {
+            Friction::None => (Some(0.0), 0.0),
+            Friction::Tresca(bound) => {
+                let stress = bound.stress(point.node, point.position)?;
+                (Some(0.0), stress * point.area)
+            }
+            Friction::Coulomb(law) => (law.largest(point.position), 0.0),
+        };
+        out.push(Generators {
+            normal: along(point.row, -1.0 / point.scale),
+            tangents,
+            coefficient,
+            given,
+        });
+    }
+    Ok(out)
+}
+
+/// A rigid part: a body, or what hinges join to one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Part {
+    body: usize,
+    /// Its first subdomain.
+    subdomain: usize,
+    radius: f64,
+    /// Translation, and rotation times the radius.
+    motion: [f64; 6],
+}
+
+/// What a message says of a motion: the part that moves most, its motion in words, of length one, and its length.
+fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (Part, String, f64) {
+    let mut parts: Vec<Part> = Vec::new();
+    for (motion, factor) in motions.iter().zip(factors) {
+        for part in &motion.bodies {
+            let at = match parts.iter().position(|p| p.subdomain == part.subdomain) {
+                Some(at) => at,
+                None => {
+                    parts.push(Part {
+                        body: part.body,
+                        subdomain: part.subdomain,
+                        radius: part.radius,
+                        motion: [0.0; 6],
+                    });
+                    parts.len() - 1
+                }
+            };
+            for c in 0..3 {
+                parts[at].motion[c] += factor * part.translation[c];
+                parts[at].motion[3 + c] += factor * part.rotation[c];
+            }
+        }
+    }
+    let size = |p: &Part| vector::norm(&p.motion);
+    let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+    let most = most.copied().unwrap_or_default();
+    let (m, radius, length) = (most.motion, most.radius, size(&most));
+    let rounded = |v: &f64| {
+        let v = v / length;
+        if v.abs() < 5e-4 { 0.0 } else { v }
+    };
+    let words = |name: &str, v: &[f64]| {
+        let v: Vec<f64> = v.iter().map(rounded).collect();
+        let moves = v.iter().any(|v| *v != 0.0);
+        moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
+    };
+    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e} m"));
+    let parts: Vec<String> = words("translation", &m[..3])
+        .into_iter()
+        .chain(turn)
+        .collect();
+    (most, format!("its {}", parts.join(" with ")), length)
+}

@@ -1,0 +1,63 @@
+//! How a step was solved.
+
+use super::counters::Counters;
+use super::errors::AccuracyReport;
+use super::fixed_point::FixedPointReport;
+use crate::status::StepStatus;
+use signorini_qp::Steps;
+
+/// Report of one level's solve.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct StepReport {
+    /// How it ended.
+    pub status: StepStatus,
+    /// Outer iterations under the method's own name: auxiliary problems of the fixed-point loop, outer steps of the
+    /// one inexact loop, faces of the face method.
+    pub iterations: usize,
+    /// What it cost.
+    pub counters: Counters,
+    /// Steps of KPRGP by kind, if it ran.
+    pub steps: Steps,
+    /// The fixed-point loop, if there was one.
+    pub fixed_point: Option<FixedPointReport>,
+    /// Whether the face method gave up and SMALSE finished the level.
+    pub fallback: bool,
+    /// Products with F that SMALSE took for that, contained in the counters.
+    pub fallback_products: usize,
+    /// The solver's own estimate of the relative error of the multipliers, where it has one.
+    pub estimated_error: Option<f64>,
+    /// Estimates of the level's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
+    pub accuracy: Option<AccuracyReport>,
+    /// The first earlier level that did not converge and on whose displacement this one depends, from 0: its slip is part of
+    /// the history of friction, which no certificate of this level can judge. Always `None` in scenes without history (no
+    /// friction, or static). The status of this level does not depend on it.
+    pub unconverged_history: Option<usize>,
+}
+
+impl StepReport {
+    pub(crate) fn new() -> Self {
+        Self {
+            status: StepStatus::IterationLimit,
+            iterations: 0,
+            counters: Counters::default(),
+            steps: Steps::default(),
+            fixed_point: None,
+            fallback: false,
+            fallback_products: 0,
+            estimated_error: None,
+            accuracy: None,
+            unconverged_history: None,
+        }
+    }
+
+    /// Takes over the outcome of a further solve of the same level, with the cost of both.
+    pub(crate) fn resumed(self, mut next: Self) -> Self {
+        next.counters += self.counters;
+        next.iterations += self.iterations;
+        next.steps += self.steps;
+        next.fallback |= self.fallback;
+        next.fallback_products += self.fallback_products;
+        next
+    }
+}

@@ -1,0 +1,153 @@
+//! What each touch point does at the end of a level, and sums over them.
+
+use super::certificate::slip_bound;
+use crate::model::{ConstrainedPoint, Model, Tangential};
+use crate::step::{StepProblem, entry_or_zero};
+
+/// What a touch point does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ContactState {
+    /// No force.
+    Open,
+    /// Pressed and without tangential difference, or without friction law.
+    Stick,
+    /// Pressed and sliding.
+    Slip,
+}
+
+/// State of one touch point at the end of a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PointState {
+    /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
+    pub node: u32,
+    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
+    pub partner: Option<u32>,
+    /// Position of the contact surface in [`Scene::contacts`](crate::Scene::contacts).
+    pub surface: usize,
+    /// What it does.
+    pub state: ContactState,
+    /// Unit normal out of the body, into the obstacle or the partner: the direction in which gap and normal force are measured.
+    pub normal: [f64; 3],
+    /// Normal force on the body `lambda_nu`, N, not positive.
+    pub normal_force: f64,
+    /// Friction force on the body, N, in space.
+    pub friction_force: [f64; 3],
+    /// Slip bound, N; 0 without friction.
+    pub slip_bound: f64,
+    /// Distance to the obstacle or the partner, m.
+    pub gap: f64,
+    /// Tangential displacement, m, in space; relative to the partner, if there is one.
+    pub tangential_displacement: [f64; 3],
+    /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static scene.
+    pub difference: [f64; 3],
+    /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene.
+    pub slip_rate: f64,
+    /// Area, m².
+    pub area: f64,
+}
+
+impl PointState {
+    /// The whole contact force on the body, pressure and friction, N, in space. A partner has the opposite one.
+    #[must_use]
+    pub fn force(&self) -> [f64; 3] {
+        [0, 1, 2].map(|c| self.friction_force[c] + self.normal_force * self.normal[c])
+    }
+}
+
+/// Evaluates the contact points: `rows` is `B u` in row units.
+pub(crate) fn point_states(
+    model: &Model,
+    level: &StepProblem,
+    lambda: &[f64],
+    rows: &[f64],
+) -> Vec<PointState> {
+    let states = model.points.iter().enumerate();
+    states
+        .map(|(k, point)| {
+            let bound = slip_bound(model, level, k, lambda).unwrap_or(0.0);
+            point_state(model, level, point, (lambda, rows), bound)
+        })
+        .collect()
+}
+
+/// Evaluates one point with its slip bound.
+fn point_state(
+    model: &Model,
+    level: &StepProblem,
+    point: &ConstrainedPoint,
+    (lambda, rows): (&[f64], &[f64]),
+    bound: f64,
+) -> PointState {
+    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.alpha());
+    let normal_force = point.scale * lambda[point.row];
+    let space = |values: [f64; 2]| match point.tangential {
+        Tangential::None => [0.0; 3],
+        Tangential::Line { direction, .. } => direction.map(|d| d * values[0]),
+        Tangential::Plane { .. } => point.frame.vector(0.0, values),
+    };
+    let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+    let mut on_bound = false;
+    if let Some((row, count, scale)) = point.tangential.rows() {
+        for j in 0..count {
+            let k = row + j;
+            friction[j] = scale * lambda[k];
+            displacement[j] = (rows[k] - entry_or_zero(&level.prescribed, k)) / scale;
+            difference[j] = alpha * (rows[k] - level.offset[k]) / scale;
+        }
+        on_bound = friction[0].hypot(friction[1]) >= bound * (1.0 - 1e-5);
+    }
+    let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
+    let state = if normal_force >= 0.0 {
+        ContactState::Open
+    } else if on_bound && opposed {
+        ContactState::Slip
+    } else {
+        ContactState::Stick
+    };
+    let slip = difference[0].hypot(difference[1]);
+    PointState {
+        node: point.node,
+        partner: point.partner,
+        surface: point.surface,
+        state,
+        normal: point.frame.normal,
+        normal_force,
+        friction_force: space(friction),
+        slip_bound: bound,
+        gap: (level.offset[point.row] - rows[point.row]) / point.scale,
+        tangential_displacement: space(displacement),
+        difference: space(difference),
+        slip_rate: level.step.map_or(0.0, |dt| slip / dt),
+        area: point.area,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Friction;
+    use crate::step::example::{block, first_level};
+
+    /// Sliding is friction on its bound, against the slip; friction along it is a wrong one, not sliding.
+    #[test]
+    fn friction_along_the_slip_is_no_sliding() {
+        let (model, level) = first_level(block(0.0, Friction::coulomb(0.5)));
+        let point = &model.points[4];
+        let (_, row, _) = point.along().next().expect("friction");
+        for (pressed, friction, slip, expected) in [
+            (1.0, 0.5, -1e-3, ContactState::Slip),
+            (1.0, 0.5, 1e-3, ContactState::Stick),
+            (1.0, 0.4, -1e-3, ContactState::Stick),
+            (0.0, 0.0, -1e-3, ContactState::Open),
+        ] {
+            let mut lambda = vec![0.0; model.tfeti.dual_dim()];
+            let mut rows = level.offset.clone();
+            (lambda[point.row], lambda[row]) = (-pressed, friction);
+            rows[row] += slip;
+            let states = point_states(&model, &level, &lambda, &rows);
+            assert_eq!(states[4].state, expected, "{friction} N, {slip} m");
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Reactions: what the supports do to the body, and what contact and loads do. Computed when asked for.
+//!
+//! A support row of `B` with multiplier `lambda` pushes each copy of its node with `lambda` times its coefficients; their sum is
+//! the force on the node. A direction that several supports fix has one row, and belongs to the first of them.
+
+use super::points::PointState;
+use crate::discrete::lower_supports;
+use crate::error::ContactError;
+use crate::model::{ConstrainedPoint, Model};
+use crate::step::StepProblem;
+use crate::vec3::dot;
+use signorini_tfeti::{NodeSupport, PrescribedDirection, prescribed_directions};
+use std::collections::BTreeMap;
+
+/// A force and its moment about a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct Resultant {
+    /// Sum of the forces, N.
+    pub force: [f64; 3],
+    /// Sum of their moments about the point, N m, with the places before the deformation.
+    pub moment: [f64; 3],
+}
+
+impl Resultant {
+    fn add(&mut self, arm: [f64; 3], force: [f64; 3]) {
+        for c in 0..3 {
+            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+            self.force[c] += force[c];
+            self.moment[c] += arm[a] * force[b] - arm[b] * force[a];
+        }
+    }
+}
+
+impl std::ops::AddAssign for Resultant {
+    fn add_assign(&mut self, other: Self) {
+        for c in 0..3 {
+            self.force[c] += other.force[c];
+            self.moment[c] += other.moment[c];
+        }
+    }
+}
+
+/// The force at a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct NodalForce {
+    /// Mesh node.
+    pub node: u32,
+    /// Force on the body, N.
+    pub force: [f64; 3],
+}
+
+/// What one support does to the body.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct SupportReaction {
+    /// Force on the body and its moment.
+    pub resultant: Resultant,
+    /// The same node by node, without nodes at which earlier supports fix all its directions.
+    pub nodes: Vec<NodalForce>,
+}
+
+/// Forces on the body at the end of a level, and their moments about a point.
+///
+/// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs to that one, and a
+/// later support has what it adds at right angles to it. At a contact node whose normal a support fixes, the support's
+/// reaction contains the force of the obstacle.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Reactions {
+    /// The point of all moments, m.
+    pub point: [f64; 3],
+    /// What each support does, in the order of the scene.
+    pub supports: Vec<SupportReaction>,
+    /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
+    pub contact: Resultant,
+    /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the body with
+    /// the first tag ([`Contact::between`](crate::Contact::between)), which has the opposite on the partner.
+    pub contacts: Vec<Resultant>,
+    /// What the loads do.
+    pub loads: Resultant,
+}
+
+impl Reactions {
+    /// What all supports do together.
+    #[must_use]
+    pub fn of_supports(&self) -> Resultant {
+        let mut sum = Resultant::default();
+        self.supports.iter().for_each(|s| sum += s.resultant);
+        sum
+    }
+
+    /// Supports, contact and loads together: zero in equilibrium.
+    #[must_use]
+    pub fn imbalance(&self) -> Resultant {
+        let mut sum = self.of_supports();
+        sum += self.contact;
+        sum += self.loads;
+        sum
+    }
+}
+
+/// Share of a contact force below which a difference is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Forces of all supports by node, from the multipliers of the support rows.
+///
+/// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it; it is
+/// taken out here.
+pub(crate) fn nodal_reactions(
+    model: &Model,
+    points: &[PointState],
+    lambda: &[f64],
+) -> BTreeMap<u32, [f64; 3]> {
+    let gluing = model.tfeti.gluing();
+    let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
+    for (row, lambda) in gluing.ranges().dirichlet.clone().zip(lambda) {
+        let Some(node) = gluing.node(row) else {
+            continue;
+        };
+        let force = forces.entry(node).or_default();
+        for (_, dof, coefficient) in gluing.row(row) {
+            force[dof % 3] += lambda * coefficient;
+        }
+    }
+    for (state, touch) in points.iter().zip(&model.points) {
+        let whole = state.force();
+        let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
+        for (node, sign) in [(Some(state.node), 1.0), (state.partner, -1.0)] {
+            let Some((node, force)) = node.and_then(|n| Some((n, forces.get_mut(&n)?))) else {
+                continue;
+            };
+            let mut rest = whole.map(|f| sign * f);
+            take_rows(model, touch, &whole, node, &mut rest);
+            if rest.iter().any(|f| f.abs() > ROUNDING * size) {
+                (0..3).for_each(|c| force[c] -= rest[c]);
+            }
+        }
+    }
+    forces
+}
+
+/// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
+fn take_rows(
+    model: &Model,
+    touch: &ConstrainedPoint,
+    whole: &[f64; 3],
+    node: u32,
+    rest: &mut [f64; 3],
+) {
+    let subdomains = model.decomposition.subdomains();
+    for (direction, row, scale) in touch.directions() {
+        let lambda = dot(whole, &direction) / scale;
+        for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
+            if subdomains[subdomain].nodes[dof / 3] == node {
+                rest[dof % 3] -= lambda * coefficient;
+            }
+        }
+    }
+}
+
+/// All resultants about a point.
+pub(crate) fn reactions_about(
+    model: &Model,
+    level: &StepProblem,
+    points: &[PointState],
+    lambda: &[f64],
+    point: [f64; 3],
+) -> Result<Reactions, ContactError> {
+    let places = model.scene.mesh.points();
+    let arm = |node: u32| {
+        let place = places[node as usize];
+        [0, 1, 2].map(|c| place[c] - point[c])
+    };
+    let mut contact = Resultant::default();
+    let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
+    for state in points {
+        let force = state.force();
+        contact.add(arm(state.node), force);
+        contacts[state.surface].add(arm(state.node), force);
+        if let Some(partner) = state.partner {
+            contact.add(arm(partner), force.map(|f| -f));
+        }
+    }
+    let mut loads = Resultant::default();
+    for (factor, load) in level.factors.iter().zip(&model.loads) {
+        let nodes = model.decomposition.subdomains().iter();
+        let nodes = nodes.flat_map(|s| &s.nodes);
+        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
+            loads.add(arm(node), force.map(|f| factor * f));
+        }
+    }
+    Ok(Reactions {
+        point,
+        supports: by_support(model, &nodal_reactions(model, points, lambda), arm)?,
+        contact,
+        contacts,
+        loads,
+    })
+}
+
+/// Splits nodal forces among the supports: each has the part along the directions that it is the first to fix.
+fn by_support(
+    model: &Model,
+    forces: &BTreeMap<u32, [f64; 3]>,
+    arm: impl Fn(u32) -> [f64; 3],
+) -> Result<Vec<SupportReaction>, ContactError> {
+    let (supports, _) = lower_supports(&model.scene)?;
+    let mut held: BTreeMap<u32, Vec<PrescribedDirection>> = BTreeMap::new();
+    for direction in prescribed_directions(&supports, model.scene.mesh.points().len())? {
+        held.entry(direction.node).or_default().push(direction);
+    }
+    let reaction = |(index, support): (usize, &NodeSupport)| {
+        let mut reaction = SupportReaction::default();
+        for node in &support.nodes {
+            let (Some(whole), Some(held)) = (forces.get(node), held.get(node)) else {
+                continue;
+            };
+            let mut own = held.iter().filter(|h| h.support == index).peekable();
+            if own.peek().is_none() {
+                continue;
+            }
+            let mut force = [0.0; 3];
+            for PrescribedDirection { direction, .. } in own {
+                let along = dot(whole, direction);
+                (0..3).for_each(|c| force[c] += along * direction[c]);
+            }
+            reaction.resultant.add(arm(*node), force);
+            reaction.nodes.push(NodalForce { node: *node, force });
+        }
+        reaction
+    };
+    Ok(supports.iter().enumerate().map(reaction).collect())
+}

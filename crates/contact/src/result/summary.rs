@@ -1,0 +1,97 @@
+//! Sums over the contact points at the end of a step.
+
+use super::points::{ContactState, PointState};
+use crate::error::ContactError;
+use crate::model::Model;
+use crate::step::{StepProblem, entry_or_zero};
+
+/// Sums over the contact surface at the end of a level. Between bodies, forces are those on the body that was named first
+/// ([`Contact::between`](crate::Contact::between)).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ContactSummary {
+    /// Points with a normal force.
+    pub active: usize,
+    /// Active points that stick.
+    pub stick: usize,
+    /// Active points that slide.
+    pub slip: usize,
+    /// Sum of the normal pressing forces, N.
+    pub normal_force: f64,
+    /// Sum of all contact forces on the body as a vector, N.
+    pub resultant: [f64; 3],
+    /// Sum of the friction forces on the body, N, in space.
+    pub friction_force: [f64; 3],
+    /// Euclidean norm of the nodal normal forces, N.
+    pub normal_norm: f64,
+    /// Euclidean norm of the nodal friction forces, N.
+    pub friction_norm: f64,
+    /// Largest slip rate of active points, m/s.
+    pub max_slip_rate: f64,
+    /// Largest penetration, m.
+    pub max_penetration: f64,
+    /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the paper's formula it can be
+    /// slightly negative at points that stick after sliding, see [`DifferenceFormula`](crate::DifferenceFormula).
+    pub friction_work: f64,
+    /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
+    /// `friction_work` for backward Euler.
+    pub dissipation: f64,
+    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the displacement of
+    /// the obstacle, and normal forces times the change of a [gap that moves along](crate::Contact::with_motion).
+    pub obstacle_work: f64,
+}
+
+/// Sums over the points; `before` are the tangential displacements at the level before.
+pub(crate) fn summarise(
+    model: &Model,
+    level: &StepProblem,
+    points: &[PointState],
+    lambda: &[f64],
+    rows: &[f64],
+    before: &[f64],
+) -> Result<ContactSummary, ContactError> {
+    let mut s = ContactSummary::default();
+    let start = model.tangential_start();
+    for (point, touch) in points.iter().zip(&model.points) {
+        let active = point.state != ContactState::Open;
+        s.active += usize::from(active);
+        s.slip += usize::from(point.state == ContactState::Slip);
+        s.normal_force -= point.normal_force;
+        s.normal_norm += point.normal_force.powi(2);
+        let force = point.force();
+        for c in 0..3 {
+            s.friction_force[c] += point.friction_force[c];
+            s.resultant[c] += force[c];
+            s.friction_norm += point.friction_force[c].powi(2);
+            s.dissipation -= point.friction_force[c] * point.difference[c];
+        }
+        if active {
+            s.max_slip_rate = s.max_slip_rate.max(point.slip_rate);
+        }
+        s.max_penetration = s.max_penetration.max(-point.gap);
+        for along in touch.along() {
+            let (_, k, scale) = along;
+            let old = entry_or_zero(before, k - start);
+            let new = level.relative(touch.surface, along, rows[k]);
+            s.friction_work -= scale * lambda[k] * (new - old);
+        }
+        if let (Some(now), Some(old)) = (
+            level.obstacles[0].get(touch.surface),
+            level.obstacles[1].get(touch.surface),
+        ) {
+            for c in 0..3 {
+                s.obstacle_work += force[c] * (now[c] - old[c]);
+            }
+            if active {
+                let [now, old] = [StepProblem::gap, StepProblem::gap_before];
+                let scene = &model.scene;
+                s.obstacle_work +=
+                    point.normal_force * (now(level, scene, touch)? - old(level, scene, touch)?);
+            }
+        }
+    }
+    s.stick = s.active - s.slip;
+    s.normal_norm = s.normal_norm.sqrt();
+    s.friction_norm = s.friction_norm.sqrt();
+    Ok(s)
+}

@@ -1,0 +1,320 @@
+//! The contact surface of a scene: where it is, how far the obstacle or the other body, and with which friction.
+
+use super::friction::{Friction, PlaceField};
+use crate::error::ContactError;
+use signorini_fem_mesh::{FacetTag, History};
+use signorini_qp::vector;
+use std::fmt;
+use std::sync::Arc;
+
+/// The distance between the contact surface and the obstacle, measured along the outward normal.
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum Gap {
+    /// The surfaces touch: the offset vector stays zero.
+    None,
+    /// The same distance at every node, m.
+    Constant(f64),
+    /// Distance at a point, m; negative values mean that the body starts inside the obstacle.
+    Field(PlaceField),
+    /// The distance between the nodes of two bodies, along the normal: what coordinates say.
+    Measured,
+}
+
+impl fmt::Debug for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => f.write_str("None"),
+            Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
+            Self::Field(_) => f.write_str("Field(..)"),
+            Self::Measured => f.write_str("Measured"),
+        }
+    }
+}
+
+/// Direction in which the contact surface meets the obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ContactNormal {
+    /// The body's own outward normal at each node.
+    Body,
+    /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
+    /// under a curved body.
+    Fixed([f64; 3]),
+}
+
+/// A part of the boundary that may touch a rigid obstacle, or another body.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    pub(crate) tags: Vec<FacetTag>,
+    /// Facets of the other body; none for a rigid obstacle.
+    pub(crate) partner: Vec<FacetTag>,
+    pub(crate) gap: Gap,
+    pub(crate) normal: ContactNormal,
+    pub(crate) friction: Friction,
+    /// Angle of a crease, degrees.
+    pub(crate) crease: f64,
+    /// Displacement of the obstacle, m, and its factor in time.
+    pub(crate) motion: Option<([f64; 3], History)>,
+}
+
+/// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
+const CREASE: f64 = 60.0;
+
+impl Contact {
+    /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.
+    #[must_use]
+    pub fn rigid(tag: FacetTag) -> Self {
+        Self {
+            tags: vec![tag],
+            partner: Vec::new(),
+            gap: Gap::None,
+            normal: ContactNormal::Body,
+            friction: Friction::None,
+            crease: CREASE,
+            motion: None,
+        }
+    }
+
+    /// Contact of two elastic bodies whose meshes match: facets with `tag`, and facets of the other body with the tag `partner`.
+    ///
+    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a fiftieth of
+    /// the size of its facets, and a little more across a gap. The other side may have more nodes. Flat sides that meet at an edge
+    /// are a contact each: within one, nodes in the edge have the mean normal. All quantities of a contact point are those of the body with
+    /// `tag`: its outward normal, the force on it, its displacement *relative* to the partner; the force on the partner is
+    /// the opposite one. The gap is measured between the partners, unless [`with_gap`](Self::with_gap) or
+    /// [`with_gap_field`](Self::with_gap_field) tell another; partners may coincide. Displacements are small: a
+    /// node keeps its partner, however far it slides. Nodes may have partners on several bodies, and touch obstacles besides: each
+    /// is a contact of its own.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{brick, Brick, FacetTag, Hooke, Materials};
+    ///
+    /// // a cube on a cube; tags of the upper one are 10 larger
+    /// let lower = Brick::new([1.0, 1.0, 1.0], [2, 2, 2]).build()?;
+    /// let upper = lower
+    ///     .map_points(|[x, y, z]| [x, y, z + 1.0])?
+    ///     .map_tags(|tag| FacetTag(tag.0 + 10));
+    /// let top = FacetTag(brick::Z_MAX.0 + 10);
+    /// let scene = Scene::new(lower.append(&upper)?, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
+    ///     .with_support(Support::fixed(brick::Z_MIN))
+    ///     .with_load(Load::traction(top, [1e5, 0.0, -1e6]))
+    ///     .with_contact(
+    ///         Contact::between(FacetTag(brick::Z_MIN.0 + 10), brick::Z_MAX)
+    ///             .with_friction(Friction::coulomb(0.3)),
+    ///     );
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let frame = simulation.step()?;
+    /// assert!((frame.summary().normal_force - 1e6).abs() < 10.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
+        Self {
+            partner: vec![partner],
+            gap: Gap::Measured,
+            ..Self::rigid(tag)
+        }
+    }
+
+    /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
+    #[must_use]
+    pub fn with_partner(mut self, tag: FacetTag) -> Self {
+        if self.partner.is_empty() && matches!(self.gap, Gap::None) {
+            self.gap = Gap::Measured;
+        }
+        self.partner.push(tag);
+        self
+    }
+
+    /// Contact with the half-space below a plane: gap and normal follow from the plane.
+    ///
+    /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor). A later
+    /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
+    #[must_use]
+    pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
+        let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
+        // what has no direction stays as it is, and is refused with the scene
+        let unit = outward.map(|c| if length > 0.0 { c / length } else { c });
+        let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
+        Self::rigid(tag)
+            .with_normal(unit.map(|c| -c))
+            .with_gap_field(gap)
+    }
+
+    /// More facets of the same kind. For another gap, direction or friction give a scene another contact
+    /// ([`Scene::with_contact`](crate::Scene::with_contact)).
+    #[must_use]
+    pub fn with_tag(mut self, tag: FacetTag) -> Self {
+        self.tags.push(tag);
+        self
+    }
+
+    /// A constant gap in m.
+    #[must_use]
+    pub fn with_gap(mut self, gap: f64) -> Self {
+        self.gap = if gap == 0.0 {
+            Gap::None
+        } else {
+            Gap::Constant(gap)
+        };
+        self
+    }
+
+    /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. It is asked at the nodes of
+    /// the surface and, where the obstacle [moves](Self::with_motion) along the surface, at the places that pass under them, which may lie beside it.
+    #[must_use]
+    pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
+        self.gap = Gap::Field(Arc::new(gap));
+        self
+    }
+
+    /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at least.
+    #[must_use]
+    pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
+        self.normal = ContactNormal::Fixed(into_obstacle);
+        self
+    }
+
+    /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
+    /// default; in (0, 180], 180 for none). A node has one contact point with the mean normal of its facets; at a crease it
+    /// has one for each side, so that an edge between floor and wall meets both. Ordinary meshes of curved surfaces have
+    /// smaller angles (45 with 8 facets around a cylinder). Flat sides that meet at a smaller angle are to be contacts of their own, which
+    /// are kept apart at any angle: within one contact they count as curved. Without effect with [`with_normal`](Self::with_normal).
+    #[must_use]
+    pub fn with_crease(mut self, degrees: f64) -> Self {
+        self.crease = degrees;
+        self
+    }
+
+    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero before the first level, as
+    /// that of the body. Along the normal it opens or closes the gap; along the surface it drags the body by friction: slip is
+    /// the displacement of the body relative to the obstacle. A rotating obstacle is none of these.
+    ///
+    /// A gap [that depends on the place](Self::with_gap_field) moves along: where the obstacle has moved by `w`, the gap at `x` with the
+    /// normal `n` is `field(x - w_T) + n . w` with `w_T = w - (n . w) n`. That is exact for any way along a flat side, with
+    /// [`with_normal`](Self::with_normal), and along a side that the motion maps onto itself. Along other sides it holds for ways that are short
+    /// against the radius of curvature; longer ones are refused ([`MovedField`](ContactError::MovedField)). Friction laws that depend on the
+    /// place stay with the nodes of the body.
+    #[must_use]
+    pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
+        self.motion = Some((displacement, history));
+        self
+    }
+
+    /// Displacement of the obstacle at a time, m.
+    pub(crate) fn obstacle_at(&self, time: f64) -> [f64; 3] {
+        match &self.motion {
+            Some((displacement, history)) => {
+                let factor = history.value(time);
+                displacement.map(|c| factor * c)
+            }
+            None => [0.0; 3],
+        }
+    }
+
+    /// The friction law. A bound or coefficient that is zero everywhere is no friction.
+    #[must_use]
+    pub fn with_friction(mut self, friction: Friction) -> Self {
+        self.friction = if friction.is_zero() {
+            Friction::None
+        } else {
+            friction
+        };
+        self
+    }
+
+    /// The friction law.
+    #[must_use]
+    pub fn friction(&self) -> &Friction {
+        &self.friction
+    }
+
+    /// The tags of its facets.
+    #[must_use]
+    pub fn tags(&self) -> &[FacetTag] {
+        &self.tags
+    }
+
+    /// The tags of the facets of the other body; none for a rigid obstacle.
+    #[must_use]
+    pub fn partner(&self) -> &[FacetTag] {
+        &self.partner
+    }
+
+    /// The distance to the obstacle.
+    #[must_use]
+    pub fn gap(&self) -> &Gap {
+        &self.gap
+    }
+
+    /// The direction in which the obstacle is met.
+    #[must_use]
+    pub fn normal(&self) -> ContactNormal {
+        self.normal
+    }
+
+    /// The angle of a crease, degrees.
+    #[must_use]
+    pub fn crease(&self) -> f64 {
+        self.crease
+    }
+
+    /// Displacement of the obstacle (m) and its history; `None` if it does not move.
+    #[must_use]
+    pub fn motion(&self) -> Option<([f64; 3], &History)> {
+        let (displacement, history) = self.motion.as_ref()?;
+        Some((*displacement, history))
+    }
+
+    /// The gap at a node, m, checked; `contact` is the position of the surface in the scene, `measured` the distance to the
+    /// partner of the node.
+    pub(crate) fn gap_at(
+        &self,
+        contact: usize,
+        node: u32,
+        position: [f64; 3],
+        measured: f64,
+    ) -> Result<f64, ContactError> {
+        let value = match &self.gap {
+            Gap::None => 0.0,
+            Gap::Constant(value) => *value,
+            Gap::Field(field) => field(position),
+            Gap::Measured => measured,
+        };
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(ContactError::Gap {
+                contact,
+                node,
+                position,
+                value,
+            })
+        }
+    }
+
+    /// Whether the obstacle moves and takes a gap with it that depends on the place.
+    pub(crate) fn carries_field(&self) -> bool {
+        self.motion.is_some() && matches!(self.gap, Gap::Field(_))
+    }
+
+    /// The gap at a node, m, that is `initial` at first and to which the obstacle has brought another one by moving along the surface: that of
+    /// the place from which it comes. The part of the way along the normal, which opens the gap, is not in it.
+    pub(crate) fn gap_brought(
+        &self,
+        contact: usize,
+        node: u32,
+        position: [f64; 3],
+        normal: &[f64; 3],
+        (initial, way): (f64, &[f64; 3]),
+    ) -> Result<f64, ContactError> {
+        let out = vector::dot(way, normal);
+        let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
+        if !matches!(self.gap, Gap::Field(_)) || from == position {
+            return Ok(initial);
+        }
+        self.gap_at(contact, node, from, initial)
+    }
+}

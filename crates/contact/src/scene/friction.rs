@@ -1,0 +1,359 @@
+//! Friction laws: none, given (Tresca), and Coulomb with a coefficient that may depend on place and slip rate.
+
+use crate::error::ContactError;
+use signorini_fem_mesh::interpolate;
+use std::fmt;
+use std::sync::Arc;
+
+/// A value that depends on the place only.
+pub type PlaceField = Arc<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
+
+/// A value that depends on the place and the slip rate in m/s.
+pub type RateField = Arc<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
+
+/// The friction on a contact surface.
+#[derive(Debug, Clone, Default)]
+#[non_exhaustive]
+pub enum Friction {
+    /// No friction: no tangential rows, no slip bounds, no history of the tangential displacement.
+    #[default]
+    None,
+    /// Given friction (Tresca): the slip bound is known and does not depend on the pressure.
+    Tresca(SlipBound),
+    /// Coulomb friction: the slip bound is the coefficient times the contact pressure.
+    Coulomb(Coefficient),
+}
+
+impl Friction {
+    /// Coulomb friction with one coefficient everywhere.
+    #[must_use]
+    pub fn coulomb(coefficient: f64) -> Self {
+        Self::Coulomb(Coefficient::Constant(coefficient))
+    }
+
+    /// Given friction with one bound of the friction stress, in Pa.
+    #[must_use]
+    pub fn tresca(stress: f64) -> Self {
+        Self::Tresca(SlipBound::Stress(stress))
+    }
+
+    /// Whether there are tangential forces at all.
+    #[must_use]
+    pub fn is_some(&self) -> bool {
+        !matches!(self, Self::None)
+    }
+
+    /// Whether the bound or coefficient is a constant zero.
+    #[must_use]
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Self::None => true,
+            Self::Tresca(SlipBound::Stress(value))
+            | Self::Coulomb(Coefficient::Constant(value)) => *value == 0.0,
+            _ => false,
+        }
+    }
+
+    /// Whether the coefficient depends on the slip rate.
+    #[must_use]
+    pub fn depends_on_rate(&self) -> bool {
+        matches!(self, Self::Coulomb(c) if c.depends_on_rate())
+    }
+}
+
+/// Bound of the friction stress in given friction.
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum SlipBound {
+    /// The same bound everywhere, in Pa; a node carries it times its area.
+    Stress(f64),
+    /// Bound in Pa at a point.
+    StressField(PlaceField),
+}
+
+impl SlipBound {
+    /// The bound in Pa at `point`, checked.
+    pub(crate) fn stress(&self, node: u32, point: [f64; 3]) -> Result<f64, ContactError> {
+        let value = match self {
+            Self::Stress(value) => *value,
+            Self::StressField(field) => field(point),
+        };
+        if value.is_finite() && value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(ContactError::SlipBound { node, value })
+        }
+    }
+}
+
+impl fmt::Debug for SlipBound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stress(value) => f.debug_tuple("Stress").field(value).finish(),
+            Self::StressField(_) => f.write_str("StressField(..)"),
+        }
+    }
+}
+
+/// The coefficient of Coulomb friction, script F of the paper.
+///
+/// A coefficient that depends on the slip rate is evaluated with the rate of the previous time level, and with
+/// rate 0 in the first step, as in the paper (after (2.11)).
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum Coefficient {
+    /// The same everywhere.
+    Constant(f64),
+    /// Depends on the place.
+    Field(PlaceField),
+    /// `kinetic + (fixed - kinetic) exp(-rate / decay)`.
+    Exponential {
+        /// Coefficient at rest.
+        fixed: f64,
+        /// Coefficient at high slip rate.
+        kinetic: f64,
+        /// Slip rate, in m/s, over which the difference falls by e.
+        decay: f64,
+    },
+    /// Straight lines through (rate in m/s, coefficient) points, constant outside.
+    Table(Vec<(f64, f64)>),
+    /// Depends on place and rate.
+    RateField(RateField),
+}
+
+impl Coefficient {
+    /// A function of the place.
+    #[must_use]
+    pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
+        Self::Field(Arc::new(f))
+    }
+
+    /// A function of place and slip rate.
+    #[must_use]
+    pub fn rate_field(f: impl Fn([f64; 3], f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self::RateField(Arc::new(f))
+    }
+
+    /// Whether the slip rate matters; if not, none is computed.
+    #[must_use]
+    pub fn depends_on_rate(&self) -> bool {
+        matches!(
+            self,
+            Self::Exponential { .. } | Self::Table(_) | Self::RateField(_)
+        )
+    }
+
+    /// The largest value at any slip rate; `None` if that is not known.
+    pub(crate) fn largest(&self, point: [f64; 3]) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            Self::Field(field) => Some(field(point)),
+            Self::Exponential { fixed, kinetic, .. } => Some(fixed.max(*kinetic)),
+            Self::Table(points) => Some(points.iter().fold(0.0_f64, |m, p| m.max(p.1))),
+            Self::RateField(_) => None,
+        }
+        .filter(|v| v.is_finite() && *v >= 0.0)
+    }
+
+    /// Checks what can be checked without a place; `contact` is whose law it is.
+    pub(crate) fn validate(&self, contact: usize) -> Result<(), ContactError> {
+        let bad = |what: &'static str, value: f64| {
+            Err(ContactError::Coefficient {
+                contact,
+                what,
+                value,
+            })
+        };
+        let good = |value: f64| value.is_finite() && value >= 0.0;
+        match self {
+            Self::Constant(value) if !good(*value) => bad("coefficient", *value),
+            Self::Exponential {
+                fixed,
+                kinetic,
+                decay,
+            } => {
+                if !good(*fixed) {
+                    bad("coefficient at rest", *fixed)
+                } else if !good(*kinetic) {
+                    bad("kinetic coefficient", *kinetic)
+                } else if !(decay.is_finite() && *decay > 0.0) {
+                    bad("decay rate", *decay)
+                } else {
+                    Ok(())
+                }
+            }
+            Self::Table(points) => {
+                if points.is_empty() {
+                    return Err(ContactError::EmptyTable { contact });
+                }
+                let mut before = f64::NEG_INFINITY;
+                for (entry, &(rate, value)) in points.iter().enumerate() {
+                    if !(rate.is_finite() && rate > before) {
+                        return Err(ContactError::TableRate {
+                            contact,
+                            entry,
+                            rate,
+                        });
+                    }
+                    if !good(value) {
+                        return bad("coefficient in the table", value);
+                    }
+                    before = rate;
+                }
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The coefficient at a node, checked. `rate` in m/s.
+    pub(crate) fn value(&self, node: u32, point: [f64; 3], rate: f64) -> Result<f64, ContactError> {
+        let value = match self {
+            Self::Constant(value) => *value,
+            Self::Field(field) => field(point),
+            Self::Exponential {
+                fixed,
+                kinetic,
+                decay,
+            } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
+            Self::Table(points) => interpolate(points, rate),
+            Self::RateField(field) => field(point, rate),
+        };
+        if value.is_finite() && value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(ContactError::CoefficientAt { node, rate, value })
+        }
+    }
+}
+
+impl fmt::Debug for Coefficient {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
+            Self::Field(_) => f.write_str("Field(..)"),
+            Self::Exponential {
+                fixed,
+                kinetic,
+                decay,
+            } => f
+                .debug_struct("Exponential")
+                .field("fixed", fixed)
+                .field("kinetic", kinetic)
+                .field("decay", decay)
+                .finish(),
+            Self::Table(points) => f.debug_tuple("Table").field(points).finish(),
+            Self::RateField(_) => f.write_str("RateField(..)"),
+        }
+    }
+}
+
+/// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any work.
+pub(crate) fn check_laws<'a>(
+    points: impl IntoIterator<Item = (&'a Friction, u32, [f64; 3])>,
+) -> Result<(), ContactError> {
+    for (friction, node, place) in points {
+        match friction {
+            Friction::None => continue,
+            Friction::Tresca(bound) => bound.stress(node, place)?,
+            Friction::Coulomb(law) => law.value(node, place, 0.0)?,
+        };
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponential_law_of_the_benchmark() {
+        let law = Coefficient::Exponential {
+            fixed: 0.3,
+            kinetic: 0.1,
+            decay: 0.05,
+        };
+        law.validate(0).unwrap();
+        assert!((law.value(0, [0.0; 3], 0.0).unwrap() - 0.3).abs() < 1e-15);
+        assert!(
+            (law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15
+        );
+    }
+
+    #[test]
+    fn tables_interpolate_and_are_constant_outside() {
+        let law = Coefficient::Table(vec![(0.0, 0.4), (1.0, 0.2)]);
+        for (rate, expected) in [
+            (-1.0, 0.4),
+            (0.0, 0.4),
+            (0.25, 0.35),
+            (1.0, 0.2),
+            (7.0, 0.2),
+        ] {
+            assert!((law.value(0, [0.0; 3], rate).unwrap() - expected).abs() < 1e-15);
+        }
+    }
+
+    /// A constant zero is no friction, and has no tangential rows; a field may be anything.
+    #[test]
+    fn zero_is_no_friction() {
+        let zero = |_: [f64; 3]| 0.0;
+        for (law, is_zero) in [
+            (Friction::None, true),
+            (Friction::coulomb(0.0), true),
+            (Friction::tresca(0.0), true),
+            (Friction::coulomb(1e-9), false),
+            (Friction::tresca(1e-9), false),
+            (Friction::Coulomb(Coefficient::field(zero)), false),
+            (
+                Friction::Tresca(SlipBound::StressField(Arc::new(zero))),
+                false,
+            ),
+        ] {
+            assert_eq!(law.is_zero(), is_zero, "{law:?}");
+            let contact = crate::Contact::rigid(signorini_fem_mesh::FacetTag(1));
+            let kept = contact.with_friction(law).friction().is_some();
+            assert_eq!(kept, !is_zero);
+        }
+    }
+
+    #[test]
+    fn wrong_laws_are_refused() {
+        for law in [
+            Coefficient::Constant(-0.1),
+            Coefficient::Constant(f64::NAN),
+            Coefficient::Exponential {
+                fixed: 0.3,
+                kinetic: -0.1,
+                decay: 0.05,
+            },
+            Coefficient::Exponential {
+                fixed: 0.3,
+                kinetic: 0.1,
+                decay: 0.0,
+            },
+            Coefficient::Table(vec![]),
+            Coefficient::Table(vec![(1.0, 0.1), (1.0, 0.2)]),
+            Coefficient::Table(vec![(0.0, f64::INFINITY)]),
+        ] {
+            assert!(law.validate(0).is_err(), "{law:?}");
+        }
+        for (rates, at) in [
+            ([f64::NAN, 1.0, 2.0], 0),
+            ([0.0, f64::NAN, 2.0], 1),
+            ([0.0, 1.0, f64::INFINITY], 2),
+            ([0.0, 2.0, 1.0], 2),
+        ] {
+            let error = Coefficient::Table(rates.map(|r| (r, 0.3)).to_vec()).validate(0);
+            assert!(
+                matches!(error, Err(ContactError::TableRate { entry, .. }) if entry == at),
+                "{error:?}"
+            );
+        }
+        let field = Coefficient::field(|x| -x[0]);
+        assert!(matches!(
+            field.value(7, [1.0; 3], 0.0),
+            Err(ContactError::CoefficientAt { node: 7, .. })
+        ));
+    }
+}

@@ -1,0 +1,24 @@
+//! The scene: plain data that say what is to be simulated, and nothing about how.
+//!
+//! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the body is cut, and the times.
+//! Everything here is what a user writes; nodes, rows and numbers of the mesh come in `discrete`.
+//!
+//! Uses: errors only (and `fem-mesh` for meshes and histories).
+//! In: calls of builders. Out: a [`Scene`] whose data can be asked one by one.
+//! `validate` says what can be said against a scene without computing; the rest is said by `discrete`.
+
+mod contact;
+mod friction;
+mod load;
+mod scene;
+mod support;
+mod time;
+mod validate;
+
+pub use contact::{Contact, ContactNormal, Gap};
+pub(crate) use friction::check_laws;
+pub use friction::{Coefficient, Friction, PlaceField, RateField, SlipBound};
+pub use load::Load;
+pub use scene::{Partition, Scene};
+pub use support::{Place, Support};
+pub use time::{Analysis, DifferenceFormula};

@@ -1,0 +1,178 @@
+//! The scene: plain data that say what is to be simulated.
+
+use super::contact::Contact;
+use super::load::Load;
+use super::support::Support;
+use super::time::Analysis;
+use crate::error::ContactError;
+use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
+
+/// How the body is cut into subdomains.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Partition {
+    /// Not at all.
+    Whole,
+    /// Into boxes of the bounding box, by element centroids (see [`Decomposition::boxes`]).
+    Boxes([usize; 3]),
+    /// By the given part number of every element.
+    Parts(Vec<u32>),
+}
+
+/// Everything that says what is to be simulated, and nothing about how.
+///
+/// ```
+/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Support};
+/// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+///
+/// let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
+/// let steel = Hooke::isotropic(211.9e9, 0.277)?;
+/// let scene = Scene::new(mesh, Materials::uniform(steel))
+///     .with_support(Support::fixed(brick::X_MIN))
+///     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -2.5e8]))
+///     .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(Friction::coulomb(0.3)))
+///     .with_boxes([3, 1, 1]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Scene {
+    pub(crate) mesh: TetMesh,
+    pub(crate) materials: Materials,
+    pub(crate) supports: Vec<Support>,
+    pub(crate) loads: Vec<Load>,
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) cut: Partition,
+    pub(crate) analysis: Analysis,
+}
+
+impl Scene {
+    /// A free body without loads: static, one subdomain.
+    #[must_use]
+    pub fn new(mesh: TetMesh, materials: Materials) -> Self {
+        Self {
+            mesh,
+            materials,
+            supports: Vec::new(),
+            loads: Vec::new(),
+            contacts: Vec::new(),
+            cut: Partition::Whole,
+            analysis: Analysis::statics(),
+        }
+    }
+
+    /// Adds a support.
+    #[must_use]
+    pub fn with_support(mut self, support: Support) -> Self {
+        self.supports.push(support);
+        self
+    }
+
+    /// Adds a load.
+    #[must_use]
+    pub fn with_load(mut self, load: Load) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall without.
+    ///
+    /// Surfaces may share nodes, and even tags (one surface between two obstacles). A node then has one contact point for
+    /// each direction of contact, however little they differ. Only where the directions are the same (two parts of a flat floor with
+    /// different friction, to 1.4e-6 radians) it has one for all of them: of the obstacle that is nearer, with its law and area; where
+    /// both are as near, with the law of the contact that was added first and the area of both.
+    #[must_use]
+    pub fn with_contact(mut self, contact: Contact) -> Self {
+        self.contacts.push(contact);
+        self
+    }
+
+    /// One contact surface in the place of those there are; `None` for no contact.
+    #[must_use]
+    pub fn replace_contact(mut self, contact: Option<Contact>) -> Self {
+        self.contacts = contact.into_iter().collect();
+        self
+    }
+
+    /// Cuts the body into boxes. Empty boxes are dropped and disconnected ones split (see
+    /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
+    #[must_use]
+    pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {
+        self.cut = Partition::Boxes(boxes);
+        self
+    }
+
+    /// Cuts the body by part numbers, one an element.
+    #[must_use]
+    pub fn with_parts(mut self, parts: Vec<u32>) -> Self {
+        self.cut = Partition::Parts(parts);
+        self
+    }
+
+    /// Sets the analysis; static by default.
+    #[must_use]
+    pub fn with_analysis(mut self, analysis: Analysis) -> Self {
+        self.analysis = analysis;
+        self
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &TetMesh {
+        &self.mesh
+    }
+
+    /// The materials.
+    #[must_use]
+    pub fn materials(&self) -> &Materials {
+        &self.materials
+    }
+
+    /// The supports, in the order in which they were added.
+    #[must_use]
+    pub fn supports(&self) -> &[Support] {
+        &self.supports
+    }
+
+    /// The loads, in the order in which they were added.
+    #[must_use]
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// How the body is cut.
+    #[must_use]
+    pub fn partition(&self) -> &Partition {
+        &self.cut
+    }
+
+    /// The first contact surface, if any.
+    #[must_use]
+    pub fn contact(&self) -> Option<&Contact> {
+        self.contacts.first()
+    }
+
+    /// The contact surfaces.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// The analysis.
+    #[must_use]
+    pub fn analysis(&self) -> &Analysis {
+        &self.analysis
+    }
+
+    /// The decomposition that the scene asks for.
+    ///
+    /// # Errors
+    /// [`ContactError::Decomposition`] for a zero count of boxes, and for part numbers with gaps or
+    /// disconnected parts.
+    pub fn decompose(&self) -> Result<Decomposition, ContactError> {
+        Ok(match &self.cut {
+            Partition::Whole => Decomposition::whole(&self.mesh),
+            Partition::Boxes(boxes) => Decomposition::boxes(&self.mesh, *boxes)?,
+            Partition::Parts(parts) => Decomposition::from_parts(&self.mesh, parts)?,
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! Supports: where displacements are prescribed.
+
+use signorini_fem_mesh::{FacetTag, History};
+use signorini_tfeti::Directions;
+
+/// Where a support acts.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Place {
+    /// All nodes of the facets with this tag.
+    Tag(FacetTag),
+    /// Single nodes, by their numbers in the mesh.
+    Nodes(Vec<u32>),
+}
+
+impl From<FacetTag> for Place {
+    fn from(tag: FacetTag) -> Self {
+        Self::Tag(tag)
+    }
+}
+
+impl From<Vec<u32>> for Place {
+    fn from(nodes: Vec<u32>) -> Self {
+        Self::Nodes(nodes)
+    }
+}
+
+impl From<&[u32]> for Place {
+    fn from(nodes: &[u32]) -> Self {
+        Self::Nodes(nodes.to_vec())
+    }
+}
+
+impl<const N: usize> From<[u32; N]> for Place {
+    fn from(nodes: [u32; N]) -> Self {
+        Self::Nodes(nodes.to_vec())
+    }
+}
+
+/// A support: directions of nodes that are fixed, or moved in a prescribed way.
+#[derive(Debug, Clone)]
+pub struct Support {
+    pub(crate) place: Place,
+    pub(crate) directions: Directions,
+    pub(crate) motion: Option<(Vec<[f64; 3]>, History)>,
+}
+
+impl Support {
+    /// All components are zero, on a tag or at nodes.
+    ///
+    /// ```
+    /// use signorini_contact::Support;
+    /// use signorini_fem_mesh::{brick, Brick};
+    ///
+    /// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+    /// let clamp = Support::fixed(brick::X_MIN);
+    /// let corners = Support::fixed([0, 4]);
+    /// // the nodes around a bolt
+    /// let near = |x: &[f64; 3]| (x[0] - 1.0).hypot(x[1] - 0.5) < 0.1;
+    /// let bolt: Vec<u32> = (0..).zip(mesh.points()).filter(|(_, x)| near(x)).map(|(n, _)| n).collect();
+    /// let bolt = Support::components(bolt, [true, true, false]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn fixed(place: impl Into<Place>) -> Self {
+        Self {
+            place: place.into(),
+            directions: Directions::All,
+            motion: None,
+        }
+    }
+
+    /// Some directions are zero.
+    #[must_use]
+    pub fn partial(place: impl Into<Place>, directions: Directions) -> Self {
+        Self {
+            place: place.into(),
+            directions,
+            motion: None,
+        }
+    }
+
+    /// Single components (x, y, z) are zero.
+    #[must_use]
+    pub fn components(place: impl Into<Place>, components: [bool; 3]) -> Self {
+        Self::partial(place, Directions::Components(components))
+    }
+
+    /// The fixed directions follow `history(t) * displacement` (m) instead of staying at zero.
+    ///
+    /// A support that fixes the normal displacement of a contact node must keep it outside the obstacle at all time
+    /// levels: no contact force can stop it there, and the scene is refused.
+    ///
+    /// Supports that share nodes must move them alike: equal displacements with equal histories, which are equal tables
+    /// or clones of one function.
+    #[must_use]
+    pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
+        self.motion = Some((vec![displacement], history));
+        self
+    }
+
+    /// The same with one displacement a node, in the order of the nodes (ascending for a tag).
+    #[must_use]
+    pub fn with_motions(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
+        self.motion = Some((displacements, history));
+        self
+    }
+
+    /// Where it acts.
+    #[must_use]
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// The directions that it fixes.
+    #[must_use]
+    pub fn directions(&self) -> &Directions {
+        &self.directions
+    }
+
+    /// Its displacements (m; one for all nodes or one a node) and their history; `None` if it does not move.
+    #[must_use]
+    pub fn motion(&self) -> Option<(&[[f64; 3]], &History)> {
+        let (values, history) = self.motion.as_ref()?;
+        Some((values, history))
+    }
+}

@@ -1,0 +1,22 @@
+//! The simulation: steps one after another, each prepared, solved, recovered, judged and remembered.
+//!
+//! `step` is one step, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
+//! `resume` goes on from a stored state, `frame` is what the user is shown, `step_doubling` estimates errors in time.
+//!
+//! Uses: everything below.
+//! In: a scene and settings. Out: a [`StepResult`] a step.
+
+mod accuracy;
+mod frame;
+mod observer;
+mod resume;
+mod run;
+mod simulation;
+mod step;
+mod step_doubling;
+mod threads;
+
+pub use frame::StepResult;
+pub use observer::{Flow, Observer, Silent};
+pub use simulation::Simulation;
+pub use step_doubling::{Doubling, StepDoubling, TimeError};

@@ -1,0 +1,110 @@
+//! Units of force: a step is solved with forces and displacements of each body divided by a power of two of its own.
+
+use super::iterate::Iterate;
+use crate::model::Model;
+use crate::step::StepProblem;
+
+/// The units of force of all bodies, N: the nearest powers of two to the sizes of their multipliers, or of their loads
+/// or of what moved supports would do to their nodes if these are larger.
+fn units(model: &Model, level: &StepProblem, start: &[f64]) -> Vec<f64> {
+    let bodies = &model.bodies;
+    let mut squares = vec![0.0; bodies.count()];
+    bodies.add_squares(start, 0..start.len(), &mut squares);
+    let force = level.forces(model);
+    let mut loads = vec![0.0; bodies.count()];
+    for subdomain in 0..model.tfeti.subdomains() {
+        let own = &force[model.tfeti.torn_range(subdomain)];
+        loads[bodies.of_subdomain(subdomain)] += signorini_qp::vector::dot(own, own);
+    }
+    // where supports move a body, warm starts may be rounding errors
+    let driven = |b: usize| level.driven.get(b).copied().unwrap_or(0.0);
+    let known = |b: usize| squares[b].max(loads[b]).sqrt().max(level.rest(b));
+    (0..bodies.count())
+        .map(|b| power_of_two(known(b).max(driven(b))))
+        .collect()
+}
+
+/// The data of a step and the iterate in units of the bodies, and the units of all rows; `None` for one body.
+pub(super) fn scaled(
+    model: &Model,
+    level: &StepProblem,
+    iterate: &mut Iterate,
+) -> Option<(StepProblem, Units)> {
+    let bodies = &model.bodies;
+    if bodies.count() <= 1 {
+        return None;
+    }
+    let own = units(model, level, &iterate.lambda);
+    let rows = 0..model.tfeti.dual_dim();
+    let subdomains = 0..model.tfeti.subdomains();
+    let units = Units {
+        rows: rows.map(|row| own[bodies.of_row(row)]).collect(),
+        coarse: subdomains
+            .flat_map(|s| [own[bodies.of_subdomain(s)]; 6])
+            .collect(),
+    };
+    let mut scaled = level.clone();
+    divide(&mut scaled.linear, &units.rows);
+    divide(&mut scaled.rhs, &units.coarse);
+    for (peak, unit) in scaled.peaks.iter_mut().zip(&own) {
+        peak.multipliers /= unit;
+        peak.force /= unit;
+    }
+    divide(&mut scaled.driven, &own);
+    scaled.units = model.points.iter().map(|p| units.rows[p.row]).collect();
+    divide(&mut iterate.lambda, &units.rows);
+    divide(&mut iterate.f_lambda, &units.rows);
+    // its rows are not those of single bodies
+    iterate.multiplier.clear();
+    Some((scaled, units))
+}
+
+/// The unit of force of each row and of each rigid amplitude.
+pub(crate) struct Units {
+    rows: Vec<f64>,
+    coarse: Vec<f64>,
+}
+
+impl Units {
+    /// The iterate in newtons and metres again.
+    pub(crate) fn restore(&self, iterate: &mut Iterate) {
+        multiply(&mut iterate.lambda, &self.rows);
+        multiply(&mut iterate.f_lambda, &self.rows);
+        multiply(&mut iterate.alpha, &self.coarse);
+        iterate.multiplier.clear();
+    }
+}
+
+fn divide(x: &mut [f64], units: &[f64]) {
+    x.iter_mut().zip(units).for_each(|(x, u)| *x /= u);
+}
+
+fn multiply(x: &mut [f64], units: &[f64]) {
+    x.iter_mut().zip(units).for_each(|(x, u)| *x *= u);
+}
+
+/// The power of two next to a size; 1 for what has none.
+fn power_of_two(size: f64) -> f64 {
+    if size > 0.0 && size.is_finite() {
+        size.log2().round().clamp(-900.0, 900.0).exp2()
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_powers_of_two() {
+        for (size, unit) in [
+            (0.0, 1.0),
+            (f64::NAN, 1.0),
+            (3.1, 4.0),
+            (1e-3, 0.5f64.powi(10)),
+        ] {
+            assert_eq!(power_of_two(size), unit);
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! What the numbers of a state refer to: nodes, subdomains, rows, points, times. A state is refused where they mean something else.
+//!
+//! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between two
+//! levels, and so may settings: the state is then where the changed scene goes on from.
+
+use crate::model::{ConstrainedPoint, Model};
+use crate::scene::{Analysis, DifferenceFormula};
+use crate::settings::Settings;
+use signorini_fem_mesh::{Decomposition, TetMesh};
+use signorini_tfeti::Gluing;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Fingerprint {
+    points: u64,
+    tets: u64,
+    parts: u64,
+    supports: u64,
+    contact: u64,
+    formula: u64,
+    /// Times of the levels solved.
+    times: u64,
+}
+
+impl Fingerprint {
+    pub(crate) fn new(
+        mesh: &TetMesh,
+        analysis: &Analysis,
+        decomposition: &Decomposition,
+        gluing: &Gluing,
+        points: &[ConstrainedPoint],
+    ) -> Self {
+        let coordinates = mesh.points().iter().flatten();
+        let tets = mesh.tets().iter().flatten();
+        Self {
+            points: hash(coordinates.map(|x| number(*x))),
+            tets: hash(tets.map(|n| u64::from(*n))),
+            parts: hash(decomposition.parts().iter().map(|p| u64::from(*p))),
+            supports: supports(gluing),
+            contact: hash(points.iter().flat_map(point)),
+            formula: analysis.formula().map_or(0, formula),
+            times: 0,
+        }
+    }
+
+    /// The fingerprint after a further level at this time.
+    pub(crate) fn pass(&mut self, time: f64) {
+        self.times = mix(self.times ^ number(time)).wrapping_add(1);
+    }
+
+    /// The fingerprint after the first levels of an analysis.
+    pub(crate) fn after(mut self, analysis: &Analysis, levels: usize) -> Self {
+        self.times = 0;
+        let times = (0..levels).filter_map(|level| analysis.time(level));
+        times.for_each(|time| self.pass(time));
+        self
+    }
+
+    /// The first part in which two differ, in words.
+    pub(crate) fn difference(&self, other: &Self) -> Option<&'static str> {
+        let parts = |f: &Self| {
+            [
+                (f.points, "coordinates of the mesh"),
+                (f.tets, "tetrahedra"),
+                (f.parts, "subdomains"),
+                (f.supports, "nodes or directions of supports"),
+                (f.contact, "contact points (nodes, normals or areas)"),
+                (f.formula, "weights of the difference formula"),
+                (f.times, "times of the levels solved so far"),
+            ]
+        };
+        let pairs = parts(self).into_iter().zip(parts(other));
+        let mut different = pairs.filter(|(a, b)| a.0 != b.0);
+        different.next().map(|(a, _)| a.1)
+    }
+}
+
+/// What tells a product `F lambda` that was stored from any other: the operator, and the bits of both vectors. Sums in lanes: it is
+/// taken at every level.
+pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
+    let mut lanes = [operator; 8];
+    for part in [lambda, f_lambda] {
+        for chunk in part.chunks(lanes.len()) {
+            for (lane, x) in lanes.iter_mut().zip(chunk) {
+                // an odd factor: a bijection of the lane for each word
+                *lane = (*lane ^ x.to_bits())
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                    .rotate_left(29);
+            }
+        }
+    }
+    let lengths = [lambda.len() as u64, f_lambda.len() as u64];
+    hash(lanes.into_iter().chain(lengths))
+}
+
+/// The finaliser of SplitMix64: a bijection that spreads every bit.
+fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+fn hash(words: impl Iterator<Item = u64>) -> u64 {
+    words.fold(1, |hash, word| mix(hash ^ word).wrapping_add(1))
+}
+
+/// The bits of a number, with one zero.
+fn number(x: f64) -> u64 {
+    (x + 0.0).to_bits()
+}
+
+fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
+    let [a, b] = point.frame.tangents;
+    let numbers = [point.frame.normal, a, b].into_iter().flatten();
+    let nodes = std::iter::once(point.node).chain(point.partner);
+    nodes
+        .map(u64::from)
+        .chain(numbers.chain([point.area]).map(number))
+}
+
+/// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what gives the
+/// numbers of a state their meaning these are materials, the rows of B as they stand, and how K+ is made, which changes F on forces
+/// that are not in balance.
+pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Settings) -> u64 {
+    let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
+    let body = [origin.points, origin.tets, origin.parts, origin.contact];
+    let regions: BTreeSet<u32> = mesh.regions().iter().copied().collect();
+    let laws = regions.into_iter().flat_map(|region| {
+        let law = model.scene.materials.get(region).ok();
+        law.into_iter().flat_map(|law| law.voigt()).flatten()
+    });
+    let rows = gluing.ranges().dirichlet.clone();
+    let entries = rows.flat_map(|row| gluing.row(row));
+    let entries = entries.flat_map(|(subdomain, dof, coefficient)| {
+        [subdomain as u64, dof as u64, number(coefficient)]
+    });
+    let scales = model.points.iter().flat_map(|point| {
+        let rows = point.directions();
+        rows.flat_map(|(direction, row, scale)| {
+            let numbers = direction.into_iter().chain([scale]).map(number);
+            std::iter::once(row as u64).chain(numbers)
+        })
+    });
+    let how = format!(
+        "{:?}",
+        (settings.row_scaling, settings.sharing, settings.inverse)
+    );
+    let words = body.into_iter().chain(laws.map(|x| number(*x)));
+    let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
+    let words = words.chain(entries).chain(scales);
+    hash(words.chain(how.bytes().map(u64::from)))
+}
+
+fn formula(formula: DifferenceFormula) -> u64 {
+    let weights = [formula.alpha(), formula.beta(), formula.gamma()];
+    hash(weights.into_iter().map(number))
+}
+
+/// The fixed directions of each node, as the projector on them, rounded: neither the order of supports nor the scale of
+/// their rows counts.
+fn supports(gluing: &Gluing) -> u64 {
+    let mut nodes: BTreeMap<u32, [f64; 6]> = BTreeMap::new();
+    for row in gluing.ranges().dirichlet.clone() {
+        let mut d = [0.0; 3];
+        for (_, dof, coefficient) in gluing.row(row) {
+            d[dof % 3] += coefficient;
+        }
+        let square = d.iter().map(|v| v * v).sum::<f64>();
+        let Some(node) = gluing.node(row).filter(|_| square > 0.0) else {
+            continue;
+        };
+        let products = [
+            d[0] * d[0],
+            d[1] * d[1],
+            d[2] * d[2],
+            d[1] * d[2],
+            d[0] * d[2],
+            d[0] * d[1],
+        ];
+        let projector = nodes.entry(node).or_default();
+        for (sum, product) in projector.iter_mut().zip(products) {
+            *sum += product / square;
+        }
+    }
+    hash(nodes.into_iter().flat_map(|(node, projector)| {
+        let rounded = projector.map(|v| number((v * 1e7).round()));
+        std::iter::once(u64::from(node)).chain(rounded)
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mixer_is_that_of_splitmix64() {
+        // published first output for seed 0
+        assert_eq!(mix(0x9e37_79b9_7f4a_7c15), 0xe220_a839_7b1d_cdaf);
+    }
+
+    #[test]
+    fn one_bit_of_a_product_breaks_its_seal() {
+        let (x, y): (Vec<f64>, Vec<f64>) = ((0..19).map(f64::from).collect(), vec![0.5; 19]);
+        let base = seal(1, &x, &y);
+        assert_ne!(base, seal(2, &x, &y));
+        assert_ne!(base, seal(1, &y, &x));
+        for k in 0..19 {
+            for bit in [0, 31, 63] {
+                let mut other = y.clone();
+                other[k] = f64::from_bits(other[k].to_bits() ^ 1 << bit);
+                assert_ne!(base, seal(1, &x, &other), "{k} {bit}");
+            }
+        }
+        assert_ne!(seal(1, &[], &x), seal(1, &x, &[]));
+    }
+
+    #[test]
+    fn one_bit_zeros_lengths_and_order_count() {
+        let of = |words: &[f64]| hash(words.iter().map(|x| number(*x)));
+        let base = of(&[1.0, 2.0, 0.0]);
+        assert_eq!(base, of(&[1.0, 2.0, -0.0]));
+        for other in [
+            &[2.0, 1.0, 0.0][..],
+            &[1.0, 2.0],
+            &[1.0, 2.0, 0.0, 0.0],
+            &[1.0, 2.0, 5e-324],
+            &[1.0_f64.next_up(), 2.0, 0.0],
+        ] {
+            assert_ne!(base, of(other), "{other:?}");
+        }
+    }
+}

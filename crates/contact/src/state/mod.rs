@@ -1,0 +1,19 @@
+//! The state between two steps: what one step hands to the next, and what its numbers refer to.
+//!
+//! Multipliers, their products, old tangential displacements, the tolerance that estimates have chosen. With feature
+//! `checkpoint` also as bytes. `fingerprint` tells whether a stored state belongs to a scene.
+//!
+//! Uses: `model`, `report`, `scene`, `settings`.
+//! In: the result of a step. Out: a [`State`] from which a run goes on bit for bit.
+
+#[cfg(feature = "checkpoint")]
+mod bytes;
+mod debug;
+mod fingerprint;
+mod state;
+mod tolerance;
+
+pub(crate) use fingerprint::{Fingerprint, operator_hash};
+pub(crate) use state::Peak;
+pub use state::State;
+pub(crate) use tolerance::{Controller, Discretisation, certificate_limit};

@@ -1,0 +1,10 @@
+//! The data of one step: the dual problem at a time, with offsets and slip bounds.
+//!
+//! Uses: `state`, `model`, `scene`.
+//! In: a model, the state before the step and its number. Out: a [`StepProblem`], which solvers and results read.
+
+#[cfg(test)]
+pub(crate) mod example;
+mod problem;
+
+pub(crate) use problem::{StepProblem, entry_or_zero};
