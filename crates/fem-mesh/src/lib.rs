@@ -117,7 +117,7 @@ pub use decomposition::{
 };
 pub use disjoint::DisjointSets;
 pub use element::{Element, element_stiffness};
-pub use even_parts::even_parts;
+pub use even_parts::{PartCount, even_parts};
 pub use fields::FieldError;
 pub use files::replace_file;
 pub use history::{History, HistoryError, interpolate};

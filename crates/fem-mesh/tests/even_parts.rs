@@ -1,6 +1,8 @@
 //! The cut of a mesh that comes without one: connected parts of similar size, boxes where boxes are best.
 
-use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, TetMesh, even_parts};
+use signorini_fem_mesh::{
+    Brick, Decomposition, DecompositionError, PartCount, TetMesh, even_parts,
+};
 
 fn brick(cells: [usize; 3]) -> TetMesh {
     Brick::new([3.0, 1.0, 1.0], cells).build().expect("a brick")
@@ -14,7 +16,7 @@ fn sizes(parts: &[u32]) -> Vec<usize> {
 
 /// One cut for the whole mesh, whatever its tetrahedra are made of.
 fn even(mesh: &TetMesh, count: usize) -> Vec<u32> {
-    even_parts(mesh, &vec![0; mesh.tets().len()], count).expect("parts")
+    even_parts(mesh, &vec![0; mesh.tets().len()], PartCount::Exactly(count)).expect("parts")
 }
 
 #[test]
@@ -32,6 +34,26 @@ fn a_brick_falls_into_its_boxes() {
             (parts[a] == parts[b]) == (grid.part_of(a) == grid.part_of(b))
         });
         assert!(same, "{boxes:?}: {:?}", sizes(&parts));
+    }
+}
+
+#[test]
+fn about_so_many_is_the_grid_nearest_by() {
+    let labels = |mesh: &TetMesh| vec![0; mesh.tets().len()];
+    for (cells, about, boxes) in [
+        ([15, 5, 5], 3, 3),
+        ([30, 10, 10], 21, 24),
+        ([30, 10, 10], 27, 24),
+        ([45, 15, 15], 72, 81),
+        ([45, 15, 15], 90, 81),
+    ] {
+        let mesh = brick(cells);
+        let parts = even_parts(&mesh, &labels(&mesh), PartCount::About(about)).expect("parts");
+        assert_eq!(
+            sizes(&parts),
+            vec![parts.len() / boxes; boxes],
+            "{cells:?} about {about}"
+        );
     }
 }
 
@@ -62,7 +84,7 @@ fn no_part_reaches_into_another_body_or_group() {
         .map(|tet| u32::from(mesh.tet_points(tet).iter().map(|p| p[2]).sum::<f64>() > 2.0))
         .collect();
     for count in [1, 4, 9, 30] {
-        let parts = even_parts(&mesh, &half, count).expect("parts");
+        let parts = even_parts(&mesh, &half, PartCount::Exactly(count)).expect("parts");
         let bodies = mesh.components();
         let mut seen = vec![None; sizes(&parts).len()];
         for (tet, &part) in parts.iter().enumerate() {
@@ -90,9 +112,9 @@ fn bad_input_is_refused() {
     let mesh = brick([2, 1, 1]);
     let labels = vec![0; mesh.tets().len()];
     assert_eq!(
-        even_parts(&mesh, &labels, 0),
+        even_parts(&mesh, &labels, PartCount::About(0)),
         Err(DecompositionError::NoParts)
     );
-    let short = even_parts(&mesh, &labels[1..], 2);
+    let short = even_parts(&mesh, &labels[1..], PartCount::Exactly(2));
     assert!(matches!(short, Err(DecompositionError::PartCount { .. })));
 }

@@ -28,7 +28,7 @@ impl fmt::Display for Plan {
         if self.primal > LARGE * self.subdomains {
             writeln!(
                 f,
-                "              large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
+                "              large ones: 4 to 6 cells an edge each are faster (leave the partition to the library, or with_subdomains)"
             )?;
         }
         if self.estimate.is_mostly_coarse() {
