@@ -4,10 +4,11 @@
 #![allow(missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use signorini::fem_mesh::{Hooke, Materials, StrainRecovery, assemble_stiffness};
+use signorini::fem_mesh::{Hooke, StrainRecovery, assemble_stiffness};
 use signorini::qp::{Equality, EqualityProjector, SymmetricOperator};
 use signorini::tfeti::{ActiveSetFactor, ActiveSetProjector, InverseKind, Sharing};
 use signorini_benches::{Body, Failure, wave};
+use signorini_studies::brick::{POISSON, YOUNG};
 use std::hint::black_box;
 
 const SIZES: [usize; 5] = [1, 2, 3, 4, 5];
@@ -15,7 +16,7 @@ const SIZES: [usize; 5] = [1, 2, 3, 4, 5];
 fn set_up(c: &mut Criterion) -> Result<(), Failure> {
     let mut group = c.benchmark_group("set-up");
     group.sample_size(10);
-    let hooke = Hooke::isotropic(211.9e9, 0.277)?;
+    let hooke = Hooke::isotropic(YOUNG, POISSON)?;
     for n in SIZES {
         let body = Body::new(n)?;
         group.bench_function(BenchmarkId::new("assembly of the whole body", n), |b| {
@@ -138,7 +139,6 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
 fn once_a_level(c: &mut Criterion) -> Result<(), Failure> {
     let mut group = c.benchmark_group("once a level");
     group.sample_size(20);
-    let materials = Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?);
     for n in SIZES {
         let body = Body::new(n)?;
         let system = body.system(Sharing::Translates, InverseKind::Auto)?;
@@ -156,7 +156,7 @@ fn once_a_level(c: &mut Criterion) -> Result<(), Failure> {
         let recovery = StrainRecovery::new(&body.mesh);
         let nodal = wave(3 * body.mesh.points().len());
         group.bench_function(BenchmarkId::new("recovery of strains, error", n), |b| {
-            b.iter(|| recovery.error(&body.mesh, &materials, black_box(&nodal)));
+            b.iter(|| recovery.error(&body.mesh, &body.materials, black_box(&nodal)));
         });
     }
     group.finish();

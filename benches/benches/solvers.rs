@@ -9,6 +9,7 @@ use signorini::qp::{
     KprgpSettings, KprgpWorkspace, ProductSet, Segment, SymmetricOperator, Tolerance, kprgp,
 };
 use signorini_benches::Failure;
+use signorini_studies::brick::{Block, Loading};
 use std::f64::consts::PI;
 use std::hint::black_box;
 
@@ -50,29 +51,6 @@ fn string(c: &mut Criterion) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The benchmark with five steps.
-fn scene(n: usize) -> Result<Scene, Failure> {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build()?;
-    let steel = Hooke::isotropic(211.9e9, 0.277)?;
-    let friction = Friction::Coulomb(Coefficient::Exponential {
-        fixed: 0.3,
-        kinetic: 0.1,
-        decay: 0.05,
-    });
-    let ramp = History::ramp(1.0, 1.0)?;
-    Ok(Scene::new(mesh, Materials::uniform(steel))
-        .with_support(Support::fixed(brick::X_MIN))
-        .with_boxes([3 * n, n, n])
-        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3.0e9]).with_history(ramp.clone()))
-        .with_load(Load::traction(brick::X_MAX, [9.0e8, 0.0, -1.5e9]).with_history(ramp))
-        .with_contact(
-            Contact::rigid(brick::Z_MIN)
-                .with_gap(0.1)
-                .with_friction(friction),
-        )
-        .with_analysis(Analysis::quasistatic(1.0, 5)))
-}
-
 fn steps(c: &mut Criterion) -> Result<(), Failure> {
     let mut group = c.benchmark_group("last of five steps of the brick");
     group.sample_size(10);
@@ -84,7 +62,11 @@ fn steps(c: &mut Criterion) -> Result<(), Failure> {
     ];
     for (name, n, settings) in cases {
         let start = || {
-            let mut simulation = Simulation::new(scene(n)?, settings.clone())?;
+            let block = Block {
+                steps: 5,
+                ..Block::benchmark(n, Loading::B)
+            };
+            let mut simulation = Simulation::new(block.scene()?, settings.clone())?;
             for _ in 0..4 {
                 simulation.step()?;
             }

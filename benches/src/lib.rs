@@ -3,15 +3,15 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
-use signorini::fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, TetMesh, brick};
+use signorini::fem_mesh::{Decomposition, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::{
     ContactConstraints, InverseKind, InverseSettings, NodeSupport, Sharing, Tfeti, TfetiBuilder,
     TfetiError,
 };
+use signorini_studies::brick::{Block, Loading, steel};
 use std::time::Instant;
 
-/// Errors of all crates.
-pub type Failure = Box<dyn std::error::Error>;
+pub use signorini_studies::Failure;
 
 /// The brick of the benchmark: `3n x n x n` subdomains of 5 x 5 x 5 cubes, clamped at one end, with a rough floor.
 #[derive(Debug)]
@@ -28,12 +28,10 @@ pub struct Body {
 
 impl Body {
     /// The brick for `n`.
-    ///
-    /// # Errors
-    /// Those of the mesh, for `n = 0`.
     pub fn new(n: usize) -> Result<Self, Failure> {
-        let mesh = brick::Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build()?;
-        let decomposition = Decomposition::boxes(&mesh, [3 * n, n, n])?;
+        let block = Block::benchmark(n, Loading::B);
+        let mesh = block.mesh()?;
+        let decomposition = Decomposition::boxes(&mesh, block.boxes)?;
         let bottom = mesh.nodes_on(brick::Z_MIN);
         let frame = SurfaceFrame {
             normal: [0.0, 0.0, -1.0],
@@ -42,16 +40,13 @@ impl Body {
         Ok(Self {
             supports: vec![NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))],
             contact: ContactConstraints::rigid(&bottom, &vec![frame; bottom.len()], true),
-            materials: Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?),
+            materials: steel()?,
             mesh,
             decomposition,
         })
     }
 
     /// The T-FETI system.
-    ///
-    /// # Errors
-    /// Those of the set-up.
     pub fn system(&self, sharing: Sharing, kind: InverseKind) -> Result<Tfeti, TfetiError> {
         TfetiBuilder::new(&self.mesh, &self.decomposition, &self.materials)
             .with_supports(&self.supports)
@@ -63,7 +58,6 @@ impl Body {
 }
 
 /// A vector without structure.
-#[must_use]
 pub fn wave(length: usize) -> Vec<f64> {
     (0..length).map(|i| (0.7 * i as f64).sin()).collect()
 }
@@ -84,9 +78,6 @@ pub fn seconds(quick: bool, mut body: impl FnMut()) -> f64 {
 
 /// Seconds of a dense product of `flops` operations with a square matrix of `size`: the better of `A X` and `X A`, the
 /// columns (rows) of `X` shared by `threads`.
-///
-/// # Errors
-/// If the thread pool cannot be made.
 pub fn gemm(quick: bool, flops: u64, size: usize, threads: usize) -> Result<[f64; 2], Failure> {
     let members = (flops as f64 / (2 * size * size) as f64 / threads as f64).ceil() as usize;
     let a = Mat::<f64>::from_fn(size, size, |i, j| 1.0 / (1.0 + (i + j) as f64));
@@ -125,9 +116,6 @@ pub fn gemm(quick: bool, flops: u64, size: usize, threads: usize) -> Result<[f64
 pub const MEMORY: u64 = 3 << 26;
 
 /// Bytes per second of the triad `a = b + s c` on three arrays of so many `bytes` in all, counting two reads and one write.
-///
-/// # Errors
-/// If the thread pool cannot be made.
 pub fn triad(quick: bool, threads: usize, bytes: u64) -> Result<f64, Failure> {
     let length = (bytes / 24).clamp(1, if quick { 1 << 18 } else { 1 << 32 }) as usize;
     let chunk = length.div_ceil(8 * threads).min(1 << 16);

@@ -1,0 +1,81 @@
+//! The plain programs: each runs, and finds what it must find.
+#![allow(dead_code, missing_docs, unreachable_pub)]
+
+#[path = "../own_mesh.rs"]
+mod own_mesh;
+#[path = "../qp_only.rs"]
+mod qp_only;
+#[path = "../tresca.rs"]
+mod tresca;
+
+use signorini::prelude::*;
+use signorini_qp::Expansion;
+
+/// The program in the README is the example `first`, to the letter.
+#[test]
+fn the_readme_shows_the_first_program() {
+    let readme = include_str!("../../README.md");
+    let example = include_str!("../first.rs");
+    let program = example
+        .split_once("\n\n")
+        .map_or(example, |(_, program)| program)
+        .trim();
+    assert!(
+        readme.contains(program),
+        "copy examples/first.rs into the README"
+    );
+    assert!(program.lines().count() <= 40);
+}
+
+#[test]
+fn a_mesh_of_ones_own_becomes_a_series() {
+    let folder = concat!(env!("CARGO_TARGET_TMPDIR"), "/own_mesh");
+    own_mesh::run(folder).expect("own_mesh");
+    let series = std::fs::read_to_string(format!("{folder}/roller.pvd")).expect("a series");
+    assert_eq!(series.matches("<DataSet").count(), 10);
+}
+
+#[test]
+fn a_slip_bound_that_is_data_takes_one_quadratic_program_a_step() {
+    let mut pulls = Vec::new();
+    for method in [Method::paper(), Method::default()] {
+        let programs = usize::from(method.name() == "paper");
+        let settings = Settings::default().with_method(method).with_tolerance(1e-8);
+        let mut simulation =
+            Simulation::new(tresca::scene(3e7).expect("scene"), settings).expect("set-up");
+        while !simulation.is_finished() {
+            let result = simulation.step().expect("step");
+            result.require_converged().expect("convergence");
+            assert!(programs == 0 || result.report().counters.quadratic_programs == programs);
+            assert!(result.certificate().largest() < 1e-7 && result.summary().friction_work > 0.0);
+        }
+        let last = *simulation.frame().expect("a result").summary();
+        // everything slides at the end, so the friction is at most bound times area
+        assert_eq!(last.stick, 0);
+        assert!(last.friction_force[0] < 0.0 && last.friction_force[0] > -3e7 * 3.0);
+        pulls.push(last.friction_force[0]);
+    }
+    assert!((pulls[0] - pulls[1]).abs() < 1e-7 * pulls[0].abs());
+    let negative = tresca::scene(-1.0).expect("scene");
+    let Err(error) = Simulation::new(negative, Settings::default()) else {
+        panic!("a slip bound cannot be negative");
+    };
+    assert!(error.to_string().contains("slip bound"));
+}
+
+#[test]
+fn quadratic_programs_without_mechanics() {
+    for (expansion, limit) in [(Expansion::FixedStep, 200), (Expansion::ProjectedCg, 175)] {
+        let (report, resting, kkt) = qp_only::string(expansion).expect("string");
+        assert!(report.products.total() <= limit, "{report:?}");
+        // with the two fixed ends 14
+        assert_eq!(resting, 12);
+        assert!((report.cost + 0.291_767_320_525_8).abs() < 3e-9);
+        assert!(kkt < 1e-4);
+    }
+    let (x, multiplier, kkt) = qp_only::disc().expect("disc");
+    for (x, exact) in x.iter().zip([0.6, 0.8, 0.2]) {
+        assert!((x - exact).abs() < 1e-8);
+    }
+    assert!((multiplier + 0.2).abs() < 1e-8 && kkt < 1e-9);
+}

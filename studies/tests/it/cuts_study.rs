@@ -1,0 +1,56 @@
+//! Ragged cuts cost about as much as boxes once they are made compact, and no step runs in circles as they are.
+
+use signorini::fem_mesh::{Brick, split_disconnected};
+
+use crate::options;
+use crate::performance::PerformanceOptions;
+use crate::performance::cuts::{Case, CutLine, execute, measure, voronoi};
+
+/// Dearest step over the mean one.
+fn spike(line: &CutLine) -> f64 {
+    let most = line.products.iter().max().copied().unwrap_or(0);
+    (most * line.products.len()) as f64 / line.total() as f64
+}
+
+#[test]
+fn compact_parts_take_at_most_a_quarter_more_products_than_boxes() {
+    let options: PerformanceOptions = options("performance --cuts --n 1,2");
+    let mut out = Vec::new();
+    let lines = execute(&options, &mut out).expect("run");
+    assert_eq!(lines.len(), 2 * 4 * 6);
+    for same in lines.chunks_exact(6) {
+        let boxes = same[0].total();
+        for line in same {
+            assert!(line.failed == 0 && line.certificate < 1e-6, "{line:?}");
+            if line.cut == "boxes" || line.cut.ends_with("compact") {
+                assert!(4 * line.total() <= 5 * boxes, "{boxes}: {line:?}");
+            }
+            assert!(spike(line) < 2.6, "{line:?}");
+        }
+    }
+    // half of the 19 and 23 that a tolerance of 0.01 of the residual took, and next to it
+    let linear = |n: usize| {
+        lines[24 * (n - 1)..24 * n]
+            .iter()
+            .find(|l| l.case == Case::Linear)
+    };
+    for (n, most) in [(1, 11), (2, 12)] {
+        let line = linear(n).expect("line");
+        assert!(line.total() <= most, "{line:?}");
+    }
+    let text = String::from_utf8(out).expect("text");
+    assert!(text.lines().count() == 2 + lines.len() && text.contains("| grown, compact |"));
+}
+
+/// Where predictions made no progress, the residual of subdomains that had come apart told what holds and slides next: steps of 72, 256,
+/// 45 and 250 products then.
+#[test]
+fn no_step_of_a_ragged_cut_runs_in_circles() {
+    let mesh = Brick::new([3.0, 1.0, 1.0], [45, 15, 15])
+        .build()
+        .expect("brick");
+    let parts = voronoi(&mesh, 81, 1);
+    let connected = split_disconnected(&mesh, &parts).expect("parts");
+    let line = measure(Case::Program, &mesh, 3, ("as given", Some(connected))).expect("run");
+    assert!(spike(&line) < 2.0 && line.failed == 0, "{line:?}");
+}

@@ -1,0 +1,71 @@
+//! The smaller studies, each with a number it must find.
+
+use clap::Parser;
+use signorini_studies::record::RunRecord;
+
+use crate::bodies::{self, BodiesOptions, COEFFICIENT};
+use crate::frictionless::{self, FrictionlessOptions};
+use crate::{folder, options, read};
+
+#[test]
+fn frictionless_touches_where_the_reference_does_with_fewer_products() {
+    let json = folder("frictionless").join("f.json");
+    let line = format!("frictionless --n 1,2,3 --quiet --json {}", json.display());
+    let options = options::<FrictionlessOptions>(&line);
+    let mut out = Vec::new();
+    let outcomes = frictionless::execute(&options, &mut out).expect("run");
+    let touching: Vec<usize> = outcomes.iter().map(|o| o.record.steps[0].active).collect();
+    assert_eq!(touching, [6, 11, 16]);
+    for outcome in &outcomes {
+        let r = &outcome.record;
+        let same = |k: &&frictionless::Known| k.0 == r.n && k.1 == 2.5e8;
+        let known = frictionless::KNOWN.iter().find(same).expect("known");
+        assert!(4 * r.n_m <= known.2, "n = {}: {}", r.n, r.n_m);
+        assert!(r.largest_certificate < 1e-6 && r.steps.len() == 1);
+        // no friction: no tangential rows, no tangential forces
+        assert_eq!(r.steps[0].tangential_force, [0.0; 2]);
+    }
+    let back: Vec<RunRecord> = serde_json::from_str(&read(&json)).expect("records");
+    assert_eq!(back[2], outcomes[2].record);
+    assert!(
+        String::from_utf8(out)
+            .expect("text")
+            .contains("best existing code")
+    );
+}
+
+#[test]
+fn frictionless_with_the_higher_load_and_the_papers_method() {
+    let line = "frictionless --n 2 --traction 1e9 --method paper --quiet --tolerance 1e-7";
+    let options = options::<FrictionlessOptions>(line);
+    let outcomes = frictionless::execute(&options, &mut Vec::new()).expect("run");
+    assert_eq!(outcomes[0].record.steps[0].active, 55);
+    assert_eq!(outcomes[0].record.quadratic_programs, 1);
+    let options = crate::options("frictionless --traction inf --n 1");
+    assert!(frictionless::execute(&options, &mut Vec::new()).is_err());
+    assert!(FrictionlessOptions::try_parse_from(["frictionless", "--n", "0"]).is_err());
+}
+
+#[test]
+fn a_pad_on_a_rail_sticks_then_slides() {
+    let folder = folder("bodies");
+    let line = format!(
+        "bodies --cells 4 --steps 10 --quiet --out {}",
+        folder.display()
+    );
+    let options = options::<BodiesOptions>(&line);
+    let outcome = bodies::execute(&options, &mut Vec::new()).expect("run");
+    let run = &outcome.record;
+    assert!(run.largest_certificate < 1e-6);
+    // pressed, then sheared while some of it sticks, then sliding as a whole
+    assert!(run.steps[2].stick > 0 && run.steps[2].slip > 0);
+    let last = run.steps.last().expect("levels");
+    assert_eq!((last.stick, last.slip), (0, last.active));
+    let ratio = bodies::final_ratio(run);
+    assert!((ratio / COEFFICIENT - 1.0).abs() < 0.01, "{ratio}");
+    // 176 when it was made; an eighth more or less
+    assert!((154..=198).contains(&run.n_m), "{}", run.n_m);
+    for file in ["body.pvd", "contact.pvd", "steps.csv"] {
+        assert!(folder.join("n1-bodies").join(file).exists());
+    }
+}
