@@ -100,7 +100,8 @@ pub mod vec3;
 
 pub use assembly::{AssemblyError, assemble_stiffness};
 pub use decomposition::{
-    Decomposition, DecompositionError, NodeCopy, Subdomain, compact_parts, split_disconnected,
+    Decomposition, DecompositionError, NodeCopy, PartCount, Subdomain, compact_parts, even_parts,
+    split_disconnected,
 };
 pub use element::Element;
 pub use fields::{

@@ -27,6 +27,12 @@ pub(crate) const ELLIPTICITY: f64 = 1e-12;
 /// interfaces.
 pub(crate) const SWEEPS: usize = 40;
 pub(crate) const SETTLED: f64 = 1e-3;
+/// Part of a slab's tetrahedra by which its end may move to a gap between layers of tetrahedra.
+pub(crate) const SNAP: f64 = 0.15;
+/// Part of its box that a body fills at least to be cut into a grid of about so many cubes, and the edges of cubes that are tried: so many
+/// steps of two per cent more and less than the edge that the number asks for.
+pub(crate) const FILLED: f64 = 0.98;
+pub(crate) const REACH: i32 = 6;
 
 // Recovered strains
 

@@ -24,8 +24,7 @@ impl fmt::Display for Plan {
         if self.primal > LARGE * self.subdomains {
             line(
                 "",
-                "large ones: 4 to 6 cells an edge each are faster (with_boxes, with_parts)"
-                    .to_owned(),
+                "large ones: 4 to 6 cells an edge each are faster (with_subdomains)".to_owned(),
             )?;
         }
         if cost.is_mostly_coarse() {

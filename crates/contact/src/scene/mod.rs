@@ -10,6 +10,7 @@
 mod contact;
 mod friction;
 mod load;
+mod partition;
 mod scene;
 mod support;
 mod time;
@@ -19,6 +20,7 @@ pub use contact::{Contact, ContactNormal, Gap};
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use load::Load;
-pub use scene::{Partition, Scene};
+pub use partition::Partition;
+pub use scene::Scene;
 pub use support::{Place, Support};
 pub use time::{Analysis, DifferenceFormula};

@@ -2,22 +2,11 @@
 
 use super::contact::Contact;
 use super::load::Load;
+use super::partition::Partition;
 use super::support::Support;
 use super::time::Analysis;
 use crate::error::ContactError;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
-
-/// How the body is cut into subdomains.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum Partition {
-    /// Not at all.
-    Whole,
-    /// Into boxes of the bounding box, by element centroids (see [`Decomposition::boxes`]).
-    Boxes([usize; 3]),
-    /// By the given part number of every element.
-    Parts(Vec<u32>),
-}
 
 /// Everything that says what is to be simulated, and nothing about how.
 ///
@@ -46,7 +35,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A free body without loads: static, one subdomain.
+    /// A free body without loads: static, cut into subdomains as its size asks for.
     #[must_use]
     pub fn new(mesh: TetMesh, materials: Materials) -> Self {
         Self {
@@ -55,7 +44,7 @@ impl Scene {
             supports: Vec::new(),
             loads: Vec::new(),
             contacts: Vec::new(),
-            partition: Partition::Whole,
+            partition: Partition::Automatic,
             analysis: Analysis::statics(),
         }
     }
@@ -106,6 +95,20 @@ impl Scene {
     #[must_use]
     pub fn with_parts(mut self, parts: Vec<u32>) -> Self {
         self.partition = Partition::Parts(parts);
+        self
+    }
+
+    /// Cuts the body into so many subdomains of similar size, as compact as can be; without a partition the number follows from the size.
+    #[must_use]
+    pub fn with_subdomains(mut self, count: usize) -> Self {
+        self.partition = Partition::Subdomains(count);
+        self
+    }
+
+    /// Leaves each body in one piece. Factors of large bodies are expensive, and their contact needs more iterations.
+    #[must_use]
+    pub fn without_subdomains(mut self) -> Self {
+        self.partition = Partition::Whole;
         self
     }
 
@@ -167,13 +170,8 @@ impl Scene {
     /// The decomposition that the scene asks for.
     ///
     /// # Errors
-    /// [`ContactError::Decomposition`] for a zero count of boxes, and for part numbers with gaps or
-    /// disconnected parts.
+    /// [`ContactError::Decomposition`] for a zero count, and for part numbers with gaps or disconnected parts; for a region without material.
     pub fn decompose(&self) -> Result<Decomposition, ContactError> {
-        Ok(match &self.partition {
-            Partition::Whole => Decomposition::whole(&self.mesh),
-            Partition::Boxes(boxes) => Decomposition::boxes(&self.mesh, *boxes)?,
-            Partition::Parts(parts) => Decomposition::from_parts(&self.mesh, parts)?,
-        })
+        self.partition.decompose(&self.mesh, &self.materials)
     }
 }

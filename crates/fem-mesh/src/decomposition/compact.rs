@@ -31,23 +31,27 @@ use super::subdomains::DecompositionError;
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one number for each tetrahedron.
 pub fn compact_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
-    let tets = mesh.tets().len();
     expect_parts(mesh, parts)?;
+    Ok(compact(mesh, &mesh.components(), parts))
+}
+
+/// As [`compact_parts`]; parts do not reach from one group into another.
+pub(crate) fn compact(mesh: &TetMesh, bodies: &[u32], parts: &[u32]) -> Vec<u32> {
+    let tets = parts.len();
     let centres: Vec<Vec3> = (0..tets)
         .map(|tet| vec3::centroid(&mesh.tet_points(tet)))
         .collect();
-    let bodies = mesh.components();
-    let mut parts = within_bodies(&bodies, parts);
+    let mut parts = within_bodies(bodies, parts);
     for _ in 0..SWEEPS {
-        let next = sweep(mesh, &bodies, &centres, &parts);
+        let next = sweep(mesh, bodies, &centres, &parts);
         let moved = next.iter().zip(&parts).filter(|(a, b)| a != b).count();
         parts = next;
         if moved as f64 <= SETTLED * tets as f64 {
             break;
         }
     }
-    join_pieces(mesh, &mut parts);
-    Ok(renumbered(&parts))
+    join_pieces(mesh, bodies, &mut parts);
+    renumbered(&parts)
 }
 
 /// One number for each part of a body, without gaps.
@@ -119,7 +123,7 @@ fn touching(mesh: &TetMesh, parts: &[u32], count: usize, body: &[u32]) -> Vec<Ve
 }
 
 /// Gives all but the largest piece of each part to the neighbours that share most faces with them.
-fn join_pieces(mesh: &TetMesh, parts: &mut [u32]) {
+pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
     let pieces = split_by(mesh, parts);
     let count = pieces.iter().max().map_or(0, |&p| p as usize + 1);
     let (starts, tets) = buckets(count, &pieces);
@@ -145,8 +149,11 @@ fn join_pieces(mesh: &TetMesh, parts: &mut [u32]) {
             .map(|&piece| {
                 let own = tets[range(&starts, piece)].iter();
                 let around = own.flat_map(|&tet| mesh.neighbours(tet as usize));
+                let same =
+                    |tet: &usize| groups[*tet] == groups[tets[starts[piece] as usize] as usize];
                 let mut fixed: Vec<u32> = around
                     .flatten()
+                    .filter(same)
                     .filter(|&tet| !loose[pieces[tet] as usize])
                     .map(|tet| parts[tet])
                     .collect();

@@ -57,6 +57,7 @@ errors! {
     DecompositionError {
         PartCount { given: usize, tets: usize } =
             "{given} part numbers for {tets} tetrahedra; give exactly one each";
+        NoParts = "a mesh cannot be cut into 0 parts; ask for 1 at least";
         NoBoxes { boxes: [usize; 3], axis: &'static str } =
             "the grid of boxes {boxes:?} has none along {axis}; give at least 1 each";
         EmptyPart { part: usize, parts: usize } =

@@ -2,6 +2,7 @@
 
 mod compact;
 mod decomposition;
+mod even_parts;
 mod fields;
 #[cfg(feature = "gmsh")]
 mod gmsh;

@@ -1,0 +1,190 @@
+//! A cut for a mesh that comes without one: slabs of equal numbers of tetrahedra, made compact.
+
+use super::compact::{compact, join_pieces};
+use super::parts::expect_parts;
+use super::subdomains::DecompositionError;
+use crate::mesh::{TetMesh, connected_sets};
+use crate::tables::{buckets, range};
+use crate::tolerances::{FILLED, REACH, SNAP};
+use crate::vec3::{self, Vec3};
+
+/// How many parts [`even_parts`] makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PartCount {
+    /// So many, but where bodies or groups are more.
+    Exactly(usize),
+    /// A number near by for which the parts of a body that fills its box are nearest to cubes.
+    About(usize),
+}
+
+/// Cuts a mesh into connected parts of similar numbers of tetrahedra, as compact as can be.
+///
+/// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. Each connected group gets
+/// its share of the parts by its number of tetrahedra, at least one. It is cut across the longest edge of its box into slabs, slabs into
+/// columns, columns into blocks; cells of a structured mesh stay whole where the number of parts allows it. What is not compact then is made
+/// so as by [`compact_parts`](crate::compact_parts). The parts are numbered by their first tetrahedra.
+///
+/// # Errors
+/// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`] for no parts.
+pub fn even_parts(
+    mesh: &TetMesh,
+    groups: &[u32],
+    count: PartCount,
+) -> Result<Vec<u32>, DecompositionError> {
+    let tets = mesh.tets().len();
+    expect_parts(mesh, groups)?;
+    let (PartCount::Exactly(number) | PartCount::About(number)) = count;
+    if number == 0 {
+        return Err(DecompositionError::NoParts);
+    }
+    let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
+    let (starts, members) = buckets(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
+    let centres: Vec<Vec3> = (0..tets)
+        .map(|tet| vec3::centroid(&mesh.tet_points(tet)))
+        .collect();
+    let cutter = Cutter {
+        mesh,
+        centres: &centres,
+    };
+    let (mut slabs, mut next) = (vec![0; tets], 0);
+    for group in 0..starts.len() - 1 {
+        let own = &members[range(&starts, group)];
+        let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
+        let share = share.clamp(1, own.len());
+        let pieces = match count {
+            PartCount::Exactly(_) => cutter.pieces(own, share),
+            PartCount::About(_) => cutter.nearest_to_cubes(own, share),
+        };
+        for piece in pieces {
+            for tet in piece {
+                slabs[tet as usize] = next;
+            }
+            next += 1;
+        }
+    }
+    join_pieces(mesh, &groups, &mut slabs);
+    Ok(compact(mesh, &groups, &slabs))
+}
+
+struct Cutter<'a> {
+    mesh: &'a TetMesh,
+    centres: &'a [Vec3],
+}
+
+impl Cutter<'_> {
+    /// The cut into a number near `share` whose parts have the least surface for their number, if the tetrahedra fill their box.
+    fn nearest_to_cubes(&self, tets: &[u32], share: usize) -> Vec<Vec<u32>> {
+        let (lengths, volume) = self.size(tets);
+        let first = self.pieces(tets, share);
+        if volume < FILLED * lengths.iter().product::<f64>() {
+            return first;
+        }
+        let edge = (volume / share as f64).cbrt();
+        let steps = (-REACH..=REACH).map(|k| edge * (1.0 + 0.02 * f64::from(k)));
+        let grid = |edge: f64| lengths.map(|length| (length / edge).round().max(1.0) as usize);
+        let mut counts: Vec<usize> = steps.map(|edge| grid(edge).iter().product()).collect();
+        counts.retain(|&count| count != share && count <= tets.len());
+        counts.sort_by_key(|count| (count.abs_diff(share), *count));
+        counts.dedup();
+        let measure = |pieces: &[Vec<u32>]| {
+            let surface: f64 = pieces.iter().map(|piece| self.box_surface(piece)).sum();
+            surface / (pieces.len() as f64).cbrt()
+        };
+        let mut best = (measure(&first), first);
+        for count in counts {
+            let pieces = self.pieces(tets, count);
+            let found = measure(&pieces);
+            if found < (1.0 - 1e-9) * best.0 {
+                best = (found, pieces);
+            }
+        }
+        best.1
+    }
+
+    /// Cuts these tetrahedra into `count` parts, 1 at least and one a tetrahedron at most.
+    fn pieces(&self, tets: &[u32], count: usize) -> Vec<Vec<u32>> {
+        let mut out = Vec::with_capacity(count);
+        self.cut(&mut tets.to_vec(), count, &mut out);
+        out
+    }
+
+    fn cut(&self, tets: &mut [u32], count: usize, out: &mut Vec<Vec<u32>>) {
+        if count == 1 {
+            out.push(tets.to_vec());
+            return;
+        }
+        let (axis, slabs) = self.slabs(tets, count);
+        let place = |tet: u32| self.centres[tet as usize][axis];
+        tets.sort_unstable_by(|&a, &b| place(a).total_cmp(&place(b)).then(a.cmp(&b)));
+        let (mut rest, mut left) = (tets, count);
+        for slab in (1..=slabs).rev() {
+            let own = left.div_ceil(slab);
+            let middle = (rest.len() as f64 * own as f64 / left as f64).round() as usize;
+            let end = if own == left {
+                rest.len()
+            } else {
+                let most = rest.len() - (left - own);
+                self.gap(rest, axis, middle.clamp(own, most), own, most)
+            };
+            let (here, next) = rest.split_at_mut(end);
+            self.cut(here, own, out);
+            (rest, left) = (next, left - own);
+        }
+    }
+
+    /// Edges of the box around these tetrahedra, and their volume.
+    fn size(&self, tets: &[u32]) -> (Vec3, f64) {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        let mut volume = 0.0;
+        for &tet in tets {
+            volume += self.mesh.volume(tet as usize);
+            for point in self.mesh.tet_points(tet as usize) {
+                for d in 0..3 {
+                    low[d] = low[d].min(point[d]);
+                    high[d] = high[d].max(point[d]);
+                }
+            }
+        }
+        (std::array::from_fn(|d| high[d] - low[d]), volume)
+    }
+
+    fn box_surface(&self, tets: &[u32]) -> f64 {
+        let ([a, b, c], _) = self.size(tets);
+        2.0 * (a * b + b * c + c * a)
+    }
+
+    /// The axis along which these tetrahedra reach farthest, and how many slabs across it are as thick as cubes that share the volume.
+    fn slabs(&self, tets: &[u32], count: usize) -> (usize, usize) {
+        let (lengths, volume) = self.size(tets);
+        let longest = (1..3).fold(
+            0,
+            |best, d| {
+                if lengths[d] > lengths[best] { d } else { best }
+            },
+        );
+        let edge = (volume / count as f64).cbrt();
+        let slabs = (lengths[longest] / edge).round().max(2.0) as usize;
+        (longest, slabs.min(count))
+    }
+
+    /// The widest gap between neighbours near `middle` in sorted tetrahedra: a plane between layers of a structured mesh.
+    fn gap(&self, tets: &[u32], axis: usize, middle: usize, least: usize, most: usize) -> usize {
+        let reach = (SNAP * middle.min(tets.len() - middle) as f64) as usize;
+        let from = middle.saturating_sub(reach).max(least).max(1);
+        let to = (middle + reach).min(most);
+        let width = |k: usize| {
+            self.centres[tets[k] as usize][axis] - self.centres[tets[k - 1] as usize][axis]
+        };
+        // in equal layers the nearest wins: wider by more than rounding counts
+        let mut best = (width(middle), middle);
+        let mut nearest: Vec<usize> = (from..=to).collect();
+        nearest.sort_by_key(|&k| (k.abs_diff(middle), k));
+        for k in nearest {
+            if width(k) > (1.0 + 1e-6) * best.0 {
+                best = (width(k), k);
+            }
+        }
+        best.1
+    }
+}

@@ -1,0 +1,313 @@
+//! Real parts on meshes of Gmsh, cut by the library: products, seconds, memory and certificates; `--help` lists the options.
+//!
+//! `studies/meshes/parts.py` makes the meshes; small ones of each part stand beside it. Lengths in mm, forces in N.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use signorini::fem_mesh::gmsh::{GroupNames, read_named_gmsh};
+use signorini::fem_mesh::{Surface, TetMesh};
+use signorini::prelude::*;
+use signorini_studies::record::StepRecord;
+use signorini_studies::run::{pool, solve};
+use signorini_studies::{Failure, exit};
+
+/// Young's modulus and Poisson's ratio of steel.
+const STEEL: [f64; 2] = [210e3, 0.3];
+/// Radius of the ball of the part `sphere`.
+const RADIUS: f64 = 10.0;
+/// Radius of the contact that the force on the ball is chosen for.
+const CONTACT_RADIUS: f64 = 0.8;
+
+/// Options of `parts`.
+#[derive(Debug, Clone, PartialEq, Parser)]
+#[command(
+    name = "parts",
+    about = "Real parts on meshes of Gmsh, cut by the library"
+)]
+pub struct PartsOptions {
+    /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, sphere, punch, plates, tooth.
+    #[arg(value_name = "MESH", default_value = "studies/meshes")]
+    pub meshes: Vec<PathBuf>,
+    /// Numbers of subdomains; 0 leaves it to the library.
+    #[arg(long, value_delimiter = ',', default_value = "0")]
+    pub subdomains: Vec<usize>,
+    /// Threads; 0 takes all cores.
+    #[arg(long, default_value_t = 0)]
+    pub threads: usize,
+}
+
+#[allow(dead_code)]
+fn main() -> ExitCode {
+    exit(execute(&PartsOptions::parse(), &mut std::io::stdout()))
+}
+
+/// A run of one part.
+#[derive(Debug, Clone)]
+pub struct PartRun {
+    /// Name of the part.
+    pub part: String,
+    /// Fewest and most tetrahedra of a subdomain.
+    pub tets: [usize; 2],
+    /// The steps.
+    pub steps: Vec<StepRecord>,
+    /// The part `sphere` beside Hertz's formula.
+    pub hertz: Option<Hertz>,
+}
+
+/// Solves all parts in all partitions and prints a row for each.
+pub fn execute(
+    options: &PartsOptions,
+    out: &mut (impl Write + Send),
+) -> Result<Vec<PartRun>, Failure> {
+    let pool = pool(options.threads)?;
+    writeln!(
+        out,
+        "| part | tetrahedra | subdomains (tetrahedra) | rows | products a step (dearest) | set-up s | solve s | matrices MB | certificate |"
+    )?;
+    writeln!(out, "|---|---|---|---|---|---|---|---|---|")?;
+    let mut runs = Vec::new();
+    for path in files(&options.meshes)? {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let part = stem.split('-').next().unwrap_or_default().to_owned();
+        let (mesh, names) = read_named_gmsh(&path)?;
+        for &count in &options.subdomains {
+            let run = pool.install(|| run(&part, &mesh, &names, count, out))?;
+            runs.push(run);
+        }
+    }
+    for (run, hertz) in runs.iter().filter_map(|r| Some((r, r.hertz.as_ref()?))) {
+        writeln!(
+            out,
+            "\n{}, {} pressed nodes: {hertz}",
+            run.part, hertz.nodes
+        )?;
+    }
+    Ok(runs)
+}
+
+/// The meshes that these paths name, those of a folder by name.
+fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            found.push(path.clone());
+            continue;
+        }
+        let entries = path.read_dir()?.collect::<Result<Vec<_>, _>>()?;
+        let mut meshes: Vec<PathBuf> = entries.iter().map(|entry| entry.path()).collect();
+        meshes.retain(|path| path.extension() == Some("msh".as_ref()));
+        meshes.sort();
+        found.extend(meshes);
+    }
+    if found.is_empty() {
+        return Err(format!("no .msh in {paths:?}; studies/meshes/parts.py makes some").into());
+    }
+    Ok(found)
+}
+
+fn run(
+    part: &str,
+    mesh: &TetMesh,
+    names: &GroupNames,
+    count: usize,
+    out: &mut (impl Write + Send),
+) -> Result<PartRun, Failure> {
+    let mut scene = scene(part, mesh, names)?;
+    if count > 0 {
+        scene = scene.with_subdomains(count);
+    }
+    let (simulation, steps, seconds) = solve(scene, Settings::default(), &mut |_, _| Ok(()))?;
+    let subdomains = simulation.decomposition().subdomains();
+    let sizes = subdomains.iter().map(|s| s.tets.len());
+    let tets = [sizes.clone().min().unwrap_or(0), sizes.max().unwrap_or(0)];
+    let products: Vec<usize> = steps.iter().map(|s| s.n_m).collect();
+    let report = simulation.tfeti().report();
+    let bytes = report.inverse_bytes + report.coarse_bytes + report.table_bytes;
+    let certificate = steps.iter().map(|s| s.certificate).fold(0.0, f64::max);
+    let unconverged = steps.iter().filter(|s| !s.converged()).count();
+    writeln!(
+        out,
+        "| {part} | {} | {}{} ({} to {}) | {} | {:.1} ({}) | {:.2} | {:.2} | {:.0} | {certificate:.1e}{} |",
+        mesh.tets().len(),
+        subdomains.len(),
+        if count == 0 { ", automatic" } else { "" },
+        tets[0],
+        tets[1],
+        simulation.plan().dual(),
+        products.iter().sum::<usize>() as f64 / products.len() as f64,
+        products.iter().max().unwrap_or(&0),
+        simulation.setup_time().as_secs_f64(),
+        seconds,
+        bytes as f64 * 1e-6,
+        match unconverged {
+            0 => String::new(),
+            count => format!(", {count} NOT CONVERGED"),
+        },
+    )?;
+    let hertz = (part == "sphere").then(|| Hertz::new(&simulation));
+    Ok(PartRun {
+        part: part.to_owned(),
+        tets,
+        steps,
+        hertz: hertz.flatten(),
+    })
+}
+
+/// What is done to a part.
+fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failure> {
+    let surface = |name: &str| names.surface(name);
+    let push = |name: &str, force: [f64; 3]| -> Result<Load, Failure> {
+        let tag = surface(name)?;
+        let area = Surface::new(mesh, &[tag])?.total_area();
+        Ok(Load::traction(tag, force.map(|f| f / area)))
+    };
+    let steps = Analysis::quasistatic(1.0, 10).with_formula(DifferenceFormula::BACKWARD_EULER);
+    let ramp = History::ramp(1.0, 1.0)?;
+    let floor = |name: &str, coefficient: f64| -> Result<Contact, Failure> {
+        Ok(Contact::rigid(surface(name)?).with_friction(Friction::coulomb(coefficient)))
+    };
+    let steel = Hooke::isotropic(STEEL[0], STEEL[1])?;
+    let bare = Scene::new(mesh.clone(), Materials::uniform(steel));
+    Ok(match part {
+        // held by the friction of its feet alone; 2000 N would pull it away
+        "bracket" => bare
+            .with_contact(floor("floor", 0.2)?)
+            .with_load(push("bolt", [0.0, 0.0, -10e3])?)
+            .with_load(push("end", [1500.0, 0.0, 0.0])?.with_history(ramp))
+            .with_analysis(steps),
+        "sphere" => bare
+            .with_support(Support::partial(surface("x")?, component(0)))
+            .with_support(Support::partial(surface("y")?, component(1)))
+            .with_load(push("top", [0.0, 0.0, -Hertz::force() / 4.0])?)
+            .with_contact(Contact::half_space(
+                surface("ball")?,
+                [0.0; 3],
+                [0.0, 0.0, 1.0],
+            )),
+        // pressed, then pushed with half of what friction holds
+        "punch" => bare
+            .with_contact(
+                Contact::half_space(surface("floor")?, [0.0; 3], [0.0, 0.0, 1.0])
+                    .with_friction(Friction::coulomb(0.3)),
+            )
+            .with_load(push("top", [0.0, 0.0, -20e3])?)
+            .with_load(push("top", [3e3, 0.0, 0.0])?.with_history(ramp))
+            .with_analysis(steps),
+        // between a plate that stands and one that presses and then drags
+        "plates" => {
+            let below = Contact::rigid(surface("below")?).with_friction(Friction::coulomb(0.4));
+            let above = Contact::rigid(surface("above")?)
+                .with_friction(Friction::coulomb(0.2))
+                .with_motion([0.02, 0.0, -0.005], ramp);
+            bare.with_contact(below)
+                .with_contact(above)
+                .with_analysis(steps)
+        }
+        // a rack presses the flank, 20 degrees from the vertical, and rubs upwards along it
+        "tooth" => {
+            let (sin, cos) = 20f64.to_radians().sin_cos();
+            let normal = [-cos, 0.0, -sin];
+            let slide = [-0.03 * cos - 0.03 * sin, 0.0, -0.03 * sin + 0.03 * cos];
+            bare.with_support(Support::fixed(surface("rim")?))
+                .with_contact(
+                    Contact::half_space(surface("flank")?, [8.0, 0.0, 0.0], normal)
+                        .with_friction(Friction::coulomb(0.1))
+                        .with_motion(slide, ramp),
+                )
+                .with_analysis(steps)
+        }
+        other => return Err(format!("no scene for the part {other}").into()),
+    })
+}
+
+fn component(axis: usize) -> Directions {
+    Directions::Components(std::array::from_fn(|k| k == axis))
+}
+
+/// Hertz's contact of a ball with a rigid plane, beside what was computed for a quarter of it.
+///
+/// K. L. Johnson, *Contact Mechanics*, 1985, section 4.2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hertz {
+    /// Nodes pressed.
+    pub nodes: usize,
+    /// Largest pressure by the formula for the force that acts.
+    pub peak: f64,
+    /// Radius of the contact by the formula, and that of a disc with the pressed nodes' area, over it, less 1.
+    pub radius: f64,
+    /// Mean over the pressed nodes within 0.8 of the radius of the pressure's distance from the profile, root of squares, over the peak.
+    pub profile: f64,
+}
+
+impl Hertz {
+    /// Force on the whole ball for [`CONTACT_RADIUS`].
+    fn force() -> f64 {
+        4.0 * Self::modulus() * CONTACT_RADIUS.powi(3) / (3.0 * RADIUS)
+    }
+
+    fn modulus() -> f64 {
+        STEEL[0] / (1.0 - STEEL[1] * STEEL[1])
+    }
+
+    fn new(simulation: &Simulation) -> Option<Self> {
+        let result = simulation.result()?;
+        let pressed: Vec<_> = result
+            .points()
+            .iter()
+            .filter(|p| p.force()[2] > 0.0)
+            .collect();
+        let force: f64 = 4.0 * pressed.iter().map(|p| p.force()[2]).sum::<f64>();
+        let radius = (3.0 * force * RADIUS / (4.0 * Self::modulus())).cbrt();
+        let area = std::f64::consts::PI * radius * radius;
+        let peak = 1.5 * force / area;
+        let covered: f64 = 4.0 * pressed.iter().map(|p| p.area).sum::<f64>();
+        let points = result.scene().mesh().points();
+        let (mut sum, mut count) = (0.0_f64, 0);
+        for point in &pressed {
+            let [x, y, _] = points[point.node as usize];
+            let inside: f64 = 1.0 - (x * x + y * y) / (radius * radius);
+            if inside > 0.36 {
+                let off = point.force()[2] / point.area / peak - inside.sqrt();
+                (sum, count) = (sum + off * off, count + 1);
+            }
+        }
+        Some(Self {
+            nodes: pressed.len(),
+            peak,
+            radius: (covered / area).sqrt() - 1.0,
+            profile: (sum / f64::from(count)).sqrt(),
+        })
+    }
+}
+
+impl std::fmt::Display for Hertz {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "p0 {:.0} N/mm2 (Hertz), radius {:+.1} %, pressure off the profile by {:.1} % of p0",
+            self.peak,
+            100.0 * self.radius,
+            100.0 * self.profile
+        )
+    }
+}
+
+/// The mesh of a part that stands beside the script.
+#[allow(dead_code)]
+pub fn small(part: &str) -> PathBuf {
+    let sizes = [
+        ("bracket", "6"),
+        ("sphere", "0.4"),
+        ("punch", "4"),
+        ("plates", "3.5"),
+        ("tooth", "4"),
+    ];
+    let size = sizes
+        .iter()
+        .find(|(name, _)| *name == part)
+        .map_or("", |s| s.1);
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("meshes/{part}-{size}.msh"))
+}

@@ -1,0 +1,172 @@
+"""Meshes of real parts by Gmsh's Python package (pip install gmsh).
+
+    python3 studies/meshes/parts.py FOLDER [PART[:SIZE] ...]
+
+writes FOLDER/PART-SIZE.msh, by default each part at its default size. Lengths in mm; SIZE is the edge of a tetrahedron (of the finest ones
+in graded meshes). The groups are named; the study `parts` reads them.
+"""
+
+import sys
+from pathlib import Path
+
+import gmsh
+
+occ = gmsh.model.occ
+field = gmsh.model.mesh.field
+
+
+def entities(dim, test):
+    """Tags of the entities for which test(centre, bounding box) holds."""
+    found = []
+    for _, tag in gmsh.model.getEntities(dim):
+        if test(occ.getCenterOfMass(dim, tag), gmsh.model.getBoundingBox(dim, tag)):
+            found.append(tag)
+    return found
+
+
+def group(dim, label, test=lambda centre, box: True):
+    tags = entities(dim, test)
+    assert tags, f"no entity for {label}"
+    gmsh.model.addPhysicalGroup(dim, tags, name=label)
+
+
+def uniform(size):
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", size / 3)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", 14)
+
+
+def graded(size, far, centre, radius, thickness):
+    """Edges of `size` in a ball, growing to `far`."""
+    ball = field.add("Ball")
+    for name, value in zip(["XCenter", "YCenter", "ZCenter"], centre):
+        field.setNumber(ball, name, value)
+    for name, value in [("Radius", radius), ("Thickness", thickness), ("VIn", size), ("VOut", far)]:
+        field.setNumber(ball, name, value)
+    field.setAsBackgroundMesh(ball)
+    for name in ["ExtendFromBoundary", "FromPoints", "FromCurvature"]:
+        gmsh.option.setNumber("Mesh.MeshSize" + name, 0)
+
+
+def bracket(size):
+    """A bridge with two feet, fillets and a bolt hole: 80 x 30 x 20."""
+    body = occ.addBox(0, 0, 0, 80, 30, 20)
+    slot = occ.addBox(14, -1, -1, 52, 32, 9)
+    body = occ.cut([(3, body)], [(3, slot)])[0][0][1]
+    occ.synchronize()
+
+    def rounded(centre, box):
+        along = box[4] - box[1] > 29
+        x, z = (box[0] + box[3]) / 2, (box[2] + box[5]) / 2
+        return along and min(abs(z - 8), abs(z - 20)) < 0.1 and min(abs(x - k) for k in [0, 14, 66, 80]) < 0.1
+
+    edges = [tag for _, tag in gmsh.model.getEntities(1) if rounded(None, gmsh.model.getBoundingBox(1, tag))]
+    body = occ.fillet([body], edges, [3.0])[0][1]
+    hole = occ.addCylinder(40, 15, -1, 0, 0, 30, 5.5)
+    body = occ.cut([(3, body)], [(3, hole)])[0][0][1]
+    head = occ.addDisk(40, 15, 20, 9, 9)
+    occ.fragment([(3, body)], [(2, head)])
+    occ.synchronize()
+    stray = [tag for _, tag in gmsh.model.getEntities(2) if gmsh.model.getAdjacencies(2, tag)[0].size == 0]
+    occ.remove([(2, tag) for tag in stray], recursive=True)
+    occ.synchronize()
+    group(3, "body")
+    group(2, "floor", lambda c, b: abs(c[2]) < 0.1)
+    group(2, "bolt", lambda c, b: abs(c[2] - 20) < 0.1 and abs(b[3] - b[0] - 18) < 0.2)
+    group(2, "end", lambda c, b: abs(c[0] - 80) < 0.1)
+    uniform(size)
+
+
+def sphere(size):
+    """A quarter of the lower half of a ball of radius 10 that stands on (0, 0, 0)."""
+    ball = occ.addSphere(0, 0, 10, 10)
+    box = occ.addBox(0, 0, -1, 20, 20, 11)
+    occ.intersect([(3, ball)], [(3, box)])
+    occ.synchronize()
+    group(3, "body")
+    group(2, "top", lambda c, b: abs(c[2] - 10) < 0.01)
+    group(2, "x", lambda c, b: abs(c[0]) < 0.01 and abs(c[1]) > 0.1)
+    group(2, "y", lambda c, b: abs(c[1]) < 0.01 and abs(c[0]) > 0.1)
+    group(2, "ball", lambda c, b: min(c[0], c[1]) > 1 and c[2] < 9.99)
+    graded(size, 2.5, [0, 0, 0], 1.2, 6)
+
+
+def punch(size):
+    """A stamp of radius 10 and height 15 with a rounded rim."""
+    body = occ.addCylinder(0, 0, 0, 0, 0, 15, 10)
+    occ.synchronize()
+    rim = [tag for _, tag in gmsh.model.getEntities(1) if gmsh.model.getBoundingBox(1, tag)[5] < 0.1]
+    occ.fillet([body], rim, [2.0])
+    occ.synchronize()
+    group(3, "body")
+    group(2, "floor", lambda c, b: b[5] < 2.1)
+    group(2, "top", lambda c, b: abs(c[2] - 15) < 0.1)
+    uniform(size)
+
+
+def plates(size):
+    """A pad of 40 x 20 x 10 with two holes, to be held between two plates."""
+    body = occ.addBox(0, 0, 0, 40, 20, 10)
+    holes = [(3, occ.addCylinder(x, -1, 5, 0, 22, 0, 3)) for x in [12, 28]]
+    occ.cut([(3, body)], holes)
+    occ.synchronize()
+    group(3, "body")
+    group(2, "below", lambda c, b: abs(c[2]) < 0.1)
+    group(2, "above", lambda c, b: abs(c[2] - 10) < 0.1)
+    uniform(size)
+
+
+def tooth(size):
+    """A straight tooth of a gear with its rim, 20 wide: flanks of 20 degrees, fillets at the root."""
+    low, tip, height, width = 8.0, 4.36, 10.0, 20.0
+    profile = [(-14, -8), (14, -8), (14, 0), (low, 0), (tip, height), (-tip, height), (-low, 0), (-14, 0)]
+    points = [occ.addPoint(x, 0, z) for x, z in profile]
+    lines = [occ.addLine(points[k], points[(k + 1) % len(points)]) for k in range(len(points))]
+    face = occ.addPlaneSurface([occ.addCurveLoop(lines)])
+    body = [tag for dim, tag in occ.extrude([(2, face)], 0, width, 0) if dim == 3][0]
+    occ.synchronize()
+
+    def root(box):
+        x, z = (box[0] + box[3]) / 2, (box[2] + box[5]) / 2
+        return box[4] - box[1] > width - 1 and abs(z) < 0.1 and abs(abs(x) - low) < 0.1
+
+    edges = [tag for _, tag in gmsh.model.getEntities(1) if root(gmsh.model.getBoundingBox(1, tag))]
+    occ.fillet([body], edges, [2.0])
+    occ.synchronize()
+    group(3, "body")
+    group(2, "rim", lambda c, b: abs(c[2] + 8) < 0.1)
+    group(2, "flank", lambda c, b: c[0] > 3 and 3 < c[2] < 9)
+    uniform(size)
+
+
+PARTS = {bracket: 1.9, sphere: 0.0625, punch: 1.5, plates: 1.5, tooth: 1.2}
+
+
+def main(folder, wanted):
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    names = {part.__name__: part for part in PARTS}
+    for word in wanted or names:
+        name, _, size = word.partition(":")
+        if name not in names:
+            sys.exit(f"no part {name}; there are {', '.join(names)}")
+        part = names[name]
+        size = float(size or PARTS[part])
+        path = folder / f"{name}-{size:g}.msh"
+        gmsh.initialize()
+        for option, value in [("General.Verbosity", 2), ("General.NumThreads", 1), ("Mesh.Algorithm3D", 1)]:
+            gmsh.option.setNumber(option, value)
+        gmsh.model.add(name)
+        part(size)
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.optimize("")
+        gmsh.write(str(path))
+        tets = len(gmsh.model.mesh.getElementsByType(4)[0])
+        print(f"{path}: {tets} tetrahedra")
+        gmsh.finalize()
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2:])
