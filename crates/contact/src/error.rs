@@ -31,8 +31,8 @@ fn held_remedy(friction: Option<f64>) -> String {
 
 /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
 ///
-/// Fields are what their variant speaks of: `contact`, `support` and `index` positions in the scene, `node` and `partner`
-/// mesh nodes, steps from 0; in s, m, m/s, N and Pa.
+/// Fields are what their variant speaks of: `contact`, `support` and `index` positions in the scene, `node` and
+/// `partner` mesh nodes, steps from 0; in s, m, m/s, N and Pa.
 #[derive(Error)]
 #[allow(
     missing_docs,

@@ -79,12 +79,12 @@ impl Contact {
     /// Contact of two elastic bodies whose meshes match: facets with `tag`, and facets of the other body with the tag
     /// `partner`.
     ///
-    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a fiftieth of
-    /// the size of its facets, and a little more across a gap. The other side may have more nodes. Flat sides that meet at an
-    /// edge are a contact each. All quantities of a contact point are those of the body with `tag`: its outward normal, the
-    /// force on it, its displacement *relative* to the partner. The gap is measured between the partners, unless
-    /// [`with_gap`](Self::with_gap) or [`with_gap_field`](Self::with_gap_field) tell another; partners may coincide.
-    /// Displacements are small: a node keeps its partner, however far it slides.
+    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a
+    /// fiftieth of the size of its facets, and a little more across a gap. The other side may have more nodes. Flat
+    /// sides that meet at an edge are a contact each. All quantities of a contact point are those of the body with
+    /// `tag`: its outward normal, the force on it, its displacement *relative* to the partner. The gap is measured
+    /// between the partners, unless [`with_gap`](Self::with_gap) or [`with_gap_field`](Self::with_gap_field) tell
+    /// another; partners may coincide. Displacements are small: a node keeps its partner, however far it slides.
     ///
     /// ```
     /// use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
@@ -161,8 +161,8 @@ impl Contact {
         self
     }
 
-    /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. Where the
-    /// obstacle [moves](Self::with_motion) along the surface it is also asked at places beside the surface.
+    /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. Where
+    /// the obstacle [moves](Self::with_motion) along the surface it is also asked at places beside the surface.
     #[must_use]
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Arc::new(gap));
@@ -177,24 +177,25 @@ impl Contact {
         self
     }
 
-    /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by default;
-    /// in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge between floor and
-    /// wall meets both; elsewhere one with the mean normal. Flat sides that meet at a smaller angle are to be contacts of
-    /// their own. Without effect with [`with_normal`](Self::with_normal).
+    /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
+    /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge
+    /// between floor and wall meets both; elsewhere one with the mean normal. Flat sides that meet at a smaller angle
+    /// are to be contacts of their own. Without effect with [`with_normal`](Self::with_normal).
     #[must_use]
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self
     }
 
-    /// The obstacle moves, but does not turn: its displacement at time `t` is `history(t) * displacement` (m), and zero before
-    /// the first step. Along the normal it opens or closes the gap; along the surface it drags the body by friction.
+    /// The obstacle moves, but does not turn: its displacement at time `t` is `history(t) * displacement` (m), and zero
+    /// before the first step. Along the normal it opens or closes the gap; along the surface it drags the body by
+    /// friction.
     ///
-    /// A gap [that depends on the place](Self::with_gap_field) moves along: where the obstacle has moved by `w`, the gap at
-    /// `x` with the normal `n` is `field(x - w_T) + n . w` with `w_T = w - (n . w) n`. That is exact along flat sides, with
-    /// [`with_normal`](Self::with_normal), and along sides that the motion maps onto themselves; elsewhere ways that are long
-    /// against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)). Friction laws that depend on
-    /// the place stay with the nodes of the body.
+    /// A gap [that depends on the place](Self::with_gap_field) moves along: where the obstacle has moved by `w`, the
+    /// gap at `x` with the normal `n` is `field(x - w_T) + n . w` with `w_T = w - (n . w) n`. That is exact along flat
+    /// sides, with [`with_normal`](Self::with_normal), and along sides that the motion maps onto themselves; elsewhere
+    /// ways that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
+    /// Friction laws that depend on the place stay with the nodes of the body.
     #[must_use]
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
@@ -298,8 +299,8 @@ impl Contact {
         self.motion.is_some() && matches!(self.gap, Gap::Field(_))
     }
 
-    /// The gap at a node, m, that is `initial` at first and to which the obstacle has brought that of the place from which it
-    /// comes along the surface. The part of the way along the normal, which opens the gap, is not in it.
+    /// The gap at a node, m, that is `initial` at first and to which the obstacle has brought that of the place from
+    /// which it comes along the surface. The part of the way along the normal, which opens the gap, is not in it.
     pub(crate) fn gap_brought(
         &self,
         contact: usize,

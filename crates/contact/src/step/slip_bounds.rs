@@ -87,8 +87,8 @@ impl StepProblem {
         model.points.iter().enumerate().filter_map(slope).collect()
     }
 
-    /// Puts the friction forces of points that slide back on their circles: extrapolation leaves them a little inside, where
-    /// they would be taken for sticking.
+    /// Puts the friction forces of points that slide back on their circles: extrapolation leaves them a little inside,
+    /// where they would be taken for sticking.
     pub(crate) fn restore_sliding(&self, model: &Model, sliding: &[bool], lambda: &mut [f64]) {
         for (k, point) in model.points.iter().enumerate() {
             let TangentialRows::Disc { row, scale } = point.tangential else {
