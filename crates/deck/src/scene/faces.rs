@@ -1,0 +1,178 @@
+//! Faces of elements that surfaces and pressures name, and their tags.
+//!
+//! A facet of a mesh has one tag, a face of a deck may be in several surfaces and under pressure besides. Faces with the same
+//! surfaces and the same pressure get one tag, so that a surface is a list of tags: one where nothing overlaps.
+
+use std::collections::HashMap;
+
+use signorini_fem_mesh::{Facet, FacetTag};
+
+use super::mesh::Raw;
+use super::numbers::Sets;
+use crate::error::{DeckError, Fault, Place};
+use crate::model::{Model, Names, Target};
+
+/// Nodes of the faces 1 to 4 of an element C3D4.
+const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+
+#[derive(Debug)]
+pub(super) struct Face {
+    pub(super) nodes: [u32; 3],
+    /// Position of the element that names it first, and the number of the face there.
+    pub(super) element: u32,
+    number: u8,
+    place: Place,
+    word: String,
+    /// Positions of the surfaces that it is in, ascending.
+    surfaces: Vec<u32>,
+    /// Its pressure, if it has one.
+    pub(super) pressure: Option<u32>,
+}
+
+/// All faces that are named, in the order in which they are.
+#[derive(Debug, Default)]
+pub(super) struct FaceTable {
+    pub(super) list: Vec<Face>,
+    places: HashMap<[u32; 3], u32>,
+}
+
+fn key(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
+}
+
+impl FaceTable {
+    /// The position of a face (1 to 4) of an element, noted at its first appearance.
+    fn face(&mut self, raw: &Raw, element: u32, number: u8, at: (&Place, &str)) -> u32 {
+        let tet = raw.tets[element as usize];
+        let nodes = FACES[usize::from(number) - 1].map(|i| tet[i]);
+        let next = self.list.len() as u32;
+        let position = *self.places.entry(key(nodes)).or_insert(next);
+        if position == next {
+            self.list.push(Face {
+                nodes,
+                element,
+                number,
+                place: at.0.clone(),
+                word: at.1.to_owned(),
+                surfaces: Vec::new(),
+                pressure: None,
+            });
+        }
+        position
+    }
+
+    /// Positions of the faces with a number, of the elements of a target.
+    pub(super) fn of_target(
+        &mut self,
+        model: &Model,
+        raw: &Raw,
+        sets: &Sets,
+        (target, number): (&Target, u8),
+        at: (&Place, &str),
+    ) -> Result<Vec<u32>, DeckError> {
+        let elements = sets.elements(model, raw, target, at)?;
+        let faces = elements.iter().map(|&e| self.face(raw, e, number, at));
+        Ok(faces.collect())
+    }
+
+    /// Notes the faces of all surfaces, and gives them surface by surface.
+    pub(super) fn surfaces(
+        &mut self,
+        model: &Model,
+        raw: &Raw,
+        sets: &Sets,
+    ) -> Result<Vec<Vec<u32>>, DeckError> {
+        let mut out = Vec::new();
+        for (index, (_, faces)) in model.surfaces.iter().enumerate() {
+            let mut all = Vec::new();
+            for faces in faces {
+                let word = match &faces.target {
+                    Target::Number(number) => number.to_string(),
+                    Target::Name(name) => name.clone(),
+                };
+                let target = (&faces.target, faces.face);
+                for face in self.of_target(model, raw, sets, target, (&faces.place, &word))? {
+                    let surfaces = &mut self.list[face as usize].surfaces;
+                    if surfaces.last() != Some(&(index as u32)) {
+                        surfaces.push(index as u32);
+                        all.push(face);
+                    }
+                }
+            }
+            out.push(all);
+        }
+        Ok(out)
+    }
+
+    /// Refuses faces between two elements.
+    pub(super) fn check_outside(&self, raw: &Raw) -> Result<(), DeckError> {
+        let mut owners = vec![0_u8; self.list.len()];
+        for tet in &raw.tets {
+            for face in FACES {
+                if let Some(&at) = self.places.get(&key(face.map(|i| tet[i]))) {
+                    owners[at as usize] = owners[at as usize].saturating_add(1);
+                }
+            }
+        }
+        match self.list.iter().zip(owners).find(|(_, owners)| *owners > 1) {
+            Some((face, _)) => {
+                let inside = Fault::FaceInside {
+                    element: raw.element_labels()[face.element as usize],
+                    face: face.number,
+                };
+                Err(DeckError::at(&face.place, &face.word, inside))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The tag of each face, from 1 in the order of the faces.
+    pub(super) fn tags(&self) -> Vec<FacetTag> {
+        let mut known = HashMap::new();
+        let faces = self.list.iter().map(|face| {
+            let next = known.len() as u32 + 1;
+            let kind = (face.surfaces.as_slice(), face.pressure);
+            FacetTag(*known.entry(kind).or_insert(next))
+        });
+        faces.collect()
+    }
+
+    pub(super) fn facets(&self, tags: &[FacetTag]) -> Vec<Facet> {
+        let pairs = self.list.iter().zip(tags);
+        let facet = |(face, tag): (&Face, &FacetTag)| Facet {
+            nodes: face.nodes,
+            tag: *tag,
+        };
+        pairs.map(facet).collect()
+    }
+
+    /// The tags of each surface, ascending.
+    pub(super) fn tags_of(&self, tags: &[FacetTag], model: &Model) -> Names<Vec<FacetTag>> {
+        let mut lists = vec![Vec::new(); model.surfaces.names().len()];
+        for (face, tag) in self.list.iter().zip(tags) {
+            for &surface in &face.surfaces {
+                lists[surface as usize].push(*tag);
+            }
+        }
+        let mut names = Names::default();
+        for (name, mut list) in model.surfaces.names().into_iter().zip(lists) {
+            list.sort_unstable();
+            list.dedup();
+            names.add(name, list);
+        }
+        names
+    }
+}
+
+impl Face {
+    /// Its area along the outward normal.
+    pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
+        let [a, b, c] = self.nodes.map(|n| raw.points[n as usize]);
+        let area = super::mesh::area_vector(&[a, b, c]);
+        let inside = raw.tet_points(self.element);
+        let centre = [0, 1, 2].map(|i| inside.iter().map(|p| p[i]).sum::<f64>() / 4.0);
+        let out: f64 = (0..3).map(|i| area[i] * (a[i] - centre[i])).sum();
+        if out < 0.0 { area.map(|x| -x) } else { area }
+    }
+}

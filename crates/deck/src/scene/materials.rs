@@ -1,0 +1,86 @@
+//! Sections as regions with materials.
+
+use signorini_fem_mesh::{Hooke, Materials};
+
+use super::mesh::Raw;
+use super::numbers::Sets;
+use crate::error::{DeckError, Fault};
+use crate::model::{Model, Target};
+
+const NONE: u32 = u32::MAX;
+
+/// The region of each tetrahedron, which is the number of its section from 0, and the materials; none for a deck without sections.
+pub(super) fn materials(
+    model: &Model,
+    raw: &Raw,
+    sets: &Sets,
+) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
+    let sections = sections(model, raw, sets)?;
+    let Some(sections) = sections else {
+        return Ok((vec![0; raw.tets.len()], None));
+    };
+    let mut laws = Vec::new();
+    for section in &model.sections {
+        let (name, word) = &section.material;
+        let at = (&section.place, word.as_str());
+        let material = model.materials.at(model.materials.find("material", name, at)?);
+        let Some((place, young, poisson)) = &material.elastic else {
+            let why = "the material has no *ELASTIC; put it behind *MATERIAL";
+            return Err(DeckError::at(&material.place, name, Fault::Empty(why)));
+        };
+        let law = Hooke::isotropic(*young, *poisson);
+        let fault = |e| DeckError::at(place, &format!("{young}, {poisson}"), Fault::Hooke(e));
+        laws.push(law.map_err(fault)?);
+    }
+    let materials = match laws[..] {
+        [law] => Materials::uniform(law),
+        _ => {
+            let table = (0..).zip(laws).collect();
+            match Materials::new(table) {
+                Ok(materials) => materials,
+                // the numbers 0, 1, ... do not repeat
+                Err(_) => return Ok((sections, None)),
+            }
+        }
+    };
+    Ok((sections, Some(materials)))
+}
+
+/// The section of each element, by position; `None` for a deck without sections.
+pub(super) fn sections(
+    model: &Model,
+    raw: &Raw,
+    sets: &Sets,
+) -> Result<Option<Vec<u32>>, DeckError> {
+    if model.sections.is_empty() {
+        return Ok(None);
+    }
+    let mut of_element = vec![NONE; raw.tets.len()];
+    for (index, section) in model.sections.iter().enumerate() {
+        let (name, word) = &section.elset;
+        let target = Target::Name(name.clone());
+        for element in sets.elements(model, raw, &target, (&section.place, word))? {
+            let before = std::mem::replace(&mut of_element[element as usize], index as u32);
+            if before != NONE {
+                let text = format!(
+                    "element {} is in the section of line {} already; an element has one section",
+                    raw.element_labels()[element as usize],
+                    model.sections[before as usize].place.line
+                );
+                return Err(DeckError::at(&section.place, word, Fault::Cannot(text)));
+            }
+        }
+    }
+    match of_element.iter().position(|s| *s == NONE) {
+        Some(element) => {
+            let element = &model.elements[element];
+            let why = "the element has no *SOLID SECTION; give one to all elements";
+            Err(DeckError::at(
+                &element.place,
+                &element.label.to_string(),
+                Fault::Empty(why),
+            ))
+        }
+        None => Ok(Some(of_element)),
+    }
+}
