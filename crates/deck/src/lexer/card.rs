@@ -238,11 +238,7 @@ impl Card {
     }
 
     /// Refuses data beyond the first `most` lines.
-    pub(crate) fn lines_at_most(
-        &self,
-        most: usize,
-        wanted: &'static str,
-    ) -> Result<(), DeckError> {
+    pub(crate) fn lines_at_most(&self, most: usize, wanted: &'static str) -> Result<(), DeckError> {
         match self.lines.get(most) {
             Some(line) => Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
             None => Ok(()),

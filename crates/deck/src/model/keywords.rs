@@ -40,11 +40,26 @@ const REFUSED: [(&str, &str); 38] = [
     ("TIE", "merge the nodes of parts that are one body"),
     ("EQUATION", "couplings of nodes are not here"),
     ("MPC", "couplings of nodes are not here"),
-    ("COUPLING", "couplings of nodes are not here; put the force or motion on the nodes themselves"),
-    ("KINEMATIC", "couplings of nodes are not here; hold or move the nodes themselves"),
-    ("DISTRIBUTING", "couplings of nodes are not here; put the force on the nodes themselves"),
-    ("RIGIDBODY", "give the body elements, a material and *BOUNDARY on all its nodes; a flat obstacle is Contact::half_space in a program"),
-    ("TRANSFORM", "supports and forces are along x, y, z; a program can hold any direction with Directions::Vectors"),
+    (
+        "COUPLING",
+        "couplings of nodes are not here; put the force or motion on the nodes themselves",
+    ),
+    (
+        "KINEMATIC",
+        "couplings of nodes are not here; hold or move the nodes themselves",
+    ),
+    (
+        "DISTRIBUTING",
+        "couplings of nodes are not here; put the force on the nodes themselves",
+    ),
+    (
+        "RIGIDBODY",
+        "give the body elements, a material and *BOUNDARY on all its nodes; a flat obstacle is Contact::half_space in a program",
+    ),
+    (
+        "TRANSFORM",
+        "supports and forces are along x, y, z; a program can hold any direction with Directions::Vectors",
+    ),
     ("ORIENTATION", "materials are isotropic"),
     ("PLASTIC", ELASTIC),
     ("CREEP", ELASTIC),
@@ -54,17 +69,32 @@ const REFUSED: [(&str, &str); 38] = [
     ("CONDUCTIVITY", THERMAL),
     ("SPECIFICHEAT", THERMAL),
     ("TEMPERATURE", THERMAL),
-    ("INITIALCONDITIONS", "the body is at rest and without stress before the first step"),
+    (
+        "INITIALCONDITIONS",
+        "the body is at rest and without stress before the first step",
+    ),
     ("SHELLSECTION", SOLID),
     ("BEAMSECTION", SOLID),
     ("MEMBRANESECTION", SOLID),
     ("SPRING", SOLID),
     ("MASS", SOLID),
-    ("PRE-TENSIONSECTION", "bolts cannot be tightened from a deck"),
+    (
+        "PRE-TENSIONSECTION",
+        "bolts cannot be tightened from a deck",
+    ),
     ("MODELCHANGE", "what a scene holds is there in all steps"),
-    ("CHANGEFRICTION", "a coefficient of friction holds for all steps"),
-    ("CLEARANCE", "the gap is measured between the nodes; move one of the bodies"),
-    ("CONTACT", "general contact is not here; name the surfaces that may touch with *CONTACT PAIR"),
+    (
+        "CHANGEFRICTION",
+        "a coefficient of friction holds for all steps",
+    ),
+    (
+        "CLEARANCE",
+        "the gap is measured between the nodes; move one of the bodies",
+    ),
+    (
+        "CONTACT",
+        "general contact is not here; name the surfaces that may touch with *CONTACT PAIR",
+    ),
     ("DYNAMIC", PROCEDURE),
     ("FREQUENCY", PROCEDURE),
     ("BUCKLE", PROCEDURE),
@@ -99,11 +129,7 @@ pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
     }
 }
 
-fn read_card(
-    model: &mut Model,
-    current: &mut Option<Step>,
-    card: &Card,
-) -> Result<(), DeckError> {
+fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Result<(), DeckError> {
     type OfModel = fn(&mut Model, &Card) -> Result<(), DeckError>;
     let of_model: Option<OfModel> = match card.key.as_str() {
         "HEADING" => Some(|_, card| card.allow(&[])),

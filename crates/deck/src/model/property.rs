@@ -13,7 +13,11 @@ fn word(param: Option<&Param>) -> String {
 }
 
 /// The material or interaction that a card belongs to: the last one.
-fn inside<'a, T>(last: Option<&'a mut T>, card: &Card, what: &'static str) -> Result<&'a mut T, DeckError> {
+fn inside<'a, T>(
+    last: Option<&'a mut T>,
+    card: &Card,
+    what: &'static str,
+) -> Result<&'a mut T, DeckError> {
     last.ok_or_else(|| card.fault(Fault::Misplaced(what)))
 }
 
@@ -101,8 +105,16 @@ pub(super) fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "TIME", "VALUE", "DEFINITION"])?;
     let amplitude = card.need("NAME")?;
-    card.choice("VALUE", &["RELATIVE"], "VALUE=RELATIVE; other values are not supported")?;
-    card.choice("DEFINITION", &["TABULAR"], "DEFINITION=TABULAR; others are not supported")?;
+    card.choice(
+        "VALUE",
+        &["RELATIVE"],
+        "VALUE=RELATIVE; other values are not supported",
+    )?;
+    card.choice(
+        "DEFINITION",
+        &["TABULAR"],
+        "DEFINITION=TABULAR; others are not supported",
+    )?;
     let times = ["STEPTIME", "TOTALTIME"];
     let total = card.choice("TIME", &times, "TIME=STEP TIME or TIME=TOTAL TIME")? == Some(1);
     if model.amplitudes.position(&amplitude).is_some() {
@@ -117,7 +129,9 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
         }
     }
     if numbers.len() % 2 == 1 {
-        return Err(card.fault(Fault::Expected("pairs of time and value; one value is missing")));
+        return Err(card.fault(Fault::Expected(
+            "pairs of time and value; one value is missing",
+        )));
     }
     let points: Vec<(f64, f64)> = numbers.chunks_exact(2).map(|p| (p[0], p[1])).collect();
     let history = History::table(points.clone()).map_err(|e| card.fault(Fault::History(e)))?;
@@ -198,7 +212,10 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             why: PENALTY,
         });
     };
-    if line.optional(&fields, 1, "the stick slope, a number")?.is_some() {
+    if line
+        .optional(&fields, 1, "the stick slope, a number")?
+        .is_some()
+    {
         ignore(&line.place, fields[1]);
     }
     for param in &card.params {

@@ -144,7 +144,14 @@ pub(crate) struct Step {
 
 impl Step {
     pub(super) fn new(model: &mut Model, card: &Card) -> Result<Self, DeckError> {
-        card.allow(&["NAME", "INC", "NLGEOM", "AMPLITUDE", "UNSYMM", "PERTURBATION"])?;
+        card.allow(&[
+            "NAME",
+            "INC",
+            "NLGEOM",
+            "AMPLITUDE",
+            "UNSYMM",
+            "PERTURBATION",
+        ])?;
         if let Some(param) = card.param("NLGEOM")
             && card.value("NLGEOM").ok().flatten().as_deref() != Some("NO")
         {
@@ -167,8 +174,7 @@ impl Step {
         if let Some(param) = card.param("INC") {
             let wanted = "a number of increments";
             let number = param.value.as_deref().and_then(|v| label(v.trim()));
-            let number =
-                number.ok_or_else(|| card.param_fault(param, Fault::Expected(wanted)))?;
+            let number = number.ok_or_else(|| card.param_fault(param, Fault::Expected(wanted)))?;
             increments = Some((f64::from(number), card.place.clone(), param.word.clone()));
         }
         Ok(Self {
@@ -215,14 +221,17 @@ impl Step {
         let largest = values[3].filter(|&v| v > 0.0).unwrap_or(period);
         let increment = values[0].unwrap_or(period).min(largest).min(period);
         let count = (period / increment * (1.0 - Increments::ROUNDING)).ceil();
-        let word = card.lines.first().map_or(&card.word, |line| &line.text);
+        let (place, word) = match card.lines.first() {
+            Some(line) => (&line.place, line.text.as_str()),
+            None => (&card.place, card.word.as_str()),
+        };
         if count > INCREMENTS {
             let fault = Fault::TooMany {
                 what: "increments",
                 most: INCREMENTS as u64,
                 remedy: "make the first increment larger",
             };
-            return Err(DeckError::at(&card.place, word, fault));
+            return Err(DeckError::at(place, word, fault));
         }
         if let Some((most, place, word)) = &self.increments
             && count > *most
@@ -261,7 +270,11 @@ pub(super) fn boundary(
         Some(_) => &["OP", "AMPLITUDE", "TYPE"],
         None => &["TYPE"],
     })?;
-    card.choice("TYPE", &["DISPLACEMENT"], "DISPLACEMENT; other types are not supported")?;
+    card.choice(
+        "TYPE",
+        &["DISPLACEMENT"],
+        "DISPLACEMENT; other types are not supported",
+    )?;
     let amplitude = amplitude(model, card)?;
     let mut lines = Vec::with_capacity(card.lines.len());
     for line in &card.lines {
@@ -326,7 +339,10 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
     if !second.starts_with(|c: char| c.is_ascii_digit())
         && let Some(extra) = fields.get(2)
     {
-        return Err(line.fault(extra, Fault::Expected("nothing after the name of a condition")));
+        return Err(line.fault(
+            extra,
+            Fault::Expected("nothing after the name of a condition"),
+        ));
     }
     Ok(Boundary {
         place: line.place.clone(),

@@ -27,7 +27,11 @@ pub(super) fn contacts(
                 "{} and {} share faces; a face does not touch itself, so give two surfaces",
                 pair.slave, pair.master
             );
-            return Err(DeckError::at(&pair.place, &pair.master, Fault::Cannot(text)));
+            return Err(DeckError::at(
+                &pair.place,
+                &pair.master,
+                Fault::Cannot(text),
+            ));
         }
         // surfaces are not empty
         let mut contact = Contact::between(slave[0], master[0]);

@@ -107,7 +107,10 @@ impl Loads {
         let mut loads = Self::default();
         for ((node, component), track) in &forces.0 {
             if let Some((value, history)) = loads.histories.add(model, timeline, track)? {
-                let (first, list) = loads.forces.entry(history).or_insert_with(|| (track.order, BTreeMap::new()));
+                let (first, list) = loads
+                    .forces
+                    .entry(history)
+                    .or_insert_with(|| (track.order, BTreeMap::new()));
                 *first = track.order.min(*first);
                 list.entry(*node).or_insert([0.0; 3])[*component] = value;
             }
@@ -172,7 +175,9 @@ impl Loads {
             }
         }
         for ((target, gravity, history), (order, value, track)) in groups {
-            let Context { model, raw, sets, .. } = context;
+            let Context {
+                model, raw, sets, ..
+            } = context;
             let elements = sets.elements(model, raw, &target, track.at())?;
             let densities = match gravity {
                 true => context.densities(&elements, track)?,
@@ -181,7 +186,8 @@ impl Loads {
             let same = densities.iter().all(|d| *d == densities[0]);
             if same && elements.len() == raw.tets.len() {
                 let density = densities[0];
-                self.bodies.push((order, history, value.map(|v| density * v)));
+                self.bodies
+                    .push((order, history, value.map(|v| density * v)));
                 continue;
             }
             for (&element, density) in elements.iter().zip(densities) {
@@ -224,9 +230,8 @@ impl Loads {
             out.push((order, LoadDensity::body(value), history));
         }
         out.sort_by_key(|load| load.0);
-        let load = |(_, density, history)| {
-            Load::new(density).with_history(self.histories.at(history))
-        };
+        let load =
+            |(_, density, history)| Load::new(density).with_history(self.histories.at(history));
         out.into_iter().map(load).collect()
     }
 }
@@ -317,8 +322,8 @@ impl Context<'_> {
             DeckError::at(place, word, Fault::Cannot(text))
         };
         let sections = super::materials::sections(self.model, self.raw, self.sets)?;
-        let sections = sections
-            .ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
+        let sections =
+            sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
         let mut of_section = Vec::with_capacity(self.model.sections.len());
         for section in &self.model.sections {
             let (name, word) = &section.material;
@@ -329,7 +334,9 @@ impl Context<'_> {
         let density = |&element: &u32| {
             let (density, name) = of_section[sections[element as usize] as usize];
             density.ok_or_else(|| {
-                fault(format!("gravity needs a density; give material {name} *DENSITY"))
+                fault(format!(
+                    "gravity needs a density; give material {name} *DENSITY"
+                ))
             })
         };
         elements.iter().map(density).collect()

@@ -23,7 +23,9 @@ pub(super) fn materials(
     for section in &model.sections {
         let (name, word) = &section.material;
         let at = (&section.place, word.as_str());
-        let material = model.materials.at(model.materials.find("material", name, at)?);
+        let material = model
+            .materials
+            .at(model.materials.find("material", name, at)?);
         let Some((place, young, poisson)) = &material.elastic else {
             let why = "the material has no *ELASTIC; put it behind *MATERIAL";
             return Err(DeckError::at(&material.place, name, Fault::Empty(why)));

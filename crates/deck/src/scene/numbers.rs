@@ -49,7 +49,13 @@ pub(super) struct Sets {
 impl Sets {
     pub(super) fn new(model: &Model, raw: &Raw) -> Result<Self, DeckError> {
         let mut room = MEMBERS;
-        let nodes = resolve("node", &model.nsets, &raw.nodes, model.nodes.len(), &mut room)?;
+        let nodes = resolve(
+            "node",
+            &model.nsets,
+            &raw.nodes,
+            model.nodes.len(),
+            &mut room,
+        )?;
         let count = model.elements.len();
         let elements = resolve("element", &model.elsets, &raw.elements, count, &mut room)?;
         Ok(Self { nodes, elements })
@@ -76,7 +82,14 @@ impl Sets {
         at: (&Place, &str),
     ) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
-        find(what, target, &raw.elements, &model.elsets, &self.elements, at)
+        find(
+            what,
+            target,
+            &raw.elements,
+            &model.elsets,
+            &self.elements,
+            at,
+        )
     }
 
     /// The sets of nodes and of elements by name, in the numbers of the mesh.
@@ -150,7 +163,11 @@ fn resolve(
                     let mut inside = numbers.range(*from, *to, *step).peekable();
                     if inside.peek().is_none() {
                         let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(place, &format!("{from}, {to}, {step}"), fault));
+                        return Err(DeckError::at(
+                            place,
+                            &format!("{from}, {to}, {step}"),
+                            fault,
+                        ));
                     }
                     inside.for_each(&mut add);
                 }

@@ -93,7 +93,9 @@ impl Table {
         let nodes = sets.nodes(model, raw, &line.target, at)?;
         let nodes: Vec<u32> = nodes.into_iter().filter_map(|n| raw.in_mesh(n)).collect();
         if nodes.is_empty() {
-            return Err(fault("no element uses these nodes; hold nodes of the body".into()));
+            return Err(fault(
+                "no element uses these nodes; hold nodes of the body".into(),
+            ));
         }
         let given = Given {
             value: line.value,
@@ -162,7 +164,8 @@ impl Table {
             let all: Vec<usize> = moves.iter().filter_map(|m| Some(m.2?.1)).collect();
             // one motion takes the components that stay at zero along, as part of it
             let one = all.first().filter(|h| all.iter().all(|o| o == *h)).copied();
-            let mut parts: BTreeMap<(usize, Option<usize>), ([bool; 3], [f64; 3])> = BTreeMap::new();
+            let mut parts: BTreeMap<(usize, Option<usize>), ([bool; 3], [f64; 3])> =
+                BTreeMap::new();
             for (component, owner, motion) in moves {
                 let history = motion.map(|m| m.1).or(one);
                 let (on, value) = parts.entry((owner, history)).or_default();

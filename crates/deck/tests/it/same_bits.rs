@@ -3,9 +3,7 @@
 use signorini_contact::{
     Analysis, Contact, DifferenceFormula, Friction, Load, Scene, Settings, Simulation, Support,
 };
-use signorini_fem_mesh::{
-    Brick, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,
-};
+use signorini_fem_mesh::{Brick, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 
 use crate::write;
 
@@ -39,7 +37,9 @@ fn upper(tag: FacetTag) -> FacetTag {
 
 /// A block on a longer one, tags of the upper one 10 larger.
 fn two() -> TetMesh {
-    let lower = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
+    let lower = Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
+        .build()
+        .expect("brick");
     let block = Brick::new([1.0; 3], [2, 2, 2]).with_origin([1.0, 0.0, 1.0]);
     let block = block.build().expect("brick").map_tags(upper);
     lower.append(&block).expect("two bodies")
@@ -47,7 +47,9 @@ fn two() -> TetMesh {
 
 #[test]
 fn a_brick_under_pressure_and_gravity() {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
+    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
+        .build()
+        .expect("brick");
     let deck = write::mesh(&mesh)
         + write::STEEL
         + "*BOUNDARY\nN1, 1, 3\n*STEP\n*STATIC\n*DSLOAD\nS6, P, 2.5\n*DLOAD\nALL, GRAV, 9810., 0., 0., -1.\n*END STEP\n";
