@@ -73,6 +73,10 @@ pub enum Error {
     #[cfg(feature = "gmsh")]
     #[error(transparent)]
     Gmsh(#[from] fem::gmsh::GmshError),
+    /// Decks.
+    #[cfg(feature = "deck")]
+    #[error(transparent)]
+    Deck(#[from] signorini_deck::DeckError),
 }
 
 impl fmt::Debug for Error {
