@@ -12,8 +12,8 @@ use crate::scene::{self, Translated};
 
 /// A deck as a mesh and a scene, with the names and numbers that it had. See the [crate](crate) for what is read.
 ///
-/// Nodes and tetrahedra of the mesh are in the order of the file; nodes that no element uses are dropped. The names of sets and
-/// surfaces are compared without regard to case and blanks.
+/// Nodes and tetrahedra of the mesh are in the order of the file; nodes that no element uses are dropped. The
+/// names of sets and surfaces are compared without regard to case and blanks.
 #[derive(Debug)]
 pub struct Deck {
     path: PathBuf,
@@ -25,8 +25,8 @@ impl Deck {
     /// Reads a deck and all files that it includes.
     ///
     /// # Errors
-    /// [`DeckError`] names the first fault with file, line, word and remedy: what is not understood, not supported, not defined,
-    /// or contradictory.
+    /// [`DeckError`] names the first fault with file, line, word and remedy: what is not understood, not
+    /// supported, not defined, or contradictory.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DeckError> {
         let path = path.as_ref();
         let cards = lexer::cards(path)?;
@@ -45,8 +45,8 @@ impl Deck {
         &self.is.mesh
     }
 
-    /// The scene, to be solved as it is or to be added to: a cut into subdomains for instance, which decks do not say. A deck
-    /// without steps gives one with supports and contacts, but without loads.
+    /// The scene, to be solved as it is or to be added to: a cut into subdomains for instance, which decks do
+    /// not say. A deck without steps gives one with supports and contacts, but without loads.
     ///
     /// # Errors
     /// [`DeckError::NoSection`] for a deck that is a mesh only.

@@ -49,7 +49,8 @@ pub enum DeckError {
     },
     /// The elements make no mesh.
     #[error(
-        "the elements of {} make no mesh (nodes and elements are counted from 0 here, in the order of the file): {source}",
+        "the elements of {} make no mesh (nodes and elements are counted from 0 here, in the order of the \
+        file): {source}",
         path.display()
     )]
     Mesh {
@@ -66,7 +67,8 @@ pub enum DeckError {
     },
     /// A scene is asked of a deck that is only a mesh.
     #[error(
-        "{} has no *SOLID SECTION: it is a mesh, not a scene; give it *MATERIAL, *ELASTIC and *SOLID SECTION, or take only its mesh",
+        "{} has no *SOLID SECTION: it is a mesh, not a scene; give it *MATERIAL, *ELASTIC and *SOLID \
+        SECTION, or take only its mesh",
         path.display()
     )]
     NoSection {
@@ -220,12 +222,14 @@ pub enum Fault {
     Empty(&'static str),
     /// An element that has no positive volume.
     #[error(
-        "the element has no volume, or is turned inside out; its first three nodes have to be counter-clockwise seen from the fourth"
+        "the element has no volume, or is turned inside out; its first three nodes have to be \
+        counter-clockwise seen from the fourth"
     )]
     Volume,
     /// A face inside the body.
     #[error(
-        "face {face} of element {element} lies inside the body, against another element; give only faces of the boundary"
+        "face {face} of element {element} lies inside the body, against another element; give only faces of \
+        the boundary"
     )]
     FaceInside {
         /// Number of the element.

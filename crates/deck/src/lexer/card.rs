@@ -171,7 +171,8 @@ impl Card {
         DeckError::at(&self.place, &param.word, fault)
     }
 
-    /// Refuses parameters that are not in the list (upper case, as they are written with blanks), and those given twice.
+    /// Refuses parameters that are not in the list (upper case, as they are written with blanks), and those
+    /// given twice.
     pub(crate) fn allow(&self, known: &[&str]) -> Result<(), DeckError> {
         for (index, param) in self.params.iter().enumerate() {
             if !known.iter().any(|k| name(k) == param.key) {

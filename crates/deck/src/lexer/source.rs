@@ -8,10 +8,12 @@ use std::sync::Arc;
 use super::card::{Card, Line};
 use crate::error::{DeckError, Fault, Place};
 
-/// Most included files, how deep they may include each other, and the bytes of all files together.
+/// Most included files, how deep they may include each other, and the bytes and lines of all files together:
+/// far beyond any model that a machine holds, so that a damaged file cannot fill the memory.
 const FILES: u64 = 1000;
 const DEPTH: usize = 32;
 const BYTES: u64 = 1 << 31;
+const LINES: u64 = 50_000_000;
 
 /// The cards of a file and of those that it includes.
 pub(crate) fn cards(path: &Path) -> Result<Vec<Card>, DeckError> {
@@ -33,6 +35,7 @@ struct Reader {
     open: Vec<PathBuf>,
     files: u64,
     bytes: u64,
+    lines: u64,
 }
 
 impl Reader {
@@ -50,6 +53,15 @@ impl Reader {
                 line,
             };
             let text = text.trim();
+            self.lines += 1;
+            if self.lines > LINES {
+                let fault = Fault::TooMany {
+                    what: "lines in all files",
+                    most: LINES,
+                    remedy: "split the model",
+                };
+                return Err(DeckError::at(&place, text, fault));
+            }
             if !text.starts_with('*') {
                 let line = Line {
                     place,

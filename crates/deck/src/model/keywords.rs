@@ -6,7 +6,10 @@ use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
 /// What is read, as an error lists it.
-const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, which are ignored and reported";
+const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, \
+*SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *RIGID BODY, *SURFACE \
+INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
 const OUTPUT: [&str; 20] = [
@@ -33,7 +36,7 @@ const OUTPUT: [&str; 20] = [
 ];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 38] = [
+const REFUSED: [(&str, &str); 37] = [
     ("ASSEMBLY", FLAT),
     ("PART", FLAT),
     ("INSTANCE", FLAT),
@@ -51,10 +54,6 @@ const REFUSED: [(&str, &str); 38] = [
     (
         "DISTRIBUTING",
         "couplings of nodes are not here; put the force on the nodes themselves",
-    ),
-    (
-        "RIGIDBODY",
-        "give the body elements, a material and *BOUNDARY on all its nodes; a flat obstacle is Contact::half_space in a program",
     ),
     (
         "TRANSFORM",
@@ -104,7 +103,8 @@ const REFUSED: [(&str, &str); 38] = [
     ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", PROCEDURE),
 ];
 
-const FLAT: &str = "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use parts and assemblies)";
+const FLAT: &str = "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit \
+Attributes, do not use parts and assemblies)";
 const ELASTIC: &str = "materials are linear and elastic";
 const THERMAL: &str = "temperature plays no role here; remove it";
 const SOLID: &str = "only solid elements C3D4 are read";
@@ -147,6 +147,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "SURFACEBEHAVIOR" => Some(property::behavior),
         "FRICTION" => Some(property::friction),
         "CONTACTPAIR" => Some(property::pair),
+        "RIGIDBODY" => Some(property::rigid),
         _ => None,
     };
     if let Some(read) = of_model {

@@ -1,13 +1,14 @@
 //! Nodes, elements, sets and surfaces.
 
-use super::{Element, Faces, Member, Model, Node, Target};
+use super::{Element, Faces, Kind, Member, Model, Node, Side, Target};
 use crate::error::{DeckError, Fault};
 use crate::lexer::{Card, Line, label, name};
 
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
 
-const TYPES: &str = "only linear tetrahedra C3D4 are read; mesh with tetrahedra of first order";
+const TYPES: &str = "only linear tetrahedra C3D4 are read, and R3D3 and R3D4 for rigid planes; mesh with \
+tetrahedra of first order";
 
 pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NSET"])?;
@@ -40,38 +41,51 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
+    let kinds = [Kind::Solid, Kind::Triangle, Kind::Quadrilateral];
     let kind = card.need("TYPE")?;
-    if let Some(param) = card.param("TYPE")
-        && kind != "C3D4"
-    {
-        return Err(card.param_fault(param, Fault::Unsupported(TYPES)));
-    }
+    let kind = ["C3D4", "R3D3", "R3D4"].iter().position(|k| *k == kind);
+    let (kind, nodes, wanted) = match (kind.map(|k| kinds[k]), card.param("TYPE")) {
+        (None, Some(param)) => {
+            return Err(card.param_fault(param, Fault::Unsupported(TYPES)));
+        }
+        (Some(Kind::Triangle), _) => (
+            Kind::Triangle,
+            3,
+            "an element number and three node numbers",
+        ),
+        (kind, _) => (
+            kind.unwrap_or(Kind::Solid),
+            4,
+            "an element number and four node numbers",
+        ),
+    };
     let set = card.value("ELSET")?;
     let mut members = Vec::new();
     let mut lines = card.lines.iter();
     while let Some(line) = lines.next() {
-        let wanted = "an element number and four node numbers";
         let mut numbers = Vec::with_capacity(5);
         let mut next = Some(line);
         // a line that ends with a comma goes on in the next one
         while let Some(line) = next {
-            let fields = line.at_most(5 - numbers.len(), wanted)?;
+            let fields = line.at_most(1 + nodes - numbers.len(), wanted)?;
             for at in 0..fields.len() {
                 numbers.push(line.label(&fields, at, "a number from 1 to 2147483647")?);
             }
-            let open = numbers.len() < 5 && line.text.ends_with(',');
+            let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
             next = if open { lines.next() } else { None };
         }
-        let [label, a, b, c, d] = numbers[..] else {
-            return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+        let (label, nodes) = match numbers[..] {
+            [label, a, b, c] if nodes == 3 => (label, [a, b, c, c]),
+            [label, a, b, c, d] => (label, [a, b, c, d]),
+            _ => return Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
         };
-        let nodes = [a, b, c, d];
         let place = line.place.clone();
         if set.is_some() {
             members.push((Member::One(label), place.clone()));
         }
         model.elements.push(Element {
             label,
+            kind,
             nodes,
             place,
         });
@@ -170,7 +184,8 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         let why = match kind.as_str() {
             "ELEMENT" => None,
             "NODE" => Some(
-                "a surface of nodes has no areas and normals, which contact and pressure need; give faces of elements, TYPE=ELEMENT",
+                "a surface of nodes has no areas and normals, which contact and pressure need; give faces \
+                of elements, TYPE=ELEMENT",
             ),
             _ => Some("only surfaces of element faces are read, TYPE=ELEMENT"),
         };
@@ -184,13 +199,16 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     }
     let mut faces = Vec::new();
     for line in &card.lines {
-        let wanted = "an element or element set, and a face S1, S2, S3 or S4";
+        let wanted =
+            "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets)";
         let fields = line.at_most(2, wanted)?;
-        let face = match fields.get(1).map(|f| name(f)).as_deref() {
-            Some("S1") => 1,
-            Some("S2") => 2,
-            Some("S3") => 3,
-            Some("S4") => 4,
+        let side = match fields.get(1).map(|f| name(f)).as_deref() {
+            Some("S1") => Side::Face(1),
+            Some("S2") => Side::Face(2),
+            Some("S3") => Side::Face(3),
+            Some("S4") => Side::Face(4),
+            Some("SPOS") => Side::Facet { positive: true },
+            Some("SNEG") => Side::Facet { positive: false },
             _ => {
                 let word = fields.get(1).copied().unwrap_or(line.text.trim());
                 return Err(line.fault(word, Fault::Expected(wanted)));
@@ -198,7 +216,7 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         };
         faces.push(Faces {
             target: target(line, fields[0])?,
-            face,
+            side,
             place: line.place.clone(),
         });
     }

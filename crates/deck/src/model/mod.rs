@@ -1,8 +1,9 @@
 //! The deck in its own words: what the cards say, without a mesh of the library or a scene.
 //!
-//! In go the cards of [`crate::lexer`], out comes a [`Model`] with nodes and elements by their numbers in the deck, sets, surfaces,
-//! materials, contact pairs and steps. Keywords, parameters and entries that are not understood end here, with their place; names
-//! are looked up by [`crate::scene`], above. May use `lexer` and `error`.
+//! In go the cards of [`crate::lexer`], out comes a [`Model`] with nodes and elements by their numbers in the
+//! deck, sets, surfaces, materials, contact pairs and steps. Keywords, parameters and entries that are not
+//! understood end here, with their place; names are looked up by [`crate::scene`], above. May use `lexer` and
+//! `error`.
 
 mod keywords;
 mod mesh;
@@ -18,7 +19,7 @@ pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use property::named;
 pub(crate) use step::{
-    Boundary, Conditions, Distributed, DistributedKind, Force, INCREMENTS, Step, Target,
+    Boundary, COMPONENT, Conditions, Distributed, DistributedKind, Force, INCREMENTS, Step, Target,
 };
 
 /// A request of the deck that has no meaning here.
@@ -45,10 +46,22 @@ pub(crate) struct Node {
     pub(crate) place: Place,
 }
 
-/// An element C3D4.
+/// What an element is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// C3D4.
+    Solid,
+    /// R3D3, whose last node is there twice.
+    Triangle,
+    /// R3D4.
+    Quadrilateral,
+}
+
+/// An element.
 #[derive(Debug, Clone)]
 pub(crate) struct Element {
     pub(crate) label: u32,
+    pub(crate) kind: Kind,
     pub(crate) nodes: [u32; 4],
     pub(crate) place: Place,
 }
@@ -64,12 +77,20 @@ pub(crate) enum Member {
 /// A set of nodes or elements: its members, each with its place and word.
 pub(crate) type Set = Vec<(Member, Place)>;
 
+/// A side of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Face 1 to 4 of a solid.
+    Face(u8),
+    /// Where the normal of a rigid facet points to, or the other side.
+    Facet { positive: bool },
+}
+
 /// Faces with the same number, of an element or of those of a set.
 #[derive(Debug, Clone)]
 pub(crate) struct Faces {
     pub(crate) target: Target,
-    /// 1 to 4.
-    pub(crate) face: u8,
+    pub(crate) side: Side,
     pub(crate) place: Place,
 }
 
@@ -102,6 +123,17 @@ pub(crate) struct Interaction {
     pub(crate) friction: Option<f64>,
 }
 
+/// Elements that keep their shape and follow a node.
+#[derive(Debug, Clone)]
+pub(crate) struct RigidBody {
+    pub(crate) place: Place,
+    pub(crate) elset: (String, String),
+    /// The node whose displacement it has, with the word that names it.
+    pub(crate) reference: (Target, String),
+    /// The node whose displacement is its rotation.
+    pub(crate) rotation: Option<(Target, String)>,
+}
+
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
     pub(crate) place: Place,
@@ -123,6 +155,7 @@ pub(crate) struct Model {
     pub(crate) amplitudes: Names<Amplitude>,
     pub(crate) interactions: Names<Interaction>,
     pub(crate) pairs: Vec<Pair>,
+    pub(crate) rigid: Vec<RigidBody>,
     /// Supports that hold before the first step.
     pub(crate) supports: Vec<Boundary>,
     pub(crate) steps: Vec<Step>,

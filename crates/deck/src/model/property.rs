@@ -1,8 +1,8 @@
 //! Materials, sections, amplitudes, contact pairs and their interactions.
 
-use super::{Amplitude, Ignored, Interaction, Material, Model, Pair, Section};
+use super::{Amplitude, Ignored, Interaction, Material, Model, Pair, RigidBody, Section, Target};
 use crate::error::{DeckError, Fault};
-use crate::lexer::{Card, Param, name};
+use crate::lexer::{Card, Param, label, name};
 use signorini_fem_mesh::History;
 
 pub(super) const PENALTY: &str =
@@ -52,7 +52,8 @@ pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     if let (Some(kind), Some(param)) = (card.value("TYPE")?, card.param("TYPE"))
         && !["ISO", "ISOTROPIC"].contains(&kind.as_str())
     {
-        let why = "only isotropic elasticity is read from decks; give Young's modulus and Poisson's ratio (a program can set any law with Hooke::from_voigt)";
+        let why = "only isotropic elasticity is read from decks; give Young's modulus and Poisson's ratio \
+        (a program can set any law with Hooke::from_voigt)";
         return Err(card.param_fault(param, Fault::Unsupported(why)));
     }
     let wanted = "one line with Young's modulus and Poisson's ratio; laws that depend on temperature are not read";
@@ -180,7 +181,8 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         card.param("PRESSURE-OVERCLOSURE"),
     ) && law != "HARD"
     {
-        let why = "contact is hard and exact here, without a stiffness; write PRESSURE-OVERCLOSURE=HARD and remove the data lines (tied surfaces: merge their nodes)";
+        let why = "contact is hard and exact here, without a stiffness; write PRESSURE-OVERCLOSURE=HARD and \
+        remove the data lines (tied surfaces: merge their nodes)";
         return Err(card.param_fault(param, Fault::Unsupported(why)));
     }
     card.lines_at_most(0, "no data: hard contact has no numbers")
@@ -262,6 +264,32 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     if card.lines.is_empty() {
         return Err(card.fault(Fault::Empty("the pair has no surfaces; name two in a line")));
     }
+    Ok(())
+}
+
+/// `*RIGID BODY`.
+pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&["ELSET", "REF NODE", "ROT NODE"])?;
+    card.lines_at_most(0, "no data")?;
+    let elset = card.need("ELSET")?;
+    card.need("REFNODE")?;
+    let node = |key: &str| {
+        let text = card.value(key)?;
+        let target = text.map(|text| match label(&text) {
+            Some(number) => Target::Number(number),
+            None => Target::Name(text),
+        });
+        Ok::<_, DeckError>(target.map(|target| (target, word(card.param(key)))))
+    };
+    let Some(reference) = node("REFNODE")? else {
+        return Ok(());
+    };
+    model.rigid.push(RigidBody {
+        place: card.place.clone(),
+        elset: (elset, word(card.param("ELSET"))),
+        reference,
+        rotation: node("ROTNODE")?,
+    });
     Ok(())
 }
 

@@ -21,7 +21,10 @@ pub(crate) struct Boundary {
     pub(crate) place: Place,
     pub(crate) word: String,
     pub(crate) target: Target,
-    pub(crate) components: [bool; 3],
+    /// Displacements, then rotations, which nodes of rigid bodies have.
+    pub(crate) components: [bool; 6],
+    /// The word that asks for a rotation by its number.
+    pub(crate) rotation: Option<String>,
     pub(crate) value: f64,
     /// Position of the amplitude.
     pub(crate) amplitude: Option<usize>,
@@ -89,7 +92,8 @@ impl<T> Conditions<T> {
                 self.first = Some((card.place.clone(), word, new));
             }
             Some((_, _, before)) if new != *before && card.param("OP").is_some() => {
-                let why = "only the first card of its kind in a step can say OP, and it says another; move it to that card";
+                let why = "only the first card of its kind in a step can say OP, and it says another; move \
+                it to that card";
                 return Err(card.fault(Fault::Misplaced(why)));
             }
             Some(_) => {}
@@ -295,6 +299,10 @@ pub(super) fn boundary(
     Ok(())
 }
 
+/// What a component of a support is.
+pub(crate) const COMPONENT: &str = "a component: 1, 2 or 3 (solid elements have no rotations), ENCASTRE, \
+PINNED, XSYMM, YSYMM or ZSYMM";
+
 fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, DeckError> {
     let wanted = "a node or node set, first and last component (1 to 3), and a value";
     let fields = line.at_most(4, wanted)?;
@@ -305,20 +313,33 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
     } else {
         second
     };
-    let (components, value) = match name(second).as_str() {
-        "ENCASTRE" | "PINNED" => ([true; 3], 0.0),
-        "XSYMM" => ([true, false, false], 0.0),
-        "YSYMM" => ([false, true, false], 0.0),
-        "ZSYMM" => ([false, false, true], 0.0),
-        _ => {
-            let component = |at: usize| {
+    let by_name = |name: &str| {
+        let on = match name {
+            "ENCASTRE" => [1, 1, 1, 1, 1, 1],
+            "PINNED" => [1, 1, 1, 0, 0, 0],
+            "XSYMM" => [1, 0, 0, 0, 1, 1],
+            "YSYMM" => [0, 1, 0, 1, 0, 1],
+            "ZSYMM" => [0, 0, 1, 1, 1, 0],
+            _ => return None,
+        };
+        Some(on.map(|on| on == 1))
+    };
+    let mut rotation = None;
+    let (components, value) = match by_name(&name(second)) {
+        Some(components) => (components, 0.0),
+        None => {
+            let mut component = |at: usize| {
                 let text = fields.get(at).copied().unwrap_or("");
-                let wanted = "a component: 1, 2 or 3 (solid elements have no rotations), ENCASTRE, PINNED, XSYMM, YSYMM or ZSYMM";
                 match label(text) {
-                    Some(number @ 1..=3) => Ok(number as usize - 1),
+                    Some(number @ 1..=6) => {
+                        if number > 3 {
+                            rotation = Some(text.to_owned());
+                        }
+                        Ok(number as usize - 1)
+                    }
                     _ => {
                         let word = if text.is_empty() { word } else { text };
-                        Err(line.fault(word, Fault::Expected(wanted)))
+                        Err(line.fault(word, Fault::Expected(COMPONENT)))
                     }
                 }
             };
@@ -332,7 +353,7 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
                 return Err(line.fault(fields[2], Fault::Expected(wanted)));
             }
             let value = line.optional(&fields, 3, "a displacement, a finite number")?;
-            let on = [0, 1, 2].map(|c| (first..=last).contains(&c));
+            let on = [0, 1, 2, 3, 4, 5].map(|c| (first..=last).contains(&c));
             (on, value.unwrap_or(0.0))
         }
     };
@@ -349,6 +370,7 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
         word: fields[0].to_owned(),
         target,
         components,
+        rotation,
         value,
         amplitude,
     })

@@ -1,7 +1,8 @@
 //! Faces of elements that surfaces and pressures name, and their tags.
 //!
-//! A facet of a mesh has one tag, a face of a deck may be in several surfaces and under pressure besides. Faces with the same
-//! surfaces and the same pressure get one tag, so that a surface is a list of tags: one where nothing overlaps.
+//! A facet of a mesh has one tag, a face of a deck may be in several surfaces and under pressure besides. Faces
+//! with the same surfaces and the same pressure get one tag, so that a surface is a list of tags: one where
+//! nothing overlaps.
 
 use std::collections::HashMap;
 
@@ -9,17 +10,18 @@ use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::mesh::Raw;
 use super::numbers::Sets;
+use super::rigid::{RigidBodies, RigidFace};
 use crate::error::{DeckError, Fault, Place};
-use crate::model::{Model, Names, Target};
+use crate::model::{Model, Names, Side, Target};
 
 /// Nodes of the faces 1 to 4 of an element C3D4.
-const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+pub(super) const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
 #[derive(Debug)]
 pub(super) struct Face {
     pub(super) nodes: [u32; 3],
-    /// Position of the element that names it first, and the number of the face there.
-    pub(super) element: u32,
+    /// The tetrahedron that names it first, and the number of the face there.
+    tet: u32,
     number: u8,
     place: Place,
     word: String,
@@ -34,6 +36,17 @@ pub(super) struct Face {
 pub(super) struct FaceTable {
     pub(super) list: Vec<Face>,
     places: HashMap<[u32; 3], u32>,
+    /// Rigid faces of each surface.
+    pub(super) rigid: Vec<Vec<RigidFace>>,
+}
+
+/// What is known of the model where faces are looked up.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub(super) model: &'a Model,
+    pub(super) sets: &'a Sets,
+    pub(super) bodies: &'a RigidBodies,
+    pub(super) raw: &'a Raw,
 }
 
 fn key(mut nodes: [u32; 3]) -> [u32; 3] {
@@ -42,16 +55,16 @@ fn key(mut nodes: [u32; 3]) -> [u32; 3] {
 }
 
 impl FaceTable {
-    /// The position of a face (1 to 4) of an element, noted at its first appearance.
-    fn face(&mut self, raw: &Raw, element: u32, number: u8, at: (&Place, &str)) -> u32 {
-        let tet = raw.tets[element as usize];
-        let nodes = FACES[usize::from(number) - 1].map(|i| tet[i]);
+    /// The position of a face (1 to 4) of a tetrahedron, noted at its first appearance.
+    fn face(&mut self, raw: &Raw, tet: u32, number: u8, at: (&Place, &str)) -> u32 {
+        let corners = raw.tets[tet as usize];
+        let nodes = FACES[usize::from(number) - 1].map(|i| corners[i]);
         let next = self.list.len() as u32;
         let position = *self.places.entry(key(nodes)).or_insert(next);
         if position == next {
             self.list.push(Face {
                 nodes,
-                element,
+                tet,
                 number,
                 place: at.0.clone(),
                 word: at.1.to_owned(),
@@ -62,45 +75,60 @@ impl FaceTable {
         position
     }
 
-    /// Positions of the faces with a number, of the elements of a target.
+    /// Positions of the faces with a number, of the elements of a target, none of which may be rigid.
     pub(super) fn of_target(
         &mut self,
-        model: &Model,
-        raw: &Raw,
-        sets: &Sets,
+        known: Known,
         (target, number): (&Target, u8),
         at: (&Place, &str),
     ) -> Result<Vec<u32>, DeckError> {
-        let elements = sets.elements(model, raw, target, at)?;
-        let faces = elements.iter().map(|&e| self.face(raw, e, number, at));
-        Ok(faces.collect())
+        let mut faces = Vec::new();
+        for element in known.sets.elements(known.model, target, at)? {
+            let Some(tet) = known.raw.tet(element) else {
+                let text = "a pressure on a rigid body acts on nothing; load elastic elements";
+                return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+            };
+            faces.push(self.face(known.raw, tet, number, at));
+        }
+        Ok(faces)
     }
 
-    /// Notes the faces of all surfaces, and gives them surface by surface.
-    pub(super) fn surfaces(
-        &mut self,
-        model: &Model,
-        raw: &Raw,
-        sets: &Sets,
-    ) -> Result<Vec<Vec<u32>>, DeckError> {
+    /// Notes the faces of all surfaces, and gives the elastic ones surface by surface.
+    pub(super) fn surfaces(&mut self, known: Known) -> Result<Vec<Vec<u32>>, DeckError> {
         let mut out = Vec::new();
-        for (index, (_, faces)) in model.surfaces.iter().enumerate() {
-            let mut all = Vec::new();
+        for (index, (_, faces)) in known.model.surfaces.iter().enumerate() {
+            let (mut all, mut rigid) = (Vec::new(), Vec::new());
             for faces in faces {
                 let word = match &faces.target {
                     Target::Number(number) => number.to_string(),
                     Target::Name(name) => name.clone(),
                 };
-                let target = (&faces.target, faces.face);
-                for face in self.of_target(model, raw, sets, target, (&faces.place, &word))? {
+                let at = (&faces.place, word.as_str());
+                for element in known.sets.elements(known.model, &faces.target, at)? {
+                    let Some(tet) = known.raw.tet(element) else {
+                        let side = (element, faces.side);
+                        let face = known.bodies.face(known.model, known.sets, side, at)?;
+                        rigid.push(face);
+                        continue;
+                    };
+                    let Side::Face(number) = faces.side else {
+                        let wanted = "faces S1 to S4 of solid elements";
+                        return Err(DeckError::at(at.0, at.1, Fault::Expected(wanted)));
+                    };
+                    let face = self.face(known.raw, tet, number, at);
                     let surfaces = &mut self.list[face as usize].surfaces;
                     if surfaces.last() != Some(&(index as u32)) {
                         surfaces.push(index as u32);
                         all.push(face);
                     }
                 }
+                if !all.is_empty() && !rigid.is_empty() {
+                    let text = "the surface has rigid and elastic faces; make two surfaces of them";
+                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                }
             }
             out.push(all);
+            self.rigid.push(rigid);
         }
         Ok(out)
     }
@@ -118,13 +146,24 @@ impl FaceTable {
         match self.list.iter().zip(owners).find(|(_, owners)| *owners > 1) {
             Some((face, _)) => {
                 let inside = Fault::FaceInside {
-                    element: raw.element_labels()[face.element as usize],
+                    element: raw.element_labels()[face.tet as usize],
                     face: face.number,
                 };
                 Err(DeckError::at(&face.place, &face.word, inside))
             }
             None => Ok(()),
         }
+    }
+
+    /// The nodes of a surface: their numbers in the deck and places.
+    pub(super) fn nodes_of(&self, raw: &Raw, surface: u32) -> Vec<(u32, [f64; 3])> {
+        let on = self.list.iter().filter(|f| f.surfaces.contains(&surface));
+        let mut nodes: Vec<u32> = on.flat_map(|face| face.nodes).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let labels = raw.node_labels();
+        let place = |n: u32| (labels[n as usize], raw.points[n as usize]);
+        nodes.into_iter().map(place).collect()
     }
 
     /// The tag of each face, from 1 in the order of the faces.
@@ -170,7 +209,7 @@ impl Face {
     pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
         let [a, b, c] = self.nodes.map(|n| raw.points[n as usize]);
         let area = super::mesh::area_vector(&[a, b, c]);
-        let inside = raw.tet_points(self.element);
+        let inside = raw.tet_points(self.tet);
         let centre = [0, 1, 2].map(|i| inside.iter().map(|p| p[i]).sum::<f64>() / 4.0);
         let out: f64 = (0..3).map(|i| area[i] * (a[i] - centre[i])).sum();
         if out < 0.0 { area.map(|x| -x) } else { area }

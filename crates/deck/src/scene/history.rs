@@ -1,8 +1,9 @@
 //! What one condition does in all steps, as one factor in time.
 //!
-//! A value without an amplitude goes along a straight line from that at the end of the step before; with one it is the value
-//! times the amplitude. What a later step does not name stays as it was at the end of the step before, or follows its amplitude if that is in total time; what a step removes goes back to
-//! zero along a straight line. A jump at the beginning of a step becomes a line over its first increment.
+//! A value without an amplitude goes along a straight line from that at the end of the step before; with one it
+//! is the value times the amplitude. What a later step does not name stays as it was at the end of the step
+//! before, or follows its amplitude if that is in total time; what a step removes goes back to zero along a
+//! straight line. A jump at the beginning of a step becomes a line over its first increment.
 
 use std::collections::BTreeMap;
 

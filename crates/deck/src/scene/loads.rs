@@ -5,15 +5,14 @@ use std::collections::BTreeMap;
 use signorini_contact::Load;
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
-use super::faces::FaceTable;
+use super::faces::{FaceTable, Known};
 use super::history::{Given, Histories, Track};
-use super::mesh::Raw;
-use super::numbers::Sets;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Fault, Place};
-use crate::model::{Conditions, Distributed, DistributedKind, Force, Model, Target};
+use crate::model::{Conditions, Distributed, DistributedKind, Force, Target};
 
-/// Most different pressures that get tags of their own. More become forces at nodes, which are the same for linear elements.
+/// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
+/// linear elements.
 const PRESSURES: usize = 100;
 
 /// Loads that share a history, by its position, and their place among all.
@@ -32,12 +31,10 @@ pub(super) struct Loads {
     bodies: Vec<(usize, usize, [f64; 3])>,
 }
 
-/// What is known of the model.
+/// What is known of the model, and the axis of time.
 #[derive(Clone, Copy)]
 struct Context<'a> {
-    model: &'a Model,
-    raw: &'a Raw,
-    sets: &'a Sets,
+    known: Known<'a>,
     timeline: &'a Timeline,
 }
 
@@ -61,7 +58,8 @@ impl<K: Ord> Tracks<K> {
         if let Some(before) = track.given_in(step) {
             if !adds || before.amplitude != given.amplitude {
                 let text = if adds {
-                    "a force along this component is given in this step already, with another amplitude; put them on different nodes, or give one amplitude"
+                    "a force along this component is given in this step already, with another amplitude; \
+                    put them on different nodes, or give one amplitude"
                 } else {
                     "such a load is given there in this step already; add the values and give their sum once"
                 };
@@ -77,17 +75,13 @@ impl<K: Ord> Tracks<K> {
 impl Loads {
     /// The loads of all steps; `surfaces` are the faces of each surface.
     pub(super) fn new(
-        model: &Model,
-        (raw, sets, timeline): (&Raw, &Sets, &Timeline),
+        known: Known,
+        timeline: &Timeline,
         surfaces: &[Vec<u32>],
         faces: &mut FaceTable,
     ) -> Result<Self, DeckError> {
-        let context = Context {
-            model,
-            raw,
-            sets,
-            timeline,
-        };
+        let context = Context { known, timeline };
+        let model = known.model;
         let mut forces = Tracks(BTreeMap::new());
         let mut pressures = Tracks(BTreeMap::new());
         let mut bodies = Tracks(BTreeMap::new());
@@ -130,7 +124,9 @@ impl Loads {
         let mut of_face = Vec::with_capacity(tracks.0.len());
         let mut groups: BTreeMap<(u64, usize), usize> = BTreeMap::new();
         for (&face, track) in &tracks.0 {
-            let found = self.histories.add(context.model, context.timeline, track)?;
+            let found = self
+                .histories
+                .add(context.known.model, context.timeline, track)?;
             let Some((value, history)) = found else {
                 continue;
             };
@@ -142,7 +138,7 @@ impl Loads {
         if groups.len() > PRESSURES {
             for (face, value, history, order) in of_face {
                 let face = &faces.list[face as usize];
-                let area = face.area_vector(context.raw);
+                let area = face.area_vector(context.known.raw);
                 for node in face.nodes {
                     self.force(history, order, node, area.map(|a| -value * a / 3.0));
                 }
@@ -167,7 +163,9 @@ impl Loads {
         type Group = (Target, bool, usize);
         let mut groups: BTreeMap<Group, (usize, [f64; 3], &Track)> = BTreeMap::new();
         for ((target, gravity, component), track) in &tracks.0 {
-            let found = self.histories.add(context.model, context.timeline, track)?;
+            let found = self
+                .histories
+                .add(context.known.model, context.timeline, track)?;
             if let Some((value, history)) = found {
                 let key = (target.clone(), *gravity, history);
                 let group = groups.entry(key).or_insert((track.order, [0.0; 3], track));
@@ -175,10 +173,15 @@ impl Loads {
             }
         }
         for ((target, gravity, history), (order, value, track)) in groups {
-            let Context {
-                model, raw, sets, ..
-            } = context;
-            let elements = sets.elements(model, raw, &target, track.at())?;
+            let Known {
+                model, sets, raw, ..
+            } = context.known;
+            let elements = sets.elements(model, &target, track.at())?;
+            // rigid ones are held, whatever pulls them
+            let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
+            if elements.is_empty() {
+                continue;
+            }
             let densities = match gravity {
                 true => context.densities(&elements, track)?,
                 false => vec![1.0; elements.len()],
@@ -254,11 +257,12 @@ impl Context<'_> {
                 value: line.value,
                 amplitude: line.amplitude,
             };
-            for node in self.sets.nodes(self.model, self.raw, &line.target, at)? {
-                let Some(node) = self.raw.in_mesh(node) else {
+            for node in self.known.sets.nodes(self.known.model, &line.target, at)? {
+                let Some(node) = self.known.raw.in_mesh(node) else {
                     let text = format!(
-                        "no element uses node {}, so that a force there acts on nothing; load nodes of the body",
-                        self.model.nodes[node as usize].label
+                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes \
+                        of the body",
+                        self.known.model.nodes[node as usize].label
                     );
                     return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
                 };
@@ -285,17 +289,24 @@ impl Context<'_> {
         let faces = match &line.kind {
             DistributedKind::Face(number) => {
                 let target = (&line.target, *number);
-                table.of_target(self.model, self.raw, self.sets, target, at)?
+                table.of_target(self.known, target, at)?
             }
             DistributedKind::Surface => {
                 let Target::Name(name) = &line.target else {
                     return Ok(());
                 };
-                surfaces[self.model.surfaces.find("surface", name, at)?].clone()
+                let found = self.known.model.surfaces.find("surface", name, at)?;
+                if surfaces[found].is_empty() {
+                    let text = "a pressure on a rigid surface acts on nothing; load an elastic one";
+                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                }
+                surfaces[found].clone()
             }
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
-                self.sets.elements(self.model, self.raw, &line.target, at)?;
+                self.known
+                    .sets
+                    .elements(self.known.model, &line.target, at)?;
                 let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
@@ -304,7 +315,9 @@ impl Context<'_> {
                 return Ok(());
             }
             DistributedKind::Body(component) => {
-                self.sets.elements(self.model, self.raw, &line.target, at)?;
+                self.known
+                    .sets
+                    .elements(self.known.model, &line.target, at)?;
                 let key = (line.target.clone(), false, *component);
                 return bodies.set(key, when, given(line.value), at);
             }
@@ -321,15 +334,18 @@ impl Context<'_> {
             let (place, word) = track.at();
             DeckError::at(place, word, Fault::Cannot(text))
         };
-        let sections = super::materials::sections(self.model, self.raw, self.sets)?;
+        let Known {
+            model, raw, sets, ..
+        } = self.known;
+        let sections = super::materials::sections(model, raw, sets)?;
         let sections =
             sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
-        let mut of_section = Vec::with_capacity(self.model.sections.len());
-        for section in &self.model.sections {
+        let mut of_section = Vec::with_capacity(model.sections.len());
+        for section in &model.sections {
             let (name, word) = &section.material;
             let at = (&section.place, word.as_str());
-            let found = self.model.materials.find("material", name, at)?;
-            of_section.push((self.model.materials.at(found).density, name));
+            let found = model.materials.find("material", name, at)?;
+            of_section.push((model.materials.at(found).density, name));
         }
         let density = |&element: &u32| {
             let (density, name) = of_section[sections[element as usize] as usize];

@@ -9,7 +9,8 @@ use crate::model::{Model, Target};
 
 const NONE: u32 = u32::MAX;
 
-/// The region of each tetrahedron, which is the number of its section from 0, and the materials; none for a deck without sections.
+/// The region of each tetrahedron, which is the number of its section from 0, and the materials; none for a
+/// deck without sections.
 pub(super) fn materials(
     model: &Model,
     raw: &Raw,
@@ -61,12 +62,14 @@ pub(super) fn sections(
     for (index, section) in model.sections.iter().enumerate() {
         let (name, word) = &section.elset;
         let target = Target::Name(name.clone());
-        for element in sets.elements(model, raw, &target, (&section.place, word))? {
-            let before = std::mem::replace(&mut of_element[element as usize], index as u32);
+        let elements = sets.elements(model, &target, (&section.place, word))?;
+        // rigid ones need no material
+        for tet in elements.into_iter().filter_map(|e| raw.tet(e)) {
+            let before = std::mem::replace(&mut of_element[tet as usize], index as u32);
             if before != NONE {
                 let text = format!(
                     "element {} is in the section of line {} already; an element has one section",
-                    raw.element_labels()[element as usize],
+                    raw.element_labels()[tet as usize],
                     model.sections[before as usize].place.line
                 );
                 return Err(DeckError::at(&section.place, word, Fault::Cannot(text)));
@@ -74,8 +77,8 @@ pub(super) fn sections(
         }
     }
     match of_element.iter().position(|s| *s == NONE) {
-        Some(element) => {
-            let element = &model.elements[element];
+        Some(tet) => {
+            let element = &model.elements[raw.elements()[tet] as usize];
             let why = "the element has no *SOLID SECTION; give one to all elements";
             Err(DeckError::at(
                 &element.place,

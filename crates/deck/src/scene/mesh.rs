@@ -4,94 +4,99 @@ use std::path::Path;
 
 use signorini_fem_mesh::{Facet, TetMesh};
 
-use super::numbers::Numbers;
+use super::numbers::{Numbers, Sets};
+use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault};
-use crate::model::Model;
+use crate::model::{Kind, Model};
 
-/// The mesh before its facets are known. Nodes and elements are those of the deck, by position; `tets` are in the numbers of the
-/// mesh, without nodes that no element uses.
+/// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
 pub(super) struct Raw {
-    pub(super) nodes: Numbers,
-    pub(super) elements: Numbers,
     pub(super) points: Vec<[f64; 3]>,
     pub(super) tets: Vec<[u32; 4]>,
-    /// Number in the mesh of each node of the deck.
-    in_mesh: Vec<Option<u32>>,
-    labels: Vec<u32>,
+    /// Number in the mesh of each node and element of the deck, by position.
+    of_node: Vec<Option<u32>>,
+    of_element: Vec<Option<u32>>,
+    node_labels: Vec<u32>,
+    /// Positions of the elements of the deck.
+    elements: Vec<u32>,
     element_labels: Vec<u32>,
 }
 
 impl Raw {
-    pub(super) fn new(path: &Path, model: &Model) -> Result<Self, DeckError> {
-        if model.elements.is_empty() {
-            let path = path.to_owned();
-            return Err(DeckError::NoElements { path });
-        }
-        let pairs = model.nodes.iter().map(|n| n.label).zip(0..).collect();
-        let nodes = Numbers::new(pairs).map_err(|[first, second]| {
-            let [first, second] = [first, second].map(|at| &model.nodes[at as usize]);
-            let remedy = "give each node a number of its own";
-            let first = first.place.line;
-            let fault = Fault::Repeated { first, remedy };
-            DeckError::at(&second.place, &second.label.to_string(), fault)
-        })?;
-        let pairs = model.elements.iter().map(|e| e.label).zip(0..).collect();
-        let elements = Numbers::new(pairs).map_err(|[first, second]| {
-            let [first, second] = [first, second].map(|at| &model.elements[at as usize]);
-            let remedy = "give each element a number of its own";
-            let first = first.place.line;
-            let fault = Fault::Repeated { first, remedy };
-            DeckError::at(&second.place, &second.label.to_string(), fault)
-        })?;
-        let mut tets = Vec::with_capacity(model.elements.len());
+    pub(super) fn new(
+        path: &Path,
+        model: &Model,
+        sets: &Sets,
+        bodies: &RigidBodies,
+    ) -> Result<Self, DeckError> {
+        let (mut tets, mut elements) = (Vec::new(), Vec::new());
+        let mut of_element = vec![None; model.elements.len()];
         let mut used = vec![false; model.nodes.len()];
-        for element in &model.elements {
-            let mut tet = [0; 4];
-            for (position, label) in tet.iter_mut().zip(element.nodes) {
-                *position = nodes.get(label).ok_or_else(|| {
-                    let fault = Fault::UnknownNumber("node");
-                    DeckError::at(&element.place, &label.to_string(), fault)
-                })?;
-                used[*position as usize] = true;
+        for (position, element) in model.elements.iter().enumerate() {
+            let nodes = bodies.nodes(sets, element)?;
+            if bodies.of_element(position as u32).is_some() {
+                continue;
             }
-            let volume = volume(&tet.map(|n| model.nodes[n as usize].point));
+            if element.kind != Kind::Solid {
+                let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
+                let word = element.label.to_string();
+                return Err(DeckError::at(&element.place, &word, Fault::Empty(why)));
+            }
+            let volume = volume(&nodes.map(|n| model.nodes[n as usize].point));
             if !(volume > 0.0 && volume.is_finite()) {
                 let word = element.label.to_string();
                 return Err(DeckError::at(&element.place, &word, Fault::Volume));
             }
-            tets.push(tet);
+            nodes.iter().for_each(|&n| used[n as usize] = true);
+            of_element[position] = Some(tets.len() as u32);
+            tets.push(nodes);
+            elements.push(position as u32);
         }
-        let (mut points, mut labels) = (Vec::new(), Vec::new());
-        let mut in_mesh = vec![None; used.len()];
-        for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut in_mesh) {
+        if tets.is_empty() {
+            let path = path.to_owned();
+            return Err(DeckError::NoElements { path });
+        }
+        let (mut points, mut node_labels) = (Vec::new(), Vec::new());
+        let mut of_node = vec![None; used.len()];
+        for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut of_node) {
             if used {
                 *number = Some(points.len() as u32);
                 points.push(node.point);
-                labels.push(node.label);
+                node_labels.push(node.label);
             }
         }
-        let number = |n: u32| in_mesh[n as usize].unwrap_or(0);
-        let tets = tets.into_iter().map(|tet| tet.map(number)).collect();
+        let number = |n: u32| of_node[n as usize].unwrap_or(0);
+        let label = |&e: &u32| model.elements[e as usize].label;
         Ok(Self {
-            nodes,
-            elements,
             points,
-            tets,
-            in_mesh,
-            labels,
-            element_labels: model.elements.iter().map(|e| e.label).collect(),
+            tets: tets.into_iter().map(|tet| tet.map(number)).collect(),
+            of_node,
+            of_element,
+            node_labels,
+            element_labels: elements.iter().map(label).collect(),
+            elements,
         })
     }
 
-    /// The number in the mesh of a node of the deck, by its position; `None` if no element uses it.
+    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid.
+    pub(super) fn tet(&self, element: u32) -> Option<u32> {
+        self.of_element[element as usize]
+    }
+
+    /// The position in the deck of each tetrahedron.
+    pub(super) fn elements(&self) -> &[u32] {
+        &self.elements
+    }
+
+    /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
     pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
-        self.in_mesh[node as usize]
+        self.of_node[node as usize]
     }
 
     /// The number in the deck of each node of the mesh.
     pub(super) fn node_labels(&self) -> &[u32] {
-        &self.labels
+        &self.node_labels
     }
 
     /// The number in the deck of each tetrahedron.
@@ -101,7 +106,7 @@ impl Raw {
 
     /// Nodes of the mesh by their numbers in the deck.
     pub(super) fn mesh_numbers(&self) -> Numbers {
-        Numbers::new(self.labels.iter().copied().zip(0..).collect()).unwrap_or_default()
+        Numbers::new(self.node_labels.iter().copied().zip(0..).collect()).unwrap_or_default()
     }
 
     pub(super) fn tet_points(&self, tet: u32) -> [[f64; 3]; 4] {

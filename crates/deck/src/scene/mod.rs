@@ -1,8 +1,8 @@
 //! The deck as a mesh and a scene of the library.
 //!
-//! In goes a [`Model`], out comes a [`Translated`]: names are looked up, numbers of the deck become numbers of the mesh, faces get
-//! tags, the conditions of all steps become one history each. What cannot be said to the solver is refused here, with its place.
-//! May use `model`, `lexer`, `error`.
+//! In goes a [`Model`], out comes a [`Translated`]: names are looked up, numbers of the deck become numbers of
+//! the mesh, faces get tags, the conditions of all steps become one history each. What cannot be said to the
+//! solver is refused here, with its place. May use `model`, `lexer`, `error`.
 
 mod contacts;
 mod faces;
@@ -11,6 +11,7 @@ mod loads;
 mod materials;
 mod mesh;
 mod numbers;
+mod rigid;
 mod supports;
 mod timeline;
 
@@ -43,24 +44,31 @@ pub(crate) struct Translated {
 
 /// The mesh and the scene of a model.
 pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckError> {
-    let raw = mesh::Raw::new(path, model)?;
-    let sets = numbers::Sets::new(model, &raw)?;
+    let sets = numbers::Sets::new(model)?;
+    let bodies = rigid::RigidBodies::new(model, &sets)?;
+    let raw = mesh::Raw::new(path, model, &sets, &bodies)?;
     let timeline = timeline::Timeline::new(model)?;
+    let known = faces::Known {
+        model,
+        sets: &sets,
+        bodies: &bodies,
+        raw: &raw,
+    };
     let mut faces = faces::FaceTable::default();
-    let surfaces = faces.surfaces(model, &raw, &sets)?;
-    let loads = loads::Loads::new(model, (&raw, &sets, &timeline), &surfaces, &mut faces)?;
+    let surfaces = faces.surfaces(known)?;
+    let loads = loads::Loads::new(known, &timeline, &surfaces, &mut faces)?;
     faces.check_outside(&raw)?;
     let tags = faces.tags();
     let (regions, materials) = materials::materials(model, &raw, &sets)?;
     let mesh = raw.mesh(path, faces.facets(&tags), regions)?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let (supports, support_names) = supports::supports(model, &raw, &sets, &timeline)?;
-    let contacts = contacts::contacts(model, &surfaces)?;
+    let supports = supports::supports(known, &timeline)?;
+    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions)?;
     let loads = loads.lower(&faces, &tags);
     let scene = materials.map(|materials| {
         let scene = Scene::new(mesh.clone(), materials).with_analysis(timeline.analysis());
-        let scene = supports.into_iter().fold(scene, Scene::with_support);
+        let scene = supports.list.into_iter().fold(scene, Scene::with_support);
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         contacts.into_iter().fold(scene, Scene::with_contact)
     });
@@ -74,6 +82,6 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         surfaces,
         node_sets,
         element_sets,
-        support_names,
+        support_names: supports.names,
     })
 }

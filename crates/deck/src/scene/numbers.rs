@@ -34,50 +34,68 @@ impl Numbers {
         let end = self.0.partition_point(|p| p.0 <= to);
         let inside = self.0[start..end.max(start)].iter();
         inside
-            .filter(move |p| (p.0 - from) % step == 0)
+            .filter(move |p| (p.0 - from).is_multiple_of(step))
             .map(|p| p.1)
     }
 }
 
-/// All sets, as positions in the tables of nodes and elements of the deck.
+/// All numbers and sets, as positions in the tables of nodes and elements of the deck.
 #[derive(Debug)]
 pub(super) struct Sets {
+    pub(super) node_numbers: Numbers,
+    element_numbers: Numbers,
     nodes: Vec<Vec<u32>>,
     elements: Vec<Vec<u32>>,
 }
 
 impl Sets {
-    pub(super) fn new(model: &Model, raw: &Raw) -> Result<Self, DeckError> {
+    pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
+        let at = |n: usize| (model.nodes[n].label, &model.nodes[n].place);
+        let remedy = "give each node a number of its own";
+        let node_numbers = numbers(model.nodes.len(), at, remedy)?;
+        let at = |e: usize| (model.elements[e].label, &model.elements[e].place);
+        let remedy = "give each element a number of its own";
+        let element_numbers = numbers(model.elements.len(), at, remedy)?;
         let mut room = MEMBERS;
         let nodes = resolve(
             "node",
             &model.nsets,
-            &raw.nodes,
+            &node_numbers,
             model.nodes.len(),
             &mut room,
         )?;
         let count = model.elements.len();
-        let elements = resolve("element", &model.elsets, &raw.elements, count, &mut room)?;
-        Ok(Self { nodes, elements })
+        let elements = resolve("element", &model.elsets, &element_numbers, count, &mut room)?;
+        Ok(Self {
+            node_numbers,
+            element_numbers,
+            nodes,
+            elements,
+        })
     }
 
     /// Positions of the nodes of a target.
     pub(super) fn nodes(
         &self,
         model: &Model,
-        raw: &Raw,
         target: &Target,
         at: (&Place, &str),
     ) -> Result<Vec<u32>, DeckError> {
         let what = ("node", "node set");
-        find(what, target, &raw.nodes, &model.nsets, &self.nodes, at)
+        find(
+            what,
+            target,
+            &self.node_numbers,
+            &model.nsets,
+            &self.nodes,
+            at,
+        )
     }
 
     /// Positions of the elements of a target.
     pub(super) fn elements(
         &self,
         model: &Model,
-        raw: &Raw,
         target: &Target,
         at: (&Place, &str),
     ) -> Result<Vec<u32>, DeckError> {
@@ -85,7 +103,7 @@ impl Sets {
         find(
             what,
             target,
-            &raw.elements,
+            &self.element_numbers,
             &model.elsets,
             &self.elements,
             at,
@@ -100,10 +118,26 @@ impl Sets {
             nodes.add(name, inside.collect());
         }
         for (name, set) in model.elsets.names().into_iter().zip(self.elements) {
-            elements.add(name, set);
+            let inside = set.into_iter().filter_map(|e| raw.tet(e));
+            elements.add(name, inside.collect());
         }
         (nodes, elements)
     }
+}
+
+/// The positions of so many things by number; `at` tells number and place of each.
+fn numbers<'a>(
+    count: usize,
+    at: impl Fn(usize) -> (u32, &'a Place),
+    remedy: &'static str,
+) -> Result<Numbers, DeckError> {
+    let pairs = (0..count).map(|position| (at(position).0, position as u32));
+    Numbers::new(pairs.collect()).map_err(|[first, second]| {
+        let (label, place) = at(second as usize);
+        let first = at(first as usize).1.line;
+        let fault = Fault::Repeated { first, remedy };
+        DeckError::at(place, &label.to_string(), fault)
+    })
 }
 
 fn find(

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use signorini_contact::{Directions, Support};
 
+use super::faces::Known;
 use super::history::{Given, Histories, Track};
-use super::mesh::Raw;
-use super::numbers::Sets;
+use super::rigid::Motion;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Fault};
-use crate::model::{Boundary, Model, Target};
+use crate::model::{Boundary, COMPONENT, Model, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
@@ -22,48 +22,91 @@ struct Held {
     before: bool,
 }
 
-/// Held components by node of the mesh and component.
+/// Held components by node of the mesh and component, and by position of nodes of rigid bodies.
 #[derive(Default)]
 struct Table {
     held: BTreeMap<(u32, usize), Held>,
+    rigid: BTreeMap<(u32, usize), Held>,
     owners: Vec<String>,
 }
 
-/// One support for each target and its moving or fixed components, and the names of the targets.
-pub(super) fn supports(
-    model: &Model,
-    raw: &Raw,
-    sets: &Sets,
-    timeline: &Timeline,
-) -> Result<(Vec<Support>, Vec<String>), DeckError> {
+/// Supports with the names of their targets, and the motions of rigid bodies.
+pub(super) struct Supports {
+    pub(super) list: Vec<Support>,
+    pub(super) names: Vec<String>,
+    pub(super) motions: Vec<Motion>,
+}
+
+/// One support for each target and its moving or fixed components.
+pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, DeckError> {
     let mut table = Table::default();
-    for line in &model.supports {
-        table.add(model, (raw, sets), None, line)?;
+    for line in &known.model.supports {
+        table.add(known, None, line)?;
     }
-    for (step, given) in model.steps.iter().enumerate() {
+    for (step, given) in known.model.steps.iter().enumerate() {
         let removes = given.boundary.removes();
         if removes && step == 0 {
             table = Table::default();
         } else if removes {
-            table.held.values_mut().for_each(|h| h.track.remove(step));
+            let all = table.held.values_mut().chain(table.rigid.values_mut());
+            all.for_each(|held| held.track.remove(step));
         }
         for line in &given.boundary.lines {
-            table.add(model, (raw, sets), Some(step), line)?;
+            table.add(known, Some(step), line)?;
         }
-        let released = table.held.iter();
-        let released = released.filter(|(_, held)| held.track.is_removed_in(step));
-        if let (Some((&(node, component), _)), Some((place, word, _))) =
-            (released.into_iter().next(), &given.boundary.first)
+        let elastic = table.held.iter().map(|(key, held)| {
+            let label = known.raw.node_labels()[key.0 as usize];
+            (label, key.1, held)
+        });
+        let rigid = table.rigid.iter().map(|(key, held)| {
+            let label = known.model.nodes[key.0 as usize].label;
+            (label, key.1, held)
+        });
+        let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
+        if let (Some((label, component, _)), Some((place, word, _))) =
+            (released, &given.boundary.first)
         {
             let text = format!(
-                "this releases component {} of node {}; what is held in the first step is held to the end, so give it again here",
+                "this releases component {} of node {label}; what is held in the first step is held to the \
+                end, so give it again here",
                 component + 1,
-                raw.node_labels()[node as usize]
             );
             return Err(DeckError::at(place, word, Fault::Cannot(text)));
         }
     }
-    table.lower(model, timeline)
+    let rigid = std::mem::take(&mut table.rigid);
+    let rigid = rigid
+        .into_iter()
+        .map(|(key, held)| (key, held.track))
+        .collect();
+    let motions = known.bodies.motions(known.model, timeline, &rigid)?;
+    let (list, names) = table.lower(known.model, timeline)?;
+    Ok(Supports {
+        list,
+        names,
+        motions,
+    })
+}
+
+impl Held {
+    /// Notes a value of a component of a node with this number in the deck; `step` is none before the first.
+    fn give(&mut self, step: Option<usize>, given: Given, what: &str) -> Result<(), String> {
+        let now = step.unwrap_or(0);
+        let again = !(self.before && step == Some(0));
+        if let Some(before) = self.track.given_in(now)
+            && again
+            && before != given
+            && (before.value, given.value) != (0.0, 0.0)
+        {
+            let (before, now) = (before.value, given.value);
+            return Err(format!(
+                "{what} is given {before} and {now} in one step; keep one of them"
+            ));
+        }
+        self.before = step.is_none();
+        self.track.set(now, given);
+        Ok(())
+    }
 }
 
 impl Table {
@@ -80,61 +123,47 @@ impl Table {
     }
 
     /// Notes a line of a step, or of the part before the first.
-    fn add(
-        &mut self,
-        model: &Model,
-        (raw, sets): (&Raw, &Sets),
-        step: Option<usize>,
-        line: &Boundary,
-    ) -> Result<(), DeckError> {
+    fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
         let at = (&line.place, line.word.as_str());
         let fault = |text: String| DeckError::at(at.0, at.1, Fault::Cannot(text));
         let owner = self.owner(&line.target);
-        let nodes = sets.nodes(model, raw, &line.target, at)?;
-        let nodes: Vec<u32> = nodes.into_iter().filter_map(|n| raw.in_mesh(n)).collect();
-        if nodes.is_empty() {
-            return Err(fault(
-                "no element uses these nodes; hold nodes of the body".into(),
-            ));
-        }
         let given = Given {
             value: line.value,
             amplitude: line.amplitude,
         };
-        let now = step.unwrap_or(0);
-        for node in nodes {
-            for component in (0..3).filter(|&c| line.components[c]) {
-                let next = self.held.len();
-                let known = self.held.contains_key(&(node, component));
-                if !known && now > 0 {
+        let mut found = false;
+        for node in known.sets.nodes(known.model, &line.target, at)? {
+            let (map, key, components) = match known.raw.in_mesh(node) {
+                _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
+                Some(inside) => (&mut self.held, inside, 3),
+                None => continue,
+            };
+            found = true;
+            if let (3, Some(word)) = (components, &line.rotation) {
+                return Err(DeckError::at(at.0, word, Fault::Expected(COMPONENT)));
+            }
+            for component in (0..components).filter(|&c| line.components[c]) {
+                let label = known.model.nodes[node as usize].label;
+                let what = format!("component {} of node {label}", component + 1);
+                let next = map.len();
+                let new = !map.contains_key(&(key, component));
+                if new && step.is_some_and(|step| step > 0) {
                     return Err(fault(format!(
-                        "component {} of node {} is free in the steps before; what is held in one step has to be held from the first one on",
-                        component + 1,
-                        raw.node_labels()[node as usize]
+                        "{what} is free in the steps before; what is held in one step has to be held from \
+                        the first one on"
                     )));
                 }
-                let held = self.held.entry((node, component)).or_insert_with(|| Held {
+                let held = map.entry((key, component)).or_insert_with(|| Held {
                     owner,
                     track: Track::new(next, at),
                     before: step.is_none(),
                 });
-                let again = !(held.before && step == Some(0));
-                if let Some(before) = held.track.given_in(now)
-                    && again
-                    && before != given
-                    && (before.value, given.value) != (0.0, 0.0)
-                {
-                    return Err(fault(format!(
-                        "component {} of node {} is given {} and {} in one step; keep one of them",
-                        component + 1,
-                        raw.node_labels()[node as usize],
-                        before.value,
-                        given.value
-                    )));
-                }
-                held.before = step.is_none();
-                held.track.set(now, given);
+                held.give(step, given, &what).map_err(fault)?;
             }
+        }
+        if !found {
+            let text = "no elastic element uses these nodes; hold nodes of the body";
+            return Err(fault(text.into()));
         }
         Ok(())
     }
@@ -164,8 +193,9 @@ impl Table {
             let all: Vec<usize> = moves.iter().filter_map(|m| Some(m.2?.1)).collect();
             // one motion takes the components that stay at zero along, as part of it
             let one = all.first().filter(|h| all.iter().all(|o| o == *h)).copied();
-            let mut parts: BTreeMap<(usize, Option<usize>), ([bool; 3], [f64; 3])> =
-                BTreeMap::new();
+            // by target and history: components and their displacements
+            type Parts = BTreeMap<(usize, Option<usize>), ([bool; 3], [f64; 3])>;
+            let mut parts = Parts::new();
             for (component, owner, motion) in moves {
                 let history = motion.map(|m| m.1).or(one);
                 let (on, value) = parts.entry((owner, history)).or_default();

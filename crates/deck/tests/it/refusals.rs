@@ -47,7 +47,18 @@ fn keywords() {
     );
     behind("*Tie, name=T\n", "*Tie, name=T", "*Tie", "merge the nodes");
     behind("*PART, NAME=A\n", "*PART, NAME=A", "*PART", "flat one");
-    behind("*RIGID BODY\n", "*RIGID BODY", "*RIGID BODY", "half_space");
+    behind(
+        "*RIGID BODY\n",
+        "*RIGID BODY",
+        "*RIGID BODY",
+        "ELSET is missing",
+    );
+    behind(
+        "*RIGID BODY, ANALYTICAL SURFACE=A\n",
+        "*RIGID BODY, ANALYTICAL SURFACE=A",
+        "ANALYTICAL SURFACE=A",
+        "ELSET, REF NODE, ROT NODE",
+    );
     behind("*RESTART, READ\n", "*RESTART, READ", "*RESTART", "resumed");
     inside("*DYNAMIC\n", "*DYNAMIC", "*DYNAMIC", "only *STATIC");
     inside("*NODE\n1\n", "*NODE", "*NODE", "before the first *STEP");
@@ -166,7 +177,7 @@ fn parameters() {
 
 #[test]
 fn mesh() {
-    for kind in ["C3D10", "C3D8", "S3", "R3D3"] {
+    for kind in ["C3D10", "C3D8", "S3", "R2D2"] {
         let line = format!("*ELEMENT, TYPE={kind}");
         behind(&format!("{line}\n"), &line, &format!("TYPE={kind}"), "C3D4");
     }
@@ -561,7 +572,12 @@ fn loads() {
     );
     let alone = "*NODE\n99, 5., 5., 5.\n*NSET, NSET=ALONE\n99\n";
     let deck = cube(&format!("{alone}{}", in_step("*CLOAD\nALONE, 1, 1.\n")));
-    refused(&deck, "ALONE, 1, 1.", "ALONE", "no element uses node 99");
+    refused(
+        &deck,
+        "ALONE, 1, 1.",
+        "ALONE",
+        "no elastic element uses node 99",
+    );
     let deck =
         cube(&in_step("*DLOAD\nALL, GRAV, 9.8, 0., 0., -1.\n")).replace("*DENSITY\n7.8e-9\n", "");
     refused(&deck, "ALL, GRAV, 9.8, 0., 0., -1.", "ALL", "*DENSITY");
@@ -648,4 +664,118 @@ fn names_and_scenes() {
     let deck = read(mesh).expect("a mesh");
     let error = deck.scene().expect_err("no scene").to_string();
     assert!(error.contains("no *SOLID SECTION"), "{error}");
+}
+
+/// A cube on a rigid plane; `floor` are the corners of the plane and what else changes.
+fn on_a_floor(nodes: &str, rest: &str) -> String {
+    let floor = "*ELEMENT, TYPE=R3D4, ELSET=FLOOR\n900, 101, 102, 103, 104\n*RIGID BODY, REF NODE=109, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, SPOS\n*SURFACE INTERACTION, NAME=I\n";
+    cube(&format!("*NODE\n{nodes}109, 0., 0., 0.\n{floor}{rest}"))
+}
+
+#[test]
+fn rigid_bodies() {
+    let plane = "101, -1., -1.\n102, 2., -1.\n103, 2., 2.\n104, -1., 2.\n";
+    let pair = "*CONTACT PAIR, INTERACTION=I\nS5, PLANE\n";
+    let held = format!("{pair}*BOUNDARY\n109, ENCASTRE\n");
+    assert!(read(&on_a_floor(plane, &held)).is_ok());
+    let try_one = |nodes: &str, rest: &str, line: &str, word: &str, part: &str| {
+        refused(&on_a_floor(nodes, rest), line, word, part);
+    };
+    let body = "*RIGID BODY, REF NODE=109, ELSET=FLOOR";
+    try_one(
+        plane,
+        pair,
+        body,
+        "REF NODE=109",
+        "not held along component 1",
+    );
+    let free = format!("{pair}*BOUNDARY\n109, PINNED\n");
+    try_one(plane, &free, body, "REF NODE=109", "component 4");
+    let step = |lines: &str| format!("{held}*STEP\n*STATIC\n{lines}*END STEP\n");
+    try_one(
+        plane,
+        &step("*BOUNDARY\n109, 5, 5, 0.1\n"),
+        body,
+        "REF NODE=109",
+        "turns",
+    );
+    let two = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n".to_owned()
+        + &step("*BOUNDARY\n109, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n109, 2, 2, 0.1\n");
+    try_one(plane, &two, body, "REF NODE=109", "different histories");
+    try_one(
+        plane,
+        &step("*DSLOAD\nPLANE, P, 1.\n"),
+        "PLANE, P, 1.",
+        "PLANE",
+        "acts on nothing",
+    );
+    try_one(
+        plane,
+        &step("*CLOAD\n109, 1, 1.\n"),
+        "109, 1, 1.",
+        "109",
+        "no elastic element",
+    );
+    try_one(
+        plane,
+        &step("*DLOAD\n900, P1, 1.\n"),
+        "900, P1, 1.",
+        "900",
+        "acts on nothing",
+    );
+    let bent = plane.replace("103, 2., 2.", "103, 2., 2., 0.1");
+    try_one(&bent, &held, "S5, PLANE", "PLANE", "not flat");
+    let small = plane.replace("103, 2., 2.", "103, 0.5, 0.5");
+    try_one(
+        &small,
+        &held,
+        "S5, PLANE",
+        "PLANE",
+        "lies beside the rigid surface",
+    );
+    let swapped = held.replace("S5, PLANE", "PLANE, S5");
+    try_one(plane, &swapped, "PLANE, S5", "PLANE", "swap them");
+    let side = "*SURFACE, NAME=B\n900, S1\n";
+    try_one(
+        plane,
+        &format!("{held}{side}"),
+        "900, S1",
+        "900",
+        "SPOS or SNEG",
+    );
+    let mixed = "*SURFACE, NAME=B\n900, SPOS\n1, S1\n";
+    try_one(
+        plane,
+        &format!("{mixed}{held}"),
+        "1, S1",
+        "1",
+        "rigid and elastic faces",
+    );
+    behind("*SURFACE, NAME=B\n1, SPOS\n", "1, SPOS", "1", "S1 to S4");
+    let other = "*ELSET, ELSET=MORE\n900\n*RIGID BODY, ELSET=MORE, REF NODE=1\n";
+    let line = "*RIGID BODY, ELSET=MORE, REF NODE=1";
+    try_one(
+        plane,
+        &format!("{other}{held}"),
+        line,
+        "ELSET=MORE",
+        "another rigid body",
+    );
+    let many = "*ELSET, ELSET=MORE\n1\n*RIGID BODY, ELSET=MORE, REF NODE=N5\n";
+    let line = "*RIGID BODY, ELSET=MORE, REF NODE=N5";
+    try_one(
+        plane,
+        &format!("{many}{held}"),
+        line,
+        "REF NODE=N5",
+        "one node",
+    );
+    let loose = "*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n";
+    try_one(
+        plane,
+        &format!("{loose}{held}"),
+        "901, 101, 102, 103",
+        "901",
+        "no rigid body",
+    );
 }

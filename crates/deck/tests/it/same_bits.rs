@@ -125,3 +125,53 @@ fn two_steps() {
         });
     compare(&deck, program);
 }
+
+/// A block of 1 m on a rigid plane that presses it from below and is dragged.
+fn on_a_plane(floor: &str) {
+    let mesh = Brick::new([1.0; 3], [3, 3, 3])
+        .with_origin([0.0, 0.0, 0.5])
+        .build()
+        .expect("brick");
+    let deck = write::mesh(&mesh)
+        + write::STEEL
+        + floor
+        + "*SURFACE INTERACTION, NAME=ROUGH\n*FRICTION\n0.25\n*CONTACT PAIR, INTERACTION=ROUGH\nS5, PLANE\n"
+        + "*BOUNDARY\nN6, PINNED\n999, ENCASTRE\n"
+        + "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\n999, 3, 3, 0.51\n999, 1, 1, 0.02\n*END STEP\n"
+        + "*STEP\n*STATIC\n1., 1.\n*END STEP\n";
+    let ramp = History::ramp(1.0, 1.0).expect("ramp");
+    let program = Scene::new(mesh, steel())
+        .with_support(Support::fixed(brick::Z_MAX))
+        .with_contact(
+            Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0])
+                .with_motion([0.02, 0.0, 0.51], ramp)
+                .with_friction(Friction::coulomb(0.25)),
+        )
+        .with_analysis(
+            Analysis::quasistatic(2.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER),
+        );
+    compare(&deck, program);
+}
+
+#[test]
+fn a_rigid_plane_of_facets() {
+    on_a_plane(
+        "*NODE\n991, -1., -1.\n992, 2., -1.\n993, 2., 2.\n994, -1., 2.\n999\n\
+        *ELEMENT, TYPE=R3D4, ELSET=FLOOR\n991, 994, 993, 992, 991\n*NSET, NSET=REF\n999\n\
+        *RIGID BODY, REF NODE=REF, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, SNEG\n",
+    );
+    on_a_plane(
+        "*NODE\n991, -1., -1.\n992, 2., -1.\n993, 2., 2.\n994, -1., 2.\n999\n\
+        *ELEMENT, TYPE=R3D3, ELSET=FLOOR\n991, 991, 992, 993\n992, 991, 993, 994\n\
+        *RIGID BODY, REF NODE=999, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, SPOS\n",
+    );
+}
+
+/// A rigid body of solid elements, whose rotation is that of another node, as CalculiX has it.
+#[test]
+fn a_rigid_body_of_solids() {
+    let floor = "*NODE\n991, -2., -2.\n992, 4., -2.\n993, -2., 4.\n994, 0., 0., -1.\n998\n999\n\
+        *ELEMENT, TYPE=C3D4, ELSET=FLOOR\n991, 991, 993, 992, 994\n*BOUNDARY\n998, 1, 3\n\
+        *RIGID BODY, REF NODE=999, ROT NODE=998, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, S1\n";
+    on_a_plane(floor);
+}
