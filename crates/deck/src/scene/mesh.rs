@@ -57,6 +57,7 @@ impl Raw {
             let path = path.to_owned();
             return Err(DeckError::NoElements { path });
         }
+        bodies.check_apart(model, sets, &used)?;
         let (mut points, mut node_labels) = (Vec::new(), Vec::new());
         let mut of_node = vec![None; used.len()];
         for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut of_node) {

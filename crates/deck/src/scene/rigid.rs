@@ -84,6 +84,38 @@ impl RigidBodies {
             .any(|n| n == Some(node))
     }
 
+    /// Refuses bodies that share nodes with elastic elements, which would be bonded to them; `elastic` are the nodes
+    /// that such elements use.
+    pub(super) fn check_apart(
+        &self,
+        model: &Model,
+        sets: &Sets,
+        elastic: &[bool],
+    ) -> Result<(), DeckError> {
+        let fault = |place: &Place, word: &str, node: u32| {
+            let text = format!(
+                "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not \
+                here; hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
+                model.nodes[node as usize].label
+            );
+            Err(DeckError::at(place, word, Fault::Cannot(text)))
+        };
+        for (body, said) in self.list.iter().zip(&model.rigid) {
+            let own = [Some(body.reference), body.rotation].into_iter().flatten();
+            if let Some(node) = own.into_iter().find(|n| elastic[*n as usize]) {
+                return fault(&said.place, &said.reference.1, node);
+            }
+        }
+        let all = model.elements.iter().zip(&self.of_element);
+        for (element, _) in all.filter(|(_, body)| body.is_some()) {
+            let nodes = self.nodes(sets, element)?;
+            if let Some(node) = nodes.into_iter().find(|n| elastic[*n as usize]) {
+                return fault(&element.place, &element.label.to_string(), node);
+            }
+        }
+        Ok(())
+    }
+
     /// The nodes of an element, by position.
     pub(super) fn nodes(&self, sets: &Sets, element: &Element) -> Result<[u32; 4], DeckError> {
         let mut nodes = [0; 4];

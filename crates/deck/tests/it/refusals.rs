@@ -770,6 +770,23 @@ fn rigid_bodies() {
         "REF NODE=N5",
         "one node",
     );
+    let bonded = "*ELEMENT, TYPE=R3D3, ELSET=FLOOR\n901, 101, 1, 103\n";
+    try_one(
+        plane,
+        &format!("{bonded}{held}"),
+        "901, 101, 1, 103",
+        "901",
+        "node 1 is of a rigid body and of elastic elements",
+    );
+    let corner = "*ELSET, ELSET=MORE\n901\n*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n*RIGID BODY, ELSET=MORE, REF NODE=2\n";
+    let line = "*RIGID BODY, ELSET=MORE, REF NODE=2";
+    try_one(
+        plane,
+        &format!("{corner}{held}"),
+        line,
+        "REF NODE=2",
+        "node 2 is of a rigid body",
+    );
     let loose = "*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n";
     try_one(
         plane,

@@ -175,3 +175,25 @@ fn a_rigid_body_of_solids() {
         *RIGID BODY, REF NODE=999, ROT NODE=998, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, S1\n";
     on_a_plane(floor);
 }
+
+/// The deck that the documents and the example use.
+#[test]
+fn the_pad_on_a_rail() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/decks/pad.inp");
+    let deck = signorini_deck::Deck::read(path).expect("deck");
+    assert_eq!(
+        (deck.ignored().len(), deck.support_names()),
+        (2, &["RAIL_BOTTOM", "PAD_SIDE"].map(String::from)[..])
+    );
+    let scene = deck.scene().expect("scene");
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
+    assert_eq!(simulation.scene().analysis().steps(), 5);
+    while !simulation.is_finished() {
+        let step = simulation.step().expect("step");
+        assert!(step.report().status.converged());
+        assert!((step.summary().normal_force - 1e4).abs() < 0.1);
+        // 1800 N of 2000 N that friction can hold
+        let push = step.summary().resultant[0];
+        assert!((push + 1800.0 * (step.time() - 1.0)).abs() < 0.1, "{push}");
+    }
+}
