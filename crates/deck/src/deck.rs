@@ -32,10 +32,13 @@ impl Deck {
         let cards = lexer::cards(path)?;
         let model = model::read(&cards)?;
         drop(cards);
+        let mut is = scene::translate(path, &model)?;
+        let mut ignored = model.ignored;
+        ignored.append(&mut is.ignored);
         Ok(Self {
             path: path.to_owned(),
-            is: scene::translate(path, &model)?,
-            ignored: model.ignored,
+            is,
+            ignored,
         })
     }
 

@@ -64,7 +64,7 @@
 //! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary; `SPOS`, `SNEG` of rigid facets |
 //! | `*MATERIAL` | `NAME` | |
-//! | `*ELASTIC` | `TYPE=ISO` | Young's modulus and Poisson's ratio, of one temperature |
+//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS` | numbers of one temperature; axes are x, y, z |
 //! | `*DENSITY` | | for gravity |
 //! | `*SOLID SECTION` | `ELSET`, `MATERIAL` | a region of the mesh; each element has one |
 //! | `*AMPLITUDE` | `NAME`, `TIME=STEP TIME` or `TOTAL TIME`, `VALUE=RELATIVE`, `DEFINITION=TABULAR` | straight lines, constant outside; times ascend |
@@ -73,7 +73,7 @@
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient; stick slope and both parameters are ignored: friction is exact |
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | nodes of the first (dependent) surface touch those of the second, and each needs one: meshes match, sliding is small |
 //! | `*RIGID BODY` | `ELSET`, `REF NODE`, `ROT NODE` | an obstacle, see below |
-//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM` |
+//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM`; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes |

@@ -1,7 +1,7 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
 use super::step::{self, Step};
-use super::{Ignored, Model, mesh, property};
+use super::{Ignored, Model, elastic, mesh, property};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
@@ -59,7 +59,7 @@ const REFUSED: [(&str, &str); 37] = [
         "TRANSFORM",
         "supports and forces are along x, y, z; a program can hold any direction with Directions::Vectors",
     ),
-    ("ORIENTATION", "materials are isotropic"),
+    ("ORIENTATION", "the axes of materials are x, y, z"),
     ("PLASTIC", ELASTIC),
     ("CREEP", ELASTIC),
     ("HYPERELASTIC", ELASTIC),
@@ -139,7 +139,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "ELSET" => Some(|model, card| mesh::set(model, card, "ELSET")),
         "SURFACE" => Some(mesh::surface),
         "MATERIAL" => Some(property::material),
-        "ELASTIC" => Some(property::elastic),
+        "ELASTIC" => Some(elastic::elastic),
         "DENSITY" => Some(property::density),
         "SOLIDSECTION" => Some(property::section),
         "AMPLITUDE" => Some(property::amplitude),

@@ -7,8 +7,9 @@ use crate::lexer::{Card, Line, label, name};
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
 
-const TYPES: &str = "only linear tetrahedra C3D4 are read, and R3D3 and R3D4 for rigid planes; mesh with \
-tetrahedra of first order";
+const TYPES: &str = "only linear tetrahedra C3D4 are read, and R3D3 and R3D4 for rigid planes; mesh in \
+first order, and \
+    leave out elements of surfaces and lines (in Gmsh: save only physical volumes)";
 
 pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NSET"])?;

@@ -5,6 +5,7 @@
 //! understood end here, with their place; names are looked up by [`crate::scene`], above. May use `lexer` and
 //! `error`.
 
+mod elastic;
 mod keywords;
 mod mesh;
 mod names;
@@ -13,7 +14,7 @@ mod step;
 
 use crate::error::Place;
 use crate::lexer::Param;
-use signorini_fem_mesh::History;
+use signorini_fem_mesh::{History, Hooke};
 
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
@@ -97,8 +98,8 @@ pub(crate) struct Faces {
 #[derive(Debug, Clone)]
 pub(crate) struct Material {
     pub(crate) place: Place,
-    /// Where, Young's modulus, Poisson's ratio.
-    pub(crate) elastic: Option<(Place, f64, f64)>,
+    /// Where it is given, and the law.
+    pub(crate) elastic: Option<(Place, Hooke)>,
     pub(crate) density: Option<f64>,
 }
 

@@ -13,7 +13,7 @@ fn word(param: Option<&Param>) -> String {
 }
 
 /// The material or interaction that a card belongs to: the last one.
-fn inside<'a, T>(
+pub(super) fn inside<'a, T>(
     last: Option<&'a mut T>,
     card: &Card,
     what: &'static str,
@@ -21,7 +21,7 @@ fn inside<'a, T>(
     last.ok_or_else(|| card.fault(Fault::Misplaced(what)))
 }
 
-fn twice(card: &Card, first: usize) -> DeckError {
+pub(super) fn twice(card: &Card, first: usize) -> DeckError {
     let remedy = "keep one of them";
     card.fault(Fault::Repeated { first, remedy })
 }
@@ -39,33 +39,6 @@ pub(super) fn material(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         density: None,
     };
     model.materials.add(name, material);
-    Ok(())
-}
-
-pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["TYPE"])?;
-    let material = inside(
-        model.materials.last_mut(),
-        card,
-        "*ELASTIC belongs to a material; put *MATERIAL before it",
-    )?;
-    if let (Some(kind), Some(param)) = (card.value("TYPE")?, card.param("TYPE"))
-        && !["ISO", "ISOTROPIC"].contains(&kind.as_str())
-    {
-        let why = "only isotropic elasticity is read from decks; give Young's modulus and Poisson's ratio \
-        (a program can set any law with Hooke::from_voigt)";
-        return Err(card.param_fault(param, Fault::Unsupported(why)));
-    }
-    let wanted = "one line with Young's modulus and Poisson's ratio; laws that depend on temperature are not read";
-    let line = card.only_line(wanted)?;
-    let fields = line.at_most(3, wanted)?;
-    let young = line.real(&fields, 0, "Young's modulus")?;
-    let poisson = line.real(&fields, 1, "Poisson's ratio")?;
-    line.optional(&fields, 2, "a temperature, or nothing")?;
-    if let Some((first, ..)) = &material.elastic {
-        return Err(twice(card, first.line));
-    }
-    material.elastic = Some((line.place.clone(), young, poisson));
     Ok(())
 }
 

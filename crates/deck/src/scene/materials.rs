@@ -1,6 +1,6 @@
 //! Sections as regions with materials.
 
-use signorini_fem_mesh::{Hooke, Materials};
+use signorini_fem_mesh::Materials;
 
 use super::mesh::Raw;
 use super::numbers::Sets;
@@ -27,13 +27,11 @@ pub(super) fn materials(
         let material = model
             .materials
             .at(model.materials.find("material", name, at)?);
-        let Some((place, young, poisson)) = &material.elastic else {
+        let Some((_, law)) = &material.elastic else {
             let why = "the material has no *ELASTIC; put it behind *MATERIAL";
             return Err(DeckError::at(&material.place, name, Fault::Empty(why)));
         };
-        let law = Hooke::isotropic(*young, *poisson);
-        let fault = |e| DeckError::at(place, &format!("{young}, {poisson}"), Fault::Hooke(e));
-        laws.push(law.map_err(fault)?);
+        laws.push(*law);
     }
     let materials = match laws[..] {
         [law] => Materials::uniform(law),

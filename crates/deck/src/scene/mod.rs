@@ -21,7 +21,7 @@ use signorini_contact::Scene;
 use signorini_fem_mesh::{FacetTag, TetMesh};
 
 use crate::error::DeckError;
-use crate::model::{Model, Names};
+use crate::model::{Ignored, Model, Names};
 
 pub(crate) use numbers::Numbers;
 
@@ -40,6 +40,7 @@ pub(crate) struct Translated {
     pub(crate) element_sets: Names<Vec<u32>>,
     /// The set that each support of the scene is given on.
     pub(crate) support_names: Vec<String>,
+    pub(crate) ignored: Vec<Ignored>,
 }
 
 /// The mesh and the scene of a model.
@@ -83,5 +84,6 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         node_sets,
         element_sets,
         support_names: supports.names,
+        ignored: supports.ignored,
     })
 }

@@ -9,7 +9,7 @@ use super::history::{Given, Histories, Track};
 use super::rigid::Motion;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Fault};
-use crate::model::{Boundary, COMPONENT, Model, Target};
+use crate::model::{Boundary, COMPONENT, Ignored, Model, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
@@ -28,6 +28,7 @@ struct Table {
     held: BTreeMap<(u32, usize), Held>,
     rigid: BTreeMap<(u32, usize), Held>,
     owners: Vec<String>,
+    ignored: Vec<Ignored>,
 }
 
 /// Supports with the names of their targets, and the motions of rigid bodies.
@@ -35,6 +36,8 @@ pub(super) struct Supports {
     pub(super) list: Vec<Support>,
     pub(super) names: Vec<String>,
     pub(super) motions: Vec<Motion>,
+    /// Rotations that are held where there are none.
+    pub(super) ignored: Vec<Ignored>,
 }
 
 /// One support for each target and its moving or fixed components.
@@ -80,11 +83,13 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
         .map(|(key, held)| (key, held.track))
         .collect();
     let motions = known.bodies.motions(known.model, timeline, &rigid)?;
+    let ignored = std::mem::take(&mut table.ignored);
     let (list, names) = table.lower(known.model, timeline)?;
     Ok(Supports {
         list,
         names,
         motions,
+        ignored,
     })
 }
 
@@ -131,7 +136,7 @@ impl Table {
             value: line.value,
             amplitude: line.amplitude,
         };
-        let mut found = false;
+        let (mut found, mut turned) = (false, None);
         for node in known.sets.nodes(known.model, &line.target, at)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
@@ -140,7 +145,10 @@ impl Table {
             };
             found = true;
             if let (3, Some(word)) = (components, &line.rotation) {
-                return Err(DeckError::at(at.0, word, Fault::Expected(COMPONENT)));
+                if line.value != 0.0 {
+                    return Err(DeckError::at(at.0, word, Fault::Expected(COMPONENT)));
+                }
+                turned = Some(word);
             }
             for component in (0..components).filter(|&c| line.components[c]) {
                 let label = known.model.nodes[node as usize].label;
@@ -160,6 +168,13 @@ impl Table {
                 });
                 held.give(step, given, &what).map_err(fault)?;
             }
+        }
+        if let Some(word) = turned {
+            self.ignored.push(Ignored {
+                place: line.place.clone(),
+                word: word.clone(),
+                why: "nodes of solid elements have no rotations to be held",
+            });
         }
         if !found {
             let text = "no elastic element uses these nodes; hold nodes of the body";

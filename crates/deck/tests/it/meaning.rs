@@ -244,3 +244,56 @@ fn two_materials_are_two_regions() {
     let soft = signorini_fem_mesh::Hooke::isotropic(1e3, 0.4).expect("soft");
     assert_eq!(scene.materials().get(1).expect("region 1"), &soft);
 }
+
+/// Isotropic steel as orthotropic, and engineering constants as their compliance says.
+#[test]
+fn orthotropic_laws() {
+    let law = |card: &str| {
+        let text = cube("").replace("*ELASTIC\n2.1e5, 0.3\n", card);
+        let scene = read(&text).expect("deck").scene().expect("scene");
+        *scene.materials().get(0).expect("region 0")
+    };
+    let steel = signorini_fem_mesh::Hooke::isotropic(2.1e5, 0.3).expect("steel");
+    let near = |a: &signorini_fem_mesh::Hooke, b: &signorini_fem_mesh::Hooke| {
+        let pairs = a.voigt().iter().flatten().zip(b.voigt().iter().flatten());
+        pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9 * 2.1e5)
+    };
+    let c = steel.voigt();
+    let ortho = format!(
+        "*ELASTIC, TYPE=ORTHO\n{:?}, {:?}, {:?}, {:?}, {:?}, {:?}, {:?}, {:?},\n{:?}, 20.\n",
+        c[0][0], c[0][1], c[1][1], c[0][2], c[1][2], c[2][2], c[5][5], c[4][4], c[3][3]
+    );
+    assert!(near(&law(&ortho), &steel));
+    let shear = 2.1e5 / 2.6;
+    let constants = format!(
+        "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n2.1e5, 2.1e5, 2.1e5, 0.3, 0.3, 0.3, {shear}, {shear}\n{shear}\n"
+    );
+    assert!(near(&law(&constants), &steel));
+    // a stress along each axis strains as the constants say
+    let wood =
+        law("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n10., 2., 1., 0.4, 0.3, 0.2, 0.7, 0.6\n0.5\n");
+    for (strain, stress) in [
+        (
+            [0.1, -0.04, -0.03, 0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        ),
+        (
+            [-0.04, 0.5, -0.1, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+        ),
+        (
+            [-0.03, -0.1, 1.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+        ),
+        (
+            [0.0, 0.0, 0.0, 2.0, 1.0, 1.0],
+            [0.0, 0.0, 0.0, 1.0, 0.6, 0.7],
+        ),
+    ] {
+        let found = wood.stress(&strain);
+        assert!(
+            (0..6).all(|i| (found[i] - stress[i]).abs() < 1e-12),
+            "{found:?}"
+        );
+    }
+}

@@ -1,5 +1,6 @@
 //! How decks are written: cases, blanks, line ends, continuation, comments, included files, sets of sets.
 
+use signorini_contact::Directions;
 use signorini_deck::Deck;
 use signorini_fem_mesh::FacetTag;
 
@@ -183,4 +184,27 @@ fn a_deck_without_steps_is_a_scene_to_add_to() {
         &STEEL.replace("MATERIAL=STEEL\n", "MATERIAL=STEEL\n,\n"),
     );
     assert!(read(&text).expect("deck").scene().is_ok());
+}
+
+/// As PrePoMax writes it: cards that only remove, all six components of solids, one face number a set.
+#[test]
+fn a_deck_of_a_user_interface() {
+    let steps = |pressure: &str| {
+        format!(
+            "** Steps\n*Step, Inc=100\n*Static, Solver=Pardiso\n1, 1, 1E-05, 1E+30\n*Output, Frequency=1\n\
+            *Boundary, op=New\n** Name: Fixed-1\n*Boundary\nN5, 1, 6, 0\n*Cload, op=New\n*Dload, op=New\n\
+            ** Name: Pressure-1\n*Dsload\nS6, P, {pressure}\n*Node file\nRF, U\n*El file\nS, E, NOE\n*End step\n"
+        )
+    };
+    let deck = read(&cube(&(steps("2") + &steps("3")))).expect("deck");
+    let scene = deck.scene().expect("scene");
+    assert_eq!((scene.supports().len(), scene.loads().len()), (1, 1));
+    assert_eq!(scene.supports()[0].directions(), &Directions::All);
+    let history = scene.loads()[0].history();
+    assert_eq!(
+        [0.5, 1.0, 1.5, 2.0].map(|t| 2.0 * history.value(t)),
+        [1.0, 2.0, 2.5, 3.0]
+    );
+    let rotations = deck.ignored().iter().filter(|i| i.word == "6");
+    assert_eq!(rotations.count(), 2);
 }
