@@ -12,14 +12,14 @@ const WORD: usize = 80;
 
 /// A line of a deck or of a file that it includes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The file.
     pub file: Arc<Path>,
     /// The line, from 1.
     pub line: usize,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.file.display(), self.line)
     }
@@ -38,10 +38,10 @@ pub enum DeckError {
         source: std::io::Error,
     },
     /// Something at a line: the sentence names file, line, the word there and a remedy.
-    #[error("{place}: {word}: {fault}")]
+    #[error("{location}: {word}: {fault}")]
     At {
         /// Where.
-        place: Place,
+        location: Location,
         /// The keyword, parameter or entry as it is written there (shortened).
         word: String,
         /// What is wrong with it.
@@ -98,9 +98,9 @@ impl fmt::Debug for DeckError {
 impl DeckError {
     /// The line that is wrong, if it is one.
     #[must_use]
-    pub fn place(&self) -> Option<&Place> {
+    pub fn location(&self) -> Option<&Location> {
         match self {
-            Self::At { place, .. } => Some(place),
+            Self::At { location, .. } => Some(location),
             _ => None,
         }
     }
@@ -123,13 +123,13 @@ impl DeckError {
         }
     }
 
-    pub(crate) fn at(place: &Place, word: &str, fault: Fault) -> Self {
+    pub(crate) fn at(location: &Location, word: &str, fault: Fault) -> Self {
         let word = match word.char_indices().nth(WORD) {
             Some((end, _)) => format!("{}...", &word[..end]),
             None => word.to_owned(),
         };
         Self::At {
-            place: place.clone(),
+            location: location.clone(),
             word,
             fault: Box::new(fault),
         }

@@ -137,5 +137,5 @@ mod model;
 mod scene;
 
 pub use deck::Deck;
-pub use error::{DeckError, Fault, Place};
+pub use error::{DeckError, Fault, Location};
 pub use model::Ignored;

@@ -1,6 +1,6 @@
 //! A keyword with its parameters and data lines.
 
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 
 /// Largest number of a node or element.
 const LARGEST: u32 = i32::MAX as u32;
@@ -19,7 +19,7 @@ pub(crate) struct Param {
 /// A data line.
 #[derive(Debug, Clone)]
 pub(crate) struct Line {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) text: String,
 }
 
@@ -34,7 +34,7 @@ impl Line {
     }
 
     pub(crate) fn fault(&self, word: &str, fault: Fault) -> DeckError {
-        DeckError::at(&self.place, word, fault)
+        DeckError::at(&self.location, word, fault)
     }
 
     /// The entries, at most so many.
@@ -128,7 +128,7 @@ pub(crate) fn name(text: &str) -> String {
 /// A keyword, its parameters, and the data lines up to the next keyword.
 #[derive(Debug, Clone)]
 pub(crate) struct Card {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     /// As it is written: `*Node file`.
     pub(crate) word: String,
     /// Upper case without blanks and star: `NODEFILE`.
@@ -139,7 +139,7 @@ pub(crate) struct Card {
 
 impl Card {
     /// Takes a keyword line, with its continuation lines, apart.
-    pub(crate) fn new(place: Place, text: &str) -> Self {
+    pub(crate) fn new(location: Location, text: &str) -> Self {
         let mut items = split(text).into_iter();
         let word = items.next().unwrap_or_default().trim().to_owned();
         let key = name(word.trim_start_matches('*'));
@@ -155,7 +155,7 @@ impl Card {
             }
         });
         Self {
-            place,
+            location,
             word,
             key,
             params: params.collect(),
@@ -164,11 +164,11 @@ impl Card {
     }
 
     pub(crate) fn fault(&self, fault: Fault) -> DeckError {
-        DeckError::at(&self.place, &self.word, fault)
+        DeckError::at(&self.location, &self.word, fault)
     }
 
     pub(crate) fn param_fault(&self, param: &Param, fault: Fault) -> DeckError {
-        DeckError::at(&self.place, &param.word, fault)
+        DeckError::at(&self.location, &param.word, fault)
     }
 
     /// Refuses parameters that are not in the list (upper case, as they are written with blanks), and those

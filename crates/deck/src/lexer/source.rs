@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::card::{Card, Line};
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 
 /// Most included files, how deep they may include each other, and the bytes and lines of all files together:
 /// far beyond any model that a machine holds, so that a damaged file cannot fill the memory.
@@ -48,7 +48,7 @@ impl Reader {
             .map(|(index, line)| (index + 1, String::from_utf8_lossy(line)))
             .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with("**"));
         while let Some((line, text)) = lines.next() {
-            let place = Place {
+            let location = Location {
                 file: file.clone(),
                 line,
             };
@@ -60,11 +60,11 @@ impl Reader {
                     most: LINES,
                     remedy: "split the model",
                 };
-                return Err(DeckError::at(&place, text, fault));
+                return Err(DeckError::at(&location, text, fault));
             }
             if !text.starts_with('*') {
                 let line = Line {
-                    place,
+                    location,
                     text: text.to_owned(),
                 };
                 match self.cards.last_mut() {
@@ -79,10 +79,10 @@ impl Reader {
                     Some((_, more)) if !more.trim_start().starts_with('*') => {
                         keyword.push_str(more.trim());
                     }
-                    _ => return Err(DeckError::at(&place, &keyword, Fault::NotContinued)),
+                    _ => return Err(DeckError::at(&location, &keyword, Fault::NotContinued)),
                 }
             }
-            let card = Card::new(place, &keyword);
+            let card = Card::new(location, &keyword);
             if card.key == "INCLUDE" {
                 self.include(&card)?;
             } else {
@@ -100,7 +100,7 @@ impl Reader {
         };
         // the path as it is written: names of files have cases
         let written = param.value.as_deref().unwrap_or("").trim_matches('"');
-        let folder = card.place.file.parent().unwrap_or(Path::new(""));
+        let folder = card.location.file.parent().unwrap_or(Path::new(""));
         let path = folder.join(written);
         let this = identity(&path);
         if self.open.contains(&this) {

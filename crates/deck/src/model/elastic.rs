@@ -67,7 +67,7 @@ pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     };
     let first = &card.lines[0];
     let law = law.map_err(|error| first.fault(first.text.trim(), Fault::Hooke(error)))?;
-    material.elastic = Some((first.place.clone(), law));
+    material.elastic = Some((first.location.clone(), law));
     Ok(())
 }
 

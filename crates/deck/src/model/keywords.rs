@@ -123,7 +123,11 @@ pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
     match step {
         Some(step) => {
             let why = "the step does not end; put *END STEP after it";
-            Err(DeckError::at(&step.place, "*STEP", Fault::Misplaced(why)))
+            Err(DeckError::at(
+                &step.location,
+                "*STEP",
+                Fault::Misplaced(why),
+            ))
         }
         None => Ok(model),
     }
@@ -179,7 +183,11 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             card.lines_at_most(0, "no data")?;
             if step.time.is_none() {
                 let why = "the step has no procedure; put *STATIC into it";
-                return Err(DeckError::at(&step.place, "*STEP", Fault::Misplaced(why)));
+                return Err(DeckError::at(
+                    &step.location,
+                    "*STEP",
+                    Fault::Misplaced(why),
+                ));
             }
             model.steps.extend(current.take());
             Ok(())
@@ -206,7 +214,7 @@ fn other(model: &mut Model, card: &Card, key: &str) -> Result<(), DeckError> {
         }));
     };
     model.ignored.push(Ignored {
-        place: card.place.clone(),
+        location: card.location.clone(),
         word: card.word.clone(),
         why,
     });

@@ -24,14 +24,14 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
             let given = line.optional(&fields, 1 + c, "a coordinate, a finite number")?;
             *value = given.unwrap_or(0.0);
         }
-        let place = line.place.clone();
+        let location = line.location.clone();
         model.nodes.push(Node {
             label,
             point,
-            place,
+            location,
         });
         if set.is_some() {
-            members.push((Member::One(label), line.place.clone()));
+            members.push((Member::One(label), line.location.clone()));
         }
     }
     if let Some(set) = set {
@@ -80,15 +80,15 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             [label, a, b, c, d] => (label, [a, b, c, d]),
             _ => return Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
         };
-        let place = line.place.clone();
+        let location = line.location.clone();
         if set.is_some() {
-            members.push((Member::One(label), place.clone()));
+            members.push((Member::One(label), location.clone()));
         }
         model.elements.push(Element {
             label,
             kind,
             nodes,
-            place,
+            location,
         });
     }
     if let Some(set) = set {
@@ -107,12 +107,12 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
     let mut members = Vec::new();
     for line in &card.lines {
         if generate {
-            members.push((range(line)?, line.place.clone()));
+            members.push((range(line)?, line.location.clone()));
             continue;
         }
         for field in line.fields() {
             let member = member(line, field)?;
-            members.push((member, line.place.clone()));
+            members.push((member, line.location.clone()));
         }
     }
     let sets = match key {
@@ -218,7 +218,7 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         faces.push(Faces {
             target: target(line, fields[0])?,
             side,
-            place: line.place.clone(),
+            location: line.location.clone(),
         });
     }
     if faces.is_empty() {

@@ -12,7 +12,7 @@ mod names;
 mod property;
 mod step;
 
-use crate::error::Place;
+use crate::error::Location;
 use crate::lexer::Param;
 use signorini_fem_mesh::{History, Hooke};
 
@@ -27,7 +27,7 @@ pub(crate) use step::{
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
     /// Where it stands.
-    pub place: Place,
+    pub location: Location,
     /// The keyword or parameter.
     pub word: String,
     /// Why nothing is done.
@@ -36,7 +36,7 @@ pub struct Ignored {
 
 impl std::fmt::Display for Ignored {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: {}: ignored: {}", self.place, self.word, self.why)
+        write!(f, "{}: {}: ignored: {}", self.location, self.word, self.why)
     }
 }
 
@@ -44,7 +44,7 @@ impl std::fmt::Display for Ignored {
 pub(crate) struct Node {
     pub(crate) label: u32,
     pub(crate) point: [f64; 3],
-    pub(crate) place: Place,
+    pub(crate) location: Location,
 }
 
 /// What an element is.
@@ -64,7 +64,7 @@ pub(crate) struct Element {
     pub(crate) label: u32,
     pub(crate) kind: Kind,
     pub(crate) nodes: [u32; 4],
-    pub(crate) place: Place,
+    pub(crate) location: Location,
 }
 
 /// Something that belongs to a set.
@@ -76,7 +76,7 @@ pub(crate) enum Member {
 }
 
 /// A set of nodes or elements: its members, each with its place and word.
-pub(crate) type Set = Vec<(Member, Place)>;
+pub(crate) type Set = Vec<(Member, Location)>;
 
 /// A side of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,20 +92,20 @@ pub(crate) enum Side {
 pub(crate) struct Faces {
     pub(crate) target: Target,
     pub(crate) side: Side,
-    pub(crate) place: Place,
+    pub(crate) location: Location,
 }
 
 #[derive(Debug, Clone)]
 pub(crate) struct Material {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     /// Where it is given, and the law.
-    pub(crate) elastic: Option<(Place, Hooke)>,
+    pub(crate) elastic: Option<(Location, Hooke)>,
     pub(crate) density: Option<f64>,
 }
 
 #[derive(Debug, Clone)]
 pub(crate) struct Section {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) elset: (String, String),
     pub(crate) material: (String, String),
 }
@@ -120,14 +120,14 @@ pub(crate) struct Amplitude {
 
 #[derive(Debug, Clone)]
 pub(crate) struct Interaction {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) friction: Option<f64>,
 }
 
 /// Elements that keep their shape and follow a node.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) elset: (String, String),
     /// The node whose displacement it has, with the word that names it.
     pub(crate) reference: (Target, String),
@@ -137,7 +137,7 @@ pub(crate) struct RigidBody {
 
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) interaction: Param,
     pub(crate) slave: String,
     pub(crate) master: String,

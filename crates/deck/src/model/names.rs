@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 
 /// A table of named things.
 #[derive(Debug, Clone)]
@@ -52,11 +52,11 @@ impl<T> Names<T> {
         &self,
         what: &'static str,
         name: &str,
-        (place, word): (&Place, &str),
+        (location, word): (&Location, &str),
     ) -> Result<usize, DeckError> {
         self.position(name).ok_or_else(|| {
             let known = self.names();
-            DeckError::at(place, word, Fault::UnknownName { what, known })
+            DeckError::at(location, word, Fault::UnknownName { what, known })
         })
     }
 }

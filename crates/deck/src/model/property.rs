@@ -31,10 +31,10 @@ pub(super) fn material(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     card.lines_at_most(0, "no data; *ELASTIC follows as a keyword of its own")?;
     let name = card.need("NAME")?;
     if let Some(at) = model.materials.position(&name) {
-        return Err(twice(card, model.materials.at(at).place.line));
+        return Err(twice(card, model.materials.at(at).location.line));
     }
     let material = Material {
-        place: card.place.clone(),
+        location: card.location.clone(),
         elastic: None,
         density: None,
     };
@@ -69,7 +69,7 @@ pub(super) fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         line.optional(&line.at_most(1, wanted)?, 0, wanted)?;
     }
     model.sections.push(Section {
-        place: card.place.clone(),
+        location: card.location.clone(),
         elset: (elset, word(card.param("ELSET"))),
         material: (material, word(card.param("MATERIAL"))),
     });
@@ -126,16 +126,16 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
     if let Some(line) = card.lines.first() {
         line.optional(&line.at_most(1, wanted)?, 0, wanted)?;
         model.ignored.push(Ignored {
-            place: line.place.clone(),
+            location: line.location.clone(),
             word: line.text.trim().to_owned(),
             why: "a thickness has a meaning in plane models only",
         });
     }
     if let Some(at) = model.interactions.position(&name) {
-        return Err(twice(card, model.interactions.at(at).place.line));
+        return Err(twice(card, model.interactions.at(at).location.line));
     }
     let interaction = Interaction {
-        place: card.place.clone(),
+        location: card.location.clone(),
         friction: None,
     };
     model.interactions.add(name, interaction);
@@ -180,9 +180,9 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         let why = "the interaction has a coefficient already; keep one of them";
         return Err(card.fault(Fault::Misplaced(why)));
     }
-    let mut ignore = |place: &crate::Place, word: &str| {
+    let mut ignore = |location: &crate::Location, word: &str| {
         model.ignored.push(Ignored {
-            place: place.clone(),
+            location: location.clone(),
             word: word.to_owned(),
             why: PENALTY,
         });
@@ -191,10 +191,10 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         .optional(&fields, 1, "the stick slope, a number")?
         .is_some()
     {
-        ignore(&line.place, fields[1]);
+        ignore(&line.location, fields[1]);
     }
     for param in &card.params {
-        ignore(&card.place, &param.word);
+        ignore(&card.location, &param.word);
     }
     Ok(())
 }
@@ -216,7 +216,7 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     let wanted = "NODE TO SURFACE, SURFACE TO SURFACE, MORTAR, LINMORTAR or PGLINMORTAR";
     if card.choice("TYPE", &types, wanted)?.is_some() {
         model.ignored.push(Ignored {
-            place: card.place.clone(),
+            location: card.location.clone(),
             word: word(card.param("TYPE")),
             why: "the nodes of matching meshes touch each other; there is one kind of contact here",
         });
@@ -226,7 +226,7 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         let fields = line.at_most(2, wanted)?;
         match fields[..] {
             [slave, master] if !slave.is_empty() && !master.is_empty() => model.pairs.push(Pair {
-                place: line.place.clone(),
+                location: line.location.clone(),
                 interaction: interaction.clone(),
                 slave: slave.to_owned(),
                 master: master.to_owned(),
@@ -258,7 +258,7 @@ pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         return Ok(());
     };
     model.rigid.push(RigidBody {
-        place: card.place.clone(),
+        location: card.location.clone(),
         elset: (elset, word(card.param("ELSET"))),
         reference,
         rotation: node("ROTNODE")?,

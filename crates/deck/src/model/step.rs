@@ -2,7 +2,7 @@
 
 use super::mesh::target;
 use super::{Ignored, Model};
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 use crate::lexer::{Card, Line, label, name};
 
 /// Most increments of a deck.
@@ -18,7 +18,7 @@ pub(crate) enum Target {
 /// Components of nodes that are held or moved.
 #[derive(Debug, Clone)]
 pub(crate) struct Boundary {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) word: String,
     pub(crate) target: Target,
     /// Displacements, then rotations, which nodes of rigid bodies have.
@@ -33,7 +33,7 @@ pub(crate) struct Boundary {
 /// A force at nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Force {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) word: String,
     pub(crate) target: Target,
     /// 0 to 2.
@@ -57,7 +57,7 @@ pub(crate) enum DistributedKind {
 /// A pressure or a load of the volume.
 #[derive(Debug, Clone)]
 pub(crate) struct Distributed {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     pub(crate) word: String,
     /// Elements, or the surface.
     pub(crate) target: Target,
@@ -70,7 +70,7 @@ pub(crate) struct Distributed {
 #[derive(Debug)]
 pub(crate) struct Conditions<T> {
     /// Where the first card is, and whether it removes what was there before.
-    pub(crate) first: Option<(Place, String, bool)>,
+    pub(crate) first: Option<(Location, String, bool)>,
     pub(crate) lines: Vec<T>,
 }
 
@@ -89,7 +89,7 @@ impl<T> Conditions<T> {
         match &self.first {
             None => {
                 let word = card.param("OP").map_or(&card.word, |p| &p.word).clone();
-                self.first = Some((card.place.clone(), word, new));
+                self.first = Some((card.location.clone(), word, new));
             }
             Some((_, _, before)) if new != *before && card.param("OP").is_some() => {
                 let why = "only the first card of its kind in a step can say OP, and it says another; move \
@@ -135,12 +135,12 @@ impl Increments {
 /// A step of the deck: a span of time with increments.
 #[derive(Debug)]
 pub(crate) struct Step {
-    pub(crate) place: Place,
+    pub(crate) location: Location,
     /// Whether loads without an amplitude grow along a straight line; else they jump.
     pub(crate) ramp: bool,
-    increments: Option<(f64, Place, String)>,
+    increments: Option<(f64, Location, String)>,
     /// Where the procedure is, and its increments.
-    pub(crate) time: Option<(Place, Increments)>,
+    pub(crate) time: Option<(Location, Increments)>,
     pub(crate) boundary: Conditions<Boundary>,
     pub(crate) forces: Conditions<Force>,
     pub(crate) distributed: Conditions<Distributed>,
@@ -168,7 +168,7 @@ impl Step {
         }
         if let Some(param) = card.param("UNSYMM") {
             model.ignored.push(Ignored {
-                place: card.place.clone(),
+                location: card.location.clone(),
                 word: param.word.clone(),
                 why: "a setting of another solver",
             });
@@ -179,10 +179,10 @@ impl Step {
             let wanted = "a number of increments";
             let number = param.value.as_deref().and_then(|v| label(v.trim()));
             let number = number.ok_or_else(|| card.param_fault(param, Fault::Expected(wanted)))?;
-            increments = Some((f64::from(number), card.place.clone(), param.word.clone()));
+            increments = Some((f64::from(number), card.location.clone(), param.word.clone()));
         }
         Ok(Self {
-            place: card.place.clone(),
+            location: card.location.clone(),
             ramp: amplitude != Some(1),
             increments,
             time: None,
@@ -198,7 +198,7 @@ impl Step {
         card.flag("DIRECT")?;
         if let Some(param) = card.param("SOLVER") {
             model.ignored.push(Ignored {
-                place: card.place.clone(),
+                location: card.location.clone(),
                 word: param.word.clone(),
                 why: "a setting of another solver",
             });
@@ -225,9 +225,9 @@ impl Step {
         let largest = values[3].filter(|&v| v > 0.0).unwrap_or(period);
         let increment = values[0].unwrap_or(period).min(largest).min(period);
         let count = (period / increment * (1.0 - Increments::ROUNDING)).ceil();
-        let (place, word) = match card.lines.first() {
-            Some(line) => (&line.place, line.text.as_str()),
-            None => (&card.place, card.word.as_str()),
+        let (location, word) = match card.lines.first() {
+            Some(line) => (&line.location, line.text.as_str()),
+            None => (&card.location, card.word.as_str()),
         };
         if count > INCREMENTS {
             let fault = Fault::TooMany {
@@ -235,22 +235,22 @@ impl Step {
                 most: INCREMENTS as u64,
                 remedy: "make the first increment larger",
             };
-            return Err(DeckError::at(place, word, fault));
+            return Err(DeckError::at(location, word, fault));
         }
-        if let Some((most, place, word)) = &self.increments
+        if let Some((most, location, word)) = &self.increments
             && count > *most
         {
             let text = format!(
                 "the step needs {count} increments of {increment}; raise INC or the increment"
             );
-            return Err(DeckError::at(place, word, Fault::Cannot(text)));
+            return Err(DeckError::at(location, word, Fault::Cannot(text)));
         }
         let increments = Increments {
             size: increment,
             period,
             count: count.max(1.0) as usize,
         };
-        self.time = Some((card.place.clone(), increments));
+        self.time = Some((card.location.clone(), increments));
         Ok(())
     }
 }
@@ -260,7 +260,7 @@ fn amplitude(model: &Model, card: &Card) -> Result<Option<usize>, DeckError> {
     let Some((name, param)) = card.value("AMPLITUDE")?.zip(card.param("AMPLITUDE")) else {
         return Ok(None);
     };
-    let at = (&card.place, param.word.as_str());
+    let at = (&card.location, param.word.as_str());
     model.amplitudes.find("amplitude", &name, at).map(Some)
 }
 
@@ -366,7 +366,7 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
         ));
     }
     Ok(Boundary {
-        place: line.place.clone(),
+        location: line.location.clone(),
         word: fields[0].to_owned(),
         target,
         components,
@@ -393,7 +393,7 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
             }
         };
         step.forces.lines.push(Force {
-            place: line.place.clone(),
+            location: line.location.clone(),
             word: fields[0].to_owned(),
             target,
             component,
@@ -460,7 +460,7 @@ pub(super) fn distributed(
             false => target(line, fields[0])?,
         };
         step.distributed.lines.push(Distributed {
-            place: line.place.clone(),
+            location: line.location.clone(),
             word: fields[0].to_owned(),
             target,
             kind,

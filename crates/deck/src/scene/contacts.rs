@@ -20,11 +20,11 @@ pub(super) fn contacts(
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
         let fault =
-            |word: &str, text: String| DeckError::at(&pair.place, word, Fault::Cannot(text));
+            |word: &str, text: String| DeckError::at(&pair.location, word, Fault::Cannot(text));
         let interaction = named(&pair.interaction);
-        let at = (&pair.place, pair.interaction.word.as_str());
+        let at = (&pair.location, pair.interaction.word.as_str());
         let found = model.interactions.find("interaction", &interaction, at)?;
-        let surface = |word: &str| surfaces.find("surface", &name(word), (&pair.place, word));
+        let surface = |word: &str| surfaces.find("surface", &name(word), (&pair.location, word));
         let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
         let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
         if slave.is_empty() {

@@ -11,7 +11,7 @@ use signorini_fem_mesh::{Facet, FacetTag};
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::{RigidBodies, RigidFace};
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 use crate::model::{Model, Names, Side, Target};
 
 /// Nodes of the faces 1 to 4 of an element C3D4.
@@ -23,7 +23,7 @@ pub(super) struct Face {
     /// The tetrahedron that names it first, and the number of the face there.
     tet: u32,
     number: u8,
-    place: Place,
+    location: Location,
     word: String,
     /// Positions of the surfaces that it is in, ascending.
     surfaces: Vec<u32>,
@@ -56,7 +56,7 @@ fn key(mut nodes: [u32; 3]) -> [u32; 3] {
 
 impl FaceTable {
     /// The position of a face (1 to 4) of a tetrahedron, noted at its first appearance.
-    fn face(&mut self, raw: &Raw, tet: u32, number: u8, at: (&Place, &str)) -> u32 {
+    fn face(&mut self, raw: &Raw, tet: u32, number: u8, at: (&Location, &str)) -> u32 {
         let corners = raw.tets[tet as usize];
         let nodes = FACES[usize::from(number) - 1].map(|i| corners[i]);
         let next = self.list.len() as u32;
@@ -66,7 +66,7 @@ impl FaceTable {
                 nodes,
                 tet,
                 number,
-                place: at.0.clone(),
+                location: at.0.clone(),
                 word: at.1.to_owned(),
                 surfaces: Vec::new(),
                 pressure: None,
@@ -80,7 +80,7 @@ impl FaceTable {
         &mut self,
         known: Known,
         (target, number): (&Target, u8),
-        at: (&Place, &str),
+        at: (&Location, &str),
     ) -> Result<Vec<u32>, DeckError> {
         let mut faces = Vec::new();
         for element in known.sets.elements(known.model, target, at)? {
@@ -103,7 +103,7 @@ impl FaceTable {
                     Target::Number(number) => number.to_string(),
                     Target::Name(name) => name.clone(),
                 };
-                let at = (&faces.place, word.as_str());
+                let at = (&faces.location, word.as_str());
                 for element in known.sets.elements(known.model, &faces.target, at)? {
                     let Some(tet) = known.raw.tet(element) else {
                         let side = (element, faces.side);
@@ -149,7 +149,7 @@ impl FaceTable {
                     element: raw.element_labels()[face.tet as usize],
                     face: face.number,
                 };
-                Err(DeckError::at(&face.place, &face.word, inside))
+                Err(DeckError::at(&face.location, &face.word, inside))
             }
             None => Ok(()),
         }
@@ -162,8 +162,8 @@ impl FaceTable {
         nodes.sort_unstable();
         nodes.dedup();
         let labels = raw.node_labels();
-        let place = |n: u32| (labels[n as usize], raw.points[n as usize]);
-        nodes.into_iter().map(place).collect()
+        let location = |n: u32| (labels[n as usize], raw.points[n as usize]);
+        nodes.into_iter().map(location).collect()
     }
 
     /// The tag of each face, from 1 in the order of the faces.

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use signorini_fem_mesh::History;
 
 use super::timeline::{Span, Timeline};
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 use crate::model::{Amplitude, Model};
 
 /// A value of the deck and the position of its amplitude.
@@ -26,23 +26,23 @@ pub(super) struct Track {
     events: Vec<(usize, Option<Given>)>,
     /// Its place among all conditions of the deck.
     pub(super) order: usize,
-    place: Place,
+    location: Location,
     word: String,
 }
 
 impl Track {
-    pub(super) fn new(order: usize, (place, word): (&Place, &str)) -> Self {
+    pub(super) fn new(order: usize, (location, word): (&Location, &str)) -> Self {
         Self {
             events: Vec::new(),
             order,
-            place: place.clone(),
+            location: location.clone(),
             word: word.to_owned(),
         }
     }
 
     /// Where it appears first, and the word there.
-    pub(super) fn at(&self) -> (&Place, &str) {
-        (&self.place, &self.word)
+    pub(super) fn at(&self) -> (&Location, &str) {
+        (&self.location, &self.word)
     }
 
     /// The value that this step gives, if it does.
@@ -220,14 +220,14 @@ impl Histories {
         }
         let key = points.iter().map(|p| (p.0.to_bits(), p.1.to_bits()));
         let next = self.list.len();
-        let place = *self.places.entry(key.collect()).or_insert(next);
-        if place == next {
+        let location = *self.places.entry(key.collect()).or_insert(next);
+        if location == next {
             // numbers are finite but for quotients that overflow
             let table = History::table(points);
-            let fault = |e| DeckError::at(&track.place, &track.word, Fault::History(e));
+            let fault = |e| DeckError::at(&track.location, &track.word, Fault::History(e));
             self.list.push(table.map_err(fault)?);
         }
-        Ok(Some((reference, place)))
+        Ok(Some((reference, location)))
     }
 
     pub(super) fn at(&self, position: usize) -> History {

@@ -8,7 +8,7 @@ use signorini_fem_mesh::{FacetTag, LoadDensity};
 use super::faces::{FaceTable, Known};
 use super::history::{Given, Histories, Track};
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 use crate::model::{Conditions, Distributed, DistributedKind, Force, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
@@ -52,7 +52,7 @@ impl<K: Ord> Tracks<K> {
         key: K,
         (step, order, adds): (usize, usize, bool),
         mut given: Given,
-        at: (&Place, &str),
+        at: (&Location, &str),
     ) -> Result<(), DeckError> {
         let track = self.0.entry(key).or_insert_with(|| Track::new(order, at));
         if let Some(before) = track.given_in(step) {
@@ -252,7 +252,7 @@ impl Context<'_> {
         }
         for line in &given.lines {
             *order += 1;
-            let at = (&line.place, line.word.as_str());
+            let at = (&line.location, line.word.as_str());
             let value = Given {
                 value: line.value,
                 amplitude: line.amplitude,
@@ -280,7 +280,7 @@ impl Context<'_> {
         surfaces: &[Vec<u32>],
         table: &mut FaceTable,
     ) -> Result<(), DeckError> {
-        let at = (&line.place, line.word.as_str());
+        let at = (&line.location, line.word.as_str());
         let when = (step, order, false);
         let given = |value: f64| Given {
             value,
@@ -331,8 +331,8 @@ impl Context<'_> {
     /// Densities of elements, that of the material of their section.
     fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
         let fault = |text: String| {
-            let (place, word) = track.at();
-            DeckError::at(place, word, Fault::Cannot(text))
+            let (location, word) = track.at();
+            DeckError::at(location, word, Fault::Cannot(text))
         };
         let Known {
             model, raw, sets, ..
@@ -343,7 +343,7 @@ impl Context<'_> {
         let mut of_section = Vec::with_capacity(model.sections.len());
         for section in &model.sections {
             let (name, word) = &section.material;
-            let at = (&section.place, word.as_str());
+            let at = (&section.location, word.as_str());
             let found = model.materials.find("material", name, at)?;
             of_section.push((model.materials.at(found).density, name));
         }

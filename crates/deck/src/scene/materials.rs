@@ -23,13 +23,13 @@ pub(super) fn materials(
     let mut laws = Vec::new();
     for section in &model.sections {
         let (name, word) = &section.material;
-        let at = (&section.place, word.as_str());
+        let at = (&section.location, word.as_str());
         let material = model
             .materials
             .at(model.materials.find("material", name, at)?);
         let Some((_, law)) = &material.elastic else {
             let why = "the material has no *ELASTIC; put it behind *MATERIAL";
-            return Err(DeckError::at(&material.place, name, Fault::Empty(why)));
+            return Err(DeckError::at(&material.location, name, Fault::Empty(why)));
         };
         laws.push(*law);
     }
@@ -60,7 +60,7 @@ pub(super) fn sections(
     for (index, section) in model.sections.iter().enumerate() {
         let (name, word) = &section.elset;
         let target = Target::Name(name.clone());
-        let elements = sets.elements(model, &target, (&section.place, word))?;
+        let elements = sets.elements(model, &target, (&section.location, word))?;
         // rigid ones need no material
         for tet in elements.into_iter().filter_map(|e| raw.tet(e)) {
             let before = std::mem::replace(&mut of_element[tet as usize], index as u32);
@@ -68,9 +68,9 @@ pub(super) fn sections(
                 let text = format!(
                     "element {} is in the section of line {} already; an element has one section",
                     raw.element_labels()[tet as usize],
-                    model.sections[before as usize].place.line
+                    model.sections[before as usize].location.line
                 );
-                return Err(DeckError::at(&section.place, word, Fault::Cannot(text)));
+                return Err(DeckError::at(&section.location, word, Fault::Cannot(text)));
             }
         }
     }
@@ -79,7 +79,7 @@ pub(super) fn sections(
             let element = &model.elements[raw.elements()[tet] as usize];
             let why = "the element has no *SOLID SECTION; give one to all elements";
             Err(DeckError::at(
-                &element.place,
+                &element.location,
                 &element.label.to_string(),
                 Fault::Empty(why),
             ))

@@ -41,12 +41,12 @@ impl Raw {
             if element.kind != Kind::Solid {
                 let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
                 let word = element.label.to_string();
-                return Err(DeckError::at(&element.place, &word, Fault::Empty(why)));
+                return Err(DeckError::at(&element.location, &word, Fault::Empty(why)));
             }
             let volume = volume(&nodes.map(|n| model.nodes[n as usize].point));
             if !(volume > 0.0 && volume.is_finite()) {
                 let word = element.label.to_string();
-                return Err(DeckError::at(&element.place, &word, Fault::Volume));
+                return Err(DeckError::at(&element.location, &word, Fault::Volume));
             }
             nodes.iter().for_each(|&n| used[n as usize] = true);
             of_element[position] = Some(tets.len() as u32);

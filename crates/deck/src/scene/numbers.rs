@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::mesh::Raw;
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 use crate::model::{Member, Model, Names, Set, Target};
 
 /// Most members of all sets together.
@@ -50,10 +50,10 @@ pub(super) struct Sets {
 
 impl Sets {
     pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
-        let at = |n: usize| (model.nodes[n].label, &model.nodes[n].place);
+        let at = |n: usize| (model.nodes[n].label, &model.nodes[n].location);
         let remedy = "give each node a number of its own";
         let node_numbers = numbers(model.nodes.len(), at, remedy)?;
-        let at = |e: usize| (model.elements[e].label, &model.elements[e].place);
+        let at = |e: usize| (model.elements[e].label, &model.elements[e].location);
         let remedy = "give each element a number of its own";
         let element_numbers = numbers(model.elements.len(), at, remedy)?;
         let mut room = MEMBERS;
@@ -79,7 +79,7 @@ impl Sets {
         &self,
         model: &Model,
         target: &Target,
-        at: (&Place, &str),
+        at: (&Location, &str),
     ) -> Result<Vec<u32>, DeckError> {
         let what = ("node", "node set");
         find(
@@ -97,7 +97,7 @@ impl Sets {
         &self,
         model: &Model,
         target: &Target,
-        at: (&Place, &str),
+        at: (&Location, &str),
     ) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
         find(
@@ -128,15 +128,15 @@ impl Sets {
 /// The positions of so many things by number; `at` tells number and place of each.
 fn numbers<'a>(
     count: usize,
-    at: impl Fn(usize) -> (u32, &'a Place),
+    at: impl Fn(usize) -> (u32, &'a Location),
     remedy: &'static str,
 ) -> Result<Numbers, DeckError> {
     let pairs = (0..count).map(|position| (at(position).0, position as u32));
     Numbers::new(pairs.collect()).map_err(|[first, second]| {
-        let (label, place) = at(second as usize);
+        let (label, location) = at(second as usize);
         let first = at(first as usize).1.line;
         let fault = Fault::Repeated { first, remedy };
-        DeckError::at(place, &label.to_string(), fault)
+        DeckError::at(location, &label.to_string(), fault)
     })
 }
 
@@ -146,21 +146,21 @@ fn find(
     numbers: &Numbers,
     names: &Names<Set>,
     sets: &[Vec<u32>],
-    (place, word): (&Place, &str),
+    (location, word): (&Location, &str),
 ) -> Result<Vec<u32>, DeckError> {
     let name = match target {
         Target::Number(number) => {
             let found = numbers.get(*number);
             let found =
-                found.ok_or_else(|| DeckError::at(place, word, Fault::UnknownNumber(what)))?;
+                found.ok_or_else(|| DeckError::at(location, word, Fault::UnknownNumber(what)))?;
             return Ok(vec![found]);
         }
         Target::Name(name) => name,
     };
-    let set = &sets[names.find(what_set, name, (place, word))?];
+    let set = &sets[names.find(what_set, name, (location, word))?];
     if set.is_empty() {
         let fault = Fault::Empty("the set is empty; fill it, or remove this line");
-        return Err(DeckError::at(place, word, fault));
+        return Err(DeckError::at(location, word, fault));
     }
     Ok(set.clone())
 }
@@ -184,13 +184,13 @@ fn resolve(
             }
         };
         let mut taken = HashSet::new();
-        for (member, place) in set {
+        for (member, location) in set {
             match member {
                 Member::One(number) => match numbers.get(*number) {
                     Some(position) => add(position),
                     None => {
                         let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(place, &number.to_string(), fault));
+                        return Err(DeckError::at(location, &number.to_string(), fault));
                     }
                 },
                 Member::Range { from, to, step } => {
@@ -198,7 +198,7 @@ fn resolve(
                     if inside.peek().is_none() {
                         let fault = Fault::UnknownNumber(what);
                         return Err(DeckError::at(
-                            place,
+                            location,
                             &format!("{from}, {to}, {step}"),
                             fault,
                         ));
@@ -206,10 +206,10 @@ fn resolve(
                     inside.for_each(&mut add);
                 }
                 Member::Set(name) => {
-                    let other = names.find("set", name, (place, name))?;
+                    let other = names.find("set", name, (location, name))?;
                     if other >= index {
                         let why = "a set may name only sets that are defined before it; move the other one up";
-                        return Err(DeckError::at(place, name, Fault::Misplaced(why)));
+                        return Err(DeckError::at(location, name, Fault::Misplaced(why)));
                     }
                     if taken.insert(other) {
                         sets[other].iter().copied().for_each(&mut add);
@@ -226,8 +226,8 @@ fn resolve(
                     most: MEMBERS,
                     remedy: "remove sets that are not needed",
                 };
-                let (member, place) = &set[0];
-                return Err(DeckError::at(place, &format!("{member:?}"), fault));
+                let (member, location) = &set[0];
+                return Err(DeckError::at(location, &format!("{member:?}"), fault));
             }
         }
         sets.push(members);

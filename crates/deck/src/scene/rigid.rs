@@ -13,7 +13,7 @@ use super::history::{Histories, Track};
 use super::mesh::area_vector;
 use super::numbers::Sets;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Place};
+use crate::error::{DeckError, Fault, Location};
 use crate::model::{Element, Kind, Model, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
@@ -49,7 +49,7 @@ impl RigidBodies {
         let mut list = Vec::with_capacity(model.rigid.len());
         for (index, body) in model.rigid.iter().enumerate() {
             let (name, word) = &body.elset;
-            let at = (&body.place, word.as_str());
+            let at = (&body.location, word.as_str());
             for element in sets.elements(model, &Target::Name(name.clone()), at)? {
                 if of_element[element as usize].replace(index as u32).is_some() {
                     let label = model.elements[element as usize].label;
@@ -59,7 +59,7 @@ impl RigidBodies {
                 }
             }
             let node = |(target, word): &(Target, String)| {
-                let at = (&body.place, word.as_str());
+                let at = (&body.location, word.as_str());
                 match sets.nodes(model, target, at)?[..] {
                     [node] => Ok(node),
                     _ => Err(DeckError::at(at.0, at.1, Fault::Expected("one node"))),
@@ -92,25 +92,25 @@ impl RigidBodies {
         sets: &Sets,
         elastic: &[bool],
     ) -> Result<(), DeckError> {
-        let fault = |place: &Place, word: &str, node: u32| {
+        let fault = |location: &Location, word: &str, node: u32| {
             let text = format!(
                 "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not \
                 here; hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
                 model.nodes[node as usize].label
             );
-            Err(DeckError::at(place, word, Fault::Cannot(text)))
+            Err(DeckError::at(location, word, Fault::Cannot(text)))
         };
         for (body, said) in self.list.iter().zip(&model.rigid) {
             let own = [Some(body.reference), body.rotation].into_iter().flatten();
             if let Some(node) = own.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&said.place, &said.reference.1, node);
+                return fault(&said.location, &said.reference.1, node);
             }
         }
         let all = model.elements.iter().zip(&self.of_element);
         for (element, _) in all.filter(|(_, body)| body.is_some()) {
             let nodes = self.nodes(sets, element)?;
             if let Some(node) = nodes.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&element.place, &element.label.to_string(), node);
+                return fault(&element.location, &element.label.to_string(), node);
             }
         }
         Ok(())
@@ -122,7 +122,7 @@ impl RigidBodies {
         for (position, label) in nodes.iter_mut().zip(element.nodes) {
             *position = sets.node_numbers.get(label).ok_or_else(|| {
                 let fault = Fault::UnknownNumber("node");
-                DeckError::at(&element.place, &label.to_string(), fault)
+                DeckError::at(&element.location, &label.to_string(), fault)
             })?;
         }
         Ok(nodes)
@@ -134,7 +134,7 @@ impl RigidBodies {
         model: &Model,
         sets: &Sets,
         (element, side): (u32, Side),
-        at: (&Place, &str),
+        at: (&Location, &str),
     ) -> Result<RigidFace, DeckError> {
         let wanted = |wanted| DeckError::at(at.0, at.1, Fault::Expected(wanted));
         let body = self.of_element(element).unwrap_or(0);
@@ -169,7 +169,7 @@ impl RigidBodies {
         for (body, said) in self.list.iter().zip(&model.rigid) {
             let fault = |text: String| {
                 let word = &said.reference.1;
-                DeckError::at(&said.place, word, Fault::Cannot(text))
+                DeckError::at(&said.location, word, Fault::Cannot(text))
             };
             let mut histories = Histories::default();
             let mut value = [0.0; 3];

@@ -66,7 +66,7 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
             (label, key.1, held)
         });
         let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
-        if let (Some((label, component, _)), Some((place, word, _))) =
+        if let (Some((label, component, _)), Some((location, word, _))) =
             (released, &given.boundary.first)
         {
             let text = format!(
@@ -74,7 +74,7 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
                 end, so give it again here",
                 component + 1,
             );
-            return Err(DeckError::at(place, word, Fault::Cannot(text)));
+            return Err(DeckError::at(location, word, Fault::Cannot(text)));
         }
     }
     let rigid = std::mem::take(&mut table.rigid);
@@ -129,7 +129,7 @@ impl Table {
 
     /// Notes a line of a step, or of the part before the first.
     fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
-        let at = (&line.place, line.word.as_str());
+        let at = (&line.location, line.word.as_str());
         let fault = |text: String| DeckError::at(at.0, at.1, Fault::Cannot(text));
         let owner = self.owner(&line.target);
         let given = Given {
@@ -171,7 +171,7 @@ impl Table {
         }
         if let Some(word) = turned {
             self.ignored.push(Ignored {
-                place: line.place.clone(),
+                location: line.location.clone(),
                 word: word.clone(),
                 why: "nodes of solid elements have no rotations to be held",
             });

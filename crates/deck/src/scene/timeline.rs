@@ -27,7 +27,7 @@ impl Timeline {
         let (mut spans, mut times) = (Vec::new(), Vec::new());
         let mut start = 0.0;
         for step in &model.steps {
-            let Some((place, increments)) = &step.time else {
+            let Some((location, increments)) = &step.time else {
                 continue;
             };
             if (times.len() + increments.count) as f64 > INCREMENTS {
@@ -36,7 +36,7 @@ impl Timeline {
                     most: INCREMENTS as u64,
                     remedy: "make the increments larger",
                 };
-                return Err(DeckError::at(place, "*STATIC", fault));
+                return Err(DeckError::at(location, "*STATIC", fault));
             }
             for i in 1..=increments.count {
                 let time = start + increments.time(i);
@@ -44,7 +44,7 @@ impl Timeline {
                     let text = format!(
                         "increment {i} does not end later than the one before, by rounding; its step starts at {start}"
                     );
-                    return Err(DeckError::at(place, "*STATIC", Fault::Cannot(text)));
+                    return Err(DeckError::at(location, "*STATIC", Fault::Cannot(text)));
                 }
                 times.push(time);
             }

@@ -297,3 +297,22 @@ fn orthotropic_laws() {
         );
     }
 }
+
+/// A pressure on a part of a contact surface: its faces have tags of their own, and the contact has both.
+#[test]
+fn pressure_on_a_part_of_a_contact_surface() {
+    let mesh = signorini_fem_mesh::Brick::new([1.0; 3], [2, 2, 2]);
+    let mesh = mesh.build().expect("brick");
+    let on_side = (0..mesh.facets().len()).find(|&f| mesh.facets()[f].tag.0 == 2);
+    let (element, number) = face(&mesh, on_side.expect("a facet"));
+    let contact = "*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nS2, S1\n";
+    let text = contact.to_owned() + &step(&format!("*DLOAD\n{element}, P{number}, 2.\n"));
+    let scene = scene(&text);
+    assert_eq!(scene.contacts()[0].tags().len(), 2);
+    assert_eq!(scene.mesh().tags().len(), 7);
+    let LoadDensity::Pressure { tag, value } = scene.loads()[0].density() else {
+        panic!("{:?}", scene.loads());
+    };
+    assert_eq!((scene.mesh().nodes_on(*tag).len(), *value), (3, 2.0));
+    assert!(scene.contacts()[0].tags().contains(tag));
+}

@@ -132,9 +132,9 @@ fn files_are_included_where_they_stand() {
     assert_eq!(deck.mesh(), read(TWO).expect("deck").mesh());
     write("Sub/more.txt", &data.replace("40, 0.", "40, zero"));
     let error = Deck::read(folder.path().join("part.inp")).expect_err("a word");
-    let place = error.place().expect("a place");
+    let location = error.location().expect("a place");
     assert!(
-        place.file.ends_with("Sub/more.txt") && place.line == 4,
+        location.file.ends_with("Sub/more.txt") && location.line == 4,
         "{error}"
     );
 }

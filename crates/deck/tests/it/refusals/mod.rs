@@ -19,11 +19,11 @@ pub(crate) fn refused(deck: &str, line: &str, word: &str, part: &str) {
     let text = error.to_string();
     assert_eq!(error.word(), Some(word), "{text}");
     assert!(text.contains(part), "{text}");
-    let place = error.place().expect("a place");
+    let location = error.location().expect("a place");
     let at = deck.lines().collect::<Vec<_>>();
     let wanted = at.iter().rposition(|l| *l == line).expect("the line") + 1;
-    assert_eq!(place.line, wanted, "{text}");
-    assert!(place.file.ends_with("part.inp"), "{text}");
+    assert_eq!(location.line, wanted, "{text}");
+    assert!(location.file.ends_with("part.inp"), "{text}");
     assert!(text.contains("part.inp:"), "{text}");
     assert_eq!(format!("{error:?}"), text);
 }
@@ -182,9 +182,9 @@ fn included_files() {
         ("other.inp", "** a comment\n*INCLUDE, INPUT=./part.inp\n"),
     ]);
     let error = Deck::read(path).expect_err("a loop");
-    let place = error.place().expect("place");
+    let location = error.location().expect("place");
     assert!(
-        place.file.ends_with("other.inp") && place.line == 2,
+        location.file.ends_with("other.inp") && location.line == 2,
         "{error}"
     );
     assert!(error.to_string().contains("includes itself"), "{error}");
