@@ -45,11 +45,8 @@ pub fn run(folder: &str) -> Result<(), Error> {
         let friction = sum.friction_force[0];
         println!("{t:>8.1} {touch:>6} {slide:>6} {normal:>12.4} {friction:>14.4}");
         let at_nodes = [
-            Field::vector("displacement", result.displacement().into_flattened()),
-            Field::vector(
-                "contact_force",
-                result.contact_force_field().into_flattened(),
-            ),
+            Field::vector("displacement", &result.displacement()),
+            Field::vector("contact_force", &result.contact_force_field()),
         ];
         let in_tets = [Field::symmetric_tensor("stress", &result.stress())];
         series.write(result.time(), result.scene().mesh(), &at_nodes, &in_tets)?;

@@ -60,15 +60,12 @@ fn write_body(series: &mut PvdSeries, result: &StepResult, reactions: bool) -> R
     let stress = result.stress();
     let nodal = nodal_average(mesh, &stress)?;
     let mut points = vec![
-        Field::vector("displacement", result.displacement().into_flattened()),
+        Field::vector("displacement", &result.displacement()),
         Field::symmetric_tensor("stress", &nodal),
         Field::scalar("von_mises", nodal.iter().map(von_mises).collect()),
     ];
     if reactions {
-        points.push(Field::vector(
-            "reaction",
-            result.reaction_field().into_flattened(),
-        ));
+        points.push(Field::vector("reaction", &result.reaction_field()));
     }
     let cells = [Field::scalar(
         "von_mises",
@@ -86,13 +83,12 @@ fn write_contact(
     let patch = ContactPatch::new(surface, mesh.points(), result.points());
     let u = result.displacement();
     let at = |node: &u32| u[*node as usize];
-    let displacement = surface.nodes().iter().flat_map(at).collect();
-    let friction = patch.friction_force.iter().flatten().copied().collect();
+    let displacement: Vec<[f64; 3]> = surface.nodes().iter().map(at).collect();
     let fields = [
-        Field::vector("displacement", displacement),
+        Field::vector("displacement", &displacement),
         Field::scalar("pressure", patch.stress(&patch.normal_force)),
         Field::scalar("friction_stress", patch.stress(&patch.friction())),
-        Field::vector("friction_force", friction),
+        Field::vector("friction_force", &patch.friction_force),
         Field::scalar(
             "state",
             patch.state.iter().map(|s| state_number(*s)).collect(),

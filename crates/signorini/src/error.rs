@@ -75,6 +75,10 @@ pub enum Error {
     #[cfg(feature = "gmsh")]
     #[error(transparent)]
     Gmsh(#[from] fem::gmsh::GmshError),
+    /// Decks.
+    #[cfg(feature = "deck")]
+    #[error(transparent)]
+    Deck(#[from] signorini_deck::DeckError),
 }
 
 impl From<ContactError> for Error {

@@ -8,6 +8,7 @@
 //! | [`qp`] | `signorini-qp` | quadratic programming: KPRGP, SMALSE, active sets |
 //! | [`tfeti`] | `signorini-tfeti` | gluing, kernels, inverses, dual operator, projectors |
 //! | [`contact`] | `signorini-contact` | scenes, plans, time steps, Coulomb friction, certificates |
+//! | `deck` | `signorini-deck` (feature `deck`) | CalculiX and Abaqus decks as scenes |
 //!
 //! ```
 //! use signorini::prelude::*;
@@ -35,10 +36,12 @@
 //! # }
 //! ```
 //!
-//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `checkpoint` turns states into bytes and back,
-//! `serde` serialises tags, facets, frames and bricks. All are off by default.
+//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `deck` reads CalculiX and Abaqus decks, `checkpoint`
+//! turns states into bytes and back, `serde` serialises tags, facets, frames and bricks. All are off by default.
 
 pub use signorini_contact as contact;
+#[cfg(feature = "deck")]
+pub use signorini_deck as deck;
 pub use signorini_fem_mesh as fem_mesh;
 pub use signorini_qp as qp;
 pub use signorini_tfeti as tfeti;

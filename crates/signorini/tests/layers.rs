@@ -9,8 +9,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The crates from top to bottom, and the rows of rooms of each from top to bottom.
-const CRATES: [(&str, &[&str]); 5] = [
+const CRATES: [(&str, &[&str]); 6] = [
     ("signorini", &["error"]),
+    ("deck", &["deck", "scene", "model", "lexer", "error"]),
     (
         "contact",
         &[

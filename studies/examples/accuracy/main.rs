@@ -218,10 +218,7 @@ fn write_field(path: &Path, short: bool) -> Result<(), Failure> {
     let error = result.discretisation_error()?;
     let scene = simulation.scene();
     let stress = error.stress_errors(scene.mesh(), scene.materials())?;
-    let points = [Field::vector(
-        "displacement",
-        result.displacement().into_flattened(),
-    )];
+    let points = [Field::vector("displacement", &result.displacement())];
     let cells = [
         Field::scalar("error_energy", error.energies().to_vec()),
         Field::scalar("error_stress", stress),

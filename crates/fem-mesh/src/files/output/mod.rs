@@ -46,13 +46,13 @@ impl Field {
         }
     }
 
-    /// Three numbers each, one after the other (a displacement as it is).
+    /// A vector each.
     #[must_use]
-    pub fn vector(name: impl Into<String>, values: Vec<f64>) -> Self {
+    pub fn vector(name: impl Into<String>, values: &[[f64; 3]]) -> Self {
         Self {
             name: name.into(),
             components: 3,
-            values,
+            values: values.as_flattened().to_vec(),
         }
     }
 

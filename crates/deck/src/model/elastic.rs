@@ -1,0 +1,101 @@
+//! `*ELASTIC`: isotropic, orthotropic along x, y, z, or the engineering constants of the same.
+
+use super::Model;
+use super::property::{inside, twice};
+use crate::error::{DeckError, Fault};
+use crate::lexer::Card;
+use signorini_fem_mesh::{Hooke, HookeError};
+
+/// What a card says, what its numbers are, and their count.
+const KINDS: [(&str, &str, usize); 5] = [
+    ("ISO", ISOTROPIC, 2),
+    ("ISOTROPIC", ISOTROPIC, 2),
+    ("ORTHO", ORTHOTROPIC, 9),
+    ("ORTHOTROPIC", ORTHOTROPIC, 9),
+    ("ENGINEERINGCONSTANTS", ENGINEERING, 9),
+];
+
+const ISOTROPIC: &str = "Young's modulus and Poisson's ratio in one line, and at most a temperature: laws that depend \
+    on temperature are not read";
+const ORTHOTROPIC: &str = "nine numbers, eight in the first line: D1111, D1122, D2222, D1133, D2233, D3333, D1212, \
+    D1313, D2323, and at most a temperature: laws that depend on temperature are not read";
+const ENGINEERING: &str = "nine numbers, eight in the first line: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, and at \
+    most a temperature: laws that depend on temperature are not read";
+
+pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&["TYPE"])?;
+    let material = inside(
+        model.materials.last_mut(),
+        card,
+        "*ELASTIC belongs to a material; put *MATERIAL before it",
+    )?;
+    let kind = card.value("TYPE")?;
+    let kind = kind.as_deref().unwrap_or("ISO");
+    let (wanted, count) = match (KINDS.iter().find(|k| k.0 == kind), card.param("TYPE")) {
+        (None, Some(param)) => {
+            let why = "isotropic laws, orthotropic ones and engineering constants are read (a program can set any \
+                law with Hooke::from_voigt)";
+            return Err(card.param_fault(param, Fault::Unsupported(why)));
+        }
+        (found, _) => found.map_or((ISOTROPIC, 2), |k| (k.1, k.2)),
+    };
+    let mut numbers = Vec::with_capacity(count + 1);
+    for line in &card.lines {
+        if numbers.len() >= count {
+            return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+        }
+        let fields = line.at_most(count + 1 - numbers.len(), wanted)?;
+        for at in 0..fields.len() {
+            numbers.push(line.real(&fields, at, wanted)?);
+        }
+    }
+    let line = card.lines.last();
+    let line = line.ok_or_else(|| card.fault(Fault::Expected(wanted)))?;
+    if numbers.len() < count {
+        return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+    }
+    if let Some((first, _)) = &material.elastic {
+        return Err(twice(card, first.line));
+    }
+    let law = match (wanted, &numbers[..]) {
+        (ORTHOTROPIC, n) => orthotropic(
+            [[n[0], n[1], n[3]], [n[1], n[2], n[4]], [n[3], n[4], n[5]]],
+            &n[6..9],
+        ),
+        (ENGINEERING, n) => orthotropic(inverse(n), &n[6..9]),
+        (_, n) => Hooke::isotropic(n[0], n[1]),
+    };
+    let first = &card.lines[0];
+    let law = law.map_err(|error| first.fault(first.text.trim(), Fault::Hooke(error)))?;
+    material.elastic = Some((first.location.clone(), law));
+    Ok(())
+}
+
+/// A law from its normal part and the shear moduli 12, 13, 23.
+fn orthotropic(normal: [[f64; 3]; 3], shear: &[f64]) -> Result<Hooke, HookeError> {
+    let mut c = [[0.0; 6]; 6];
+    for (row, values) in normal.iter().enumerate() {
+        c[row][..3].copy_from_slice(values);
+    }
+    // the order is yz, xz, xy
+    for (row, value) in (3..6).zip(shear.iter().rev()) {
+        c[row][row] = *value;
+    }
+    Hooke::from_voigt(&c)
+}
+
+/// The normal part of the stiffness from E1, E2, E3, nu12, nu13, nu23: the inverse of that of the compliance.
+fn inverse(n: &[f64]) -> [[f64; 3]; 3] {
+    let s = [
+        [1.0 / n[0], -n[3] / n[0], -n[4] / n[0]],
+        [-n[3] / n[0], 1.0 / n[1], -n[5] / n[1]],
+        [-n[4] / n[0], -n[5] / n[1], 1.0 / n[2]],
+    ];
+    let minor = |i: usize, j: usize| {
+        let [a, b] = [(i + 1) % 3, (i + 2) % 3];
+        let [c, d] = [(j + 1) % 3, (j + 2) % 3];
+        s[a][c] * s[b][d] - s[a][d] * s[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| s[0][j] * minor(0, j)).sum();
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(j, i) / determinant))
+}

@@ -1,0 +1,222 @@
+//! Which keyword is read by whom, where it may stand, and what is said about the others.
+
+use super::step::{self, Step};
+use super::{Ignored, Model, elastic, mesh, property};
+use crate::error::{DeckError, Fault};
+use crate::lexer::Card;
+
+/// What is read, as an error lists it.
+const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, \
+*SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *RIGID BODY, *SURFACE \
+INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+which are ignored and reported";
+
+/// Requests for output, which ask nothing of the solution.
+const OUTPUT: [&str; 20] = [
+    "NODEFILE",
+    "NODEPRINT",
+    "NODEOUTPUT",
+    "ELFILE",
+    "ELPRINT",
+    "ELEMENTOUTPUT",
+    "CONTACTFILE",
+    "CONTACTPRINT",
+    "CONTACTOUTPUT",
+    "FACEPRINT",
+    "SECTIONPRINT",
+    "ENERGYFILE",
+    "ENERGYPRINT",
+    "ENERGYOUTPUT",
+    "OUTPUT",
+    "FILEFORMAT",
+    "PREPRINT",
+    "MONITOR",
+    "PRINT",
+    "TIMEPOINTS",
+];
+
+/// Keywords of these programs that have no counterpart here, and what to do.
+const REFUSED: [(&str, &str); 37] = [
+    ("ASSEMBLY", FLAT),
+    ("PART", FLAT),
+    ("INSTANCE", FLAT),
+    ("TIE", "merge the nodes of parts that are one body"),
+    ("EQUATION", "couplings of nodes are not here"),
+    ("MPC", "couplings of nodes are not here"),
+    (
+        "COUPLING",
+        "couplings of nodes are not here; put the force or motion on the nodes themselves",
+    ),
+    (
+        "KINEMATIC",
+        "couplings of nodes are not here; hold or move the nodes themselves",
+    ),
+    (
+        "DISTRIBUTING",
+        "couplings of nodes are not here; put the force on the nodes themselves",
+    ),
+    (
+        "TRANSFORM",
+        "supports and forces are along x, y, z; a program can hold any direction with Directions::Vectors",
+    ),
+    ("ORIENTATION", "the axes of materials are x, y, z"),
+    ("PLASTIC", ELASTIC),
+    ("CREEP", ELASTIC),
+    ("HYPERELASTIC", ELASTIC),
+    ("DAMPING", ELASTIC),
+    ("EXPANSION", THERMAL),
+    ("CONDUCTIVITY", THERMAL),
+    ("SPECIFICHEAT", THERMAL),
+    ("TEMPERATURE", THERMAL),
+    (
+        "INITIALCONDITIONS",
+        "the body is at rest and without stress before the first step",
+    ),
+    ("SHELLSECTION", SOLID),
+    ("BEAMSECTION", SOLID),
+    ("MEMBRANESECTION", SOLID),
+    ("SPRING", SOLID),
+    ("MASS", SOLID),
+    (
+        "PRE-TENSIONSECTION",
+        "bolts cannot be tightened from a deck",
+    ),
+    ("MODELCHANGE", "what a scene holds is there in all steps"),
+    (
+        "CHANGEFRICTION",
+        "a coefficient of friction holds for all steps",
+    ),
+    (
+        "CLEARANCE",
+        "the gap is measured between the nodes; move one of the bodies",
+    ),
+    (
+        "CONTACT",
+        "general contact is not here; name the surfaces that may touch with *CONTACT PAIR",
+    ),
+    ("DYNAMIC", PROCEDURE),
+    ("FREQUENCY", PROCEDURE),
+    ("BUCKLE", PROCEDURE),
+    ("HEATTRANSFER", PROCEDURE),
+    ("VISCO", PROCEDURE),
+    ("COUPLEDTEMPERATURE-DISPLACEMENT", PROCEDURE),
+    ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", PROCEDURE),
+];
+
+const FLAT: &str = "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit \
+Attributes, do not use parts and assemblies)";
+const ELASTIC: &str = "materials are linear and elastic";
+const THERMAL: &str = "temperature plays no role here; remove it";
+const SOLID: &str = "only solid elements C3D4 are read";
+const PROCEDURE: &str = "only *STATIC is solved";
+
+const BEFORE: &str = "this belongs to the model; put it before the first *STEP";
+const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP";
+
+/// The model that cards describe.
+pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
+    let mut model = Model::default();
+    let mut step: Option<Step> = None;
+    for card in cards {
+        read_card(&mut model, &mut step, card)?;
+    }
+    match step {
+        Some(step) => {
+            let why = "the step does not end; put *END STEP after it";
+            Err(DeckError::at(
+                &step.location,
+                "*STEP",
+                Fault::Misplaced(why),
+            ))
+        }
+        None => Ok(model),
+    }
+}
+
+fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Result<(), DeckError> {
+    type OfModel = fn(&mut Model, &Card) -> Result<(), DeckError>;
+    let of_model: Option<OfModel> = match card.key.as_str() {
+        "HEADING" => Some(|_, card| card.allow(&[])),
+        "NODE" => Some(mesh::nodes),
+        "ELEMENT" => Some(mesh::elements),
+        "NSET" => Some(|model, card| mesh::set(model, card, "NSET")),
+        "ELSET" => Some(|model, card| mesh::set(model, card, "ELSET")),
+        "SURFACE" => Some(mesh::surface),
+        "MATERIAL" => Some(property::material),
+        "ELASTIC" => Some(elastic::elastic),
+        "DENSITY" => Some(property::density),
+        "SOLIDSECTION" => Some(property::section),
+        "AMPLITUDE" => Some(property::amplitude),
+        "SURFACEINTERACTION" => Some(property::interaction),
+        "SURFACEBEHAVIOR" => Some(property::behavior),
+        "FRICTION" => Some(property::friction),
+        "CONTACTPAIR" => Some(property::pair),
+        "RIGIDBODY" => Some(property::rigid),
+        _ => None,
+    };
+    if let Some(read) = of_model {
+        if current.is_some() || !model.steps.is_empty() {
+            return Err(card.fault(Fault::Misplaced(BEFORE)));
+        }
+        return read(model, card);
+    }
+    match (card.key.as_str(), current.as_mut()) {
+        ("BOUNDARY", None) if !model.steps.is_empty() => Err(card.fault(Fault::Misplaced(INSIDE))),
+        ("BOUNDARY", step) => step::boundary(model, step, card),
+        ("STEP", None) => {
+            *current = Some(Step::new(model, card)?);
+            Ok(())
+        }
+        ("STEP", Some(_)) => {
+            let why = "the step before has not ended; put *END STEP before this one";
+            Err(card.fault(Fault::Misplaced(why)))
+        }
+        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "ENDSTEP", None) => {
+            Err(card.fault(Fault::Misplaced(INSIDE)))
+        }
+        ("STATIC", Some(step)) => step.procedure(model, card),
+        ("CLOAD", Some(step)) => step::forces(model, step, card),
+        ("DLOAD", Some(step)) => step::distributed(model, step, card, false),
+        ("DSLOAD", Some(step)) => step::distributed(model, step, card, true),
+        ("ENDSTEP", Some(step)) => {
+            card.allow(&[])?;
+            card.lines_at_most(0, "no data")?;
+            if step.time.is_none() {
+                let why = "the step has no procedure; put *STATIC into it";
+                return Err(DeckError::at(
+                    &step.location,
+                    "*STEP",
+                    Fault::Misplaced(why),
+                ));
+            }
+            model.steps.extend(current.take());
+            Ok(())
+        }
+        (key, _) => other(model, card, key),
+    }
+}
+
+/// Output is noted, anything else refused.
+fn other(model: &mut Model, card: &Card, key: &str) -> Result<(), DeckError> {
+    let restart = key == "RESTART" && card.param("READ").is_none();
+    let why = if OUTPUT.contains(&key) || restart {
+        "results are those that the program writes which runs the deck"
+    } else if key == "CONTROLS" {
+        "a setting of another solver"
+    } else if key == "RESTART" {
+        let why = "a run is resumed from a state of this library, not from a restart file";
+        return Err(card.fault(Fault::Unsupported(why)));
+    } else {
+        let refused = REFUSED.iter().find(|(keyword, _)| *keyword == key);
+        return Err(card.fault(match refused {
+            Some((_, why)) => Fault::Unsupported(why),
+            None => Fault::UnknownKeyword { known: READ.into() },
+        }));
+    };
+    model.ignored.push(Ignored {
+        location: card.location.clone(),
+        word: card.word.clone(),
+        why,
+    });
+    Ok(())
+}

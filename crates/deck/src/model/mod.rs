@@ -1,0 +1,164 @@
+//! The deck in its own words: what the cards say, without a mesh of the library or a scene.
+//!
+//! In go the cards of [`crate::lexer`], out comes a [`Model`] with nodes and elements by their numbers in the
+//! deck, sets, surfaces, materials, contact pairs and steps. Keywords, parameters and entries that are not
+//! understood end here, with their place; names are looked up by [`crate::scene`], above. May use `lexer` and
+//! `error`.
+
+mod elastic;
+mod keywords;
+mod mesh;
+mod names;
+mod property;
+mod step;
+
+use crate::error::Location;
+use crate::lexer::Param;
+use signorini_fem_mesh::{History, Hooke};
+
+pub(crate) use keywords::read;
+pub(crate) use names::Names;
+pub(crate) use property::named;
+pub(crate) use step::{
+    Boundary, COMPONENT, Conditions, Distributed, DistributedKind, Force, INCREMENTS, Step, Target,
+};
+
+/// A request of the deck that has no meaning here.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ignored {
+    /// Where it stands.
+    pub location: Location,
+    /// The keyword or parameter.
+    pub word: String,
+    /// Why nothing is done.
+    pub why: &'static str,
+}
+
+impl std::fmt::Display for Ignored {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}: ignored: {}", self.location, self.word, self.why)
+    }
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Node {
+    pub(crate) label: u32,
+    pub(crate) point: [f64; 3],
+    pub(crate) location: Location,
+}
+
+/// What an element is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// C3D4.
+    Solid,
+    /// R3D3, whose last node is there twice.
+    Triangle,
+    /// R3D4.
+    Quadrilateral,
+}
+
+/// An element.
+#[derive(Debug, Clone)]
+pub(crate) struct Element {
+    pub(crate) label: u32,
+    pub(crate) kind: Kind,
+    pub(crate) nodes: [u32; 4],
+    pub(crate) location: Location,
+}
+
+/// Something that belongs to a set.
+#[derive(Debug, Clone)]
+pub(crate) enum Member {
+    One(u32),
+    Range { from: u32, to: u32, step: u32 },
+    Set(String),
+}
+
+/// A set of nodes or elements: its members, each with its place and word.
+pub(crate) type Set = Vec<(Member, Location)>;
+
+/// A side of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Face 1 to 4 of a solid.
+    Face(u8),
+    /// Where the normal of a rigid facet points to, or the other side.
+    Facet { positive: bool },
+}
+
+/// Faces with the same number, of an element or of those of a set.
+#[derive(Debug, Clone)]
+pub(crate) struct Faces {
+    pub(crate) target: Target,
+    pub(crate) side: Side,
+    pub(crate) location: Location,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Material {
+    pub(crate) location: Location,
+    /// Where it is given, and the law.
+    pub(crate) elastic: Option<(Location, Hooke)>,
+    pub(crate) density: Option<f64>,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Section {
+    pub(crate) location: Location,
+    pub(crate) elset: (String, String),
+    pub(crate) material: (String, String),
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Amplitude {
+    pub(crate) history: History,
+    pub(crate) points: Vec<(f64, f64)>,
+    /// Whether its times are counted from the beginning of the analysis, not of the step.
+    pub(crate) total: bool,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Interaction {
+    pub(crate) location: Location,
+    pub(crate) friction: Option<f64>,
+}
+
+/// Elements that keep their shape and follow a node.
+#[derive(Debug, Clone)]
+pub(crate) struct RigidBody {
+    pub(crate) location: Location,
+    pub(crate) elset: (String, String),
+    /// The node whose displacement it has, with the word that names it.
+    pub(crate) reference: (Target, String),
+    /// The node whose displacement is its rotation.
+    pub(crate) rotation: Option<(Target, String)>,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct Pair {
+    pub(crate) location: Location,
+    pub(crate) interaction: Param,
+    pub(crate) slave: String,
+    pub(crate) master: String,
+}
+
+/// A deck in its own words.
+#[derive(Debug, Default)]
+pub(crate) struct Model {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) elements: Vec<Element>,
+    pub(crate) nsets: Names<Set>,
+    pub(crate) elsets: Names<Set>,
+    pub(crate) surfaces: Names<Vec<Faces>>,
+    pub(crate) materials: Names<Material>,
+    pub(crate) sections: Vec<Section>,
+    pub(crate) amplitudes: Names<Amplitude>,
+    pub(crate) interactions: Names<Interaction>,
+    pub(crate) pairs: Vec<Pair>,
+    pub(crate) rigid: Vec<RigidBody>,
+    /// Supports that hold before the first step.
+    pub(crate) supports: Vec<Boundary>,
+    pub(crate) steps: Vec<Step>,
+    pub(crate) ignored: Vec<Ignored>,
+}

@@ -1,0 +1,61 @@
+//! Contact pairs.
+
+use signorini_contact::{Contact, Friction};
+use signorini_fem_mesh::FacetTag;
+
+use super::faces::{FaceTable, Known};
+use super::rigid::{Motion, half_space};
+use crate::error::{DeckError, Fault};
+use crate::lexer::name;
+use crate::model::{Names, named};
+
+/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or a rigid plane.
+pub(super) fn contacts(
+    known: Known,
+    faces: &FaceTable,
+    surfaces: &Names<Vec<FacetTag>>,
+    motions: &[Motion],
+) -> Result<Vec<Contact>, DeckError> {
+    let model = known.model;
+    let mut out = Vec::with_capacity(model.pairs.len());
+    for pair in &model.pairs {
+        let fault =
+            |word: &str, text: String| DeckError::at(&pair.location, word, Fault::Cannot(text));
+        let interaction = named(&pair.interaction);
+        let at = (&pair.location, pair.interaction.word.as_str());
+        let found = model.interactions.find("interaction", &interaction, at)?;
+        let surface = |word: &str| surfaces.find("surface", &name(word), (&pair.location, word));
+        let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
+        let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
+        if slave.is_empty() {
+            let text =
+                "a rigid surface has to be the second (independent) one of a pair; swap them";
+            return Err(fault(&pair.slave, text.into()));
+        }
+        if slave.iter().any(|tag| master.contains(tag)) {
+            let text = format!(
+                "{} and {} share faces; a face does not touch itself, so give two surfaces",
+                pair.slave, pair.master
+            );
+            return Err(fault(&pair.master, text));
+        }
+        let mut contact = if master.is_empty() {
+            let nodes = faces.nodes_of(known.raw, dependent as u32);
+            let plane = half_space(&faces.rigid[other], motions, slave[0], &nodes);
+            plane.map_err(|text| fault(&pair.master, text))?
+        } else {
+            let between = Contact::between(slave[0], master[0]);
+            master[1..]
+                .iter()
+                .fold(between, |c, tag| c.with_partner(*tag))
+        };
+        for &tag in &slave[1..] {
+            contact = contact.with_tag(tag);
+        }
+        if let Some(coefficient) = model.interactions.at(found).friction {
+            contact = contact.with_friction(Friction::coulomb(coefficient));
+        }
+        out.push(contact);
+    }
+    Ok(out)
+}

@@ -1,0 +1,236 @@
+//! What one condition does in all steps, as one factor in time.
+//!
+//! A value without an amplitude goes along a straight line from that at the end of the step before; with one it
+//! is the value times the amplitude. What a later step does not name stays as it was at the end of the step
+//! before, or follows its amplitude if that is in total time; what a step removes goes back to zero along a
+//! straight line. A jump at the beginning of a step becomes a line over its first increment.
+
+use std::collections::BTreeMap;
+
+use signorini_fem_mesh::History;
+
+use super::timeline::{Span, Timeline};
+use crate::error::{DeckError, Fault, Location};
+use crate::model::{Amplitude, Model};
+
+/// A value of the deck and the position of its amplitude.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Given {
+    pub(super) value: f64,
+    pub(super) amplitude: Option<usize>,
+}
+
+/// What the steps say about one condition: by step, a value or its removal.
+#[derive(Debug, Clone)]
+pub(super) struct Track {
+    events: Vec<(usize, Option<Given>)>,
+    /// Its place among all conditions of the deck.
+    pub(super) order: usize,
+    location: Location,
+    word: String,
+}
+
+impl Track {
+    pub(super) fn new(order: usize, (location, word): (&Location, &str)) -> Self {
+        Self {
+            events: Vec::new(),
+            order,
+            location: location.clone(),
+            word: word.to_owned(),
+        }
+    }
+
+    /// Where it appears first, and the word there.
+    pub(super) fn at(&self) -> (&Location, &str) {
+        (&self.location, &self.word)
+    }
+
+    /// The value that this step gives, if it does.
+    pub(super) fn given_in(&self, step: usize) -> Option<Given> {
+        self.event(step).flatten()
+    }
+
+    pub(super) fn set(&mut self, step: usize, given: Given) {
+        self.put(step, Some(given));
+    }
+
+    /// Ends the condition in a step, if it has not ended before.
+    pub(super) fn remove(&mut self, step: usize) {
+        if self.events.last().is_some_and(|event| event.1.is_some()) {
+            self.put(step, None);
+        }
+    }
+
+    /// Whether a step removes it.
+    pub(super) fn is_removed_in(&self, step: usize) -> bool {
+        self.event(step) == Some(None)
+    }
+
+    fn put(&mut self, step: usize, event: Option<Given>) {
+        match self.events.last_mut() {
+            Some(last) if last.0 == step => last.1 = event,
+            _ => self.events.push((step, event)),
+        }
+    }
+
+    fn event(&self, step: usize) -> Option<Option<Given>> {
+        let at = self.events.binary_search_by_key(&step, |e| e.0).ok()?;
+        Some(self.events[at].1)
+    }
+
+    /// The value that the factor multiplies: the first that is not zero; `None` if there is none.
+    fn reference(&self) -> Option<f64> {
+        let values = self.events.iter().filter_map(|e| Some(e.1?.value));
+        values.into_iter().find(|value| *value != 0.0)
+    }
+
+    /// The points of the factor, times strictly ascending.
+    fn points(&self, model: &Model, spans: &[Span], reference: f64) -> Vec<(f64, f64)> {
+        let mut points = Vec::new();
+        let (mut value, mut follows) = (0.0, None);
+        for (step, span) in spans.iter().enumerate() {
+            let law = match self.event(step) {
+                Some(Some(given)) => match given.amplitude {
+                    Some(amplitude) => {
+                        let amplitude = model.amplitudes.at(amplitude);
+                        Law::Amplitude(given.value / reference, amplitude)
+                    }
+                    None => Law::to(value, given.value / reference, span.ramp),
+                },
+                Some(None) => Law::to(value, 0.0, span.ramp),
+                None => follows.unwrap_or(Law::Constant(value)),
+            };
+            follows = match law {
+                Law::Amplitude(_, Amplitude { total: true, .. }) => Some(law),
+                _ => None,
+            };
+            law.append(span, step + 1 == spans.len(), &mut points);
+            value = law.at(span, span.end);
+        }
+        simplified(points)
+    }
+}
+
+/// A factor within a step.
+#[derive(Clone, Copy)]
+enum Law<'a> {
+    Constant(f64),
+    Line(f64, f64),
+    Amplitude(f64, &'a Amplitude),
+}
+
+impl Law<'_> {
+    fn to(from: f64, to: f64, ramp: bool) -> Self {
+        if ramp && from != to {
+            Self::Line(from, to)
+        } else {
+            Self::Constant(to)
+        }
+    }
+
+    fn at(&self, span: &Span, time: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Line(from, to) => {
+                if time >= span.end {
+                    *to
+                } else {
+                    from + (to - from) * ((time - span.start) / (span.end - span.start))
+                }
+            }
+            Self::Amplitude(factor, amplitude) => {
+                factor * amplitude.history.value(time - Self::shift(amplitude, span))
+            }
+        }
+    }
+
+    fn shift(amplitude: &Amplitude, span: &Span) -> f64 {
+        if amplitude.total { 0.0 } else { span.start }
+    }
+
+    /// Adds the points of a step to those before.
+    fn append(&self, span: &Span, last: bool, points: &mut Vec<(f64, f64)>) {
+        let push = |points: &mut Vec<(f64, f64)>, time: f64, value: f64| {
+            if points.last().is_none_or(|p| p.0 < time) {
+                points.push((time, value));
+            }
+        };
+        let begin = self.at(span, span.start);
+        // the beginning is the end of the step before; what jumps there takes the first increment
+        if points.last().is_some_and(|p| p.1 != begin) {
+            push(points, span.first, self.at(span, span.first));
+        } else {
+            push(points, span.start, begin);
+        }
+        let mut beyond = false;
+        if let Self::Amplitude(factor, amplitude) = self {
+            let shift = Self::shift(amplitude, span);
+            for &(time, value) in &amplitude.points {
+                let time = time + shift;
+                beyond |= time >= span.end;
+                // after the last step the table goes on, as if there was none
+                if time < span.end || last {
+                    push(points, time, factor * value);
+                }
+            }
+        }
+        if !(last && beyond) {
+            push(points, span.end, self.at(span, span.end));
+        }
+    }
+}
+
+/// Without points between two of the same value, and after the last change.
+fn simplified(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut kept: Vec<(f64, f64)> = Vec::with_capacity(points.len());
+    for point in points {
+        let flat = kept.len() > 1 && kept[kept.len() - 2..].iter().all(|p| p.1 == point.1);
+        if flat {
+            kept.pop();
+        }
+        kept.push(point);
+    }
+    while kept.len() > 1 && kept[kept.len() - 2].1 == kept[kept.len() - 1].1 {
+        kept.pop();
+    }
+    kept
+}
+
+/// Histories, each once.
+#[derive(Debug, Default)]
+pub(super) struct Histories {
+    list: Vec<History>,
+    places: BTreeMap<Vec<(u64, u64)>, usize>,
+}
+
+impl Histories {
+    /// The value of a condition and the position of its history; `None` if it is zero at all times.
+    pub(super) fn add(
+        &mut self,
+        model: &Model,
+        timeline: &Timeline,
+        track: &Track,
+    ) -> Result<Option<(f64, usize)>, DeckError> {
+        let Some(reference) = track.reference() else {
+            return Ok(None);
+        };
+        let points = track.points(model, &timeline.spans, reference);
+        if points.iter().all(|p| p.1 == 0.0) {
+            return Ok(None);
+        }
+        let key = points.iter().map(|p| (p.0.to_bits(), p.1.to_bits()));
+        let next = self.list.len();
+        let location = *self.places.entry(key.collect()).or_insert(next);
+        if location == next {
+            // numbers are finite but for quotients that overflow
+            let table = History::table(points);
+            let fault = |e| DeckError::at(&track.location, &track.word, Fault::History(e));
+            self.list.push(table.map_err(fault)?);
+        }
+        Ok(Some((reference, location)))
+    }
+
+    pub(super) fn at(&self, position: usize) -> History {
+        self.list[position].clone()
+    }
+}

@@ -1,0 +1,360 @@
+//! `*CLOAD`, `*DLOAD` and `*DSLOAD` of all steps as loads.
+
+use std::collections::BTreeMap;
+
+use signorini_contact::Load;
+use signorini_fem_mesh::{FacetTag, LoadDensity};
+
+use super::faces::{FaceTable, Known};
+use super::history::{Given, Histories, Track};
+use super::timeline::Timeline;
+use crate::error::{DeckError, Fault, Location};
+use crate::model::{Conditions, Distributed, DistributedKind, Force, Target};
+
+/// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
+/// linear elements.
+const PRESSURES: usize = 100;
+
+/// Loads that share a history, by its position, and their place among all.
+type Groups<T> = BTreeMap<usize, (usize, T)>;
+
+/// A load of the volume: elements, what it is, and the component.
+type BodyKey = (Target, bool, usize);
+
+/// All loads, with the pressures noted in the table of faces.
+#[derive(Debug, Default)]
+pub(super) struct Loads {
+    histories: Histories,
+    /// Value, history, place among all.
+    pressures: Vec<(f64, usize, usize)>,
+    forces: Groups<BTreeMap<u32, [f64; 3]>>,
+    bodies: Vec<(usize, usize, [f64; 3])>,
+}
+
+/// What is known of the model, and the axis of time.
+#[derive(Clone, Copy)]
+struct Context<'a> {
+    known: Known<'a>,
+    timeline: &'a Timeline,
+}
+
+/// A condition by what it acts on.
+struct Tracks<K>(BTreeMap<K, Track>);
+
+impl<K: Ord> Tracks<K> {
+    fn remove(&mut self, step: usize) {
+        self.0.values_mut().for_each(|track| track.remove(step));
+    }
+
+    /// Notes a value. Another one in the same step is added, if it may be and has the same amplitude.
+    fn set(
+        &mut self,
+        key: K,
+        (step, order, adds): (usize, usize, bool),
+        mut given: Given,
+        at: (&Location, &str),
+    ) -> Result<(), DeckError> {
+        let track = self.0.entry(key).or_insert_with(|| Track::new(order, at));
+        if let Some(before) = track.given_in(step) {
+            if !adds || before.amplitude != given.amplitude {
+                let text = if adds {
+                    "a force along this component is given in this step already, with another amplitude; \
+                    put them on different nodes, or give one amplitude"
+                } else {
+                    "such a load is given there in this step already; add the values and give their sum once"
+                };
+                return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+            }
+            given.value += before.value;
+        }
+        track.set(step, given);
+        Ok(())
+    }
+}
+
+impl Loads {
+    /// The loads of all steps; `surfaces` are the faces of each surface.
+    pub(super) fn new(
+        known: Known,
+        timeline: &Timeline,
+        surfaces: &[Vec<u32>],
+        faces: &mut FaceTable,
+    ) -> Result<Self, DeckError> {
+        let context = Context { known, timeline };
+        let model = known.model;
+        let mut forces = Tracks(BTreeMap::new());
+        let mut pressures = Tracks(BTreeMap::new());
+        let mut bodies = Tracks(BTreeMap::new());
+        let mut order = 0;
+        for (step, given) in model.steps.iter().enumerate() {
+            context.forces(&mut forces, step, &given.forces, &mut order)?;
+            if given.distributed.removes() {
+                pressures.remove(step);
+                bodies.remove(step);
+            }
+            for line in &given.distributed.lines {
+                order += 1;
+                let to = (&mut pressures, &mut bodies);
+                context.distributed(to, (step, order), line, surfaces, faces)?;
+            }
+        }
+        let mut loads = Self::default();
+        for ((node, component), track) in &forces.0 {
+            if let Some((value, history)) = loads.histories.add(model, timeline, track)? {
+                let (first, list) = loads
+                    .forces
+                    .entry(history)
+                    .or_insert_with(|| (track.order, BTreeMap::new()));
+                *first = track.order.min(*first);
+                list.entry(*node).or_insert([0.0; 3])[*component] = value;
+            }
+        }
+        loads.pressures(context, &pressures, faces)?;
+        loads.bodies(context, &bodies)?;
+        Ok(loads)
+    }
+
+    /// Groups pressures by value and history and notes the group of each face; forces at nodes if there are too many.
+    fn pressures(
+        &mut self,
+        context: Context,
+        tracks: &Tracks<u32>,
+        faces: &mut FaceTable,
+    ) -> Result<(), DeckError> {
+        let mut of_face = Vec::with_capacity(tracks.0.len());
+        let mut groups: BTreeMap<(u64, usize), usize> = BTreeMap::new();
+        for (&face, track) in &tracks.0 {
+            let found = self
+                .histories
+                .add(context.known.model, context.timeline, track)?;
+            let Some((value, history)) = found else {
+                continue;
+            };
+            let key = (value.to_bits(), history);
+            let order = groups.entry(key).or_insert(track.order);
+            *order = track.order.min(*order);
+            of_face.push((face, value, history, track.order));
+        }
+        if groups.len() > PRESSURES {
+            for (face, value, history, order) in of_face {
+                let face = &faces.list[face as usize];
+                let area = face.area_vector(context.known.raw);
+                for node in face.nodes {
+                    self.force(history, order, node, area.map(|a| -value * a / 3.0));
+                }
+            }
+            return Ok(());
+        }
+        let mut numbers = BTreeMap::new();
+        for (&(value, history), &order) in &groups {
+            numbers.insert((value, history), self.pressures.len() as u32);
+            let pressure = (f64::from_bits(value), history, order);
+            self.pressures.push(pressure);
+        }
+        for (face, value, history, _) in of_face {
+            let group = numbers.get(&(value.to_bits(), history));
+            faces.list[face as usize].pressure = group.copied();
+        }
+        Ok(())
+    }
+
+    /// Gravity and forces per volume: one density where all elements have the same, else forces at nodes.
+    fn bodies(&mut self, context: Context, tracks: &Tracks<BodyKey>) -> Result<(), DeckError> {
+        type Group = (Target, bool, usize);
+        let mut groups: BTreeMap<Group, (usize, [f64; 3], &Track)> = BTreeMap::new();
+        for ((target, gravity, component), track) in &tracks.0 {
+            let found = self
+                .histories
+                .add(context.known.model, context.timeline, track)?;
+            if let Some((value, history)) = found {
+                let key = (target.clone(), *gravity, history);
+                let group = groups.entry(key).or_insert((track.order, [0.0; 3], track));
+                group.1[*component] = value;
+            }
+        }
+        for ((target, gravity, history), (order, value, track)) in groups {
+            let Known {
+                model, sets, raw, ..
+            } = context.known;
+            let elements = sets.elements(model, &target, track.at())?;
+            // rigid ones are held, whatever pulls them
+            let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
+            if elements.is_empty() {
+                continue;
+            }
+            let densities = match gravity {
+                true => context.densities(&elements, track)?,
+                false => vec![1.0; elements.len()],
+            };
+            let same = densities.iter().all(|d| *d == densities[0]);
+            if same && elements.len() == raw.tets.len() {
+                let density = densities[0];
+                self.bodies
+                    .push((order, history, value.map(|v| density * v)));
+                continue;
+            }
+            for (&element, density) in elements.iter().zip(densities) {
+                let share = 0.25 * density * raw.volume(element);
+                for node in raw.tets[element as usize] {
+                    self.force(history, order, node, value.map(|v| share * v));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn force(&mut self, history: usize, order: usize, node: u32, force: [f64; 3]) {
+        let group = self.forces.entry(history);
+        let (first, list) = group.or_insert_with(|| (order, BTreeMap::new()));
+        *first = order.min(*first);
+        let sum = list.entry(node).or_insert([0.0; 3]);
+        for c in 0..3 {
+            sum[c] += force[c];
+        }
+    }
+
+    /// The loads of the scene, in the order of the deck; `tags` are those of the faces.
+    pub(super) fn lower(self, faces: &FaceTable, tags: &[FacetTag]) -> Vec<Load> {
+        let mut out: Vec<(usize, LoadDensity, usize)> = Vec::new();
+        for (number, (value, history, order)) in (0..).zip(&self.pressures) {
+            let with = faces.list.iter().zip(tags);
+            let with = with.filter(|(face, _)| face.pressure == Some(number));
+            let mut tags: Vec<FacetTag> = with.map(|(_, tag)| *tag).collect();
+            tags.sort_unstable();
+            tags.dedup();
+            let pressure = |tag| (*order, LoadDensity::pressure(tag, *value), *history);
+            out.extend(tags.into_iter().map(pressure));
+        }
+        for (history, (order, forces)) in self.forces {
+            let forces = forces.into_iter().collect();
+            out.push((order, LoadDensity::nodal_forces(forces), history));
+        }
+        for (order, history, value) in self.bodies {
+            out.push((order, LoadDensity::body(value), history));
+        }
+        out.sort_by_key(|load| load.0);
+        let load =
+            |(_, density, history)| Load::new(density).with_history(self.histories.at(history));
+        out.into_iter().map(load).collect()
+    }
+}
+
+impl Context<'_> {
+    fn forces(
+        self,
+        tracks: &mut Tracks<(u32, usize)>,
+        step: usize,
+        given: &Conditions<Force>,
+        order: &mut usize,
+    ) -> Result<(), DeckError> {
+        if given.removes() {
+            tracks.remove(step);
+        }
+        for line in &given.lines {
+            *order += 1;
+            let at = (&line.location, line.word.as_str());
+            let value = Given {
+                value: line.value,
+                amplitude: line.amplitude,
+            };
+            for node in self.known.sets.nodes(self.known.model, &line.target, at)? {
+                let Some(node) = self.known.raw.in_mesh(node) else {
+                    let text = format!(
+                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes \
+                        of the body",
+                        self.known.model.nodes[node as usize].label
+                    );
+                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
+                };
+                tracks.set((node, line.component), (step, *order, true), value, at)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn distributed(
+        self,
+        (pressures, bodies): (&mut Tracks<u32>, &mut Tracks<BodyKey>),
+        (step, order): (usize, usize),
+        line: &Distributed,
+        surfaces: &[Vec<u32>],
+        table: &mut FaceTable,
+    ) -> Result<(), DeckError> {
+        let at = (&line.location, line.word.as_str());
+        let when = (step, order, false);
+        let given = |value: f64| Given {
+            value,
+            amplitude: line.amplitude,
+        };
+        let faces = match &line.kind {
+            DistributedKind::Face(number) => {
+                let target = (&line.target, *number);
+                table.of_target(self.known, target, at)?
+            }
+            DistributedKind::Surface => {
+                let Target::Name(name) = &line.target else {
+                    return Ok(());
+                };
+                let found = self.known.model.surfaces.find("surface", name, at)?;
+                if surfaces[found].is_empty() {
+                    let text = "a pressure on a rigid surface acts on nothing; load an elastic one";
+                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                }
+                surfaces[found].clone()
+            }
+            DistributedKind::Gravity(direction) => {
+                // so that an unknown set is refused here
+                self.known
+                    .sets
+                    .elements(self.known.model, &line.target, at)?;
+                let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+                for (c, d) in direction.iter().enumerate() {
+                    let key = (line.target.clone(), true, c);
+                    bodies.set(key, when, given(line.value * (d / length)), at)?;
+                }
+                return Ok(());
+            }
+            DistributedKind::Body(component) => {
+                self.known
+                    .sets
+                    .elements(self.known.model, &line.target, at)?;
+                let key = (line.target.clone(), false, *component);
+                return bodies.set(key, when, given(line.value), at);
+            }
+        };
+        for face in faces {
+            pressures.set(face, when, given(line.value), at)?;
+        }
+        Ok(())
+    }
+
+    /// Densities of elements, that of the material of their section.
+    fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
+        let fault = |text: String| {
+            let (location, word) = track.at();
+            DeckError::at(location, word, Fault::Cannot(text))
+        };
+        let Known {
+            model, raw, sets, ..
+        } = self.known;
+        let sections = super::materials::sections(model, raw, sets)?;
+        let sections =
+            sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
+        let mut of_section = Vec::with_capacity(model.sections.len());
+        for section in &model.sections {
+            let (name, word) = &section.material;
+            let at = (&section.location, word.as_str());
+            let found = model.materials.find("material", name, at)?;
+            of_section.push((model.materials.at(found).density, name));
+        }
+        let density = |&element: &u32| {
+            let (density, name) = of_section[sections[element as usize] as usize];
+            density.ok_or_else(|| {
+                fault(format!(
+                    "gravity needs a density; give material {name} *DENSITY"
+                ))
+            })
+        };
+        elements.iter().map(density).collect()
+    }
+}

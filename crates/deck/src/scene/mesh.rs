@@ -1,0 +1,149 @@
+//! Nodes and elements as a mesh.
+
+use std::path::Path;
+
+use signorini_fem_mesh::{Facet, TetMesh};
+
+use super::numbers::{Numbers, Sets};
+use super::rigid::RigidBodies;
+use crate::error::{DeckError, Fault};
+use crate::model::{Kind, Model};
+
+/// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
+#[derive(Debug)]
+pub(super) struct Raw {
+    pub(super) points: Vec<[f64; 3]>,
+    pub(super) tets: Vec<[u32; 4]>,
+    /// Number in the mesh of each node and element of the deck, by position.
+    of_node: Vec<Option<u32>>,
+    of_element: Vec<Option<u32>>,
+    node_labels: Vec<u32>,
+    /// Positions of the elements of the deck.
+    elements: Vec<u32>,
+    element_labels: Vec<u32>,
+}
+
+impl Raw {
+    pub(super) fn new(
+        path: &Path,
+        model: &Model,
+        sets: &Sets,
+        bodies: &RigidBodies,
+    ) -> Result<Self, DeckError> {
+        let (mut tets, mut elements) = (Vec::new(), Vec::new());
+        let mut of_element = vec![None; model.elements.len()];
+        let mut used = vec![false; model.nodes.len()];
+        for (position, element) in model.elements.iter().enumerate() {
+            let nodes = bodies.nodes(sets, element)?;
+            if bodies.of_element(position as u32).is_some() {
+                continue;
+            }
+            if element.kind != Kind::Solid {
+                let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
+                let word = element.label.to_string();
+                return Err(DeckError::at(&element.location, &word, Fault::Empty(why)));
+            }
+            let volume = volume(&nodes.map(|n| model.nodes[n as usize].point));
+            if !(volume > 0.0 && volume.is_finite()) {
+                let word = element.label.to_string();
+                return Err(DeckError::at(&element.location, &word, Fault::Volume));
+            }
+            nodes.iter().for_each(|&n| used[n as usize] = true);
+            of_element[position] = Some(tets.len() as u32);
+            tets.push(nodes);
+            elements.push(position as u32);
+        }
+        if tets.is_empty() {
+            let path = path.to_owned();
+            return Err(DeckError::NoElements { path });
+        }
+        bodies.check_apart(model, sets, &used)?;
+        let (mut points, mut node_labels) = (Vec::new(), Vec::new());
+        let mut of_node = vec![None; used.len()];
+        for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut of_node) {
+            if used {
+                *number = Some(points.len() as u32);
+                points.push(node.point);
+                node_labels.push(node.label);
+            }
+        }
+        let number = |n: u32| of_node[n as usize].unwrap_or(0);
+        let label = |&e: &u32| model.elements[e as usize].label;
+        Ok(Self {
+            points,
+            tets: tets.into_iter().map(|tet| tet.map(number)).collect(),
+            of_node,
+            of_element,
+            node_labels,
+            element_labels: elements.iter().map(label).collect(),
+            elements,
+        })
+    }
+
+    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid.
+    pub(super) fn tet(&self, element: u32) -> Option<u32> {
+        self.of_element[element as usize]
+    }
+
+    /// The position in the deck of each tetrahedron.
+    pub(super) fn elements(&self) -> &[u32] {
+        &self.elements
+    }
+
+    /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
+    pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
+        self.of_node[node as usize]
+    }
+
+    /// The number in the deck of each node of the mesh.
+    pub(super) fn node_labels(&self) -> &[u32] {
+        &self.node_labels
+    }
+
+    /// The number in the deck of each tetrahedron.
+    pub(super) fn element_labels(&self) -> &[u32] {
+        &self.element_labels
+    }
+
+    /// Nodes of the mesh by their numbers in the deck.
+    pub(super) fn mesh_numbers(&self) -> Numbers {
+        Numbers::new(self.node_labels.iter().copied().zip(0..).collect()).unwrap_or_default()
+    }
+
+    pub(super) fn tet_points(&self, tet: u32) -> [[f64; 3]; 4] {
+        self.tets[tet as usize].map(|n| self.points[n as usize])
+    }
+
+    pub(super) fn volume(&self, tet: u32) -> f64 {
+        volume(&self.tet_points(tet))
+    }
+
+    pub(super) fn mesh(
+        &self,
+        path: &Path,
+        facets: Vec<Facet>,
+        regions: Vec<u32>,
+    ) -> Result<TetMesh, DeckError> {
+        let mesh = TetMesh::new(self.points.clone(), self.tets.clone(), facets);
+        let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));
+        mesh.map_err(|source| DeckError::Mesh {
+            path: path.to_owned(),
+            source,
+        })
+    }
+}
+
+/// Half of the cross product of two sides: the area of a triangle along its normal.
+pub(super) fn area_vector([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
+    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
+    [
+        0.5 * (u[1] * v[2] - u[2] * v[1]),
+        0.5 * (u[2] * v[0] - u[0] * v[2]),
+        0.5 * (u[0] * v[1] - u[1] * v[0]),
+    ]
+}
+
+fn volume([a, b, c, d]: &[[f64; 3]; 4]) -> f64 {
+    let n = area_vector(&[*a, *b, *c]);
+    (0..3).map(|i| n[i] * (d[i] - a[i])).sum::<f64>() / 3.0
+}

@@ -1,0 +1,89 @@
+//! The deck as a mesh and a scene of the library.
+//!
+//! In goes a [`Model`], out comes a [`Translated`]: names are looked up, numbers of the deck become numbers of
+//! the mesh, faces get tags, the conditions of all steps become one history each. What cannot be said to the
+//! solver is refused here, with its place. May use `model`, `lexer`, `error`.
+
+mod contacts;
+mod faces;
+mod history;
+mod loads;
+mod materials;
+mod mesh;
+mod numbers;
+mod rigid;
+mod supports;
+mod timeline;
+
+use std::path::Path;
+
+use signorini_contact::Scene;
+use signorini_fem_mesh::{FacetTag, TetMesh};
+
+use crate::error::DeckError;
+use crate::model::{Ignored, Model, Names};
+
+pub(crate) use numbers::Numbers;
+
+/// A deck as the library sees it.
+#[derive(Debug)]
+pub(crate) struct Translated {
+    pub(crate) mesh: TetMesh,
+    /// None where the elements have no material.
+    pub(crate) scene: Option<Scene>,
+    /// Nodes and tetrahedra of the mesh by their numbers in the deck, and back.
+    pub(crate) nodes: Numbers,
+    pub(crate) node_labels: Vec<u32>,
+    pub(crate) element_labels: Vec<u32>,
+    pub(crate) surfaces: Names<Vec<FacetTag>>,
+    pub(crate) node_sets: Names<Vec<u32>>,
+    pub(crate) element_sets: Names<Vec<u32>>,
+    /// The set that each support of the scene is given on.
+    pub(crate) support_names: Vec<String>,
+    pub(crate) ignored: Vec<Ignored>,
+}
+
+/// The mesh and the scene of a model.
+pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckError> {
+    let sets = numbers::Sets::new(model)?;
+    let bodies = rigid::RigidBodies::new(model, &sets)?;
+    let raw = mesh::Raw::new(path, model, &sets, &bodies)?;
+    let timeline = timeline::Timeline::new(model)?;
+    let known = faces::Known {
+        model,
+        sets: &sets,
+        bodies: &bodies,
+        raw: &raw,
+    };
+    let mut faces = faces::FaceTable::default();
+    let surfaces = faces.surfaces(known)?;
+    let loads = loads::Loads::new(known, &timeline, &surfaces, &mut faces)?;
+    faces.check_outside(&raw)?;
+    let tags = faces.tags();
+    let (regions, materials) = materials::materials(model, &raw, &sets)?;
+    let mesh = raw.mesh(path, faces.facets(&tags), regions)?;
+    let surfaces = faces.tags_of(&tags, model);
+
+    let supports = supports::supports(known, &timeline)?;
+    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions)?;
+    let loads = loads.lower(&faces, &tags);
+    let scene = materials.map(|materials| {
+        let scene = Scene::new(mesh.clone(), materials).with_analysis(timeline.analysis());
+        let scene = supports.list.into_iter().fold(scene, Scene::with_support);
+        let scene = loads.into_iter().fold(scene, Scene::with_load);
+        contacts.into_iter().fold(scene, Scene::with_contact)
+    });
+    let (node_sets, element_sets) = sets.in_mesh(model, &raw);
+    Ok(Translated {
+        mesh,
+        scene,
+        nodes: raw.mesh_numbers(),
+        node_labels: raw.node_labels().to_vec(),
+        element_labels: raw.element_labels().to_vec(),
+        surfaces,
+        node_sets,
+        element_sets,
+        support_names: supports.names,
+        ignored: supports.ignored,
+    })
+}

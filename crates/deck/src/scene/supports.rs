@@ -1,0 +1,249 @@
+//! `*BOUNDARY` of all steps as supports.
+
+use std::collections::BTreeMap;
+
+use signorini_contact::{Directions, Support};
+
+use super::faces::Known;
+use super::history::{Given, Histories, Track};
+use super::rigid::Motion;
+use super::timeline::Timeline;
+use crate::error::{DeckError, Fault};
+use crate::model::{Boundary, COMPONENT, Ignored, Model, Target};
+
+/// Name of what is given on nodes by their numbers.
+const SINGLE: &str = "nodes";
+
+/// A held component of a node: the target that it is given on first, and what the steps say.
+struct Held {
+    owner: usize,
+    track: Track,
+    /// Given before the first step, which may say it anew.
+    before: bool,
+}
+
+/// Held components by node of the mesh and component, and by position of nodes of rigid bodies.
+#[derive(Default)]
+struct Table {
+    held: BTreeMap<(u32, usize), Held>,
+    rigid: BTreeMap<(u32, usize), Held>,
+    owners: Vec<String>,
+    ignored: Vec<Ignored>,
+}
+
+/// Supports with the names of their targets, and the motions of rigid bodies.
+pub(super) struct Supports {
+    pub(super) list: Vec<Support>,
+    pub(super) names: Vec<String>,
+    pub(super) motions: Vec<Motion>,
+    /// Rotations that are held where there are none.
+    pub(super) ignored: Vec<Ignored>,
+}
+
+/// One support for each target and its moving or fixed components.
+pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, DeckError> {
+    let mut table = Table::default();
+    for line in &known.model.supports {
+        table.add(known, None, line)?;
+    }
+    for (step, given) in known.model.steps.iter().enumerate() {
+        let removes = given.boundary.removes();
+        if removes && step == 0 {
+            table = Table::default();
+        } else if removes {
+            let all = table.held.values_mut().chain(table.rigid.values_mut());
+            all.for_each(|held| held.track.remove(step));
+        }
+        for line in &given.boundary.lines {
+            table.add(known, Some(step), line)?;
+        }
+        let elastic = table.held.iter().map(|(key, held)| {
+            let label = known.raw.node_labels()[key.0 as usize];
+            (label, key.1, held)
+        });
+        let rigid = table.rigid.iter().map(|(key, held)| {
+            let label = known.model.nodes[key.0 as usize].label;
+            (label, key.1, held)
+        });
+        let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
+        if let (Some((label, component, _)), Some((location, word, _))) =
+            (released, &given.boundary.first)
+        {
+            let text = format!(
+                "this releases component {} of node {label}; what is held in the first step is held to the \
+                end, so give it again here",
+                component + 1,
+            );
+            return Err(DeckError::at(location, word, Fault::Cannot(text)));
+        }
+    }
+    let rigid = std::mem::take(&mut table.rigid);
+    let rigid = rigid
+        .into_iter()
+        .map(|(key, held)| (key, held.track))
+        .collect();
+    let motions = known.bodies.motions(known.model, timeline, &rigid)?;
+    let ignored = std::mem::take(&mut table.ignored);
+    let (list, names) = table.lower(known.model, timeline)?;
+    Ok(Supports {
+        list,
+        names,
+        motions,
+        ignored,
+    })
+}
+
+impl Held {
+    /// Notes a value of a component of a node with this number in the deck; `step` is none before the first.
+    fn give(&mut self, step: Option<usize>, given: Given, what: &str) -> Result<(), String> {
+        let now = step.unwrap_or(0);
+        let again = !(self.before && step == Some(0));
+        if let Some(before) = self.track.given_in(now)
+            && again
+            && before != given
+            && (before.value, given.value) != (0.0, 0.0)
+        {
+            let (before, now) = (before.value, given.value);
+            return Err(format!(
+                "{what} is given {before} and {now} in one step; keep one of them"
+            ));
+        }
+        self.before = step.is_none();
+        self.track.set(now, given);
+        Ok(())
+    }
+}
+
+impl Table {
+    fn owner(&mut self, target: &Target) -> usize {
+        let name = match target {
+            Target::Number(_) => SINGLE,
+            Target::Name(name) => name,
+        };
+        let known = self.owners.iter().position(|owner| owner == name);
+        known.unwrap_or_else(|| {
+            self.owners.push(name.to_owned());
+            self.owners.len() - 1
+        })
+    }
+
+    /// Notes a line of a step, or of the part before the first.
+    fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
+        let at = (&line.location, line.word.as_str());
+        let fault = |text: String| DeckError::at(at.0, at.1, Fault::Cannot(text));
+        let owner = self.owner(&line.target);
+        let given = Given {
+            value: line.value,
+            amplitude: line.amplitude,
+        };
+        let (mut found, mut turned) = (false, None);
+        for node in known.sets.nodes(known.model, &line.target, at)? {
+            let (map, key, components) = match known.raw.in_mesh(node) {
+                _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
+                Some(inside) => (&mut self.held, inside, 3),
+                None => continue,
+            };
+            found = true;
+            if let (3, Some(word)) = (components, &line.rotation) {
+                if line.value != 0.0 {
+                    return Err(DeckError::at(at.0, word, Fault::Expected(COMPONENT)));
+                }
+                turned = Some(word);
+            }
+            for component in (0..components).filter(|&c| line.components[c]) {
+                let label = known.model.nodes[node as usize].label;
+                let what = format!("component {} of node {label}", component + 1);
+                let next = map.len();
+                let new = !map.contains_key(&(key, component));
+                if new && step.is_some_and(|step| step > 0) {
+                    return Err(fault(format!(
+                        "{what} is free in the steps before; what is held in one step has to be held from \
+                        the first one on"
+                    )));
+                }
+                let held = map.entry((key, component)).or_insert_with(|| Held {
+                    owner,
+                    track: Track::new(next, at),
+                    before: step.is_none(),
+                });
+                held.give(step, given, &what).map_err(fault)?;
+            }
+        }
+        if let Some(word) = turned {
+            self.ignored.push(Ignored {
+                location: line.location.clone(),
+                word: word.clone(),
+                why: "nodes of solid elements have no rotations to be held",
+            });
+        }
+        if !found {
+            let text = "no elastic element uses these nodes; hold nodes of the body";
+            return Err(fault(text.into()));
+        }
+        Ok(())
+    }
+
+    fn lower(
+        self,
+        model: &Model,
+        timeline: &Timeline,
+    ) -> Result<(Vec<Support>, Vec<String>), DeckError> {
+        let mut histories = Histories::default();
+        // by target, first component, history and components: nodes and their displacements
+        type Key = (usize, usize, Option<usize>, [bool; 3]);
+        let mut groups: BTreeMap<Key, Vec<(u32, [f64; 3])>> = BTreeMap::new();
+        let mut held = self.held.into_iter().peekable();
+        while let Some(((node, component), first)) = held.next() {
+            let mut of_node = vec![(component, first)];
+            while let Some(&((other, component), _)) = held.peek()
+                && other == node
+            {
+                of_node.extend(held.next().map(|(_, held)| (component, held)));
+            }
+            let mut moves = Vec::with_capacity(3);
+            for (component, held) in of_node {
+                let motion = histories.add(model, timeline, &held.track)?;
+                moves.push((component, held.owner, motion));
+            }
+            let all: Vec<usize> = moves.iter().filter_map(|m| Some(m.2?.1)).collect();
+            // one motion takes the components that stay at zero along, as part of it
+            let one = all.first().filter(|h| all.iter().all(|o| o == *h)).copied();
+            // by target and history: components and their displacements
+            type Parts = BTreeMap<(usize, Option<usize>), ([bool; 3], [f64; 3])>;
+            let mut parts = Parts::new();
+            for (component, owner, motion) in moves {
+                let history = motion.map(|m| m.1).or(one);
+                let (on, value) = parts.entry((owner, history)).or_default();
+                on[component] = true;
+                value[component] = motion.map_or(0.0, |m| m.0);
+            }
+            for ((owner, history), (on, value)) in parts {
+                let moves = value.iter().any(|v| *v != 0.0);
+                let first = on.iter().position(|on| *on).unwrap_or(0);
+                let key = (owner, first, history.filter(|_| moves), on);
+                groups.entry(key).or_default().push((node, value));
+            }
+        }
+        let (mut supports, mut names) = (Vec::new(), Vec::new());
+        for ((owner, _, history, on), nodes) in groups {
+            let directions = match on {
+                [true, true, true] => Directions::All,
+                on => Directions::Components(on),
+            };
+            let numbers: Vec<u32> = nodes.iter().map(|n| n.0).collect();
+            let mut support = Support::partial(numbers, directions);
+            if let Some(history) = history {
+                let history = histories.at(history);
+                let first = nodes[0].1;
+                support = if nodes.iter().all(|n| n.1 == first) {
+                    support.with_motion(first, history)
+                } else {
+                    support.with_motions(nodes.iter().map(|n| n.1).collect(), history)
+                };
+            }
+            supports.push(support);
+            names.push(self.owners[owner].clone());
+        }
+        Ok((supports, names))
+    }
+}

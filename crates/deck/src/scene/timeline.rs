@@ -1,0 +1,74 @@
+//! The steps on one axis of time.
+
+use signorini_contact::{Analysis, DifferenceFormula};
+
+use crate::error::{DeckError, Fault};
+use crate::model::{INCREMENTS, Model};
+
+/// A step on the axis of time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    pub(super) start: f64,
+    pub(super) end: f64,
+    /// End of the first increment.
+    pub(super) first: f64,
+    /// Whether what has no amplitude changes along a straight line; else it jumps.
+    pub(super) ramp: bool,
+}
+
+#[derive(Debug)]
+pub(super) struct Timeline {
+    pub(super) spans: Vec<Span>,
+    times: Vec<f64>,
+}
+
+impl Timeline {
+    pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
+        let (mut spans, mut times) = (Vec::new(), Vec::new());
+        let mut start = 0.0;
+        for step in &model.steps {
+            let Some((location, increments)) = &step.time else {
+                continue;
+            };
+            if (times.len() + increments.count) as f64 > INCREMENTS {
+                let fault = Fault::TooMany {
+                    what: "increments in all steps",
+                    most: INCREMENTS as u64,
+                    remedy: "make the increments larger",
+                };
+                return Err(DeckError::at(location, "*STATIC", fault));
+            }
+            for i in 1..=increments.count {
+                let time = start + increments.time(i);
+                if !(time.is_finite() && times.last().is_none_or(|before| time > *before)) {
+                    let text = format!(
+                        "increment {i} does not end later than the one before, by rounding; its step starts at {start}"
+                    );
+                    return Err(DeckError::at(location, "*STATIC", Fault::Cannot(text)));
+                }
+                times.push(time);
+            }
+            let end = start + increments.period;
+            spans.push(Span {
+                start,
+                end,
+                first: start + increments.time(1),
+                ramp: step.ramp,
+            });
+            start = end;
+        }
+        Ok(Self { spans, times })
+    }
+
+    /// Backward Euler over all increments; a single one is static.
+    pub(super) fn analysis(&self) -> Analysis {
+        match self.times[..] {
+            [] => Analysis::statics(),
+            [time] => Analysis::Static { time },
+            _ => Analysis::Quasistatic {
+                times: self.times.clone(),
+                formula: DifferenceFormula::BACKWARD_EULER,
+            },
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Broken decks: cut at every line and byte, bytes flipped, lines repeated and swapped. Nothing panics, and all end quickly.
+
+use std::time::{Duration, Instant};
+
+use signorini_deck::Deck;
+
+use crate::write::{cube, face, folder};
+
+/// A small deck with everything that is read.
+fn valid() -> String {
+    let mesh = signorini_fem_mesh::Brick::new([1.0; 3], [2, 2, 2]);
+    let (element, number) = face(&mesh.build().expect("brick"), 40);
+    let deck = cube(
+        "*NSET, NSET=FEW, GENERATE\n1, 9, 2\n*NSET, NSET=MORE\nFEW, 10\n*AMPLITUDE, NAME=UP, TIME=TOTAL TIME\n0., 0., 1., 1.\n\
+        *SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*FRICTION\n0.3, 1e4\n\
+        *NODE\n91, -9., -9.\n92, 9., -9.\n93, 0., 9.\n94\n*ELEMENT, TYPE=R3D3, ELSET=FLOOR\n91, 91, 92, 93\n\
+        *RIGID BODY, REF NODE=94, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, SPOS\n\
+        *CONTACT PAIR, INTERACTION=I, TYPE=NODE TO SURFACE\nS1, S2\nS5, PLANE\n*BOUNDARY\n94, ENCASTRE\nN5, 1, 3\n\
+        *STEP, INC=20, NLGEOM=NO\n*STATIC, DIRECT\n0.25, 1., 1e-5, 0.5\n*BOUNDARY\nMORE, 3, 3, 0.\n*CLOAD, AMPLITUDE=UP\nN6, 1, 2.5\n\
+        *DLOAD\nHERE, 1.\nALL, GRAV, 9.81, 0., 0., -1.\n*NODE FILE\nU\n*END STEP\n\
+        *STEP\n*STATIC\n*DSLOAD, OP=NEW\nS6, P, 2.\n*BOUNDARY, OP=MOD\nN5, PINNED\n*END STEP\n",
+    );
+    deck.replace("HERE", &format!("{element}, P{number}"))
+}
+
+/// Reads what may be broken, within a second.
+fn survive(path: &std::path::Path, bytes: &[u8]) -> bool {
+    std::fs::write(path, bytes).expect("written");
+    let start = Instant::now();
+    let read = Deck::read(path);
+    assert!(start.elapsed() < Duration::from_secs(5));
+    match read {
+        Ok(deck) => {
+            // scenes from broken decks may be refused, not more
+            let _ = deck.scene();
+            true
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
+    }
+}
+
+/// SplitMix64.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, sides: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % sides as u64) as usize
+    }
+}
+
+#[test]
+fn cut_anywhere() {
+    let text = valid();
+    let (_folder, path) = folder(&[("part.inp", &text)]);
+    Deck::read(&path).expect("the deck before it is broken");
+    for (at, _) in text.match_indices('\n') {
+        survive(&path, &text.as_bytes()[..at]);
+    }
+    for at in (text.len() - 700)..text.len() {
+        survive(&path, &text.as_bytes()[..at]);
+    }
+}
+
+#[test]
+fn bytes_are_flipped() {
+    let text = valid();
+    let (_folder, path) = folder(&[("part.inp", &text)]);
+    let mut dice = Dice(15);
+    for round in 0..4000 {
+        let mut bytes = text.clone().into_bytes();
+        for _ in 0..=(round % 3) {
+            let at = dice.roll(bytes.len());
+            bytes[at] = match dice.roll(4) {
+                0 => dice.roll(256) as u8,
+                1 => b"*,=\n 0123456789.-ENSP"[dice.roll(21)],
+                2 => bytes[dice.roll(text.len())],
+                _ => bytes[at] ^ (1 << dice.roll(8)),
+            };
+        }
+        survive(&path, &bytes);
+    }
+}
+
+#[test]
+fn lines_are_repeated_lost_and_swapped() {
+    let text = valid();
+    let (_folder, path) = folder(&[("part.inp", &text)]);
+    let mut dice = Dice(16);
+    for _ in 0..1500 {
+        let mut lines: Vec<&str> = text.lines().collect();
+        let (a, b) = (dice.roll(lines.len()), dice.roll(lines.len()));
+        match dice.roll(3) {
+            0 => lines.swap(a, b),
+            1 => drop(lines.remove(a)),
+            _ => lines.insert(a, lines[b]),
+        }
+        survive(&path, lines.join("\n").as_bytes());
+    }
+}
+
+/// Small files that ask for much.
+#[test]
+fn bombs() {
+    let (folder, path) = folder(&[("part.inp", "")]);
+    // each file includes the next one twice
+    for i in 0..40 {
+        let text = format!("*INCLUDE, INPUT={0}.inp\n*INCLUDE, INPUT={0}.inp\n", i + 1);
+        std::fs::write(folder.path().join(format!("{i}.inp")), text).expect("written");
+    }
+    assert!(!survive(&path, b"*INCLUDE, INPUT=0.inp\n"));
+    for i in (10..40).rev() {
+        std::fs::write(folder.path().join(format!("{i}.inp")), "** end\n").expect("written");
+    }
+    assert!(!survive(&path, b"*INCLUDE, INPUT=0.inp\n"));
+    // ranges over all numbers, many times, and a ladder of sets
+    let mut many = cube("") + "*NSET, NSET=R, GENERATE\n";
+    many += &"1, 99999999\n".repeat(5000);
+    for i in 0..3000 {
+        many += &format!("*NSET, NSET=L{i}\nR, R, R");
+        if i > 0 {
+            many += &format!(", L{}", i - 1);
+        }
+        many += "\n";
+    }
+    assert!(survive(&path, many.as_bytes()));
+    let long = "9".repeat(2_000_000);
+    for start in ["*NODE\n", "*", "*NODE, NSET=", "*STEP\n*STATIC\n"] {
+        survive(&path, format!("{start}{long}").as_bytes());
+    }
+    survive(
+        &path,
+        cube(&"*STEP\n*STATIC\n1e-6, 1.\n*END STEP\n".repeat(50)).as_bytes(),
+    );
+    survive(&path, ",".repeat(1_000_000).as_bytes());
+    survive(&path, format!("*NODE{}", ",\n".repeat(200_000)).as_bytes());
+    survive(&path, &[0; 100_000]);
+}

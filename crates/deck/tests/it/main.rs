@@ -1,0 +1,8 @@
+//! Decks: what they say, that it is the same as what a program says, and what is refused.
+
+mod broken;
+mod meaning;
+mod reading;
+mod refusals;
+mod same_bits;
+mod write;

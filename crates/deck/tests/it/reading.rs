@@ -1,0 +1,210 @@
+//! How decks are written: cases, blanks, line ends, continuation, comments, included files, sets of sets.
+
+use signorini_contact::Directions;
+use signorini_deck::Deck;
+use signorini_fem_mesh::FacetTag;
+
+use crate::write::{STEEL, cube, folder, read};
+
+const TWO: &str = "*NODE
+ 10, 0., 0., 0.
+ 20, 1., 0., 0.
+ 30, 0., 1., 0.
+ 40, 0., 0., 1.
+ 50, 1., 1., 1.
+ 70, 9., 9., 9.
+*ELEMENT, TYPE=C3D4, ELSET=ALL
+ 5, 10, 20, 30, 40
+ 7, 20, 30, 40, 50
+";
+
+fn same(text: &str) {
+    let (wanted, found) = (read(TWO).expect("deck"), read(text).expect("deck"));
+    assert_eq!(wanted.mesh(), found.mesh());
+    assert_eq!(wanted.node_numbers(), found.node_numbers());
+}
+
+#[test]
+fn the_way_of_writing_does_not_matter() {
+    same(&TWO.replace('\n', "\r\n"));
+    same(&TWO.to_lowercase());
+    same(&TWO.replace("*NODE", "** a comment\n\n *Node \n** another\n"));
+    same(&TWO.replace(
+        "*ELEMENT, TYPE=C3D4, ELSET=ALL",
+        "*element ,\n elset = all ,\n** no\ntype=c3d4",
+    ));
+    same(&TWO.replace(" 5, 10, 20, 30, 40", "5,10,20,\n30,40"));
+    same(
+        &TWO.replace("0., 0., 0.", ",")
+            .replace("1., 0., 0.", "1.D0,"),
+    );
+    same(&format!(
+        "\u{feff}*HEADING\nany text, with = signs\nand more\n{TWO}"
+    ));
+    let latin = TWO.replace("*NODE", "** caf\u{e9}\n*NODE").into_bytes();
+    let latin: Vec<u8> = latin.into_iter().filter(|b| *b != 0xc3).collect();
+    let (_folder, path) = folder(&[("part.inp", "")]);
+    std::fs::write(&path, latin).expect("written");
+    assert_eq!(
+        Deck::read(path).expect("deck").mesh(),
+        read(TWO).expect("deck").mesh()
+    );
+}
+
+#[test]
+fn numbers_are_arbitrary_and_unused_nodes_go() {
+    let deck = read(TWO).expect("deck");
+    assert_eq!(deck.node_numbers(), [10, 20, 30, 40, 50]);
+    assert_eq!(deck.element_numbers(), [5, 7]);
+    assert_eq!(
+        (deck.node(50), deck.node(70), deck.node(1)),
+        (Some(4), None, None)
+    );
+    assert_eq!(deck.mesh().points()[1], [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn sets() {
+    let sets = "*NSET, NSET=A, GENERATE
+10, 30, 10
+*NSET, NSET=B
+70, A,
+50
+*Nset, nset=\"c d\", internal
+b, 40
+*NSET, NSET=EVEN, GENERATE
+1, 100, 20
+*NSET, NSET=A
+50
+*ELSET, ELSET=E
+7
+*ELSET, ELSET=F, GENERATE
+5, 7
+";
+    // 1, 21, 41, ... are no nodes: refused; 10, 30, 50 are
+    assert!(read(&format!("{TWO}{sets}")).is_err());
+    let deck = read(&format!(
+        "{TWO}{}",
+        sets.replace("1, 100, 20", "10, 60, 20")
+    ))
+    .expect("deck");
+    assert_eq!(deck.node_set("A").expect("A"), [0, 1, 2, 4]);
+    assert_eq!(deck.node_set("b").expect("B"), [0, 1, 2, 4]);
+    assert_eq!(deck.node_set("\"C d\"").expect("c d"), [0, 1, 2, 3, 4]);
+    assert_eq!(deck.node_set("Even").expect("EVEN"), [0, 2, 4]);
+    assert_eq!(deck.element_set("E").expect("E"), [1]);
+    assert_eq!(deck.element_set("F").expect("F"), [0, 1]);
+    assert_eq!(deck.element_set("ALL").expect("ALL"), [0, 1]);
+    let names: Vec<&str> = deck.node_sets().collect();
+    assert_eq!(names, ["A", "B", "C D", "EVEN"]);
+    assert_eq!(deck.element_sets().count(), 3);
+}
+
+#[test]
+fn surfaces_that_overlap_share_tags() {
+    let surfaces = "*SURFACE, NAME=ONE, TYPE=ELEMENT\n5, S1\n5, S2\n*SURFACE, NAME=TWO\n5, S2\nE, S4\n*ELSET, ELSET=E\n7\n*SURFACE, NAME=SAME\n5, S2\n5, S1\n";
+    let deck = read(&format!("{TWO}{surfaces}")).expect("deck");
+    let [first, both, second] = [1, 2, 3].map(FacetTag);
+    assert_eq!(deck.surface("one").expect("ONE"), [first, both]);
+    assert_eq!(deck.surface("Two").expect("TWO"), [both, second]);
+    assert_eq!(deck.surface("SAME").expect("SAME"), [first, both]);
+    assert_eq!(deck.mesh().facets().len(), 3);
+    assert_eq!(deck.surfaces().collect::<Vec<_>>(), ["ONE", "TWO", "SAME"]);
+}
+
+#[test]
+fn files_are_included_where_they_stand() {
+    let (nodes, elements) = TWO.split_at(TWO.find("*ELEMENT").expect("elements"));
+    let (head, data) = nodes.split_at(6);
+    let main = format!("{head}*INCLUDE, INPUT=Sub/nodes.txt\n{elements}");
+    let (folder, path) = folder(&[("part.inp", &main)]);
+    std::fs::create_dir(folder.path().join("Sub")).expect("folder");
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.path().join(name), text).expect("written");
+    };
+    // relative to the file that includes
+    write(
+        "Sub/nodes.txt",
+        "** data only\n*Include, Input=\"more.txt\"\n",
+    );
+    write("Sub/more.txt", data);
+    let deck = Deck::read(path).expect("deck");
+    assert_eq!(deck.mesh(), read(TWO).expect("deck").mesh());
+    write("Sub/more.txt", &data.replace("40, 0.", "40, zero"));
+    let error = Deck::read(folder.path().join("part.inp")).expect_err("a word");
+    let location = error.location().expect("a place");
+    assert!(
+        location.file.ends_with("Sub/more.txt") && location.line == 4,
+        "{error}"
+    );
+}
+
+#[test]
+fn what_is_ignored_is_reported() {
+    let rest = "*SURFACE INTERACTION, NAME=I\n1.,\n*FRICTION, SLIP TOLERANCE=0.005\n0.3, 1e5\n\
+        *SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*PREPRINT, ECHO=NO\n*STEP, UNSYMM=YES, NAME=a\n\
+        *STATIC, SOLVER=PARDISO\n*NODE FILE, FREQUENCY=1\nU, RF\n*EL FILE\nS\n*NODE PRINT, NSET=N1\nU\n\
+        *EL PRINT, ELSET=ALL\nS\n*CONTACT FILE\nCSTR\n*CONTROLS, PARAMETERS=CONTACT\n1,\n\
+        *OUTPUT, FIELD\n*RESTART, WRITE\n*END STEP\n";
+    let deck = read(&cube(rest)).expect("deck");
+    let words: Vec<&str> = deck.ignored().iter().map(|i| i.word.as_str()).collect();
+    let wanted = [
+        "1.,",
+        "1e5",
+        "SLIP TOLERANCE=0.005",
+        "*PREPRINT",
+        "UNSYMM=YES",
+        "SOLVER=PARDISO",
+        "*NODE FILE",
+        "*EL FILE",
+        "*NODE PRINT",
+        "*EL PRINT",
+        "*CONTACT FILE",
+        "*CONTROLS",
+        "*OUTPUT",
+        "*RESTART",
+    ];
+    assert_eq!(words, wanted);
+    let first = deck.ignored()[0].to_string();
+    assert!(
+        first.contains("part.inp:") && first.contains("ignored"),
+        "{first}"
+    );
+}
+
+#[test]
+fn a_deck_without_steps_is_a_scene_to_add_to() {
+    let deck = read(&cube("*BOUNDARY\nN5, 1, 3\n")).expect("deck");
+    let scene = deck.scene().expect("scene");
+    assert_eq!((scene.supports().len(), scene.loads().len()), (1, 0));
+    assert_eq!(deck.support_names(), ["N5"]);
+    // blanks in the data of a section, as Abaqus/CAE writes it
+    let text = cube("").replace(
+        STEEL,
+        &STEEL.replace("MATERIAL=STEEL\n", "MATERIAL=STEEL\n,\n"),
+    );
+    assert!(read(&text).expect("deck").scene().is_ok());
+}
+
+/// As PrePoMax writes it: cards that only remove, all six components of solids, one face number a set.
+#[test]
+fn a_deck_of_a_user_interface() {
+    let steps = |pressure: &str| {
+        format!(
+            "** Steps\n*Step, Inc=100\n*Static, Solver=Pardiso\n1, 1, 1E-05, 1E+30\n*Output, Frequency=1\n\
+            *Boundary, op=New\n** Name: Fixed-1\n*Boundary\nN5, 1, 6, 0\n*Cload, op=New\n*Dload, op=New\n\
+            ** Name: Pressure-1\n*Dsload\nS6, P, {pressure}\n*Node file\nRF, U\n*El file\nS, E, NOE\n*End step\n"
+        )
+    };
+    let deck = read(&cube(&(steps("2") + &steps("3")))).expect("deck");
+    let scene = deck.scene().expect("scene");
+    assert_eq!((scene.supports().len(), scene.loads().len()), (1, 1));
+    assert_eq!(scene.supports()[0].directions(), &Directions::All);
+    let history = scene.loads()[0].history();
+    assert_eq!(
+        [0.5, 1.0, 1.5, 2.0].map(|t| 2.0 * history.value(t)),
+        [1.0, 2.0, 2.5, 3.0]
+    );
+    let rotations = deck.ignored().iter().filter(|i| i.word == "6");
+    assert_eq!(rotations.count(), 2);
+}

@@ -1,0 +1,428 @@
+//! Mesh, sets, materials, contact and rigid bodies.
+
+use super::{behind, refused};
+use crate::write::{cube, read};
+
+#[test]
+fn mesh() {
+    for kind in ["C3D10", "C3D8", "S3", "R2D2"] {
+        let line = format!("*ELEMENT, TYPE={kind}");
+        behind(&format!("{line}\n"), &line, &format!("TYPE={kind}"), "C3D4");
+    }
+    behind(
+        "*NODE\n1, 0., 0., 0.\n",
+        "1, 0., 0., 0.",
+        "1",
+        "first in line 2",
+    );
+    behind(
+        "*NODE\n0, 0., 0., 0.\n",
+        "0, 0., 0., 0.",
+        "0",
+        "from 1 to 2147483647",
+    );
+    behind(
+        "*NODE\n9999999999, 0.\n",
+        "9999999999, 0.",
+        "9999999999",
+        "from 1 to 2147483647",
+    );
+    behind(
+        "*NODE\n99, nan, 0.\n",
+        "99, nan, 0.",
+        "nan",
+        "a finite number",
+    );
+    behind(
+        "*NODE\n99, 1e999, 0.\n",
+        "99, 1e999, 0.",
+        "1e999",
+        "a finite number",
+    );
+    behind(
+        "*NODE\n99, 0., 0., 0., 1.\n",
+        "99, 0., 0., 0., 1.",
+        "1.",
+        "three coordinates",
+    );
+    let element = "*ELEMENT, TYPE=C3D4\n";
+    behind(
+        &format!("{element}1, 1, 2, 3, 4\n"),
+        "1, 1, 2, 3, 4",
+        "1",
+        "a second time",
+    );
+    behind(
+        &format!("{element}99, 1, 2, 3, 98\n"),
+        "99, 1, 2, 3, 98",
+        "98",
+        "no node",
+    );
+    behind(
+        &format!("{element}99, 1, 2, 3\n"),
+        "99, 1, 2, 3",
+        "99, 1, 2, 3",
+        "four node numbers",
+    );
+    behind(
+        &format!("{element}99, 1, 2, 4, 10\n"),
+        "99, 1, 2, 4, 10",
+        "99",
+        "no *SOLID SECTION",
+    );
+    behind(
+        &format!("{element}99, 1, 4, 2, 10\n"),
+        "99, 1, 4, 2, 10",
+        "99",
+        "inside out",
+    );
+    let error = read("*NODE\n1, 0., 0., 0.\n").expect_err("no elements");
+    assert!(error.to_string().contains("TYPE=C3D4"), "{error}");
+    let twice = "*NODE\n1\n2, 1.\n3, 0., 1.\n4, 0., 0., 1.\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n2, 1, 2, 3, 4\n";
+    let error = read(twice).expect_err("overlap").to_string();
+    assert!(
+        error.contains("part.inp") && error.contains("make no mesh"),
+        "{error}"
+    );
+}
+
+#[test]
+fn sets_and_surfaces() {
+    behind(
+        "*NSET, NSET=A\n1, 999\n",
+        "1, 999",
+        "999",
+        "no node with this number",
+    );
+    behind(
+        "*NSET, NSET=A\n1, MISSING\n",
+        "1, MISSING",
+        "MISSING",
+        "there are: N1, N2",
+    );
+    behind("*NSET, NSET=A\nA\n", "A", "A", "defined before it");
+    behind(
+        "*NSET, NSET=A, GENERATE\n5, 2\n",
+        "5, 2",
+        "5, 2",
+        "not below the first",
+    );
+    behind(
+        "*NSET, NSET=A, GENERATE\n800, 900\n",
+        "800, 900",
+        "800, 900, 1",
+        "no node",
+    );
+    behind(
+        "*NSET, NSET=A, GENERATE\n1, 2000000000\n",
+        "1, 2000000000",
+        "1, 2000000000",
+        "more than 100000000",
+    );
+    behind(
+        "*SURFACE, NAME=A, TYPE=NODE\n",
+        "*SURFACE, NAME=A, TYPE=NODE",
+        "TYPE=NODE",
+        "no areas",
+    );
+    behind(
+        "*SURFACE, NAME=S1\n1, S1\n",
+        "*SURFACE, NAME=S1",
+        "*SURFACE",
+        "there already",
+    );
+    behind("*SURFACE, NAME=A\nALL\n", "ALL", "ALL", "S1, S2, S3 or S4");
+    behind(
+        "*SURFACE, NAME=A\nALL, S5\n",
+        "ALL, S5",
+        "S5",
+        "S1, S2, S3 or S4",
+    );
+    behind(
+        "*SURFACE, NAME=A\nPART, S1\n",
+        "PART, S1",
+        "PART",
+        "there are: ALL",
+    );
+    behind(
+        "*SURFACE, NAME=A\nALL, S1\n",
+        "ALL, S1",
+        "ALL",
+        "inside the body",
+    );
+    behind(
+        "*SURFACE, NAME=A\n",
+        "*SURFACE, NAME=A",
+        "*SURFACE",
+        "no faces",
+    );
+}
+
+#[test]
+fn materials() {
+    let mesh = "*NODE\n1\n2, 1.\n3, 0., 1.\n4, 0., 0., 1.\n*ELEMENT, TYPE=C3D4, ELSET=ALL\n1, 1, 2, 3, 4\n";
+    let try_one = |rest: &str, line: &str, word: &str, part: &str| {
+        refused(&format!("{mesh}{rest}"), line, word, part);
+    };
+    let section = "*SOLID SECTION, ELSET=ALL, MATERIAL=M";
+    try_one(
+        &format!("{section}\n"),
+        section,
+        "MATERIAL=M",
+        "there is none",
+    );
+    try_one(
+        &format!("*MATERIAL, NAME=M\n{section}\n"),
+        "*MATERIAL, NAME=M",
+        "M",
+        "*ELASTIC",
+    );
+    try_one(
+        "*ELASTIC\n1., 0.3\n",
+        "*ELASTIC",
+        "*ELASTIC",
+        "*MATERIAL before",
+    );
+    try_one(
+        "*MATERIAL, NAME=M\n*MATERIAL, NAME=M\n",
+        "*MATERIAL, NAME=M",
+        "*MATERIAL",
+        "second",
+    );
+    let young = format!("*MATERIAL, NAME=M\n*ELASTIC\n-1., 0.3\n{section}\n");
+    try_one(&young, "-1., 0.3", "-1., 0.3", "Young's modulus is -1");
+    try_one(
+        "*MATERIAL, NAME=M\n*ELASTIC\n1.\n",
+        "1.",
+        "1.",
+        "Poisson's ratio",
+    );
+    try_one(
+        "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3, 0.\n2., 0.3, 100.\n",
+        "2., 0.3, 100.",
+        "2., 0.3, 100.",
+        "temperature",
+    );
+    try_one(
+        "*MATERIAL, NAME=M\n*EXPANSION\n",
+        "*EXPANSION",
+        "*EXPANSION",
+        "temperature",
+    );
+    try_one(
+        "*MATERIAL, NAME=M\n*PLASTIC\n",
+        "*PLASTIC",
+        "*PLASTIC",
+        "elastic",
+    );
+    let both = "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*SOLID SECTION, MATERIAL=M, ELSET=ALL\n";
+    try_one(
+        both,
+        "*SOLID SECTION, MATERIAL=M, ELSET=ALL",
+        "ELSET=ALL",
+        "one section",
+    );
+    let other = "*SOLID SECTION, ELSET=BODY, MATERIAL=M";
+    try_one(&format!("{other}\n"), other, "ELSET=BODY", "there are: ALL");
+}
+
+#[test]
+fn contact() {
+    let law = "*SURFACE INTERACTION, NAME=I\n";
+    let linear = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR";
+    behind(
+        &format!("{law}{linear}\n1e6\n"),
+        linear,
+        "PRESSURE-OVERCLOSURE=LINEAR",
+        "HARD",
+    );
+    behind(
+        &format!("{law}*FRICTION\n-0.3\n"),
+        "-0.3",
+        "-0.3",
+        "at least zero",
+    );
+    behind(
+        &format!("{law}*FRICTION, ROUGH\n"),
+        "*FRICTION, ROUGH",
+        "ROUGH",
+        "SLIP TOLERANCE",
+    );
+    behind(
+        "*FRICTION\n0.3\n",
+        "*FRICTION",
+        "*FRICTION",
+        "*SURFACE INTERACTION before",
+    );
+    let pair = "*CONTACT PAIR, INTERACTION=I";
+    behind(
+        &format!("{pair}\nS1, S2\n"),
+        "S1, S2",
+        "INTERACTION=I",
+        "there is none",
+    );
+    behind(
+        &format!("{law}{pair}\nS1, S9\n"),
+        "S1, S9",
+        "S9",
+        "there are: S1, S2",
+    );
+    behind(
+        &format!("{law}{pair}\nS1, S1\n"),
+        "S1, S1",
+        "S1",
+        "does not touch itself",
+    );
+    behind(&format!("{law}{pair}\nS1\n"), "S1", "S1", "slave");
+    behind(
+        &format!("{law}{pair}\n"),
+        pair,
+        "*CONTACT PAIR",
+        "no surfaces",
+    );
+    let adjust = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.1";
+    behind(
+        &format!("{law}{adjust}\nS1, S2\n"),
+        adjust,
+        "ADJUST=0.1",
+        "SMALL SLIDING",
+    );
+    let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
+    behind(
+        &format!("{law}{odd}\nS1, S2\n"),
+        odd,
+        "TYPE=SIDEWAYS",
+        "MORTAR",
+    );
+}
+
+/// A cube on a rigid plane; `floor` are the corners of the plane and what else changes.
+fn on_a_floor(nodes: &str, rest: &str) -> String {
+    let floor = "*ELEMENT, TYPE=R3D4, ELSET=FLOOR\n900, 101, 102, 103, 104\n*RIGID BODY, REF NODE=109, ELSET=FLOOR\n*SURFACE, NAME=PLANE\nFLOOR, SPOS\n*SURFACE INTERACTION, NAME=I\n";
+    cube(&format!("*NODE\n{nodes}109, 0., 0., 0.\n{floor}{rest}"))
+}
+
+#[test]
+fn rigid_bodies() {
+    let plane = "101, -1., -1.\n102, 2., -1.\n103, 2., 2.\n104, -1., 2.\n";
+    let pair = "*CONTACT PAIR, INTERACTION=I\nS5, PLANE\n";
+    let held = format!("{pair}*BOUNDARY\n109, ENCASTRE\n");
+    assert!(read(&on_a_floor(plane, &held)).is_ok());
+    let try_one = |nodes: &str, rest: &str, line: &str, word: &str, part: &str| {
+        refused(&on_a_floor(nodes, rest), line, word, part);
+    };
+    let body = "*RIGID BODY, REF NODE=109, ELSET=FLOOR";
+    try_one(
+        plane,
+        pair,
+        body,
+        "REF NODE=109",
+        "not held along component 1",
+    );
+    let free = format!("{pair}*BOUNDARY\n109, PINNED\n");
+    try_one(plane, &free, body, "REF NODE=109", "component 4");
+    let step = |lines: &str| format!("{held}*STEP\n*STATIC\n{lines}*END STEP\n");
+    try_one(
+        plane,
+        &step("*BOUNDARY\n109, 5, 5, 0.1\n"),
+        body,
+        "REF NODE=109",
+        "turns",
+    );
+    let two = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n".to_owned()
+        + &step("*BOUNDARY\n109, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n109, 2, 2, 0.1\n");
+    try_one(plane, &two, body, "REF NODE=109", "different histories");
+    try_one(
+        plane,
+        &step("*DSLOAD\nPLANE, P, 1.\n"),
+        "PLANE, P, 1.",
+        "PLANE",
+        "acts on nothing",
+    );
+    try_one(
+        plane,
+        &step("*CLOAD\n109, 1, 1.\n"),
+        "109, 1, 1.",
+        "109",
+        "no elastic element",
+    );
+    try_one(
+        plane,
+        &step("*DLOAD\n900, P1, 1.\n"),
+        "900, P1, 1.",
+        "900",
+        "acts on nothing",
+    );
+    let bent = plane.replace("103, 2., 2.", "103, 2., 2., 0.1");
+    try_one(&bent, &held, "S5, PLANE", "PLANE", "not flat");
+    let small = plane.replace("103, 2., 2.", "103, 0.5, 0.5");
+    try_one(
+        &small,
+        &held,
+        "S5, PLANE",
+        "PLANE",
+        "lies beside the rigid surface",
+    );
+    let swapped = held.replace("S5, PLANE", "PLANE, S5");
+    try_one(plane, &swapped, "PLANE, S5", "PLANE", "swap them");
+    let side = "*SURFACE, NAME=B\n900, S1\n";
+    try_one(
+        plane,
+        &format!("{held}{side}"),
+        "900, S1",
+        "900",
+        "SPOS or SNEG",
+    );
+    let mixed = "*SURFACE, NAME=B\n900, SPOS\n1, S1\n";
+    try_one(
+        plane,
+        &format!("{mixed}{held}"),
+        "1, S1",
+        "1",
+        "rigid and elastic faces",
+    );
+    behind("*SURFACE, NAME=B\n1, SPOS\n", "1, SPOS", "1", "S1 to S4");
+    let other = "*ELSET, ELSET=MORE\n900\n*RIGID BODY, ELSET=MORE, REF NODE=1\n";
+    let line = "*RIGID BODY, ELSET=MORE, REF NODE=1";
+    try_one(
+        plane,
+        &format!("{other}{held}"),
+        line,
+        "ELSET=MORE",
+        "another rigid body",
+    );
+    let many = "*ELSET, ELSET=MORE\n1\n*RIGID BODY, ELSET=MORE, REF NODE=N5\n";
+    let line = "*RIGID BODY, ELSET=MORE, REF NODE=N5";
+    try_one(
+        plane,
+        &format!("{many}{held}"),
+        line,
+        "REF NODE=N5",
+        "one node",
+    );
+    let bonded = "*ELEMENT, TYPE=R3D3, ELSET=FLOOR\n901, 101, 1, 103\n";
+    try_one(
+        plane,
+        &format!("{bonded}{held}"),
+        "901, 101, 1, 103",
+        "901",
+        "node 1 is of a rigid body and of elastic elements",
+    );
+    let corner = "*ELSET, ELSET=MORE\n901\n*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n*RIGID BODY, ELSET=MORE, REF NODE=2\n";
+    let line = "*RIGID BODY, ELSET=MORE, REF NODE=2";
+    try_one(
+        plane,
+        &format!("{corner}{held}"),
+        line,
+        "REF NODE=2",
+        "node 2 is of a rigid body",
+    );
+    let loose = "*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n";
+    try_one(
+        plane,
+        &format!("{loose}{held}"),
+        "901, 101, 102, 103",
+        "901",
+        "no rigid body",
+    );
+}

@@ -1,0 +1,93 @@
+//! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
+//!
+//! Prints what the deck asks for and does not get, the plan, and a line a step. With `--out` a ParaView series of displacement,
+//! stress and contact force is written, with the undeformed body at time 0.
+
+use std::path::{Path, PathBuf};
+
+use signorini::deck::Deck;
+use signorini::fem_mesh::fields;
+use signorini::fem_mesh::output::{Field, PvdSeries};
+use signorini::prelude::*;
+
+const USAGE: &str = "usage: deck PART.inp [--out FOLDER]";
+
+fn main() -> Result<(), Error> {
+    let (mut part, mut out) = (None, None);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--out" => out = arguments.next().map(PathBuf::from),
+            _ if part.is_none() && !argument.starts_with('-') => part = Some(argument),
+            other => {
+                eprintln!("{other:?} is not understood; {USAGE}");
+                std::process::exit(2);
+            }
+        }
+    }
+    let Some(part) = part else {
+        eprintln!("{USAGE}");
+        std::process::exit(2);
+    };
+    run(Path::new(&part), out.as_deref())
+}
+
+fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
+    let deck = Deck::read(part)?;
+    for ignored in deck.ignored() {
+        println!("{ignored}");
+    }
+    let name = part.file_stem().unwrap_or_default().to_string_lossy();
+    let mut series = match out {
+        Some(folder) => Some(PvdSeries::create(folder, &name)?),
+        None => None,
+    };
+    let mut simulation = Simulation::new(deck.scene()?, Settings::default())?;
+    println!("{}", simulation.plan());
+    if let Some(series) = &mut series {
+        let rest = vec![[0.0; 3]; deck.mesh().points().len()];
+        series.write(
+            0.0,
+            deck.mesh(),
+            &[Field::vector("displacement", &rest)],
+            &[],
+        )?;
+    }
+    println!(
+        "      time  products    touch    slide  normal force  friction force  largest u  certificate"
+    );
+    while !simulation.is_finished() {
+        let step = simulation.step()?;
+        let (sum, u) = (step.summary(), step.displacement());
+        let length = |u: &[f64; 3]| u[0].hypot(u[1]).hypot(u[2]);
+        let largest = u.iter().map(length).fold(0.0, f64::max);
+        println!(
+            "{:10.4} {:9} {:8} {:8} {:13.5e} {:15.5e} {largest:10.3e} {:12.0e}",
+            step.time(),
+            step.report().counters.products,
+            sum.active,
+            sum.slip,
+            sum.normal_force,
+            length(&sum.friction_force),
+            step.certificate().largest()
+        );
+        if let Some(series) = &mut series {
+            let stress = step.stress();
+            let mises = stress.iter().map(fields::von_mises).collect();
+            let nodes = [
+                Field::vector("displacement", &u),
+                Field::vector("contact_force", &step.contact_force_field()),
+            ];
+            let cells = [
+                Field::scalar("von Mises", mises),
+                Field::symmetric_tensor("stress", &stress),
+            ];
+            series.write(step.time(), deck.mesh(), &nodes, &cells)?;
+        }
+        step.require_converged()?;
+    }
+    if let Some(series) = series {
+        println!("written: {}", series.path().display());
+    }
+    Ok(())
+}
