@@ -46,16 +46,9 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
     println!("{}", simulation.plan());
     if let Some(series) = &mut series {
         let rest = vec![[0.0; 3]; deck.mesh().points().len()];
-        series.write(
-            0.0,
-            deck.mesh(),
-            &[Field::vector("displacement", &rest)],
-            &[],
-        )?;
+        series.write(0.0, deck.mesh(), &[Field::vector("displacement", &rest)], &[])?;
     }
-    println!(
-        "      time  products    touch    slide  normal force  friction force  largest u  certificate"
-    );
+    println!("      time  products    touch    slide  normal force  friction force  largest u  certificate");
     while !simulation.is_finished() {
         let step = simulation.step()?;
         let (sum, u) = (step.summary(), step.displacement());

@@ -31,9 +31,7 @@ fn main() -> Result<(), QpError> {
     for expansion in [Expansion::FixedStep, Expansion::ProjectedCg] {
         let (report, resting, kkt) = string(expansion)?;
         let (products, cost) = (report.products.total(), report.cost);
-        println!(
-            "{expansion:?}: {products} products, {resting} nodes rest, cost {cost:.9}, KKT {kkt:.0e}"
-        );
+        println!("{expansion:?}: {products} products, {resting} nodes rest, cost {cost:.9}, KKT {kkt:.0e}");
     }
     let (x, multiplier, kkt) = disc()?;
     println!("disc and equality: {x:.9?}, multiplier {multiplier:.9}, KKT {kkt:.0e}");
@@ -73,9 +71,7 @@ pub fn disc() -> Result<([f64; 3], f64, f64), QpError> {
         .with_equality(1e-10);
     let (mut x, mut mu, mut work) = ([0.0; 3], [0.0], SmalseWorkspace::new(&a, &c));
     let (s, hook) = (&settings, &mut |_: &[f64], _: &mut ProductSet| false);
-    smalse(
-        &a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work,
-    )?;
+    smalse(&a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work)?;
     let multiplier = work.equality_multiplier();
     let (c, e) = (&c, &e);
     let equality = kkt::EqualityPart { c, e, multiplier };

@@ -12,9 +12,7 @@ fn main() -> Result<(), Error> {
     let mut pulls = Vec::new();
     for method in [Method::default(), Method::paper()] {
         println!("method {}", method.kind());
-        println!(
-            "  t in s  products  stick  slip  normal in N  friction in N  dissipation in J  certificate"
-        );
+        println!("  t in s  products  stick  slip  normal in N  friction in N  dissipation in J  certificate");
         let settings = Settings::default().with_method(method).with_tolerance(1e-8);
         let mut simulation = Simulation::new(scene(BOUND)?, settings)?;
         let mut pull = 0.0;
@@ -50,7 +48,5 @@ pub fn scene(bound: f64) -> Result<Scene, Error> {
         .with_load(pull.with_history(History::ramp(1.0, 1.0)?))
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::tresca(bound)))
         .with_boxes([3, 1, 1])
-        .with_analysis(
-            Analysis::quasistatic(1.0, 5).with_formula(DifferenceFormula::BACKWARD_EULER),
-        ))
+        .with_analysis(Analysis::quasistatic(1.0, 5).with_formula(DifferenceFormula::BACKWARD_EULER)))
 }

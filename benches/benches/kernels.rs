@@ -30,10 +30,7 @@ fn set_up(c: &mut Criterion) -> Result<(), Failure> {
             b.iter(|| black_box(body.system(true, InverseKind::Auto)));
         });
     }
-    for (name, kind) in [
-        ("sparse", InverseKind::Sparse),
-        ("dense", InverseKind::Dense),
-    ] {
+    for (name, kind) in [("sparse", InverseKind::Sparse), ("dense", InverseKind::Dense)] {
         let body = Body::new(2)?;
         group.bench_function(BenchmarkId::new("24 different subdomains", name), |b| {
             b.iter(|| black_box(body.system(false, kind)));
@@ -54,10 +51,7 @@ fn products(c: &mut Criterion) -> Result<(), Failure> {
         group.bench_function(BenchmarkId::new("F x", n), |b| {
             b.iter(|| f.apply(black_box(&x), &mut y, &mut scratch));
         });
-        for (name, m) in [
-            ("lumped", system.lumped()?),
-            ("Dirichlet", system.dirichlet()?),
-        ] {
+        for (name, m) in [("lumped", system.lumped()?), ("Dirichlet", system.dirichlet()?)] {
             let mut scratch = m.scratch();
             group.bench_function(BenchmarkId::new(name, n), |b| {
                 b.iter(|| m.apply(black_box(&x), &mut y, &mut scratch));
@@ -81,18 +75,10 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
             b.iter(|| factor.solve(black_box(&mut alpha), &mut scratch));
         });
         group.bench_function(BenchmarkId::new("G x", n), |b| {
-            b.iter(|| {
-                system
-                    .coarse()
-                    .apply(black_box(&x), &mut alpha, &mut scratch)
-            });
+            b.iter(|| system.coarse().apply(black_box(&x), &mut alpha, &mut scratch));
         });
         group.bench_function(BenchmarkId::new("G^T y", n), |b| {
-            b.iter(|| {
-                system
-                    .coarse()
-                    .apply_transpose(black_box(&alpha), &mut x, &mut scratch)
-            });
+            b.iter(|| system.coarse().apply_transpose(black_box(&alpha), &mut x, &mut scratch));
         });
         if let Some(rows) = factor.orthonormal() {
             group.bench_function(BenchmarkId::new("P = I - C^T C", n), |b| {
@@ -103,30 +89,23 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
             });
         }
         let contact = system.gluing().ranges().contact().end;
-        for (name, kind) in [
-            ("split", ActiveSetFactor::Split),
-            ("sparse", ActiveSetFactor::Sparse),
-        ] {
+        for (name, kind) in [("split", ActiveSetFactor::Split), ("sparse", ActiveSetFactor::Sparse)] {
             let mut space = ActiveSetProjector::with_factor(system.coarse(), contact, None, kind)?;
             let mut w = vec![1.0; x.len()];
             let mut k = 0;
-            group.bench_function(
-                BenchmarkId::new(format!("change of active set, {name}"), n),
-                |b| {
-                    b.iter(|| {
-                        k += 1;
-                        w[k % contact] = 1.0 - w[k % contact];
-                        space.set_weights(black_box(&w))
-                    });
-                },
-            );
+            group.bench_function(BenchmarkId::new(format!("change of active set, {name}"), n), |b| {
+                b.iter(|| {
+                    k += 1;
+                    w[k % contact] = 1.0 - w[k % contact];
+                    space.set_weights(black_box(&w))
+                });
+            });
             group.bench_function(BenchmarkId::new(format!("projector, {name}"), n), |b| {
                 b.iter(|| space.project(black_box(&mut x)));
             });
-            group.bench_function(
-                BenchmarkId::new(format!("projector of a step, {name}"), n),
-                |b| b.iter(|| space.project_step(black_box(&mut x))),
-            );
+            group.bench_function(BenchmarkId::new(format!("projector of a step, {name}"), n), |b| {
+                b.iter(|| space.project_step(black_box(&mut x)))
+            });
             let (change, mut to) = (wave(contact), x.clone());
             group.bench_function(BenchmarkId::new(format!("compensation, {name}"), n), |b| {
                 b.iter(|| space.compensate(black_box(&x), &change, &mut to));

@@ -15,9 +15,7 @@ use signorini_benches::{Body, Failure, MEMORY, gemm, seconds, triad, wave};
 fn product(quick: bool, system: &Tfeti, threads: usize) -> Result<f64, Failure> {
     let f = system.dual();
     let (x, mut y, mut scratch) = (wave(f.dim()), wave(f.dim()), f.scratch());
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     Ok(pool.install(|| seconds(quick, || f.apply(&x, &mut y, &mut scratch))))
 }
 
@@ -30,9 +28,7 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
     let mut space = ActiveSetProjector::new(system.coarse(), contact, None)?;
     let (lumped, mut w, mut k) = (system.lumped()?, vec![1.0; x.len()], 0);
     let mut scratch = lumped.scratch();
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     Ok(pool.install(|| {
         let m = seconds(quick, || lumped.apply(&x, &mut y, &mut scratch));
         let p = seconds(quick, || {
@@ -64,9 +60,7 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
 fn main() -> Result<(), Failure> {
     let quick = std::env::args().any(|a| a == "--test");
     let sizes = if quick { 1..=2 } else { 1..=5 };
-    println!(
-        "Shared subdomains. Times in ms; ratio = F over the better of both dense products A X and X A.\n"
-    );
+    println!("Shared subdomains. Times in ms; ratio = F over the better of both dense products A X and X A.\n");
     println!(
         "| n | threads | F | A X | X A | ratio | lumped | both projectors | vectors | share of an iteration | slip \
          bounds followed | share | change of active set | set-up / F |"
@@ -77,14 +71,11 @@ fn main() -> Result<(), Failure> {
         let system = body.system(true, InverseKind::Auto)?;
         let size = system.report().classes.iter().map(|c| c.boundary).max();
         for threads in [1, 2] {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()?;
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
             let time = product(quick, &system, threads)?;
             let [left, right] = gemm(quick, system.dual().flops(), size.unwrap_or(1), threads)?;
             let [m, p, v, follow, change] = parts(quick, &system, threads)?;
-            let setup =
-                pool.install(|| seconds(quick, || drop(body.system(true, InverseKind::Auto))));
+            let setup = pool.install(|| seconds(quick, || drop(body.system(true, InverseKind::Auto))));
             println!(
                 "| {n} | {threads} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.3} | {:.3} | {:.2} | {:.3} | {:.2} | \
                  {:.3} | {:.1} |",
@@ -113,21 +104,13 @@ fn main() -> Result<(), Failure> {
     );
     for n in sizes.clone().take_while(|n| *n <= 4) {
         let body = Body::new(n)?;
-        for (name, kind) in [
-            ("sparse", InverseKind::Sparse),
-            ("dense", InverseKind::Dense),
-        ] {
+        for (name, kind) in [("sparse", InverseKind::Sparse), ("dense", InverseKind::Dense)] {
             let system = body.system(false, kind)?;
             let bytes: u64 = match kind {
                 InverseKind::Sparse => system.report().inverse_bytes,
                 _ => {
                     let block = |size: usize| 8 * (size * size) as u64;
-                    system
-                        .report()
-                        .classes
-                        .iter()
-                        .map(|c| block(c.boundary))
-                        .sum()
+                    system.report().classes.iter().map(|c| block(c.boundary)).sum()
                 }
             };
             for threads in [1, 2] {

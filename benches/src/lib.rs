@@ -5,9 +5,7 @@ use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 use signorini::fem_mesh::{Decomposition, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::internal::InverseKind;
-use signorini::tfeti::{
-    ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError,
-};
+use signorini::tfeti::{ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 use signorini_studies::brick::{Block, Loading, steel};
 use std::time::Instant;
 
@@ -67,8 +65,7 @@ pub fn wave(length: usize) -> Vec<f64> {
 pub fn seconds(quick: bool, mut body: impl FnMut()) -> f64 {
     let mut times = Vec::new();
     let started = Instant::now();
-    while times.is_empty() || (!quick && (times.len() < 7 || started.elapsed().as_secs_f64() < 0.7))
-    {
+    while times.is_empty() || (!quick && (times.len() < 7 || started.elapsed().as_secs_f64() < 0.7)) {
         let t = Instant::now();
         body();
         times.push(t.elapsed().as_secs_f64());
@@ -82,15 +79,9 @@ pub fn seconds(quick: bool, mut body: impl FnMut()) -> f64 {
 pub fn gemm(quick: bool, flops: u64, size: usize, threads: usize) -> Result<[f64; 2], Failure> {
     let members = (flops as f64 / (2 * size * size) as f64 / threads as f64).ceil() as usize;
     let a = Mat::<f64>::from_fn(size, size, |i, j| 1.0 / (1.0 + (i + j) as f64));
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let time = |left: bool| {
-        let (rows, columns) = if left {
-            (size, members)
-        } else {
-            (members, size)
-        };
+        let (rows, columns) = if left { (size, members) } else { (members, size) };
         let mut pairs: Vec<(Mat<f64>, Mat<f64>)> = (0..threads)
             .map(|_| {
                 let x = Mat::from_fn(rows, columns, |i, j| ((i * 7 + j) % 13) as f64);
@@ -99,14 +90,7 @@ pub fn gemm(quick: bool, flops: u64, size: usize, threads: usize) -> Result<[f64
             .collect();
         let product = |(x, y): &mut (Mat<f64>, Mat<f64>)| {
             let (l, r) = if left { (&a, &*x) } else { (&*x, &a) };
-            matmul(
-                y.as_mut(),
-                Accum::Replace,
-                l.as_ref(),
-                r.as_ref(),
-                1.0,
-                Par::Seq,
-            );
+            matmul(y.as_mut(), Accum::Replace, l.as_ref(), r.as_ref(), 1.0, Par::Seq);
         };
         pool.install(|| seconds(quick, || pairs.par_iter_mut().for_each(product)))
     };
@@ -122,9 +106,7 @@ pub fn triad(quick: bool, threads: usize, bytes: u64) -> Result<f64, Failure> {
     let length = (bytes / 24).clamp(1, if quick { 1 << 18 } else { 1 << 32 }) as usize;
     let chunk = length.div_ceil(8 * threads).min(1 << 16);
     let (mut a, b, c) = (vec![0.0; length], wave(length), wave(length));
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let time = pool.install(|| {
         seconds(quick, || {
             a.par_chunks_mut(chunk)

@@ -22,10 +22,7 @@ fn the_readme_shows_the_first_program() {
         .split_once("\n\n")
         .map_or(example, |(_, program)| program)
         .trim();
-    assert!(
-        readme.contains(program),
-        "copy examples/first.rs into the README"
-    );
+    assert!(readme.contains(program), "copy examples/first.rs into the README");
     assert!(program.lines().count() <= 40);
 }
 
@@ -43,8 +40,7 @@ fn a_slip_bound_that_is_data_takes_one_quadratic_program_a_step() {
     for method in [Method::paper(), Method::default()] {
         let programs = usize::from(method.kind().to_string() == "paper");
         let settings = Settings::default().with_method(method).with_tolerance(1e-8);
-        let mut simulation =
-            Simulation::new(tresca::scene(3e7).expect("scene"), settings).expect("set-up");
+        let mut simulation = Simulation::new(tresca::scene(3e7).expect("scene"), settings).expect("set-up");
         while !simulation.is_finished() {
             let result = simulation.step().expect("step");
             result.require_converged().expect("convergence");

@@ -49,19 +49,12 @@ pub fn execute(options: &BodiesOptions, out: &mut impl Write) -> Result<Outcome,
     let common = &options.common;
     let scene = two_bodies::scene(common.cells, options.steps, options.softness)?;
     let header = common.header(1, "bodies", "backward-euler");
-    let folder = options
-        .out
-        .as_ref()
-        .map(|folder| folder.join(header.label()));
-    let mut files = folder
-        .as_ref()
-        .map(|folder| RunFiles::new(folder, 1, false));
+    let folder = options.out.as_ref().map(|folder| folder.join(header.label()));
+    let mut files = folder.as_ref().map(|folder| RunFiles::new(folder, 1, false));
     let pool = pool(common.threads)?;
     let outcome = pool.install(|| {
         run_with(scene, common.settings(), &header, &mut |simulation, _| {
-            files
-                .as_mut()
-                .map_or(Ok(()), |files| files.write(simulation))
+            files.as_mut().map_or(Ok(()), |files| files.write(simulation))
         })
     })?;
     let run = &outcome.record;

@@ -48,10 +48,7 @@ pub const KNOWN: [Known; 9] = [
 
 #[allow(dead_code)]
 fn main() -> ExitCode {
-    exit(execute(
-        &FrictionlessOptions::parse(),
-        &mut std::io::stdout(),
-    ))
+    exit(execute(&FrictionlessOptions::parse(), &mut std::io::stdout()))
 }
 
 /// Pressure on the top only, a smooth floor below the gap.
@@ -68,10 +65,7 @@ fn scene(n: usize, cells: usize, traction: f64) -> Result<Scene, Failure> {
 }
 
 /// Solves all sizes and prints the table.
-pub fn execute(
-    options: &FrictionlessOptions,
-    out: &mut impl Write,
-) -> Result<Vec<Outcome>, Failure> {
+pub fn execute(options: &FrictionlessOptions, out: &mut impl Write) -> Result<Vec<Outcome>, Failure> {
     let common = &options.common;
     let pool = pool(common.threads)?;
     let mut outcomes = Vec::new();

@@ -23,10 +23,7 @@ const CONTACT_RADIUS: f64 = 0.8;
 
 /// Options of `parts`.
 #[derive(Debug, Clone, PartialEq, Parser)]
-#[command(
-    name = "parts",
-    about = "Real parts on meshes of Gmsh, cut by the library"
-)]
+#[command(name = "parts", about = "Real parts on meshes of Gmsh, cut by the library")]
 pub struct PartsOptions {
     /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, sphere, punch, plates, tooth.
     #[arg(value_name = "MESH", default_value = "studies/meshes")]
@@ -58,10 +55,7 @@ pub struct PartRun {
 }
 
 /// Solves all parts in all partitions and prints a row for each.
-pub fn execute(
-    options: &PartsOptions,
-    out: &mut (impl Write + Send),
-) -> Result<Vec<PartRun>, Failure> {
+pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<Vec<PartRun>, Failure> {
     let pool = pool(options.threads)?;
     writeln!(
         out,
@@ -79,11 +73,7 @@ pub fn execute(
         }
     }
     for (run, hertz) in runs.iter().filter_map(|r| Some((r, r.hertz.as_ref()?))) {
-        writeln!(
-            out,
-            "\n{}, {} pressed nodes: {hertz}",
-            run.part, hertz.nodes
-        )?;
+        writeln!(out, "\n{}, {} pressed nodes: {hertz}", run.part, hertz.nodes)?;
     }
     Ok(runs)
 }
@@ -182,16 +172,11 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             .with_support(Support::partial(surface("x")?, component(0)))
             .with_support(Support::partial(surface("y")?, component(1)))
             .with_load(push("top", [0.0, 0.0, -Hertz::force() / 4.0])?)
-            .with_contact(Contact::half_space(
-                surface("ball")?,
-                [0.0; 3],
-                [0.0, 0.0, 1.0],
-            )),
+            .with_contact(Contact::half_space(surface("ball")?, [0.0; 3], [0.0, 0.0, 1.0])),
         // pressed, then pushed with half of what friction holds
         "punch" => bare
             .with_contact(
-                Contact::half_space(surface("floor")?, [0.0; 3], [0.0, 0.0, 1.0])
-                    .with_friction(Friction::coulomb(0.3)),
+                Contact::half_space(surface("floor")?, [0.0; 3], [0.0, 0.0, 1.0]).with_friction(Friction::coulomb(0.3)),
             )
             .with_load(push("top", [0.0, 0.0, -20e3])?)
             .with_load(push("top", [3e3, 0.0, 0.0])?.with_history(ramp))
@@ -202,9 +187,7 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             let above = Contact::rigid(surface("above")?)
                 .with_friction(Friction::coulomb(0.2))
                 .with_motion([0.02, 0.0, -0.005], ramp);
-            bare.with_contact(below)
-                .with_contact(above)
-                .with_analysis(steps)
+            bare.with_contact(below).with_contact(above).with_analysis(steps)
         }
         // a rack presses the flank, 20 degrees from the vertical, and rubs upwards along it
         "tooth" => {
@@ -254,11 +237,7 @@ impl Hertz {
 
     fn new(simulation: &Simulation) -> Option<Self> {
         let result = simulation.result()?;
-        let pressed: Vec<_> = result
-            .points()
-            .iter()
-            .filter(|p| p.force()[2] > 0.0)
-            .collect();
+        let pressed: Vec<_> = result.points().iter().filter(|p| p.force()[2] > 0.0).collect();
         let force: f64 = 4.0 * pressed.iter().map(|p| p.force()[2]).sum::<f64>();
         let radius = (3.0 * force * RADIUS / (4.0 * Self::modulus())).cbrt();
         let area = std::f64::consts::PI * radius * radius;
@@ -305,9 +284,6 @@ pub fn small(part: &str) -> PathBuf {
         ("plates", "3.5"),
         ("tooth", "4"),
     ];
-    let size = sizes
-        .iter()
-        .find(|(name, _)| *name == part)
-        .map_or("", |s| s.1);
+    let size = sizes.iter().find(|(name, _)| *name == part).map_or("", |s| s.1);
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("meshes/{part}-{size}.msh"))
 }

@@ -199,11 +199,7 @@ impl Block {
         if let Some(friction) = &self.floor {
             let gap = self.gap * self.metre;
             let floor = Contact::rigid(brick::Z_MIN).with_friction(friction.clone());
-            scene = scene.with_contact(if gap == 0.0 {
-                floor
-            } else {
-                floor.with_gap(gap)
-            });
+            scene = scene.with_contact(if gap == 0.0 { floor } else { floor.with_gap(gap) });
         }
         if self.steps > 0 {
             let analysis = Analysis::quasistatic(1.0, self.steps);
@@ -219,9 +215,7 @@ pub fn by_centre(mesh: &TetMesh, number: impl Fn([f64; 3]) -> u32) -> Vec<u32> {
         let corners = mesh.tet_points(tet);
         [0, 1, 2].map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / 4.0)
     };
-    (0..mesh.tets().len())
-        .map(|tet| number(centre(tet)))
-        .collect()
+    (0..mesh.tets().len()).map(|tet| number(centre(tet))).collect()
 }
 
 /// Part numbers of the tetrahedra of a mesh: the nearest of some points.

@@ -34,17 +34,9 @@ pub struct Curve {
 
 impl Curve {
     /// A curve.
-    pub fn new(
-        name: impl Into<String>,
-        colour: usize,
-        points: impl IntoIterator<Item = (f64, f64)>,
-    ) -> Self {
+    pub fn new(name: impl Into<String>, colour: usize, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (name, points) = (name.into(), points.into_iter().collect());
-        Self {
-            name,
-            colour,
-            points,
-        }
+        Self { name, colour, points }
     }
 
     fn colour(&self) -> RGBColor {
@@ -71,12 +63,7 @@ pub struct Chart {
 
 /// Charts in `rows` and `columns`. A heading that is not empty stands above, with the names of the first chart's
 /// curves.
-pub fn page(
-    size: (u32, u32),
-    [rows, columns]: [usize; 2],
-    heading: &str,
-    charts: &[Chart],
-) -> Result<String, Failure> {
+pub fn page(size: (u32, u32), [rows, columns]: [usize; 2], heading: &str, charts: &[Chart]) -> Result<String, Failure> {
     sheet(size, |root| {
         let (above, below) = root.split_vertically(if heading.is_empty() { 0 } else { 46 });
         if !heading.is_empty() {
@@ -92,18 +79,12 @@ pub fn page(
             }
         }
         let areas = below.split_evenly((rows, columns));
-        areas
-            .iter()
-            .zip(charts)
-            .try_for_each(|(area, chart)| one(area, chart))
+        areas.iter().zip(charts).try_for_each(|(area, chart)| one(area, chart))
     })
 }
 
 /// The text of a white page on which something is drawn.
-fn sheet(
-    size: (u32, u32),
-    draw: impl FnOnce(&Area<'_>) -> Result<(), Failure>,
-) -> Result<String, Failure> {
+fn sheet(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Result<(), Failure>) -> Result<String, Failure> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -128,12 +109,7 @@ fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Failure> {
                 .points
                 .iter()
                 .map(|p| (place(p.0, chart.log[0]), place(p.1, chart.log[1])));
-            (
-                c,
-                points
-                    .filter(|p| p.0.is_finite() && p.1.is_finite())
-                    .collect(),
-            )
+            (c, points.filter(|p| p.0.is_finite() && p.1.is_finite()).collect())
         })
         .collect();
     let all = || curves.iter().flat_map(|c| &c.1);
@@ -143,11 +119,7 @@ fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Failure> {
     let y = range(all().map(|p| p.1), chart.log[1], room);
     let label = |log: bool| {
         move |v: &f64| {
-            if log {
-                short(10f64.powf(*v))
-            } else {
-                short(*v)
-            }
+            if log { short(10f64.powf(*v)) } else { short(*v) }
         }
     };
     let mut drawn = ChartBuilder::on(area)
@@ -174,8 +146,7 @@ fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Failure> {
         let line = LineSeries::new(points.iter().copied(), colour.stroke_width(2));
         let line = drawn.draw_series(line)?;
         if chart.legend {
-            let sample =
-                move |(x, y)| PathElement::new([(x, y), (x + 20, y)], colour.stroke_width(2));
+            let sample = move |(x, y)| PathElement::new([(x, y), (x + 20, y)], colour.stroke_width(2));
             line.label(curve.name.as_str()).legend(sample);
         }
         if chart.marks {
@@ -195,11 +166,7 @@ fn one(area: &Area<'_>, chart: &Chart) -> Result<(), Failure> {
 }
 
 /// Groups of horizontal bars, each with its count: one group a name, in it one bar for each of `kinds` (or none).
-pub fn bars(
-    title: &str,
-    kinds: &[String],
-    groups: &[(&str, Vec<Option<usize>>)],
-) -> Result<String, Failure> {
+pub fn bars(title: &str, kinds: &[String], groups: &[(&str, Vec<Option<usize>>)]) -> Result<String, Failure> {
     let (bar, top, left, right) = (12, 62, 430, 920);
     let group = bar * kinds.len() as i32 + 12;
     let bottom = top + group * groups.len() as i32;
@@ -223,10 +190,7 @@ pub fn bars(
                 root.draw_text(&count.to_string(), &font(11), (end + 5, y - 1))?;
             }
         }
-        Ok(root.draw(&PathElement::new(
-            [(left, top - 6), (left, bottom)],
-            COLOURS[5],
-        ))?)
+        Ok(root.draw(&PathElement::new([(left, top - 6), (left, bottom)], COLOURS[5]))?)
     })
 }
 

@@ -67,18 +67,11 @@ fn write_body(series: &mut PvdSeries, result: &StepResult, reactions: bool) -> R
     if reactions {
         points.push(Field::vector("reaction", &result.reaction_field()));
     }
-    let cells = [Field::scalar(
-        "von_mises",
-        stress.iter().map(von_mises).collect(),
-    )];
+    let cells = [Field::scalar("von_mises", stress.iter().map(von_mises).collect())];
     Ok(series.write_pieces(result.time(), mesh, result.decomposition(), &points, &cells)?)
 }
 
-fn write_contact(
-    series: &mut PvdSeries,
-    surface: &Surface,
-    result: &StepResult,
-) -> Result<(), Failure> {
+fn write_contact(series: &mut PvdSeries, surface: &Surface, result: &StepResult) -> Result<(), Failure> {
     let mesh = result.scene().mesh();
     let patch = ContactPatch::new(surface, mesh.points(), result.points());
     let u = result.displacement();
@@ -89,10 +82,7 @@ fn write_contact(
         Field::scalar("pressure", patch.stress(&patch.normal_force)),
         Field::scalar("friction_stress", patch.stress(&patch.friction())),
         Field::vector("friction_force", &patch.friction_force),
-        Field::scalar(
-            "state",
-            patch.state.iter().map(|s| state_number(*s)).collect(),
-        ),
+        Field::scalar("state", patch.state.iter().map(|s| state_number(*s)).collect()),
         Field::scalar("normal_force", patch.normal_force),
         Field::scalar("slip_rate", patch.slip_rate),
         Field::scalar("gap", patch.gap),

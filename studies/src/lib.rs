@@ -69,10 +69,7 @@ pub fn aligned(heads: &[[&str; 2]], rows: &[Vec<String>]) -> String {
     let width = |c: &Vec<&str>| c.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = columns.iter().map(width).collect();
     let line = |k: usize| {
-        let cells = columns
-            .iter()
-            .zip(&widths)
-            .map(|(c, w)| format!("{:>w$}", c[k]));
+        let cells = columns.iter().zip(&widths).map(|(c, w)| format!("{:>w$}", c[k]));
         cells.collect::<Vec<_>>().join("  ") + "\n"
     };
     (0..rows.len() + 2).map(line).collect()

@@ -173,8 +173,7 @@ impl StepRecord {
 }
 
 fn parts(certificate: &Certificate) -> BTreeMap<String, f64> {
-    let entry =
-        |(name, v): (&str, signorini::contact::Violation)| (name.to_owned(), finite(v.relative()));
+    let entry = |(name, v): (&str, signorini::contact::Violation)| (name.to_owned(), finite(v.relative()));
     certificate.parts().into_iter().map(entry).collect()
 }
 
@@ -201,10 +200,7 @@ pub fn csv(record: &RunRecord) -> Result<String, Failure> {
 
 /// Values of JSON records as comma-separated columns: `name` or `name=path/in/record` each; empty where there is none.
 pub fn columns(names: &str, rows: &[serde_json::Value]) -> String {
-    let columns: Vec<_> = names
-        .split(',')
-        .map(|c| c.split_once('=').unwrap_or((c, c)))
-        .collect();
+    let columns: Vec<_> = names.split(',').map(|c| c.split_once('=').unwrap_or((c, c))).collect();
     let head: Vec<&str> = columns.iter().map(|c| c.0).collect();
     let mut text = head.join(",") + "\n";
     for row in rows {
@@ -251,10 +247,7 @@ pub fn steps_chart(record: &RunRecord) -> Result<String, Failure> {
     ];
     let method = record.method_name();
     let RunRecord {
-        n,
-        loading,
-        it_name,
-        ..
+        n, loading, it_name, ..
     } = record;
     let charts = [
         chart(

@@ -90,9 +90,7 @@ pub fn run_with(
     let (simulation, steps, seconds) = solve(scene, settings, &mut |simulation, record| {
         products += record.n_m;
         if shown {
-            let StepRecord {
-                step, active, slip, ..
-            } = record;
+            let StepRecord { step, active, slip, .. } = record;
             eprint!("\r{label}: step {step}, {active} touch, {slip} slide, {products} products ");
             std::io::stderr().flush()?;
         }
@@ -105,20 +103,13 @@ pub fn run_with(
             count => format!(", {count} NOT CONVERGED"),
         };
         let (steps, products) = (record.steps.len(), record.n_m);
-        eprintln!(
-            "\r{label}: {steps} steps, {products} products, {seconds:.2} s{failed}           "
-        );
+        eprintln!("\r{label}: {steps} steps, {products} products, {seconds:.2} s{failed}           ");
     }
     let snapshot = Snapshot::new(&simulation, header)?;
     Ok(Outcome { record, snapshot })
 }
 
-fn collect(
-    simulation: &Simulation,
-    header: &Header,
-    solve_seconds: f64,
-    steps: Vec<StepRecord>,
-) -> RunRecord {
+fn collect(simulation: &Simulation, header: &Header, solve_seconds: f64, steps: Vec<StepRecord>) -> RunRecord {
     let (counters, plan) = (simulation.counters(), simulation.plan());
     let gluing = simulation.tfeti().gluing();
     let setup = simulation.tfeti().report();
@@ -178,18 +169,11 @@ pub fn warnings(runs: &[&RunRecord]) -> String {
             let mut history = run.steps.iter().filter_map(|s| s.unconverged_history);
             if let Some(first) = history.next() {
                 let later = history.count() + 1;
-                let _ = writeln!(
-                    text,
-                    "         the slip of {later} later steps depends on step {first}"
-                );
+                let _ = writeln!(text, "         the slip of {later} later steps depends on step {first}");
             }
         }
         let which = |what: &dyn Fn(&StepRecord) -> bool| -> Vec<usize> {
-            run.steps
-                .iter()
-                .filter(|s| what(s))
-                .map(|s| s.step)
-                .collect()
+            run.steps.iter().filter(|s| what(s)).map(|s| s.step).collect()
         };
         let above = which(&|s| s.certificate > run.tolerance);
         if !above.is_empty() {

@@ -49,9 +49,7 @@ pub struct ContactPatch {
 
 /// The first contact surface of a scene that has been stepped; the bottom of the brick if there is none.
 pub fn contact_surface(simulation: &Simulation) -> Result<Surface, Failure> {
-    let first = simulation
-        .result()
-        .and_then(|r| r.surfaces().first().cloned());
+    let first = simulation.result().and_then(|r| r.surfaces().first().cloned());
     match first {
         Some(surface) => Ok(surface),
         None => Ok(Surface::new(simulation.scene().mesh(), &[brick::Z_MIN])?),
@@ -64,11 +62,7 @@ impl ContactPatch {
         let n = surface.nodes().len();
         let mut patch = Self {
             nodes: surface.nodes().to_vec(),
-            points: surface
-                .nodes()
-                .iter()
-                .map(|&node| mesh_points[node as usize])
-                .collect(),
+            points: surface.nodes().iter().map(|&node| mesh_points[node as usize]).collect(),
             triangles: surface.triangles().to_vec(),
             normal_force: vec![0.0; n],
             friction_force: vec![[0.0; 3]; n],

@@ -72,11 +72,7 @@ pub fn picture(style: &Style<'_>, panels: &[Panel<'_>]) -> String {
     let mut view = View::new(style.eye);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for panel in panels {
-        let shapes = panel
-            .behind
-            .iter()
-            .chain(&panel.before)
-            .flat_map(Shape::points);
+        let shapes = panel.behind.iter().chain(&panel.before).flat_map(Shape::points);
         for p in panel.points.iter().chain(shapes).map(|p| view.point(*p)) {
             for c in 0..2 {
                 (low[c], high[c]) = (low[c].min(p[c]), high[c].max(p[c]));
@@ -98,12 +94,7 @@ pub fn picture(style: &Style<'_>, panels: &[Panel<'_>]) -> String {
         surface(&mut svg, &view, style.flat, panel, &scale);
         shapes(&mut svg, &view, &panel.before);
         axes(&mut svg, &view, [left + 12.0, top + panel_height - 24.0]);
-        scale.bar(
-            &mut svg,
-            [WIDTH - 84.0, top + above + 10.0],
-            height - 10.0,
-            style,
-        );
+        scale.bar(&mut svg, [WIDTH - 84.0, top + above + 10.0], height - 10.0, style);
     }
     svg.finish()
 }
@@ -137,10 +128,7 @@ impl View {
 
     fn point(&self, x: [f64; 3]) -> [f64; 2] {
         let [a, b] = self.origin;
-        [
-            a + self.zoom * dot(x, self.right),
-            b - self.zoom * dot(x, self.up),
-        ]
+        [a + self.zoom * dot(x, self.right), b - self.zoom * dot(x, self.up)]
     }
 }
 
@@ -171,12 +159,7 @@ fn surface(svg: &mut Svg, view: &View, flat: bool, panel: &Panel<'_>, scale: &Sc
         let shade = if flat { 1.0 } else { 0.72 + 0.28 * light };
         let corners = x.map(|p| view.point(p));
         let depth: f64 = x.iter().map(|p| dot(*p, view.eye)).sum();
-        order.push((
-            depth,
-            corners,
-            triangle.map(|n| panel.values[n as usize]),
-            shade,
-        ));
+        order.push((depth, corners, triangle.map(|n| panel.values[n as usize]), shade));
         for k in 0..3 {
             let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
             edges.insert((a.min(b), a.max(b)), [corners[k], corners[(k + 1) % 3]]);
@@ -186,9 +169,7 @@ fn surface(svg: &mut Svg, view: &View, flat: bool, panel: &Panel<'_>, scale: &Sc
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut path = (String::new(), Vec::new());
     let mut flush = |colour: &str, polygons: &[Vec<[f64; 2]>]| {
-        let style = format!(
-            "fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"5\" stroke-linejoin=\"round\""
-        );
+        let style = format!("fill=\"{colour}\" stroke=\"{colour}\" stroke-width=\"5\" stroke-linejoin=\"round\"");
         svg.polygons(polygons, true, &style);
     };
     for (_, corners, values, shade) in order {
@@ -224,25 +205,13 @@ fn axes(svg: &mut Svg, view: &View, origin: [f64; 2]) {
         let end = local.point(tip);
         let seen = (end[0] - origin[0]).hypot(end[1] - origin[1]);
         if seen > 4.0 {
-            svg.polygons(
-                &[[origin, end]],
-                false,
-                "stroke=\"#222\" stroke-width=\"14\"",
-            );
+            svg.polygons(&[[origin, end]], false, "stroke=\"#222\" stroke-width=\"14\"");
             let beyond = |c: usize| end[c] + 9.0 * (end[c] - origin[c]) / seen;
-            svg.text(
-                [beyond(0) - 5.0, beyond(1) + 4.0],
-                12.0,
-                &format!("x{}", axis + 1),
-            );
+            svg.text([beyond(0) - 5.0, beyond(1) + 4.0], 12.0, &format!("x{}", axis + 1));
         }
     }
     let note = format!("axes: {} m", number(length, length));
-    svg.text(
-        [origin[0] + view.zoom * length + 30.0, origin[1] + 12.0],
-        11.0,
-        &note,
-    );
+    svg.text([origin[0] + view.zoom * length + 30.0, origin[1] + 12.0], 11.0, &note);
 }
 
 /// Colours of a scale, dark to light; readable in grey and by the colour-blind (after matplotlib's viridis).
@@ -265,10 +234,7 @@ struct Scale {
 
 impl Scale {
     fn new<'a>(values: impl Iterator<Item = &'a f64>) -> Self {
-        let max = values
-            .copied()
-            .filter(|v| v.is_finite())
-            .fold(0.0, f64::max);
+        let max = values.copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
         Self {
             max: if max > 0.0 { max } else { 1.0 },
         }
@@ -283,8 +249,7 @@ impl Scale {
     fn colour(&self, band: usize, shade: f64) -> String {
         let place = band as f64 / (BANDS - 1) as f64 * (COLOURS.len() - 1) as f64;
         let k = (place as usize).min(COLOURS.len() - 2);
-        let mix =
-            |c: usize| COLOURS[k][c] + (place - k as f64) * (COLOURS[k + 1][c] - COLOURS[k][c]);
+        let mix = |c: usize| COLOURS[k][c] + (place - k as f64) * (COLOURS[k + 1][c] - COLOURS[k][c]);
         let [r, g, b] = [0, 1, 2].map(|c| (mix(c) * shade).round() as u8);
         format!("#{r:02x}{g:02x}{b:02x}")
     }
@@ -292,14 +257,7 @@ impl Scale {
     /// A vertical bar with round numbers.
     fn bar(&self, svg: &mut Svg, [x, y]: [f64; 2], height: f64, style: &Style<'_>) {
         let step = height / BANDS as f64;
-        let rect = |y: f64, height: f64| {
-            [
-                [x, y],
-                [x + 16.0, y],
-                [x + 16.0, y + height],
-                [x, y + height],
-            ]
-        };
+        let rect = |y: f64, height: f64| [[x, y], [x + 16.0, y], [x + 16.0, y + height], [x, y + height]];
         for band in 0..BANDS {
             let top = y + height - step * (band + 1) as f64;
             // overlapping by a little hides the seams
@@ -328,11 +286,7 @@ impl Scale {
 fn round_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     let leads = [1.0, 2.0, 5.0].into_iter();
-    power
-        * leads
-            .clone()
-            .find(|c| rough / power <= *c * 1.0001)
-            .unwrap_or(10.0)
+    power * leads.clone().find(|c| rough / power <= *c * 1.0001).unwrap_or(10.0)
 }
 
 /// A tick with as many decimals as the step needs.
@@ -344,11 +298,7 @@ fn number(value: f64, step: f64) -> String {
 /// The polygons of a triangle with linear values in each band it reaches: (band, polygon).
 fn bands(corners: [[f64; 2]; 3], values: [f64; 3], scale: &Scale) -> Vec<(usize, Vec<[f64; 2]>)> {
     let clamp = |v: f64| {
-        if v.is_finite() {
-            v.clamp(0.0, scale.max)
-        } else {
-            0.0
-        }
+        if v.is_finite() { v.clamp(0.0, scale.max) } else { 0.0 }
     };
     let values = values.map(clamp);
     let (low, high) = (
@@ -384,10 +334,7 @@ fn clip(polygon: &[([f64; 2], f64)], keep: impl Fn(f64) -> f64) -> Vec<([f64; 2]
         }
         if (a < 0.0) != (b < 0.0) && a != 0.0 && b != 0.0 {
             let t = a / (a - b);
-            out.push((
-                [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])],
-                v + t * (w - v),
-            ));
+            out.push(([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])], v + t * (w - v)));
         }
     }
     out
@@ -426,13 +373,7 @@ mod tests {
     fn the_bands_fill_the_triangle() {
         let scale = Scale { max: 1.0 };
         let corners = [[0.0, 0.0], [4.0, 1.0], [1.0, 3.0]];
-        for values in [
-            [0.0, 1.0, 0.35],
-            [0.2; 3],
-            [0.0; 3],
-            [1.0, 1.0, 0.5],
-            [2.0 / 7.0; 3],
-        ] {
+        for values in [[0.0, 1.0, 0.35], [0.2; 3], [0.0; 3], [1.0, 1.0, 0.5], [2.0 / 7.0; 3]] {
             let parts = bands(corners, values, &scale);
             let sum: f64 = parts.iter().map(|(_, p)| area(p)).sum();
             assert!((sum - area(&corners)).abs() < 1e-12, "{values:?}: {sum}");

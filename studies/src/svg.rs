@@ -24,10 +24,7 @@ impl Svg {
 
     /// A line of text that begins at a point.
     pub(crate) fn text(&mut self, [x, y]: [f64; 2], size: f64, text: &str) {
-        let text = text
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;");
+        let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
         let _ = writeln!(
             self.body,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\">{text}</text>"
@@ -44,12 +41,7 @@ impl Svg {
 
     /// Many polygons (or lines, if not closed) as one path. Coordinates are written in tenths of a pixel, relative
     /// to the point before, which makes short files.
-    pub(crate) fn polygons<P: AsRef<[[f64; 2]]>>(
-        &mut self,
-        polygons: &[P],
-        close: bool,
-        style: &str,
-    ) {
+    pub(crate) fn polygons<P: AsRef<[[f64; 2]]>>(&mut self, polygons: &[P], close: bool, style: &str) {
         if polygons.is_empty() {
             return;
         }

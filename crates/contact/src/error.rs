@@ -9,9 +9,7 @@ use thiserror::Error;
 /// How far from the normal of a node the nearest node of the other side is, in words.
 fn beside_words(beside: f64, limit: f64) -> String {
     if beside.is_finite() {
-        format!(
-            "the nearest node that faces it lies {beside:.3e} m beside its normal, {limit:.3e} m are allowed"
-        )
+        format!("the nearest node that faces it lies {beside:.3e} m beside its normal, {limit:.3e} m are allowed")
     } else {
         "no node of the other side faces it (their normals have to be opposite)".to_owned()
     }
@@ -61,11 +59,7 @@ pub enum ContactError {
         "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which is \
          not finite or out of order; give finite slip rates, each larger than the one before"
     )]
-    TableRate {
-        contact: usize,
-        entry: usize,
-        rate: f64,
-    },
+    TableRate { contact: usize, entry: usize, rate: f64 },
     /// A law gave an inadmissible coefficient.
     #[error(
         "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be finite \
@@ -87,20 +81,14 @@ pub enum ContactError {
     #[error("the analysis has no step or more than a hundred million; ask for at least one step")]
     NoSteps,
     /// A time out of order or not finite.
-    #[error(
-        "step {step}: its time {time} s is not finite or not above the one before (the first must be above 0)"
-    )]
+    #[error("step {step}: its time {time} s is not finite or not above the one before (the first must be above 0)")]
     Time { step: usize, time: f64 },
     /// Unequal steps with a formula that needs equal ones.
     #[error(
         "step {step}: its length is {length} s, but that of the first is {first} s; the three-step formula needs \
          equal steps, backward Euler does not"
     )]
-    UnequalSteps {
-        step: usize,
-        length: f64,
-        first: f64,
-    },
+    UnequalSteps { step: usize, length: f64, first: f64 },
     /// A tag of a support or contact surface is on no facet.
     #[error("{what} {index}: no facet has the tag {tag}; the mesh has {known}")]
     UnknownTag {
@@ -112,18 +100,10 @@ pub enum ContactError {
         known: String,
     },
     /// A node number beyond the mesh.
-    #[error(
-        "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0"
-    )]
-    UnknownNode {
-        support: usize,
-        node: u32,
-        nodes: usize,
-    },
+    #[error("support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0")]
+    UnknownNode { support: usize, node: u32, nodes: usize },
     /// The nodes of a support and its displacements differ in number.
-    #[error(
-        "support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node"
-    )]
+    #[error("support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node")]
     ValueCount {
         support: usize,
         values: usize,
@@ -240,11 +220,7 @@ pub enum ContactError {
          differently or bring other gaps, so that either may become the nearer one; leave the facets around it out \
          of one of the surfaces, or give both the same motion"
     )]
-    SharedNode {
-        node: u32,
-        first: usize,
-        second: usize,
-    },
+    SharedNode { node: u32, first: usize, second: usize },
     /// A load or support history gave a value that is not finite.
     #[error("{what} {index}: its history gives {value} at time {time} s")]
     HistoryValue {
@@ -364,10 +340,7 @@ pub enum ContactError {
     Decomposition(#[from] fem::DecompositionError),
     /// Load.
     #[error("load {index}: {source}")]
-    Load {
-        index: usize,
-        source: fem::LoadError,
-    },
+    Load { index: usize, source: fem::LoadError },
     /// Contact surface.
     #[error(transparent)]
     Surface(#[from] fem::SurfaceError),

@@ -91,16 +91,13 @@ mod vec3;
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
 pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
-pub use report::{
-    AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport,
-};
+pub use report::{AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport};
 pub use result::{
-    Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant,
-    SupportReaction, Violation,
+    Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant, SupportReaction, Violation,
 };
 pub use scene::{
-    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load,
-    Partition, Place, PlaceField, RateField, Scene, SlipBound, Support,
+    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Partition, Place,
+    PlaceField, RateField, Scene, SlipBound, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_qp::{FixedPointReport, Verdict};

@@ -37,16 +37,12 @@ impl StepStatus {
     pub fn remedy(self) -> &'static str {
         match self {
             Self::Converged => "",
-            Self::IterationLimit => {
-                "raise max_fallback_products or the limits of the method, or take smaller steps"
-            }
+            Self::IterationLimit => "raise max_fallback_products or the limits of the method, or take smaller steps",
             Self::Stagnated => "take smaller steps; with Accuracy::Relative a looser target",
             Self::NotContractive => {
                 "the Coulomb problem may have no solution here: take a smaller coefficient or smaller steps"
             }
-            Self::NotHeld => {
-                "press the body more, take a larger coefficient, or hold it by a support"
-            }
+            Self::NotHeld => "press the body more, take a larger coefficient, or hold it by a support",
             Self::NotCertified => {
                 "the parts of the certificate name the violated condition: take better shaped cells, Poisson's ratio \
                  further from 1/2, smaller steps, or Method::paper()"

@@ -2,16 +2,14 @@
 //! Stands alone, so that it runs with the feature `checkpoint` and no other.
 
 use signorini_contact::{
-    Accuracy, Analysis, Coefficient, Contact, DifferenceFormula, Friction, Load, Method, Scene,
-    Settings, Silent, Simulation, State, Support,
+    Accuracy, Analysis, Coefficient, Contact, DifferenceFormula, Friction, Load, Method, Scene, Settings, Silent,
+    Simulation, State, Support,
 };
 use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
 
 /// A coarse relative of the benchmark.
 fn simulation(friction: &Friction, settings: &Settings) -> Simulation {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
-        .build()
-        .expect("brick");
+    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
     let steel = Hooke::isotropic(211.9e9, 0.277).expect("steel");
     let ramp = History::ramp(1.0, 1.0).expect("ramp");
     let pull = History::table(vec![(0.0, 0.0), (0.4, 1.0), (0.7, 0.0), (1.0, 1.0)]).expect("table");

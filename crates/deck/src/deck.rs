@@ -88,12 +88,7 @@ impl Deck {
         self.find("element set", &self.is.element_sets, name)
     }
 
-    fn find<'a, T>(
-        &self,
-        what: &'static str,
-        names: &'a Names<Vec<T>>,
-        name: &str,
-    ) -> Result<&'a [T], DeckError> {
+    fn find<'a, T>(&self, what: &'static str, names: &'a Names<Vec<T>>, name: &str) -> Result<&'a [T], DeckError> {
         let found = names.position(&lexer::name(name));
         let found = found.ok_or_else(|| DeckError::UnknownName {
             path: self.path.clone(),

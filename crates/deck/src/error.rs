@@ -205,9 +205,7 @@ pub enum Fault {
         known: Vec<String>,
     },
     /// A number that is not defined.
-    #[error(
-        "there is no {0} with this number; check the number, or define it with *NODE or *ELEMENT"
-    )]
+    #[error("there is no {0} with this number; check the number, or define it with *NODE or *ELEMENT")]
     UnknownNumber(&'static str),
     /// Defined twice.
     #[error("defined a second time, first in line {first}; {remedy}")]

@@ -75,12 +75,7 @@ pub fn assemble_stiffness<'h>(
         (1..=3).map(move |k| before + k * height)
     });
     let indptr = std::iter::once(0).chain(column_ends).collect();
-    Ok(CsMat::new_csc(
-        (3 * nodes, 3 * nodes),
-        indptr,
-        indices,
-        data,
-    ))
+    Ok(CsMat::new_csc((3 * nodes, 3 * nodes), indptr, indices, data))
 }
 
 type Block = [[f64; 3]; 3];
@@ -139,11 +134,7 @@ impl Pattern {
         tets: &[[u32; 4]],
         hooke: &impl Fn(usize) -> &'h Hooke,
     ) -> Vec<Block> {
-        let height = self
-            .column(node)
-            .iter()
-            .filter(|&&n| n as usize >= node)
-            .count();
+        let height = self.column(node).iter().filter(|&&n| n as usize >= node).count();
         let mut blocks = vec![[[0.0; 3]; 3]; height];
         for &t in &self.tets[range(&self.tet_start, node)] {
             let tet = tets[t as usize].map(|n| n as usize);

@@ -76,10 +76,7 @@
 //! None is on by default. `vtu` adds [`output`] (crate flate2), `gmsh` adds [`gmsh`], `serde` lets
 //! [`FacetTag`], [`Facet`], [`SurfaceFrame`] and [`Brick`] be serialised (crate serde).
 
-#![cfg_attr(
-    not(all(feature = "vtu", feature = "gmsh")),
-    allow(rustdoc::broken_intra_doc_links)
-)]
+#![cfg_attr(not(all(feature = "vtu", feature = "gmsh")), allow(rustdoc::broken_intra_doc_links))]
 
 #[macro_use]
 mod errors;
@@ -100,26 +97,21 @@ pub mod vec3;
 
 pub use assembly::{AssemblyError, assemble_stiffness};
 pub use decomposition::{
-    Decomposition, DecompositionError, NodeCopy, PartCount, Subdomain, compact_parts, even_parts,
-    split_disconnected,
+    Decomposition, DecompositionError, NodeCopy, PartCount, Subdomain, compact_parts, even_parts, split_disconnected,
 };
 pub use element::Element;
-pub use fields::{
-    FieldError, Locator, energy_of_difference, energy_of_error, h1_seminorm_error, l2_error,
-};
+pub use fields::{FieldError, Locator, energy_of_difference, energy_of_error, h1_seminorm_error, l2_error};
 #[cfg(feature = "gmsh")]
 pub use files::gmsh;
 #[cfg(feature = "vtu")]
 pub use files::output;
 pub use files::replace_file;
-pub use loads::{
-    History, HistoryError, LoadDensity, LoadError, PointField, SurfaceField, assemble_load,
-};
+pub use loads::{History, HistoryError, LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
 pub use material::{Hooke, HookeError, MaterialError, Materials};
 pub use mesh::brick::{Brick, BrickError};
 pub use mesh::{
-    BoundaryFacet, Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, TetMesh, brick,
-    drop_unused_nodes, merge_nodes, orient_tets,
+    BoundaryFacet, Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, TetMesh, brick, drop_unused_nodes,
+    merge_nodes, orient_tets,
 };
 pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error};
 

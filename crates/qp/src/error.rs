@@ -81,27 +81,14 @@ errors! {
 }
 
 /// Checks a length.
-pub(crate) fn expect_length(
-    what: &'static str,
-    found: usize,
-    expected: usize,
-) -> Result<(), QpError> {
+pub(crate) fn expect_length(what: &'static str, found: usize, expected: usize) -> Result<(), QpError> {
     expect_lengths([(what, found, expected)])
 }
 
 /// Checks lengths: of what, found and expected.
-pub(crate) fn expect_lengths<const N: usize>(
-    lengths: [(&'static str, usize, usize); N],
-) -> Result<(), QpError> {
-    match lengths
-        .into_iter()
-        .find(|(_, found, expected)| found != expected)
-    {
-        Some((what, found, expected)) => Err(QpError::Length {
-            what,
-            found,
-            expected,
-        }),
+pub(crate) fn expect_lengths<const N: usize>(lengths: [(&'static str, usize, usize); N]) -> Result<(), QpError> {
+    match lengths.into_iter().find(|(_, found, expected)| found != expected) {
+        Some((what, found, expected)) => Err(QpError::Length { what, found, expected }),
         None => Ok(()),
     }
 }

@@ -119,11 +119,7 @@ pub fn successive_approximations<E>(
         } else {
             sharp.clear();
         }
-        change = if difference == 0.0 {
-            0.0
-        } else {
-            difference / size
-        };
+        change = if difference == 0.0 { 0.0 } else { difference / size };
         if change < tolerance {
             if exact {
                 verdict = Verdict::Converged;
@@ -196,11 +192,7 @@ mod tests {
     #[test]
     fn nothing_in_contact_is_a_fixed_point_at_once() {
         let mut x = [0.0; 3];
-        let report =
-            successive_approximations(&mut x, 1e-6, 0.0, 5, |_, _| Ok::<bool, ()>(true)).unwrap();
-        assert_eq!(
-            (report.verdict, report.evaluations),
-            (Verdict::Converged, 1)
-        );
+        let report = successive_approximations(&mut x, 1e-6, 0.0, 5, |_, _| Ok::<bool, ()>(true)).unwrap();
+        assert_eq!((report.verdict, report.evaluations), (Verdict::Converged, 1));
     }
 }

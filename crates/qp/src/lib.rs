@@ -101,16 +101,16 @@ mod tolerances;
 pub mod vector;
 
 pub use active_set::{
-    ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetView,
-    ActiveSetWorkspace, Freedom, RadiusSlope, active_set,
+    ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetView, ActiveSetWorkspace,
+    Freedom, RadiusSlope, active_set,
 };
 pub use check::{NormEstimate, NormSettings, kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
 pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
 pub use kprgp::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, kprgp};
 pub use problem::{
-    Block, BlockState, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality,
-    EqualityProjector, GradientNorms, Identity, ProductSet, Projected, Segment, SymmetricOperator,
+    Block, BlockState, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector,
+    GradientNorms, Identity, ProductSet, Projected, Segment, SymmetricOperator,
 };
 pub use projected_cg::{CgReport, CgWorkspace, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};

@@ -16,9 +16,7 @@
 use crate::error::{QpError, expect_finite, expect_lengths};
 use crate::problem::{Equality, Identity, SymmetricOperator};
 use crate::report::{Status, Tolerance, usable};
-use crate::tolerances::{
-    CG_PATIENCE, CG_ROUNDING, NEGLIGIBLE_LOAD, PROGRESS, SOLVED_BY_EQUALITY, VANISHED_LOAD,
-};
+use crate::tolerances::{CG_PATIENCE, CG_ROUNDING, NEGLIGIBLE_LOAD, PROGRESS, SOLVED_BY_EQUALITY, VANISHED_LOAD};
 use crate::vector;
 
 /// Result of [`projected_cg`].
@@ -113,11 +111,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
         ("the preconditioner", m.dim(), n),
         ("the right side e", e.len(), c.rows()),
         ("the workspace", work.g.len(), n),
-        (
-            "the coarse part of the workspace",
-            work.coarse.len(),
-            c.rows(),
-        ),
+        ("the coarse part of the workspace", work.coarse.len(), c.rows()),
     ])?;
     expect_finite("the right side b", b)?;
     expect_finite("the right side e", e)?;
@@ -185,8 +179,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         // x -= C'(C x - e)
         self.c.apply(self.x, &mut w.coarse, &mut w.c_scratch);
         vector::subtract(e, &mut w.coarse);
-        self.c
-            .apply_transpose(&w.coarse, &mut w.y, &mut w.c_scratch);
+        self.c.apply_transpose(&w.coarse, &mut w.y, &mut w.c_scratch);
         vector::subtract(&w.y, self.x);
         self.a.apply(self.x, &mut w.g, &mut w.a_scratch);
         self.report.products += 1;
@@ -200,9 +193,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         let size = vector::norm(b);
         let tolerance = usable(match tolerance {
             // what the projector leaves of the load is rounding, and nothing else acts
-            Tolerance::Relative(_) | Tolerance::Error { .. }
-                if reference <= VANISHED_LOAD * size =>
-            {
+            Tolerance::Relative(_) | Tolerance::Error { .. } if reference <= VANISHED_LOAD * size => {
                 SOLVED_BY_EQUALITY * size
             }
             Tolerance::Error { factor, least } => {
@@ -259,9 +250,8 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         self.m.apply(&w.w, &mut w.ap, &mut w.m_scratch);
         self.report.preconditionings += 1;
         project(self.c, &w.ap, &mut w.y, &mut w.coarse, &mut w.c_scratch);
-        let small = |(factor, least): (f64, f64)| {
-            vector::norm(&self.work.y) <= factor * vector::norm(self.x).max(least)
-        };
+        let small =
+            |(factor, least): (f64, f64)| vector::norm(&self.work.y) <= factor * vector::norm(self.x).max(least);
         self.error.is_some_and(small)
     }
 
@@ -298,10 +288,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
             return Ok(None);
         }
         let curvature = pap / vector::dot(&w.p, &w.p);
-        Err(QpError::Indefinite {
-            curvature,
-            products,
-        })
+        Err(QpError::Indefinite { curvature, products })
     }
 
     /// A step of this length along `-p`.

@@ -52,11 +52,7 @@ macro_rules! settings {
 pub(crate) use settings;
 
 /// Checks the range of a setting.
-pub(crate) fn expect_setting(
-    name: &'static str,
-    value: f64,
-    range: &'static str,
-) -> Result<(), QpError> {
+pub(crate) fn expect_setting(name: &'static str, value: f64, range: &'static str) -> Result<(), QpError> {
     if contains(range, value) {
         Ok(())
     } else {

@@ -134,13 +134,11 @@ fn zip(x: &[f64], y: &mut [f64], f: impl Fn(f64, &mut f64) + Sync + Send) {
             f(xi, yi);
         }
     } else {
-        y.par_chunks_mut(CHUNK)
-            .zip(x.par_chunks(CHUNK))
-            .for_each(|(yc, xc)| {
-                for (yi, &xi) in yc.iter_mut().zip(xc) {
-                    f(xi, yi);
-                }
-            });
+        y.par_chunks_mut(CHUNK).zip(x.par_chunks(CHUNK)).for_each(|(yc, xc)| {
+            for (yi, &xi) in yc.iter_mut().zip(xc) {
+                f(xi, yi);
+            }
+        });
     }
 }
 
@@ -148,16 +146,13 @@ fn each(y: &mut [f64], f: impl Fn(&mut f64) + Sync + Send) {
     if y.len() < PARALLEL {
         y.iter_mut().for_each(f);
     } else {
-        y.par_chunks_mut(CHUNK)
-            .for_each(|c| c.iter_mut().for_each(&f));
+        y.par_chunks_mut(CHUNK).for_each(|c| c.iter_mut().for_each(&f));
     }
 }
 
 fn dot_with(x: &[f64], y: &[f64], parallel: bool) -> f64 {
     let n = x.len().min(y.len());
-    reduce(0..n, parallel, &|r| {
-        leaf(&x[r.clone()], &y[r], |a, b| a * b)
-    })
+    reduce(0..n, parallel, &|r| leaf(&x[r.clone()], &y[r], |a, b| a * b))
 }
 
 /// Where the tree over `n > CHUNK` entries is cut: a multiple of the chunk length.

@@ -53,12 +53,10 @@ pub use error::Error;
 pub mod prelude {
     pub use crate::Error;
     pub use signorini_contact::{
-        Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal,
-        ContactState, ContactSummary, DifferenceFormula, Directions, Flow, Friction, Gap, Load,
-        Method, Observer, Partition, Place, Plan, PointState, Preconditioner, RunReport, Scene,
-        Settings, Silent, Simulation, SlipBound, State, StepResult, StepStatus, Support,
+        Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,
+        ContactSummary, DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Partition, Place,
+        Plan, PointState, Preconditioner, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
+        StepStatus, Support,
     };
-    pub use signorini_fem_mesh::{
-        Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,
-    };
+    pub use signorini_fem_mesh::{Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 }

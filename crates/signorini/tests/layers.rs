@@ -73,10 +73,7 @@ const APART: (&str, &str) = ("qp", "fem-mesh");
 
 #[test]
 fn arrows_between_rooms_go_down() {
-    let faults: String = CRATES
-        .iter()
-        .map(|(name, rows)| rooms(name, rows))
-        .collect();
+    let faults: String = CRATES.iter().map(|(name, rows)| rooms(name, rows)).collect();
     assert!(faults.is_empty(), "\n{faults}");
 }
 
@@ -93,10 +90,7 @@ fn arrows_between_crates_go_down() {
                 let other = other.replace('_', "-");
                 if !below.contains(&&*other) || (*name, &*other) == APART {
                     let place = file.path.display();
-                    let _ = writeln!(
-                        faults,
-                        "{place}:{line}: crate {name} must not use crate {other}"
-                    );
+                    let _ = writeln!(faults, "{place}:{line}: crate {name} must not use crate {other}");
                 }
             }
         }
@@ -109,11 +103,7 @@ fn every_folder_says_what_it_is() {
     let mut faults = String::new();
     for file in CRATES.iter().flat_map(|(name, _)| sources(name)) {
         if file.path.ends_with("mod.rs") {
-            let about = file
-                .source
-                .lines()
-                .take_while(|l| l.starts_with("//!"))
-                .count();
+            let about = file.source.lines().take_while(|l| l.starts_with("//!")).count();
             if !(3..=14).contains(&about) {
                 let place = file.path.display();
                 let _ = writeln!(faults, "{place}: {about} lines of `//!`, not about ten");
@@ -172,10 +162,7 @@ fn rooms(name: &str, rows: &[&str]) -> String {
     let mut faults = String::new();
     let room = |file: &Source| file.module.first().cloned();
     for known in rows.iter().flat_map(|row| row.split(' ')) {
-        if !files
-            .iter()
-            .any(|file| room(file).as_deref() == Some(known))
-        {
+        if !files.iter().any(|file| room(file).as_deref() == Some(known)) {
             let _ = writeln!(
                 faults,
                 "crate {name} has no room {known:?}; mend the table of this test"
@@ -194,11 +181,7 @@ fn rooms(name: &str, rows: &[&str]) -> String {
             let to = exports.get(&path[0]).unwrap_or(&path[0]);
             if let Some(fault) = arrow(rows, &from, to) {
                 let place = file.path.display();
-                let _ = writeln!(
-                    faults,
-                    "{place}:{line}: {from} -> {}: {fault}",
-                    path.join("::")
-                );
+                let _ = writeln!(faults, "{place}:{line}: {from} -> {}: {fault}", path.join("::"));
             }
         }
     }
@@ -207,10 +190,7 @@ fn rooms(name: &str, rows: &[&str]) -> String {
 
 /// What is wrong with an arrow from one room to another.
 fn arrow(rows: &[&str], from: &str, to: &str) -> Option<&'static str> {
-    let row = |room: &str| {
-        rows.iter()
-            .position(|row| row.split(' ').any(|r| r == room))
-    };
+    let row = |room: &str| rows.iter().position(|row| row.split(' ').any(|r| r == room));
     match (row(from), row(to)) {
         _ if from == to => None,
         (None, _) => Some("the first room is not in the table of this test"),
@@ -223,9 +203,7 @@ fn arrow(rows: &[&str], from: &str, to: &str) -> Option<&'static str> {
 
 /// The sources of a crate.
 fn sources(name: &str) -> Vec<Source> {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("crates");
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("crates");
     let src = crates.join(name).join("src");
     let mut files = Vec::new();
     let mut folders = vec![src.clone()];
@@ -240,10 +218,7 @@ fn sources(name: &str) -> Vec<Source> {
             if is_tests || path.extension().is_none_or(|e| e != "rs") {
                 continue;
             }
-            let inside = path
-                .strip_prefix(&src)
-                .expect("below src")
-                .with_extension("");
+            let inside = path.strip_prefix(&src).expect("below src").with_extension("");
             let mut module: Vec<String> = (inside.iter())
                 .map(|part| part.to_string_lossy().into_owned())
                 .collect();
@@ -270,10 +245,7 @@ fn exports(files: &[Source]) -> BTreeMap<String, String> {
     for part in text.split("pub use ").skip(1) {
         let part = part.split(';').next().unwrap_or_default();
         // as if it were a path from the root
-        for (_, path) in Paths::of(
-            &format!("crate::{}", part.trim_start_matches("crate::")),
-            &[],
-        ) {
+        for (_, path) in Paths::of(&format!("crate::{}", part.trim_start_matches("crate::")), &[]) {
             if let [room, .., name] = &*path {
                 exports.insert(name.clone(), room.clone());
             }
@@ -350,8 +322,7 @@ impl<'a> Paths<'a> {
             found: Vec::new(),
         };
         while paths.at < paths.tokens.len() {
-            let begins =
-                matches!(paths.word(), "crate" | "super") || paths.word().starts_with("signorini_");
+            let begins = matches!(paths.word(), "crate" | "super") || paths.word().starts_with("signorini_");
             if begins && paths.next_is("::") {
                 paths.path(module.to_vec());
             } else {

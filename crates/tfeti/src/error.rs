@@ -14,20 +14,14 @@ pub enum TfetiError {
     )]
     Singular { subdomain: usize, pivot: usize },
     /// The rigid motions of a subdomain are dependent: its nodes lie on one line.
-    #[error(
-        "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions"
-    )]
+    #[error("subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions")]
     Collinear { subdomain: usize },
     /// The material of an element is unknown or unusable.
     #[error("tetrahedron {element}: {message}")]
     Material { element: usize, message: String },
     /// A node number beyond the mesh.
     #[error("{place}: node {node} does not exist, the mesh has nodes 0..{nodes}")]
-    UnknownNode {
-        place: String,
-        node: u32,
-        nodes: usize,
-    },
+    UnknownNode { place: String, node: u32, nodes: usize },
     /// A support without nodes or without directions.
     #[error("support {support} has no {what}; remove it or give it some")]
     EmptySupport { support: usize, what: &'static str },
@@ -35,24 +29,14 @@ pub enum TfetiError {
     #[error("support {support}: direction {direction} is zero or not finite")]
     BadDirection { support: usize, direction: usize },
     /// Prescribed displacements that do not fit the support.
-    #[error(
-        "support {support}: {found} prescribed displacements for {nodes} nodes; give one for all or one for each"
-    )]
-    MotionLength {
-        support: usize,
-        found: usize,
-        nodes: usize,
-    },
+    #[error("support {support}: {found} prescribed displacements for {nodes} nodes; give one for all or one for each")]
+    MotionLength { support: usize, found: usize, nodes: usize },
     /// A displacement case beyond the number of supports.
     #[error(
         "support {support}: displacement case {case} is too large for {supports} supports; \
          number the cases from 0 without gaps"
     )]
-    CaseNumber {
-        support: usize,
-        case: u32,
-        supports: usize,
-    },
+    CaseNumber { support: usize, case: u32, supports: usize },
     /// A prescribed displacement that is not finite.
     #[error("support {support}, node {node}: the prescribed displacement is not finite")]
     BadMotion { support: usize, node: u32 },
@@ -137,9 +121,7 @@ pub enum TfetiError {
     )]
     FactorPattern { subdomain: usize },
     /// Rows of a node depend on one another where they should not.
-    #[error(
-        "node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once"
-    )]
+    #[error("node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once")]
     DependentRows { node: u32 },
     /// Contact points join so many rows that a preconditioner cannot scale them; no such case is covered yet.
     #[error(
@@ -147,11 +129,7 @@ pub enum TfetiError {
          preconditioners scale at most {limit} together; \
          solve without preconditioner, or cut the sides"
     )]
-    JoinedRows {
-        node: u32,
-        rows: usize,
-        limit: usize,
-    },
+    JoinedRows { node: u32, rows: usize, limit: usize },
     /// More unknowns than 32-bit tables can number.
     #[error("{what} = {count} is more than the 32-bit tables can number")]
     TooLarge { what: &'static str, count: usize },
@@ -166,18 +144,10 @@ impl std::fmt::Debug for TfetiError {
 
 impl TfetiError {
     /// An error if a vector does not have the length expected.
-    pub(crate) fn check_length(
-        what: &'static str,
-        found: usize,
-        expected: usize,
-    ) -> Result<(), Self> {
+    pub(crate) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), Self> {
         match found == expected {
             true => Ok(()),
-            false => Err(Self::Length {
-                what,
-                expected,
-                found,
-            }),
+            false => Err(Self::Length { what, expected, found }),
         }
     }
 

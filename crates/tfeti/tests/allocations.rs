@@ -10,8 +10,8 @@ mod common;
 
 use allocation_counter::measure;
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector,
-    ProductSet, Segment, SymmetricOperator, active_set,
+    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector, ProductSet, Segment,
+    SymmetricOperator, active_set,
 };
 use signorini_tfeti::ActiveSetProjector;
 use signorini_tfeti::internal::{ActiveSetFactor, InverseKind};
@@ -37,8 +37,7 @@ fn products_and_projectors_allocate_nothing() {
         assert_eq!(count.count_total, 0);
         let contact = system.gluing().ranges().contact().end;
         for kind in [ActiveSetFactor::Split, ActiveSetFactor::Sparse] {
-            let mut space =
-                ActiveSetProjector::with_factor(system.coarse(), contact, None, kind).unwrap();
+            let mut space = ActiveSetProjector::with_factor(system.coarse(), contact, None, kind).unwrap();
             let count = measure(|| {
                 space.project(&mut y);
                 space.project_transpose(&mut y);

@@ -86,11 +86,7 @@ fn every_link_leads_somewhere() {
                 assert!(target.exists(), "{}: {link}", path.display());
                 if !anchor.is_empty() {
                     let names = anchors(&read_to_string(&target).expect("a page"));
-                    assert!(
-                        names.iter().any(|n| n == anchor),
-                        "{}: {link}",
-                        path.display()
-                    );
+                    assert!(names.iter().any(|n| n == anchor), "{}: {link}", path.display());
                 }
             }
         }

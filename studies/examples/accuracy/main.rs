@@ -145,10 +145,7 @@ pub fn execute(options: &AccuracyOptions, out: &mut impl Write) -> Result<Vec<Cu
     }
     if let Some(folder) = &options.out {
         save(&folder.join("accuracy.csv"), &table::csv(&curves)?)?;
-        save(
-            &folder.join("accuracy.json"),
-            &serde_json::to_string_pretty(&curves)?,
-        )?;
+        save(&folder.join("accuracy.json"), &serde_json::to_string_pretty(&curves)?)?;
         write_field(&folder.join("discretisation-error.vtu"), options.short)?;
         writeln!(out, "written to {}", folder.display())?;
     }
@@ -178,12 +175,7 @@ fn draw(study: Study, curves: &[Curve]) -> Result<String, Failure> {
     let mut charts = Vec::new();
     for (cost_name, cost) in costs {
         for (error_name, error) in errors {
-            let points = |c: &Curve| {
-                c.samples
-                    .iter()
-                    .map(|s| (cost(s), error(s)))
-                    .collect::<Vec<_>>()
-            };
+            let points = |c: &Curve| c.samples.iter().map(|s| (cost(s), error(s))).collect::<Vec<_>>();
             let line = |(k, c): (usize, &Curve)| chart::Curve::new(&c.name, k, points(c));
             charts.push(Chart {
                 title: String::new(),
@@ -195,10 +187,7 @@ fn draw(study: Study, curves: &[Curve]) -> Result<String, Failure> {
             });
         }
     }
-    let heading = format!(
-        "Study {}: relative error against cost. {along}",
-        study.name()
-    );
+    let heading = format!("Study {}: relative error against cost. {along}", study.name());
     chart::page((1080, 640), [2, 3], &heading, &charts)
 }
 

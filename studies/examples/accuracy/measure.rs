@@ -66,11 +66,10 @@ pub(super) fn solve(scene: &Scene, settings: &Settings) -> Result<Solution, Fail
 fn once(scene: &Scene, settings: &Settings) -> Result<Solution, Failure> {
     let mut sum = AccumulatedError::default();
     // the estimate is not part of the run
-    let (simulation, steps, seconds) =
-        run::solve(scene.clone(), settings.clone(), &mut |simulation, _| {
-            sum.add(simulation.result().ok_or("no step is solved yet")?);
-            Ok(())
-        })?;
+    let (simulation, steps, seconds) = run::solve(scene.clone(), settings.clone(), &mut |simulation, _| {
+        sum.add(simulation.result().ok_or("no step is solved yet")?);
+        Ok(())
+    })?;
     let result = simulation.result().ok_or("no step is solved yet")?;
     let forces = result
         .points()
@@ -95,12 +94,7 @@ fn once(scene: &Scene, settings: &Settings) -> Result<Solution, Failure> {
 
 impl Solution {
     /// The run as a point of a curve.
-    pub(super) fn sample(
-        &self,
-        parameter: f64,
-        reference: &Self,
-        estimate: Option<f64>,
-    ) -> Result<Sample, Failure> {
+    pub(super) fn sample(&self, parameter: f64, reference: &Self, estimate: Option<f64>) -> Result<Sample, Failure> {
         Ok(Sample {
             parameter,
             products: self.products,

@@ -79,13 +79,7 @@ fn along_tolerances(
         let solution = solve(&scene, &settings.clone().with_tolerance(tolerance))?;
         samples.push(solution.sample(tolerance, &reference.0, Some(solution.algebraic))?);
     }
-    Ok(curve(
-        study,
-        name,
-        "tolerance",
-        reference.1.clone(),
-        samples,
-    ))
+    Ok(curve(study, name, "tolerance", reference.1.clone(), samples))
 }
 
 fn tolerance(short: bool) -> Result<Vec<Curve>, Failure> {
@@ -94,9 +88,7 @@ fn tolerance(short: bool) -> Result<Vec<Curve>, Failure> {
     let tolerances: &[f64] = if short {
         &[1e-2, 1e-4, 1e-6]
     } else {
-        &[
-            1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
-        ]
+        &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12]
     };
     let mut curves = Vec::new();
     for method in [Method::default(), Method::paper(), Method::one_loop()] {
@@ -134,15 +126,10 @@ fn method(short: bool) -> Result<Vec<Curve>, Failure> {
             "active set, Dirichlet",
             default().with_preconditioner(Preconditioner::Dirichlet),
         ),
-        (
-            "active set, no extrapolation",
-            default().with_extrapolation(false),
-        ),
+        ("active set, no extrapolation", default().with_extrapolation(false)),
         (
             "active set, forcing 0.02",
-            default().with_method(Method::ActiveSet(
-                ActiveSetSettings::default().with_forcing(0.02),
-            )),
+            default().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(0.02))),
         ),
         ("one-loop", default().with_method(Method::one_loop())),
     ];
@@ -170,10 +157,7 @@ fn mesh(short: bool) -> Result<Vec<Curve>, Failure> {
         (4, 1..=4, variant(8, 4))
     };
     let reference = solve(&fine.scene()?, &at(1e-8))?;
-    let text = format!(
-        "cells of 1/{} m, tolerance 1e-8",
-        fine.boxes[1] * fine.cells[1]
-    );
+    let text = format!("cells of 1/{} m, tolerance 1e-8", fine.boxes[1] * fine.cells[1]);
     let balanced = Settings::default().with_accuracy(Accuracy::balanced());
     let kinds = [
         (format!("H/h = {ratio}, 1e-6"), true, at(1e-6)),
@@ -206,11 +190,7 @@ fn time(short: bool) -> Result<Vec<Curve>, Failure> {
         floor: Some(Friction::coulomb(0.3)),
         ..Block::benchmark(1, Loading::C)
     };
-    let steps: &[usize] = if short {
-        &[10, 20]
-    } else {
-        &[10, 20, 40, 80, 160]
-    };
+    let steps: &[usize] = if short { &[10, 20] } else { &[10, 20, 40, 80, 160] };
     let most = 16 * steps[steps.len() - 1];
     let reference = solve(&variant(most, EULER).scene()?, &at(1e-9))?;
     let text = format!("same mesh, backward Euler, {most} steps, tolerance 1e-9");
@@ -247,8 +227,7 @@ fn effects(short: bool) -> Result<Vec<Curve>, Failure> {
         ("rate-dependent friction", Some(weakening())),
     ];
     let reference = solve(&variant(Some(weakening())).scene()?, &at(1e-10))?;
-    let text =
-        "all effects, same mesh and steps, tolerance 1e-10: the error is what leaving out costs";
+    let text = "all effects, same mesh and steps, tolerance 1e-10: the error is what leaving out costs";
     let mut curves = Vec::new();
     for (name, floor) in floors {
         let solution = solve(&variant(floor).scene()?, &at(1e-6))?;

@@ -100,11 +100,7 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
     let common = &options.common;
     let pool = pool(common.threads)?;
     let folder = options.out.clone().unwrap_or(PathBuf::from("out/brick"));
-    let every = if options.out.is_some() {
-        options.vtu_every
-    } else {
-        0
-    };
+    let every = if options.out.is_some() { options.vtu_every } else { 0 };
     let mut outcomes = Vec::new();
     let mut forces = String::new();
     for &n in &options.n {
@@ -134,17 +130,10 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
     }
     for group in outcomes.chunk_by(|a, b| a.record.n == b.record.n) {
         for (name, picture) in pictures::bodies(group) {
-            save(
-                &folder.join(format!("{name}-n{}.svg", group[0].record.n)),
-                &picture,
-            )?;
+            save(&folder.join(format!("{name}-n{}.svg", group[0].record.n)), &picture)?;
         }
     }
-    writeln!(
-        out,
-        "pictures (SVG) and steps.csv of each run: {}",
-        folder.display()
-    )?;
+    writeln!(out, "pictures (SVG) and steps.csv of each run: {}", folder.display())?;
     if let Some(path) = &options.chart {
         save(path, &pictures::growth(&records, options.is_standard())?)?;
     }
@@ -168,11 +157,7 @@ fn plan(options: &BrickOptions, out: &mut impl Write) -> Result<(), Failure> {
     Ok(())
 }
 
-fn report(
-    options: &BrickOptions,
-    outcomes: &[Outcome],
-    out: &mut impl Write,
-) -> Result<(), Failure> {
+fn report(options: &BrickOptions, outcomes: &[Outcome], out: &mut impl Write) -> Result<(), Failure> {
     let records: Vec<&RunRecord> = outcomes.iter().map(|o| &o.record).collect();
     let Some(first) = records.first() else {
         return Ok(());

@@ -15,10 +15,7 @@ pub(crate) fn bodies(runs: &[Outcome]) -> [(&'static str, String); 3] {
     let snapshots: Vec<&Snapshot> = runs.iter().map(|o| &o.snapshot).collect();
     let friction = |s: &&Snapshot| s.contact.stress(&s.contact.friction());
     let friction: Vec<_> = snapshots.iter().map(friction).collect();
-    let rates: Vec<_> = snapshots
-        .iter()
-        .map(|s| s.contact.slip_rate.clone())
-        .collect();
+    let rates: Vec<_> = snapshots.iter().map(|s| s.contact.slip_rate.clone()).collect();
     [
         ("brick", deformed(&snapshots)),
         (
@@ -33,13 +30,7 @@ pub(crate) fn bodies(runs: &[Outcome]) -> [(&'static str, String); 3] {
         ),
         (
             "slip-rate",
-            floor_map(
-                &snapshots,
-                &rates,
-                "mm/s",
-                1e3,
-                "slip rate of the nodes in contact",
-            ),
+            floor_map(&snapshots, &rates, "mm/s", 1e3, "slip rate of the nodes in contact"),
         ),
     ]
 }
@@ -61,12 +52,7 @@ fn deformed(snapshots: &[&Snapshot]) -> String {
         .map(|s| s.displacement.iter().map(length).collect())
         .collect();
     let [l, w, _] = LENGTHS;
-    let floor = [
-        [-0.1, -0.12],
-        [l + 0.25, -0.12],
-        [l + 0.25, w + 0.12],
-        [-0.1, w + 0.12],
-    ];
+    let floor = [[-0.1, -0.12], [l + 0.25, -0.12], [l + 0.25, w + 0.12], [-0.1, w + 0.12]];
     let floor = floor.map(|[x, y]| [x, y, -GAP]).to_vec();
     let mut behind = vec![Shape::Polygon(
         floor,
@@ -76,8 +62,7 @@ fn deformed(snapshots: &[&Snapshot]) -> String {
         for corner in 0..4_u8 {
             let mut ends = [[0.0; 3]; 2];
             for (d, bit) in [((axis + 1) % 3, corner & 1), ((axis + 2) % 3, corner >> 1)] {
-                ends.iter_mut()
-                    .for_each(|e| e[d] = LENGTHS[d] * f64::from(bit));
+                ends.iter_mut().for_each(|e| e[d] = LENGTHS[d] * f64::from(bit));
             }
             ends[1][axis] = LENGTHS[axis];
             behind.push(Shape::Line(
@@ -88,9 +73,7 @@ fn deformed(snapshots: &[&Snapshot]) -> String {
     }
     let moved = |s: &Snapshot| {
         let pairs = s.points.iter().zip(&s.displacement);
-        pairs
-            .map(|(x, u)| std::array::from_fn(|c| x[c] + u[c]))
-            .collect()
+        pairs.map(|(x, u)| std::array::from_fn(|c| x[c] + u[c])).collect()
     };
     let panels: Vec<Panel<'_>> = snapshots
         .iter()
@@ -115,13 +98,7 @@ fn deformed(snapshots: &[&Snapshot]) -> String {
 }
 
 /// The contact surface seen from above. Friction comes with its directions.
-fn floor_map(
-    snapshots: &[&Snapshot],
-    values: &[Vec<f64>],
-    unit: &str,
-    factor: f64,
-    what: &str,
-) -> String {
+fn floor_map(snapshots: &[&Snapshot], values: &[Vec<f64>], unit: &str, factor: f64, what: &str) -> String {
     let panels: Vec<Panel<'_>> = snapshots
         .iter()
         .zip(values)
@@ -157,10 +134,7 @@ fn marks(s: &Snapshot, directions: bool) -> Vec<Shape> {
     for ((p, f), size) in patch.points.iter().zip(&patch.friction_force).zip(&sizes) {
         if directions && *size > 1e-3 * largest {
             let tip = std::array::from_fn(|c| p[c] + 0.9 * spacing * f[c] / size);
-            shapes.push(Shape::Line(
-                [*p, tip],
-                "stroke=\"#fff\" stroke-width=\"10\"",
-            ));
+            shapes.push(Shape::Line([*p, tip], "stroke=\"#fff\" stroke-width=\"10\""));
         }
     }
     // smaller marks on finer meshes
@@ -194,16 +168,9 @@ pub(crate) fn growth(records: &[&RunRecord], standard: bool) -> Result<String, F
         loadings.iter().enumerate().map(curve).collect()
     };
     let paper = |cost: fn(&PaperRow, Loading) -> f64| {
-        let of = move |l| {
-            paper::TABLE
-                .iter()
-                .map(move |row| (row.n_p as f64, cost(row, l)))
-        };
+        let of = move |l| paper::TABLE.iter().map(move |row| (row.n_p as f64, cost(row, l)));
         let curve = |l: Loading| Curve::new(format!("paper, {}", l.name()), 5, of(l));
-        Loading::BOTH
-            .map(curve)
-            .into_iter()
-            .filter(move |_| standard)
+        Loading::BOTH.map(curve).into_iter().filter(move |_| standard)
     };
     let chart = |title: &str, along: &str, log: bool, curves: Vec<Curve>| Chart {
         title: title.to_owned(),

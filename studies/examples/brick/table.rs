@@ -65,11 +65,7 @@ pub(crate) fn verdict(runs: &[&RunRecord]) -> String {
     let (mut below, mut above) = (Vec::new(), Vec::new());
     for run in runs {
         if let Some((_, n_m, _)) = published(run) {
-            let list = if run.n_m <= n_m {
-                &mut below
-            } else {
-                &mut above
-            };
+            let list = if run.n_m <= n_m { &mut below } else { &mut above };
             let ratio = run.n_m as f64 / n_m as f64;
             list.push(format!("n = {} ({}): {ratio:.2}", run.n, run.loading));
         }
@@ -87,8 +83,6 @@ pub(crate) fn verdict(runs: &[&RunRecord]) -> String {
 
 /// The paper's outer iterations, products and seconds for a run of its loading.
 fn published(run: &RunRecord) -> Option<(usize, usize, f64)> {
-    let loading = Loading::BOTH
-        .into_iter()
-        .find(|l| l.name() == run.loading)?;
+    let loading = Loading::BOTH.into_iter().find(|l| l.name() == run.loading)?;
     Some(paper::row(run.n)?.costs(loading))
 }

@@ -63,10 +63,7 @@ pub(crate) fn cases(cells: usize, steps: usize) -> Result<Vec<Case>, Failure> {
         ("elastic only", whole(None, 0.0, 0)),
         ("+ contact", whole(Some(Friction::None), 0.0, 0)),
         ("+ gap", whole(Some(Friction::None), gap, 0)),
-        (
-            "+ Tresca friction",
-            whole(Some(Friction::tresca(3e8)), gap, 0),
-        ),
+        ("+ Tresca friction", whole(Some(Friction::tresca(3e8)), gap, 0)),
         ("Coulomb instead", whole(Some(coulomb.clone()), gap, 0)),
         ("+ history", whole(Some(coulomb), gap, steps)),
         ("+ rate dependence", whole(Some(weakening()), gap, steps)),

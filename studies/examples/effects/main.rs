@@ -21,10 +21,7 @@ use signorini_studies::{Failure, exit, save};
 
 /// Options of the `effects` example.
 #[derive(Debug, Clone, Parser)]
-#[command(
-    name = "effects",
-    about = "What each effect costs, beside the plan's prediction"
-)]
+#[command(name = "effects", about = "What each effect costs, beside the plan's prediction")]
 pub struct EffectsOptions {
     /// Coarse mesh, few steps, benchmark with n = 1 only: seconds, for a first look.
     #[arg(long)]
@@ -124,10 +121,7 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
     let pool = pool(options.threads)?;
     let rate = Rate::measure();
     let all = |cases: Vec<Case>| -> Result<Vec<Line>, Failure> {
-        cases
-            .iter()
-            .map(|case| pool.install(|| measure(case, rate)))
-            .collect()
+        cases.iter().map(|case| pool.install(|| measure(case, rate))).collect()
     };
     let (cells, steps) = if options.short { (2, 4) } else { (CELLS, 10) };
     let effects = all(cases::cases(cells, steps)?)?;
@@ -143,10 +137,7 @@ pub fn execute(options: &EffectsOptions, out: &mut impl Write) -> Result<Results
         };
         Ok(Case::new(format!("n = {n}"), block.scene()?))
     };
-    let benchmark = all(sizes
-        .iter()
-        .map(benchmark)
-        .collect::<Result<_, Failure>>()?)?;
+    let benchmark = all(sizes.iter().map(benchmark).collect::<Result<_, Failure>>()?)?;
     table::estimates(&benchmark, rate, out)?;
 
     let mut others = shapes::shapes()?;

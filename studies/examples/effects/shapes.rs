@@ -2,9 +2,7 @@
 
 use signorini::prelude::*;
 use signorini_studies::Failure;
-use signorini_studies::brick::{
-    Block, EULER, LENGTHS, POISSON, RAMP, TOP, WAVES, YOUNG, by_centre, steel,
-};
+use signorini_studies::brick::{Block, EULER, LENGTHS, POISSON, RAMP, TOP, WAVES, YOUNG, by_centre, steel};
 
 use super::cases::Case;
 
@@ -107,10 +105,7 @@ pub(crate) fn shapes() -> Result<Vec<Case>, Failure> {
             down([4.0, 4.0, 0.5], [8, 8, 1], [2; 3], 1e8, 0.01, 1).scene()?,
         ),
     ];
-    Ok(list
-        .into_iter()
-        .map(|(name, scene)| Case::new(name, scene))
-        .collect())
+    Ok(list.into_iter().map(|(name, scene)| Case::new(name, scene)).collect())
 }
 
 /// The scenes with other tolerances and with steps that end by an estimate of the error.
@@ -119,10 +114,7 @@ pub(crate) fn accuracies() -> Result<Vec<Case>, Failure> {
     let ways = [
         ("1e-3", set().with_tolerance(1e-3)),
         ("1e-9", set().with_tolerance(1e-9)),
-        (
-            "relative 1e-4",
-            set().with_accuracy(Accuracy::Relative(1e-4)),
-        ),
+        ("relative 1e-4", set().with_accuracy(Accuracy::Relative(1e-4))),
         ("balanced", set().with_accuracy(Accuracy::balanced())),
     ];
     let mut cases = shapes()?;
@@ -156,11 +148,7 @@ fn steps(count: usize) -> Analysis {
 
 fn floor(gap: f64, coefficient: f64) -> Contact {
     let contact = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(coefficient));
-    if gap == 0.0 {
-        contact
-    } else {
-        contact.with_gap(gap)
-    }
+    if gap == 0.0 { contact } else { contact.with_gap(gap) }
 }
 
 fn cube() -> Result<Scene, Failure> {

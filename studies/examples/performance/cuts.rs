@@ -35,11 +35,7 @@ impl Case {
 
     /// The scene on a mesh of the brick, in `3n x n x n` boxes.
     fn scene(self, mesh: TetMesh, n: usize) -> Result<Scene, Failure> {
-        let (part, steps) = if self == Self::Program {
-            (1.0, 10)
-        } else {
-            (0.5, 0)
-        };
+        let (part, steps) = if self == Self::Program { (1.0, 10) } else { (0.5, 0) };
         let block = Block {
             top: TOP.map(|t| part * t),
             end: END.map(|t| part * t),
@@ -121,9 +117,7 @@ pub(crate) fn read(path: &Path) -> Result<TetMesh, Failure> {
         (2, LENGTHS[2], brick::Z_MAX),
     ];
     let tagged = |nodes: [u32; 3]| {
-        let found = sides
-            .iter()
-            .find(|(axis, place, _)| side(*axis, *place, &nodes));
+        let found = sides.iter().find(|(axis, place, _)| side(*axis, *place, &nodes));
         found.map(|&(_, _, tag)| Facet { nodes, tag })
     };
     let boundary = mesh.boundary_facets();
@@ -171,13 +165,7 @@ pub(crate) fn measure(
         None => scene,
     };
     let (simulation, steps, _) = solve(scene, Settings::default(), &mut |_, _| Ok(()))?;
-    let sizes = || {
-        simulation
-            .decomposition()
-            .subdomains()
-            .iter()
-            .map(|s| s.tets.len())
-    };
+    let sizes = || simulation.decomposition().subdomains().iter().map(|s| s.tets.len());
     let [least, most] = [sizes().min(), sizes().max()].map(Option::unwrap_or_default);
     Ok(CutLine {
         case,
@@ -186,10 +174,7 @@ pub(crate) fn measure(
         rows: simulation.tfeti().dual_dim(),
         products: steps.iter().map(|s| s.n_m).collect(),
         certificate: steps.iter().map(|s| s.certificate).fold(0.0, f64::max),
-        failed: steps
-            .iter()
-            .filter(|s| s.fallback || !s.converged())
-            .count(),
+        failed: steps.iter().filter(|s| s.fallback || !s.converged()).count(),
     })
 }
 
@@ -226,10 +211,7 @@ pub(crate) fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<
 }
 
 /// Measures all cuts and prints a table in Markdown.
-pub(crate) fn execute(
-    options: &PerformanceOptions,
-    out: &mut impl Write,
-) -> Result<Vec<CutLine>, Failure> {
+pub(crate) fn execute(options: &PerformanceOptions, out: &mut impl Write) -> Result<Vec<CutLine>, Failure> {
     let pool = pool(options.threads)?;
     let mut lines = Vec::new();
     writeln!(

@@ -70,11 +70,7 @@ fn ladder(active_set_only: bool) -> Vec<(&'static str, Settings)> {
         }
         other => other,
     };
-    let forcing = |f: f64| {
-        base().with_method(Method::ActiveSet(
-            ActiveSetSettings::default().with_forcing(f),
-        ))
-    };
+    let forcing = |f: f64| base().with_method(Method::ActiveSet(ActiveSetSettings::default().with_forcing(f)));
     let paper = [
         (
             "paper, every Tresca problem to full accuracy, no extrapolation",
@@ -82,28 +78,17 @@ fn ladder(active_set_only: bool) -> Vec<(&'static str, Settings)> {
         ),
         (
             "paper, inner accuracy follows the fixed point",
-            base()
-                .with_method(Method::paper())
-                .with_extrapolation(false),
+            base().with_method(Method::paper()).with_extrapolation(false),
         ),
-        (
-            "paper, start extrapolated in time",
-            base().with_method(Method::paper()),
-        ),
-        (
-            "paper's one inexact loop",
-            base().with_method(Method::one_loop()),
-        ),
+        ("paper, start extrapolated in time", base().with_method(Method::paper())),
+        ("paper's one inexact loop", base().with_method(Method::one_loop())),
     ];
     let own = [
         (
             "active set, no preconditioner",
             base().with_preconditioner(Preconditioner::None),
         ),
-        (
-            "active set, lumped, no extrapolation",
-            base().with_extrapolation(false),
-        ),
+        ("active set, lumped, no extrapolation", base().with_extrapolation(false)),
         ("active set, lumped, forcing 0.02", forcing(0.02)),
         ("active set, lumped, forcing 0.5", forcing(0.5)),
         ("active set, lumped (the default)", base()),
@@ -211,9 +196,5 @@ fn bars(lines: &[Line]) -> Result<String, Failure> {
     let kinds = runs
         .iter()
         .map(|(n, cells, loading)| format!("n = {n}, H/h = {cells}, {}", loading.name()));
-    chart::bars(
-        "Products with F of all steps",
-        &kinds.collect::<Vec<_>>(),
-        &groups,
-    )
+    chart::bars("Products with F of all steps", &kinds.collect::<Vec<_>>(), &groups)
 }

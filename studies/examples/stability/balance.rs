@@ -94,10 +94,7 @@ impl Ledger {
             for (part, f) in whole.subdomains().iter().zip(&local) {
                 for (&node, v) in part.nodes.iter().zip(f.chunks_exact(3)) {
                     let at = 3 * node as usize;
-                    force[at..at + 3]
-                        .iter_mut()
-                        .zip(v)
-                        .for_each(|(f, v)| *f += v);
+                    force[at..at + 3].iter_mut().zip(v).for_each(|(f, v)| *f += v);
                 }
             }
             nodal.push((force, history.clone()));
@@ -110,11 +107,7 @@ impl Ledger {
             }
         }
         let (low, high) = mesh.extent();
-        let half = 0.5
-            * (0..3)
-                .map(|c| (high[c] - low[c]).powi(2))
-                .sum::<f64>()
-                .sqrt();
+        let half = 0.5 * (0..3).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt();
         let arm = |p: &[f64; 3]| std::array::from_fn(|c| (p[c] - 0.5 * (low[c] + high[c])) / half);
         Ok(Self {
             rows,
@@ -202,20 +195,12 @@ impl Ledger {
             let du = u[i] - before.u[i];
             work += 0.5 * (applied[i] + before.force[i]) * du;
             turned += (0.5 * (applied[i] + before.force[i]) * du).abs();
-            surplus += 0.5
-                * du
-                * row
-                    .iter()
-                    .map(|&(j, v)| v * (u[j] - before.u[j]))
-                    .sum::<f64>();
+            surplus += 0.5 * du * row.iter().map(|&(j, v)| v * (u[j] - before.u[j])).sum::<f64>();
         }
         if known {
             self.turnover += turned;
             let scale = self.turnover.max(energy).max(ROUNDED_WORK * worked);
-            b.energy = worse(
-                b.energy,
-                ratio((energy - before.energy - work).abs(), scale),
-            );
+            b.energy = worse(b.energy, ratio((energy - before.energy - work).abs(), scale));
             let dissipation = result.summary().dissipation;
             b.negative_dissipation = worse(b.negative_dissipation, ratio(-dissipation, scale));
             b.dissipation += dissipation;

@@ -124,12 +124,7 @@ impl Case {
     }
 
     /// A case on the brick.
-    pub(crate) fn brick(
-        group: &'static str,
-        name: impl Into<String>,
-        hard: &'static str,
-        block: Block,
-    ) -> Self {
+    pub(crate) fn brick(group: &'static str, name: impl Into<String>, hard: &'static str, block: Block) -> Self {
         Self::new(group, name, hard, move || block.setup())
     }
 

@@ -48,14 +48,8 @@ fn pair(part: f64) -> Result<Setup, Failure> {
     let traction = |tag, value: [f64; 3]| LoadDensity::traction(own(tag), value.map(|v| part * v));
     Ok(setup
         .map(|s| s.with_parts(parts))
-        .with_load(
-            traction(brick::Z_MAX, block.top),
-            History::table(block.top_history)?,
-        )
-        .with_load(
-            traction(brick::X_MAX, block.end),
-            History::table(block.end_history)?,
-        ))
+        .with_load(traction(brick::Z_MAX, block.top), History::table(block.top_history)?)
+        .with_load(traction(brick::X_MAX, block.end), History::table(block.end_history)?))
 }
 
 fn node_near(scene: &Scene, at: [f64; 3]) -> u32 {
@@ -72,9 +66,8 @@ pub(crate) fn free() -> Vec<Case> {
     let flat = [2.0, 2.0, 0.5];
     let tall = [0.5, 0.5, 2.0];
     let p = 1e7;
-    let block = |name: &str, hard, lengths, coefficient, top| {
-        Case::brick(GROUP, name, hard, loose(lengths, coefficient, top))
-    };
+    let block =
+        |name: &str, hard, lengths, coefficient, top| Case::brick(GROUP, name, hard, loose(lengths, coefficient, top));
     let incline = |name: &str, hard, at: [f64; 3]| {
         Case::new(GROUP, name, hard, move || {
             let weight = LoadDensity::body([3e6, 0.0, -9e6]);
@@ -129,14 +122,7 @@ pub(crate) fn free() -> Vec<Case> {
             [0.13 * p, 0.0, -p],
         )
         .expect(HELD),
-        block(
-            "pulled off the floor",
-            "contact cannot pull",
-            flat,
-            0.3,
-            [0.0, 0.0, p],
-        )
-        .expect(HELD),
+        block("pulled off the floor", "contact cannot pull", flat, 0.3, [0.0, 0.0, p]).expect(HELD),
         block(
             "frictionless, balanced",
             "three motions are held by nothing, and nothing pushes them",
@@ -177,9 +163,9 @@ pub(crate) fn free() -> Vec<Case> {
                     clamped: false,
                     ..Block::default()
                 };
-                Ok(block.setup()?.map(|s| {
-                    s.with_support(Support::components(brick::X_MIN, [true, true, false]))
-                }))
+                Ok(block
+                    .setup()?
+                    .map(|s| s.with_support(Support::components(brick::X_MIN, [true, true, false]))))
             },
         )
         .expect(HELD),
@@ -272,14 +258,22 @@ pub(crate) fn supports() -> Vec<Case> {
             GROUP,
             "crosspoints of eight",
             "8 subdomains meet in one node, 4 in a contact node",
-            Block { boxes: [4, 2, 2], cells: [3, 2, 2], ..Block::default() },
+            Block {
+                boxes: [4, 2, 2],
+                cells: [3, 2, 2],
+                ..Block::default()
+            },
         )
         .same_as("crosspoints, whole", 1e-5),
         Case::brick(
             GROUP,
             "crosspoints, whole",
             "the same in one piece",
-            Block { boxes: [1; 3], cells: [12, 4, 4], ..Block::default() },
+            Block {
+                boxes: [1; 3],
+                cells: [12, 4, 4],
+                ..Block::default()
+            },
         ),
         Case::new(
             GROUP,
@@ -299,10 +293,7 @@ pub(crate) fn supports() -> Vec<Case> {
             "the clamped end is fixed and moved",
             || {
                 Ok(Block::default().setup()?.map(|s| {
-                    s.with_support(
-                        Support::fixed(brick::X_MIN)
-                            .with_motion([1e-3, 0.0, 0.0], History::constant(1.0)),
-                    )
+                    s.with_support(Support::fixed(brick::X_MIN).with_motion([1e-3, 0.0, 0.0], History::constant(1.0)))
                 }))
             },
         )
@@ -320,8 +311,7 @@ pub(crate) fn supports() -> Vec<Case> {
                     ..Block::default()
                 };
                 let setup = block.setup()?;
-                let nodes = [[0.0, 0.0, 1.0], [0.25, 0.0, 1.0], [0.0, 0.25, 1.0]]
-                    .map(|at| node_near(&setup.scene, at));
+                let nodes = [[0.0, 0.0, 1.0], [0.25, 0.0, 1.0], [0.0, 0.25, 1.0]].map(|at| node_near(&setup.scene, at));
                 Ok(setup.map(|s| s.with_support(Support::fixed(nodes.to_vec()))))
             },
         ),

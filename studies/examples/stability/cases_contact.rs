@@ -39,11 +39,7 @@ pub(crate) fn friction() -> Vec<Case> {
             case
         });
     }
-    cases.push(case(
-        "no friction",
-        "no tangential rows at all",
-        block(Friction::None),
-    ));
+    cases.push(case("no friction", "no tangential rows at all", block(Friction::None)));
     let paper = Block {
         steps: 2,
         cells: [2; 3],
@@ -62,11 +58,7 @@ pub(crate) fn friction() -> Vec<Case> {
         },
     ));
     let (fixed, kinetic, decay) = (1.0, 0.02, 1e-4);
-    let weak = Coefficient::Exponential {
-        fixed,
-        kinetic,
-        decay,
-    };
+    let weak = Coefficient::Exponential { fixed, kinetic, decay };
     cases.push(case(
         "strong rate weakening",
         "the coefficient falls from 1 to 0.02 within 0.1 mm/s: nodes stick and tear loose",
@@ -124,15 +116,7 @@ pub(crate) fn sets() -> Vec<Case> {
             GROUP,
             "one node",
             "one corner can touch: one disc carries all friction",
-            || {
-                with_gap(|x| {
-                    if x[0] > 2.99 && x[1] < 0.01 {
-                        0.1
-                    } else {
-                        10.0
-                    }
-                })
-            },
+            || with_gap(|x| if x[0] > 2.99 && x[1] < 0.01 { 0.1 } else { 10.0 }),
         ),
         Case::brick(
             GROUP,
@@ -169,12 +153,7 @@ pub(crate) fn sets() -> Vec<Case> {
 }
 
 /// A block driven from its top, pressed and moved along the floor.
-fn driven(
-    down: f64,
-    along: Vec<(f64, f64)>,
-    steps: usize,
-    friction: Friction,
-) -> Result<Setup, Failure> {
+fn driven(down: f64, along: Vec<(f64, f64)>, steps: usize, friction: Friction) -> Result<Setup, Failure> {
     let block = Block {
         lengths: [2.0, 1.0, 1.0],
         boxes: [2, 1, 1],
@@ -189,9 +168,7 @@ fn driven(
     let top = |held| Support::components(brick::Z_MAX, held);
     let press = top([false, true, true]).with_motion([0.0, 0.0, -down], History::constant(1.0));
     let drag = top([true, false, false]).with_motion([1.0, 0.0, 0.0], History::table(along)?);
-    Ok(block
-        .setup()?
-        .map(|scene| scene.with_support(press).with_support(drag)))
+    Ok(block.setup()?.map(|scene| scene.with_support(press).with_support(drag)))
 }
 
 /// A cube without supports, pressed on its top and sheared all around: everywhere the same stress.
@@ -209,9 +186,7 @@ fn patch(shear: f64) -> Result<Setup, Failure> {
         ..Block::default()
     };
     let side = LoadDensity::traction(brick::X_MIN, [0.0, 0.0, -shear]);
-    Ok(block
-        .setup()?
-        .with_load(side, History::table(RAMP.to_vec())?))
+    Ok(block.setup()?.with_load(side, History::table(RAMP.to_vec())?))
 }
 
 /// Sticking, sliding, reversal.
@@ -226,9 +201,7 @@ pub(crate) fn sliding() -> Vec<Case> {
             driven(down, along.clone(), steps, friction.clone())
         })
     };
-    let threshold = |name: &str, hard, shear: f64| {
-        Case::new("Stick and slip", name, hard, move || patch(shear))
-    };
+    let threshold = |name: &str, hard, shear: f64| Case::new("Stick and slip", name, hard, move || patch(shear));
     let to = |end: f64| vec![(0.0, 0.0), (1.0, end)];
     let half = || Friction::coulomb(0.5);
     let one_half = Coefficient::field(|x| if x[0] < 1.0 { 0.0 } else { 0.5 });

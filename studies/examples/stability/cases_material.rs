@@ -28,12 +28,7 @@ pub(crate) fn cases() -> Vec<Case> {
             poisson,
             ..Block::default()
         };
-        cases.push(Case::brick(
-            "Poisson's ratio",
-            format!("nu {poisson}"),
-            hard,
-            block,
-        ));
+        cases.push(Case::brick("Poisson's ratio", format!("nu {poisson}"), hard, block));
     }
     for ratio in [1e3, 1e6, 1e9] {
         let lying = Block {

@@ -68,9 +68,7 @@ pub(crate) fn cases() -> Vec<Case> {
         push: 0.1,
         steps: 3,
     };
-    let stack = |name: &str, hard: &'static str, stack: Stack| {
-        Case::new(GROUP, name, hard, move || stack.setup())
-    };
+    let stack = |name: &str, hard: &'static str, stack: Stack| Case::new(GROUP, name, hard, move || stack.setup());
     let mut cases = Vec::new();
     for (softer, hard) in [
         (1e3, "the upper block is softer"),
@@ -85,18 +83,12 @@ pub(crate) fn cases() -> Vec<Case> {
         stack(
             "pushed at 99 % of friction between bodies",
             "nearly all of the surface slides, friction alone holds the upper block",
-            Stack {
-                push: 0.297,
-                ..base
-            },
+            Stack { push: 0.297, ..base },
         ),
         stack(
             "pushed beyond friction between bodies",
             "nothing holds the upper block",
-            Stack {
-                push: 0.301,
-                ..base
-            },
+            Stack { push: 0.301, ..base },
         )
         .expect(Expect::Refused("body 1")),
         stack(

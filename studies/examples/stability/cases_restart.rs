@@ -60,12 +60,9 @@ pub(crate) fn garble(bytes: &mut [u8], vectors: usize, mut value: impl FnMut(f64
             at += 8;
         }
     }
-    let sum = bytes
-        .iter()
-        .skip(HEAD)
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
+    let sum = bytes.iter().skip(HEAD).fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
     if let Some(place) = bytes.get_mut(4..HEAD) {
         place.copy_from_slice(&sum.to_le_bytes());
     }
@@ -112,12 +109,9 @@ pub(crate) fn cases() -> Vec<Case> {
         floor: Some(Friction::coulomb(0.9)),
         ..block()
     };
-    let case = |name: &str, hard, build: fn() -> Result<Setup, Failure>| {
-        Case::new(GROUP, name, hard, build)
-    };
-    let from = |name: &str, hard, this: Block, other: Block| {
-        Case::new(GROUP, name, hard, move || resumed(&this, &other, 3))
-    };
+    let case = |name: &str, hard, build: fn() -> Result<Setup, Failure>| Case::new(GROUP, name, hard, build);
+    let from =
+        |name: &str, hard, this: Block, other: Block| Case::new(GROUP, name, hard, move || resumed(&this, &other, 3));
     vec![
         Case::brick(GROUP, SAME, "what the others have to reach", smooth()),
         from(
@@ -140,11 +134,9 @@ pub(crate) fn cases() -> Vec<Case> {
             || garbage(&block(), 1e9),
         )
         .same_as(SAME, 1e-5),
-        case(
-            "from huge garbage",
-            "random start values 1e12 times too large",
-            || garbage(&block(), 1e20),
-        )
+        case("from huge garbage", "random start values 1e12 times too large", || {
+            garbage(&block(), 1e20)
+        })
         .same_as(SAME, 1e-5),
         from(
             "with friction, from another problem",

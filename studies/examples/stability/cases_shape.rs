@@ -61,12 +61,7 @@ pub(crate) fn cases() -> Vec<Case> {
         cells: [2; 3],
         ..Block::default()
     };
-    cases.push(Case::brick(
-        SHAPE,
-        "perturbed nodes",
-        "all subdomains differ",
-        wild,
-    ));
+    cases.push(Case::brick(SHAPE, "perturbed nodes", "all subdomains differ", wild));
     for (name, metre, pascal) in [
         ("mm, MPa", 1e3, 1e-6),
         ("km, GPa", 1e-3, 1e-9),
@@ -78,12 +73,7 @@ pub(crate) fn cases() -> Vec<Case> {
             pascal,
             ..Block::default()
         };
-        let case = Case::brick(
-            "Units",
-            name,
-            "other units must give the same digits",
-            block,
-        );
+        let case = Case::brick("Units", name, "other units must give the same digits", block);
         cases.push(case.same_as("coefficient 0.3", 1e-6));
     }
     for factor in [1e-6, 1e-3, 1e3, 1e6] {

@@ -61,11 +61,7 @@ impl Sliding {
         let (mesh, top, contact) = if self.on_cube {
             let below = cube.map_points(|[x, y, z]| [x, y, z - 1.0])?;
             let contact = Contact::between(upper(brick::Z_MIN), brick::Z_MAX);
-            (
-                below.append(&cube.map_tags(upper))?,
-                upper(brick::Z_MAX),
-                contact,
-            )
+            (below.append(&cube.map_tags(upper))?, upper(brick::Z_MAX), contact)
         } else {
             (cube, brick::Z_MAX, Contact::rigid(brick::Z_MIN))
         };
@@ -83,10 +79,7 @@ impl Sliding {
             let up = History::table(vec![(0.0, 0.5), (0.2, 1.0), (1.0, 1.0)])?;
             (up, History::function(|t| (6.0 * t).sin()))
         };
-        let loads = vec![
-            (LoadDensity::traction(top, [0.0, 0.0, -PRESSURE]), ramp),
-            (aside, wave),
-        ];
+        let loads = vec![(LoadDensity::traction(top, [0.0, 0.0, -PRESSURE]), ramp), (aside, wave)];
         let parts = match self.cut {
             Cut::Boxes(_) => Vec::new(),
             Cut::Scattered(count) => scattered(&mesh, count)?,
@@ -117,9 +110,7 @@ fn scattered(mesh: &TetMesh, count: usize) -> Result<Vec<u32>, Failure> {
         0.549_700_477_901_970_2,
     ];
     let seeds: Vec<[f64; 3]> = (1..=count)
-        .map(|k| {
-            std::array::from_fn(|c| low[c] + (high[c] - low[c]) * (k as f64 * step[c]).fract())
-        })
+        .map(|k| std::array::from_fn(|c| low[c] + (high[c] - low[c]) * (k as f64 * step[c]).fract()))
         .collect();
     let parts = by_nearest(mesh, &seeds);
     Ok(signorini::fem_mesh::split_disconnected(mesh, &parts)?)
@@ -161,10 +152,7 @@ pub(crate) fn cases() -> Vec<Case> {
             "slides everywhere, pushed at 99.9 %",
             "the slip it needs is many times the elastic displacement",
             100,
-            Sliding {
-                aside: 0.999,
-                ..base
-            },
+            Sliding { aside: 0.999, ..base },
         ),
         case(
             "pushed at 99.9 %, nearly tipping",

@@ -53,10 +53,7 @@ pub(crate) fn cases() -> Vec<Case> {
 
 /// Options of the example.
 #[derive(Debug, Clone, Parser)]
-#[command(
-    name = "stability",
-    about = "Hard cases and what the library does with them"
-)]
+#[command(name = "stability", about = "Hard cases and what the library does with them")]
 pub struct StabilityOptions {
     /// Leave the long cases out.
     #[arg(long)]
@@ -80,8 +77,7 @@ fn main() -> ExitCode {
 /// The cases that the options ask for, with those that they are compared with.
 pub(crate) fn chosen(options: &StabilityOptions) -> Vec<Case> {
     let part = options.case.as_deref().unwrap_or("");
-    let wanted =
-        |c: &Case| !(options.short && c.long) && (c.name.contains(part) || c.group.contains(part));
+    let wanted = |c: &Case| !(options.short && c.long) && (c.name.contains(part) || c.group.contains(part));
     let all = cases();
     let references: Vec<String> = all
         .iter()
@@ -124,12 +120,7 @@ pub fn execute(options: &StabilityOptions, out: &mut dyn Write) -> Result<usize,
     });
     printed?;
     let failed: Vec<&Line<'_>> = lines.iter().filter(|l| l.complaint.is_some()).collect();
-    writeln!(
-        out,
-        "{} cases, {} not as they should be",
-        lines.len(),
-        failed.len()
-    )?;
+    writeln!(out, "{} cases, {} not as they should be", lines.len(), failed.len())?;
     for line in &failed {
         writeln!(out, "{}", plain(line))?;
     }

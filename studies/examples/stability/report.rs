@@ -57,11 +57,7 @@ pub(crate) fn plain(line: &Line<'_>) -> String {
     let m = &line.measured;
     let mut out = format!(
         "{} {:<40} {:<38} cert {:>7.1e} balance {:>7.1e} products {:>6} {:>7.2} s",
-        if line.complaint.is_some() {
-            "FAIL"
-        } else {
-            " ok "
-        },
+        if line.complaint.is_some() { "FAIL" } else { " ok " },
         line.case.name,
         outcome(m).chars().take(38).collect::<String>(),
         m.certificate.0,

@@ -66,13 +66,8 @@ impl Measured {
             (Ended::Panicked(text), _) => Some(format!("panic: {text}")),
             (Ended::Refused(text), Expect::Refused(part)) if text.contains(part) => None,
             (Ended::Refused(text), _) => Some(format!("refused: {text}")),
-            (Ended::Solved(..), Expect::Refused(part)) => {
-                Some(format!("should have been refused ({part})"))
-            }
-            (
-                Ended::Solved(status, step),
-                Expect::Certified(limit) | Expect::CertifiedOr(limit, _),
-            ) => {
+            (Ended::Solved(..), Expect::Refused(part)) => Some(format!("should have been refused ({part})")),
+            (Ended::Solved(status, step), Expect::Certified(limit) | Expect::CertifiedOr(limit, _)) => {
                 let allowed = matches!(expect, Expect::CertifiedOr(_, s) if s.contains(status));
                 if !status.converged() && !allowed {
                     return Some(format!("step {step} ended as {status:?}"));
@@ -191,10 +186,7 @@ fn figures(result: &StepResult, scene: &Scene, load: f64) -> Vec<f64> {
     let s = result.summary();
     let unit = if load > 0.0 { load } else { 1.0 };
     let (low, high) = scene.mesh().extent();
-    let length = (0..3)
-        .map(|c| (high[c] - low[c]).powi(2))
-        .sum::<f64>()
-        .sqrt();
+    let length = (0..3).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt();
     let mut out = vec![s.normal_force / unit];
     out.extend(s.friction_force.map(|v| v / unit));
     out.push(s.friction_norm / unit);

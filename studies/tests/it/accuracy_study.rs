@@ -4,9 +4,7 @@ use crate::accuracy::{AccuracyOptions, Curve, Study, execute};
 use crate::{folder, options, read};
 
 fn curve<'a>(curves: &'a [Curve], study: Study, name: &str) -> &'a Curve {
-    let found = curves
-        .iter()
-        .find(|c| c.study == study && c.name.starts_with(name));
+    let found = curves.iter().find(|c| c.study == study && c.name.starts_with(name));
     found.unwrap_or_else(|| panic!("no curve {name} of {study:?}"))
 }
 
@@ -31,12 +29,7 @@ fn short_run_writes_all_files_and_errors_fall() {
     let fixed = curve(&curves, Study::Mesh, "H/h = 2, 1e-6");
     let other = curve(&curves, Study::Mesh, "H = 1 m");
     let balanced = curve(&curves, Study::Mesh, "H/h = 2, balanced");
-    for ((a, b), c) in fixed
-        .samples
-        .iter()
-        .zip(&other.samples)
-        .zip(&balanced.samples)
-    {
+    for ((a, b), c) in fixed.samples.iter().zip(&other.samples).zip(&balanced.samples) {
         assert!((a.errors.u / b.errors.u - 1.0).abs() < 0.1, "{text}");
         assert!((c.errors.u / a.errors.u - 1.0).abs() < 0.05, "{text}");
         assert!(c.products <= a.products + a.products / 4, "{text}");

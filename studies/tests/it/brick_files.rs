@@ -91,18 +91,11 @@ fn charts_show_every_run() {
     assert!(growth.contains("seconds of the run"));
     // other steps and cells: not the paper's benchmark
     assert!(!growth.contains("paper, b"));
-    let line = format!(
-        "performance --n 1 --steps 2 --cells 2 --chart {}",
-        path("ladder.svg")
-    );
+    let line = format!("performance --n 1 --steps 2 --cells 2 --chart {}", path("ladder.svg"));
     let lines = performance::execute(&options(&line), &mut Vec::new()).expect("ladder");
     let ladder = read(path("ladder.svg"));
     for line in &lines {
-        assert!(
-            ladder.contains(&line.name.replace('\'', "&apos;")),
-            "{}",
-            line.name
-        );
+        assert!(ladder.contains(&line.name.replace('\'', "&apos;")), "{}", line.name);
         assert!(ladder.contains(&format!(">\n{}\n<", line.products)));
     }
 }
@@ -110,9 +103,7 @@ fn charts_show_every_run() {
 /// Any mesh surface with a nodal field can be drawn.
 #[test]
 fn a_surface_of_ones_own_is_drawn() {
-    let mesh = Brick::new([1.0, 2.0, 0.5], [2, 3, 1])
-        .build()
-        .expect("a mesh");
+    let mesh = Brick::new([1.0, 2.0, 0.5], [2, 3, 1]).build().expect("a mesh");
     let triangles: Vec<_> = mesh.facets().iter().map(|f| f.nodes).collect();
     let values: Vec<f64> = mesh.points().iter().map(|p| p[1]).collect();
     let panel = Panel {

@@ -53,10 +53,7 @@ fn five_steps_of_both_loadings_by_all_methods_agree() {
     assert!(text.contains("not the benchmark as it stands"));
     for outcome in &face {
         let r = &outcome.record;
-        assert!(
-            r.unconverged.is_empty() && r.largest_certificate < 1e-7,
-            "{r:?}"
-        );
+        assert!(r.unconverged.is_empty() && r.largest_certificate < 1e-7, "{r:?}");
         assert_eq!(r.steps.len(), 5);
         assert_eq!(r.n_m, r.steps.iter().map(|s| s.n_m).sum::<usize>());
         for s in &r.steps {
@@ -108,20 +105,14 @@ fn products_of_the_second_brick_stay_in_their_bands() {
     let (outcomes, _) = run("brick --n 2 --quiet --strict");
     for (outcome, measured) in outcomes.iter().zip([753, 805]) {
         let found = outcome.record.n_m;
-        assert!(
-            found.abs_diff(measured) <= measured / 8,
-            "{found}, not {measured}"
-        );
+        assert!(found.abs_diff(measured) <= measured / 8, "{found}, not {measured}");
     }
 }
 
 #[test]
 fn the_json_has_the_names_of_the_benchmark_and_reads_back() {
     let json = folder("brick-json").join("runs.json");
-    let line = format!(
-        "brick --n 1 --steps 3 --cells 3 --quiet --json {}",
-        json.display()
-    );
+    let line = format!("brick --n 1 --steps 3 --cells 3 --quiet --json {}", json.display());
     let (outcomes, _) = run(&line);
     let text = read(&json);
     let back: Vec<RunRecord> = serde_json::from_str(&text).expect("records");
@@ -160,8 +151,7 @@ fn a_perturbed_brick_shares_no_matrices() {
             perturbation: if perturb { 0.1 } else { 0.0 },
             ..Block::benchmark(1, Loading::B)
         };
-        let simulation =
-            Simulation::new(block.scene().expect("scene"), Settings::default()).expect("set-up");
+        let simulation = Simulation::new(block.scene().expect("scene"), Settings::default()).expect("set-up");
         simulation.tfeti().classes().classes().len()
     };
     assert_eq!((count(false), count(true)), (1, 3));
@@ -194,18 +184,12 @@ fn bad_options_are_errors() {
         "brick --tolerance tight",
         "brick --unknown",
     ] {
-        assert!(
-            BrickOptions::try_parse_from(line.split_whitespace()).is_err(),
-            "{line}"
-        );
+        assert!(BrickOptions::try_parse_from(line.split_whitespace()).is_err(), "{line}");
     }
     let folder = folder("brick-bad");
     let file = folder.join("file");
     std::fs::write(&file, "in the way").expect("file");
-    let blocked = format!(
-        "brick --n 1 --cells 1 --steps 1 --quiet --out {}/sub",
-        file.display()
-    );
+    let blocked = format!("brick --n 1 --cells 1 --steps 1 --quiet --out {}/sub", file.display());
     let unwritable = format!(
         "brick --n 1 --cells 1 --steps 1 --quiet --out {} --json {}/sub.json",
         folder.display(),

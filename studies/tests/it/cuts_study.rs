@@ -29,11 +29,7 @@ fn compact_parts_take_at_most_a_quarter_more_products_than_boxes() {
         }
     }
     // half of the 19 and 23 that a tolerance of 0.01 of the residual took, and next to it
-    let linear = |n: usize| {
-        lines[24 * (n - 1)..24 * n]
-            .iter()
-            .find(|l| l.case == Case::Linear)
-    };
+    let linear = |n: usize| lines[24 * (n - 1)..24 * n].iter().find(|l| l.case == Case::Linear);
     for (n, most) in [(1, 11), (2, 12)] {
         let line = linear(n).expect("line");
         assert!(line.total() <= most, "{line:?}");
@@ -46,9 +42,7 @@ fn compact_parts_take_at_most_a_quarter_more_products_than_boxes() {
 /// next: steps of 72, 256, 45 and 250 products then.
 #[test]
 fn no_step_of_a_ragged_cut_runs_in_circles() {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [45, 15, 15])
-        .build()
-        .expect("brick");
+    let mesh = Brick::new([3.0, 1.0, 1.0], [45, 15, 15]).build().expect("brick");
     let parts = voronoi(&mesh, 81, 1);
     let connected = split_disconnected(&mesh, &parts).expect("parts");
     let line = measure(Case::Program, &mesh, 3, ("as given", Some(connected))).expect("run");

@@ -43,32 +43,18 @@ fn effects_that_are_off_cost_nothing() {
     assert!(coulomb.slip_bound_updates > 1);
     assert_eq!(coulomb.truth.tangential_rows, 2 * coulomb.truth.normal_rows);
     // no state without history, no rates without dependence on them
-    let history = lines
-        .iter()
-        .position(|l| l.name == "+ history")
-        .expect("line");
+    let history = lines.iter().position(|l| l.name == "+ history").expect("line");
     assert!(lines[..history].iter().all(|l| l.state_bytes == 0));
     assert!(lines[history..].iter().all(|l| l.state_bytes > 0));
     assert!(lines[..=history].iter().all(|l| l.rate_updates == 0));
-    assert!(
-        lines[history + 1..]
-            .iter()
-            .all(|l| l.rate_updates == l.steps)
-    );
+    assert!(lines[history + 1..].iter().all(|l| l.rate_updates == l.steps));
     let cut = find(lines, "several subdomains");
-    assert!(
-        lines[..lines.len() - 3]
-            .iter()
-            .all(|l| l.truth.interface_rows == 0)
-    );
+    assert!(lines[..lines.len() - 3].iter().all(|l| l.truth.interface_rows == 0));
     assert!(cut.truth.interface_rows > 0);
     // output and estimates change nothing in the solution
     for name in ["stress output", "error estimates"] {
         let l = find(lines, name);
-        assert_eq!(
-            (l.truth.products, &l.forces),
-            (cut.truth.products, &cut.forces)
-        );
+        assert_eq!((l.truth.products, &l.forces), (cut.truth.products, &cut.forces));
         assert!(l.extra_seconds > 0.0);
     }
     let text = String::from_utf8(out).expect("text");

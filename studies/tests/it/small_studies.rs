@@ -27,11 +27,7 @@ fn frictionless_touches_where_the_reference_does_with_fewer_products() {
     }
     let back: Vec<RunRecord> = serde_json::from_str(&read(&json)).expect("records");
     assert_eq!(back[2], outcomes[2].record);
-    assert!(
-        String::from_utf8(out)
-            .expect("text")
-            .contains("best existing code")
-    );
+    assert!(String::from_utf8(out).expect("text").contains("best existing code"));
 }
 
 #[test]
@@ -49,10 +45,7 @@ fn frictionless_with_the_higher_load_and_the_papers_method() {
 #[test]
 fn a_pad_on_a_rail_sticks_then_slides() {
     let folder = folder("bodies");
-    let line = format!(
-        "bodies --cells 4 --steps 10 --quiet --out {}",
-        folder.display()
-    );
+    let line = format!("bodies --cells 4 --steps 10 --quiet --out {}", folder.display());
     let options = options::<BodiesOptions>(&line);
     let outcome = bodies::execute(&options, &mut Vec::new()).expect("run");
     let run = &outcome.record;

@@ -20,11 +20,7 @@ fn all_as_they_should_be(arguments: &[&str]) {
     let options = StabilityOptions::parse_from(arguments);
     let cases = chosen(&options);
     let lines = run_all(&cases, |_| {});
-    let bad: Vec<String> = lines
-        .iter()
-        .filter(|l| l.complaint.is_some())
-        .map(plain)
-        .collect();
+    let bad: Vec<String> = lines.iter().filter(|l| l.complaint.is_some()).map(plain).collect();
     assert!(bad.is_empty(), "\n{}", bad.join("\n"));
     assert!(!lines.is_empty());
 }
@@ -113,12 +109,7 @@ fn sliding_everywhere_does_not_grow_with_the_mesh() {
 fn names_are_unique_and_references_exist() {
     let cases = cases();
     for case in &cases {
-        assert_eq!(
-            cases.iter().filter(|c| c.name == case.name).count(),
-            1,
-            "{}",
-            case.name
-        );
+        assert_eq!(cases.iter().filter(|c| c.name == case.name).count(), 1, "{}", case.name);
         if let Some((name, _)) = &case.same_as {
             assert!(cases.iter().any(|c| c.name == *name), "{name}");
         }
@@ -176,10 +167,7 @@ fn units_change_nothing() {
             pascal,
             ..reference.clone()
         });
-        assert!(
-            difference(&a.figures, &b.figures) < 1e-6,
-            "{metre} {pascal}"
-        );
+        assert!(difference(&a.figures, &b.figures) < 1e-6, "{metre} {pascal}");
         assert_eq!(outcome(&a), outcome(&b));
     }
 }
@@ -214,12 +202,7 @@ fn start_values_change_nothing() {
         if solved {
             assert!(b.certificate.0 < 1e-5);
             let off = difference(&a.figures, &b.figures);
-            assert!(
-                off < 1e-4,
-                "{seed}, {size:e}: {:?} {:?}",
-                a.figures,
-                b.figures
-            );
+            assert!(off < 1e-4, "{seed}, {size:e}: {:?} {:?}", a.figures, b.figures);
         }
     }
 }
@@ -255,10 +238,7 @@ fn loose_blocks_are_refused_or_certified() {
             Ended::Solved(status, _) => {
                 assert!(along <= -coefficient * lift * 1.001, "{what}");
                 if status.converged() {
-                    assert!(
-                        m.certificate.0 < 1e-5 && m.balance.largest() < 1e-4,
-                        "{what}"
-                    );
+                    assert!(m.certificate.0 < 1e-5 && m.balance.largest() < 1e-4, "{what}");
                 }
             }
         }

@@ -4,11 +4,7 @@ use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
 
 /// The sides that meet at each node of a crease, as frames and areas; keys are places in the surface.
-pub(super) fn creases(
-    mesh: &TetMesh,
-    surface: &Surface,
-    crease: f64,
-) -> HashMap<u32, Vec<(SurfaceFrame, f64)>> {
+pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<(SurfaceFrame, f64)>> {
     let mut out = HashMap::new();
     if crease >= 180.0 {
         return out;
@@ -21,9 +17,7 @@ pub(super) fn creases(
         .collect();
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); surface.nodes().len()];
     for (k, triangle) in surface.triangles().iter().enumerate() {
-        triangle
-            .iter()
-            .for_each(|&n| around[n as usize].push(k as u32));
+        triangle.iter().for_each(|&n| around[n as usize].push(k as u32));
     }
     for (node, triangles) in around.iter().enumerate() {
         let sides = sides(surface, &vectors, triangles, limit);

@@ -58,11 +58,7 @@ pub(super) fn largest_factor(analysis: &Analysis, history: &History) -> (f64, f6
     let times = analysis.times().iter();
     times.fold((0.0, 0.0), |worst: (f64, f64), &time| {
         let value = history.value(time).abs();
-        if value > worst.0 {
-            (value, time)
-        } else {
-            worst
-        }
+        if value > worst.0 { (value, time) } else { worst }
     })
 }
 
@@ -74,9 +70,7 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             let size = vector::max_abs(values.as_flattened());
             let place = || format!("support {index} at time {time} s: its displacement");
             expect(factor * size, "m", place)?;
-            let place = || {
-                format!("support {index} at time {time} s: its displacement times the stiffness")
-            };
+            let place = || format!("support {index} at time {time} s: its displacement times the stiffness");
             expect(factor * size * spring, "N", place)?;
         }
     }
@@ -105,8 +99,7 @@ pub(super) fn nodal_loads(
         let sizes = local.iter().map(|f| vector::max_abs(f));
         let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
         let (factor, time) = largest_factor(&scene.analysis, &load.history);
-        let place =
-            |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
+        let place = |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
         expect(factor * size, "N", || place(""))?;
         expect(factor * size / spring, "m", || place(" over the stiffness"))?;
         out.push(local);

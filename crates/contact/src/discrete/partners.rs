@@ -71,12 +71,7 @@ pub(super) fn partners(
         }
         Ok(partner)
     };
-    let found: Vec<_> = surface
-        .nodes()
-        .par_iter()
-        .enumerate()
-        .map(partner)
-        .collect();
+    let found: Vec<_> = surface.nodes().par_iter().enumerate().map(partner).collect();
     // of several errors the first, whichever thread has found one
     let found: Vec<Partner> = found.into_iter().collect::<Result<_, _>>()?;
     let mut owners = HashMap::new();
@@ -122,19 +117,13 @@ impl<'a> OtherSide<'a> {
             list.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             list
         });
-        Self {
-            mesh,
-            surface,
-            sorted,
-        }
+        Self { mesh, surface, sorted }
     }
 
     /// The nearest node at the normal of a node.
     fn partner(&self, from: &Viewer) -> Option<Partner> {
         let near = NEAR * from.size;
-        let found = self
-            .nearest(from, near)
-            .filter(|(_, distance)| *distance <= near);
+        let found = self.nearest(from, near).filter(|(_, distance)| *distance <= near);
         let found = found.or_else(|| self.nearest(from, f64::INFINITY));
         found.map(|(partner, _)| partner)
     }
@@ -143,9 +132,7 @@ impl<'a> OtherSide<'a> {
     fn nearest(&self, from: &Viewer, most: f64) -> Option<(Partner, f64)> {
         // along the axis on which the normal is shortest
         let slope = |c: &usize| from.normal[*c].abs();
-        let axis = (0..3)
-            .min_by(|a, b| slope(a).total_cmp(&slope(b)))
-            .unwrap_or(0);
+        let axis = (0..3).min_by(|a, b| slope(a).total_cmp(&slope(b))).unwrap_or(0);
         let along = match slope(&axis) {
             0.0 => 0.0,
             slope => slope * most,
@@ -200,12 +187,8 @@ mod tests {
 
     /// A block over a larger one, bent about the y axis, with a gap.
     fn bent(gap: f64) -> TetMesh {
-        let upper = Brick::new([1.0, 1.0, 0.5], [6, 4, 2])
-            .build()
-            .expect("brick");
-        let below = Brick::new([2.0, 1.0, 0.5], [12, 4, 2])
-            .build()
-            .expect("brick");
+        let upper = Brick::new([1.0, 1.0, 0.5], [6, 4, 2]).build().expect("brick");
+        let below = Brick::new([2.0, 1.0, 0.5], [12, 4, 2]).build().expect("brick");
         let below = below
             .map_points(|[x, y, z]| [x - 0.5, y, z - 0.5])
             .expect("moved")

@@ -29,9 +29,7 @@ pub(super) fn check_penetration(
             let contact = &scene.contacts[point.surface];
             let gap = point.gap_after(scene, &contact.obstacle_at(time))?;
             let along = fixed.normal.iter();
-            let displacement: f64 = along
-                .map(|&(case, value)| factors[case as usize] * value)
-                .sum();
+            let displacement: f64 = along.map(|&(case, value)| factors[case as usize] * value).sum();
             let depth = displacement - gap;
             let allowed = rounding + DEPTH * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {

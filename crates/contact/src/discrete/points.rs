@@ -48,13 +48,7 @@ impl ContactPoint {
     pub(crate) fn gap_brought(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
-        contact.gap_brought(
-            self.surface,
-            self.node(),
-            self.position,
-            normal,
-            (self.gap, way),
-        )
+        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, way))
     }
 
     /// The gap where the obstacle has moved by `way`, m.
@@ -64,16 +58,12 @@ impl ContactPoint {
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
     pub(super) fn is_same(&self, other: &Self) -> bool {
-        self.sides.partner == other.sides.partner
-            && self.frame.normal_part(other.frame.normal) > SAME_NORMAL
+        self.sides.partner == other.sides.partner && self.frame.normal_part(other.frame.normal) > SAME_NORMAL
     }
 }
 
 /// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-pub(super) fn conditions(
-    scene: &Scene,
-    surfaces: &[Surface],
-) -> Result<Vec<ContactPoint>, ContactError> {
+pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
         let first = out.len();
@@ -119,9 +109,7 @@ pub(super) fn points(
     // points of each node that there may be others of
     let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     let mut count = vec![0u32; scene.mesh.points().len()];
-    conditions
-        .iter()
-        .for_each(|c| count[c.node() as usize] += 1);
+    conditions.iter().for_each(|c| count[c.node() as usize] += 1);
     for condition in conditions {
         let node = condition.node();
         if count[node as usize] == 1 {
@@ -142,18 +130,11 @@ pub(super) fn points(
 }
 
 /// The one frame of all nodes of a contact with a fixed direction.
-fn fixed_frame(
-    index: usize,
-    contact: &Contact,
-    surface: &Surface,
-) -> Result<Option<SurfaceFrame>, ContactError> {
+fn fixed_frame(index: usize, contact: &Contact, surface: &Surface) -> Result<Option<SurfaceFrame>, ContactError> {
     let ContactNormal::Fixed(normal) = contact.normal else {
         return Ok(None);
     };
-    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal {
-        contact: index,
-        normal,
-    })?;
+    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
     let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
     if !surface.frames().iter().any(outside) {
         return Err(ContactError::ObstacleSide {
@@ -168,12 +149,7 @@ fn fixed_frame(
 /// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are
 /// its own. Where both are as near the law is that of the first one, on the area of both; facets that they share
 /// count once.
-fn join(
-    scene: &Scene,
-    rounding: f64,
-    point: &mut ContactPoint,
-    other: &ContactPoint,
-) -> Result<(), ContactError> {
+fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
     if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
@@ -232,12 +208,7 @@ fn stays(
 }
 
 /// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
-fn check_turn(
-    scene: &Scene,
-    index: usize,
-    surface: &Surface,
-    own: &[ContactPoint],
-) -> Result<(), ContactError> {
+fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoint]) -> Result<(), ContactError> {
     let contact = &scene.contacts[index];
     let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
         return Ok(());

@@ -24,8 +24,7 @@ impl Supports {
         let mut motions: Vec<History> = Vec::new();
         let mut nodes = Vec::with_capacity(scene.supports.len());
         for (index, support) in scene.supports.iter().enumerate() {
-            let mut one =
-                NodeSupport::partial(scene.support_nodes(index)?, support.directions.clone());
+            let mut one = NodeSupport::partial(scene.support_nodes(index)?, support.directions.clone());
             if let Some((values, history)) = &support.motion {
                 let known = motions.iter().position(|known| known == history);
                 let case = known.unwrap_or_else(|| {
@@ -41,10 +40,7 @@ impl Supports {
         }
         let mut directions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
         for direction in prescribed_directions(&nodes, scene.mesh.points().len())? {
-            directions
-                .entry(direction.node)
-                .or_default()
-                .push(direction);
+            directions.entry(direction.node).or_default().push(direction);
         }
         Ok(Self {
             nodes,

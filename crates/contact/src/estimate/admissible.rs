@@ -89,11 +89,7 @@ impl AdmissibleNode {
         }
         let direction = &self.own[k];
         // along the movable part, so that supports stay where they are
-        let by = if k == 0 {
-            by / dot(direction, direction)
-        } else {
-            by
-        };
+        let by = if k == 0 { by / dot(direction, direction) } else { by };
         shift(self.value(v), direction, by);
     }
 
@@ -267,11 +263,7 @@ impl Correction {
 
 /// How both nodes move for each of so many rows, as little as possible; `None` if nothing makes the rows independent.
 fn shifts(own: &RowPart, still: &RowPart, rows: usize) -> Option<Box<Shifts>> {
-    let matrix = DMatrix::from_fn(
-        rows,
-        6,
-        |k, c| if c < 3 { own[k][c] } else { still[k][c - 3] },
-    );
+    let matrix = DMatrix::from_fn(rows, 6, |k, c| if c < 3 { own[k][c] } else { still[k][c - 3] });
     let inverse = matrix.pseudo_inverse(FREEDOM_TAKEN).ok()?;
     let mut out = Shifts::default();
     for (k, shift) in out.iter_mut().enumerate().take(rows) {

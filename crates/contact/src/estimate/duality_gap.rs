@@ -44,11 +44,7 @@ impl Weights {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
-        let nodes = model
-            .points
-            .iter()
-            .map(|p| AdmissibleNode::new(model, p))
-            .collect();
+        let nodes = model.points.iter().map(|p| AdmissibleNode::new(model, p)).collect();
         Self {
             rows,
             nodes,
@@ -61,9 +57,7 @@ impl Weights {
         let factor = || {
             let mut weights = vec![1.0; tfeti.dual_dim()];
             weights[..self.rows.len()].fill(0.0);
-            let factor = tfeti
-                .coarse()
-                .factor_weighted(RowWeights::diagonal(weights));
+            let factor = tfeti.coarse().factor_weighted(RowWeights::diagonal(weights));
             factor.ok().filter(|f| f.free_motions().is_empty())
         };
         self.interior.get_or_init(factor).as_ref()
@@ -237,9 +231,7 @@ impl Solved<'_> {
         };
         on_planes(v);
         for _ in 0..SWEEPS {
-            dependent
-                .iter()
-                .for_each(|(node, _)| node.push_out(self.problem, v));
+            dependent.iter().for_each(|(node, _)| node.push_out(self.problem, v));
         }
         on_planes(v);
     }
@@ -287,8 +279,7 @@ mod tests {
     /// Where slip bounds are a little larger than the friction, what lies between is in the estimate.
     #[test]
     fn a_changed_slip_bound_is_worth_its_energy() {
-        let scene = block(0.0, Friction::coulomb(0.3))
-            .with_load(Load::traction(brick::Z_MIN, [4e3, 0.0, -4e3]));
+        let scene = block(0.0, Friction::coulomb(0.3)).with_load(Load::traction(brick::Z_MIN, [4e3, 0.0, -4e3]));
         let settings = Settings::default().with_tolerance(1e-11);
         let mut simulation = Simulation::new(scene, settings).expect("set-up");
         simulation.step().expect("step");
@@ -319,9 +310,6 @@ mod tests {
         assert!(change > 1e4 * gap, "{change:e} {gap:e}");
         let found = estimate(&recovered).energy;
         let expected = (gap.sqrt() + change.sqrt()).powi(2);
-        assert!(
-            (found - expected).abs() <= 1e-2 * expected,
-            "{found:e} {expected:e}"
-        );
+        assert!((found - expected).abs() <= 1e-2 * expected, "{found:e} {expected:e}");
     }
 }

@@ -71,14 +71,8 @@ impl ConstrainedPoint {
     pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
         let [a, b] = self.contact.frame.tangents;
         let list = match self.tangential {
-            TangentialRows::Disc { row, scale } => {
-                [Some((a, row, scale)), Some((b, row + 1, scale))]
-            }
-            TangentialRows::Interval {
-                row,
-                direction,
-                scale,
-            } => [Some((direction, row, scale)), None],
+            TangentialRows::Disc { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
+            TangentialRows::Interval { row, direction, scale } => [Some((direction, row, scale)), None],
             _ => [None, None],
         };
         list.into_iter().flatten()
@@ -95,10 +89,7 @@ impl ConstrainedPoint {
 }
 
 /// The points that have rows.
-pub(super) fn constrained_points(
-    points: &[ContactPoint],
-    gluing: &Gluing,
-) -> Vec<ConstrainedPoint> {
+pub(super) fn constrained_points(points: &[ContactPoint], gluing: &Gluing) -> Vec<ConstrainedPoint> {
     let point = |rows: &ContactRows| ConstrainedPoint {
         contact: points[rows.point].clone(),
         place: rows.point,

@@ -34,9 +34,7 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
             continue;
         }
         if let Some(escape) = escapes(model, body, &motions)? {
-            let first = |w: &Escape| {
-                escape.step < w.step || escape.step == w.step && escape.force > w.force
-            };
+            let first = |w: &Escape| escape.step < w.step || escape.step == w.step && escape.force > w.force;
             if worst.as_ref().is_none_or(first) {
                 worst = Some(escape);
             }
@@ -74,20 +72,14 @@ struct Escape {
 }
 
 /// The first step at which nothing can hold a body.
-fn escapes(
-    model: &Model,
-    body: usize,
-    motions: &[&FreeMotion],
-) -> Result<Option<Escape>, ContactError> {
+fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option<Escape>, ContactError> {
     let mut cone = WrenchCone::new(motions.len(), generators(model, body, motions)?);
     let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
     let largest = largest.fold(0.0, f64::max);
     let tresca = model.any_law(|law| matches!(law, Friction::Tresca(_)));
     // of each load its work on the motions, and its size
     let work = |load: &signorini_tfeti::LoadResponse| {
-        let works = motions
-            .iter()
-            .map(|m| vector::dot(&m.amplitudes, &load.coarse));
+        let works = motions.iter().map(|m| vector::dot(&m.amplitudes, &load.coarse));
         let subdomains = load.coarse.chunks_exact(6).enumerate();
         let own = subdomains.filter(|(s, _)| model.bodies.of_subdomain(*s) == body);
         let square: f64 = own.map(|(_, e)| e.iter().map(|v| v * v).sum::<f64>()).sum();
@@ -117,21 +109,12 @@ fn escapes(
             if approved.as_ref().is_some_and(same) {
                 continue;
             }
-            cone.separates(&b).map(|motion| Separation {
-                motion,
-                tresca: 0.0,
-            })
+            cone.separates(&b).map(|motion| Separation { motion, tresca: 0.0 })
         };
         if let Some(found) = found {
             let unit = if tresca { 1.0 } else { length };
             let force = unit * vector::dot(&found.motion, &b);
-            return Ok(Some(escape(
-                step,
-                motions,
-                &found,
-                force,
-                cone.friction_needed(&b),
-            )));
+            return Ok(Some(escape(step, motions, &found, force, cone.friction_needed(&b))));
         }
         approved = Some(b);
     }
@@ -139,13 +122,7 @@ fn escapes(
 }
 
 /// The way out along a motion on which the loads work with `force`, N.
-fn escape(
-    step: usize,
-    motions: &[&FreeMotion],
-    found: &Separation,
-    force: f64,
-    friction: Option<f64>,
-) -> Escape {
+fn escape(step: usize, motions: &[&FreeMotion], found: &Separation, force: f64, friction: Option<f64>) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = found.motion.iter().map(|v| -v).collect();
     let (part, mut mode, share) = describe(motions, &motion);
@@ -163,11 +140,7 @@ fn escape(
 }
 
 /// What a force at each contact point does on the motions: newtons to work.
-fn generators(
-    model: &Model,
-    body: usize,
-    motions: &[&FreeMotion],
-) -> Result<Vec<Generators>, ContactError> {
+fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec<Generators>, ContactError> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
     let columns: Vec<Vec<f64>> = motions
@@ -178,15 +151,11 @@ fn generators(
             out
         })
         .collect();
-    let along =
-        |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
+    let along = |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
     let mut out = Vec::new();
     let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
     for point in model.points.iter().filter(own) {
-        let tangents = point
-            .along()
-            .map(|(_, row, scale)| along(row, 1.0 / scale))
-            .collect();
+        let tangents = point.along().map(|(_, row, scale)| along(row, 1.0 / scale)).collect();
         let (coefficient, tresca) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
             Friction::Tresca(bound) => {
@@ -253,9 +222,6 @@ fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (Part, String, f64) {
         moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
     };
     let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e} m"));
-    let parts: Vec<String> = words("translation", &m[..3])
-        .into_iter()
-        .chain(turn)
-        .collect();
+    let parts: Vec<String> = words("translation", &m[..3]).into_iter().chain(turn).collect();
     (most, format!("its {}", parts.join(" with ")), length)
 }

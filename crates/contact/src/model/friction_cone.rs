@@ -9,8 +9,7 @@
 //! falls): the residual of `b - z` separates `b` if `b` works more on it than all friction can.
 
 use crate::tolerances::{
-    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK,
-    WRENCH_RESIDUAL,
+    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK, WRENCH_RESIDUAL,
 };
 use crate::vec3::{dot, norm};
 use nalgebra::{DMatrix, DVector};
@@ -117,10 +116,7 @@ impl WrenchCone {
         let size = norm(b);
         // what friction of any size cannot hold: friction much larger than the loads would take many steps to tell
         if let Some(motion) = self.separated(&scaled(b, size), true) {
-            return Some(Separation {
-                motion,
-                tresca: 0.0,
-            });
+            return Some(Separation { motion, tresca: 0.0 });
         }
         // loads mostly follow one another
         let mut z = std::mem::take(&mut self.last_friction);
@@ -391,10 +387,7 @@ mod tests {
                 let (x, y) = (angle.cos(), angle.sin());
                 Generators {
                     normal: vec![0.0, 0.0, 1.0, y, -x, 0.0],
-                    tangents: vec![
-                        vec![1.0, 0.0, 0.0, 0.0, 0.0, -y],
-                        vec![0.0, 1.0, 0.0, 0.0, 0.0, x],
-                    ],
+                    tangents: vec![vec![1.0, 0.0, 0.0, 0.0, 0.0, -y], vec![0.0, 1.0, 0.0, 0.0, 0.0, x]],
                     coefficient: Some(0.5),
                     tresca: 0.0,
                 }

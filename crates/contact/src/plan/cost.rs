@@ -99,8 +99,7 @@ impl Estimate {
         let coarse = COARSE_CHANGES * self.coarse_flops / rate.flops
             + COARSE_READS * self.coarse_bytes as f64 / 8.0 / rate.numbers;
         // operator and preconditioner
-        let product =
-            2.0 * self.product_flops / rate.flops + moved(NUMBERS_OF_PRODUCT, rows) + coarse;
+        let product = 2.0 * self.product_flops / rate.flops + moved(NUMBERS_OF_PRODUCT, rows) + coarse;
         let setup = (self.setup_flops + COARSE_FACTORS * self.coarse_flops) / rate.flops;
         let step = moved([0.0, NUMBERS_OF_STEP], primal);
         Times {

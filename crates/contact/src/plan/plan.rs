@@ -74,11 +74,7 @@ impl Plan {
     }
 
     /// The plan of a discrete scene.
-    pub(crate) fn of(
-        scene: &Scene,
-        discrete: &DiscreteScene,
-        settings: &Settings,
-    ) -> Result<Self, ContactError> {
+    pub(crate) fn of(scene: &Scene, discrete: &DiscreteScene, settings: &Settings) -> Result<Self, ContactError> {
         settings.validate()?;
         let effects = Effects::of(scene, discrete);
         let decomposition = &discrete.decomposition;

@@ -13,10 +13,7 @@ impl fmt::Display for Plan {
         let mb = |bytes: u64| bytes as f64 / 1e6;
         write!(f, "plan")?;
         let mut line = |name: &str, text: String| write!(f, "\n  {name:<11} {text}");
-        line(
-            "mesh",
-            format!("{} tetrahedra, {} nodes", self.elements, self.nodes),
-        )?;
+        line("mesh", format!("{} tetrahedra, {} nodes", self.elements, self.nodes))?;
         line(
             "subdomains",
             format!("{} ({} torn unknowns)", self.subdomains, self.primal),
@@ -41,10 +38,7 @@ impl fmt::Display for Plan {
         line("contact", self.contact_text())?;
         line("friction", self.friction_text())?;
         line("history", self.history_text())?;
-        line(
-            "dual",
-            format!("{} rows, coarse {}", self.dual(), self.coarse),
-        )?;
+        line("dual", format!("{} rows, coarse {}", self.dual(), self.coarse))?;
         line("method", self.method.to_string())?;
         let [vectors, inverses] = [self.vector_bytes, cost.inverse_bytes].map(mb);
         let [coarse, tables] = [cost.coarse_bytes, cost.table_bytes].map(mb);
@@ -98,11 +92,7 @@ impl Plan {
                 format!("gaps {low:.3e} to {high:.3e} m{inside}")
             }
         };
-        let moving = if e.moving_obstacle {
-            ", moving obstacle"
-        } else {
-            ""
-        };
+        let moving = if e.moving_obstacle { ", moving obstacle" } else { "" };
         let partners = if e.partners { ", between bodies" } else { "" };
         format!("{} nodes, {gap}{moving}{partners}", self.normal_rows)
     }

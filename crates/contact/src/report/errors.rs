@@ -28,11 +28,7 @@ impl AlgebraicError {
 
 /// Root of a ratio of energies; 0 for no energy, whatever the scale.
 pub(crate) fn relative(energy: f64, scale: f64) -> f64 {
-    if energy == 0.0 {
-        0.0
-    } else {
-        (energy / scale).sqrt()
-    }
+    if energy == 0.0 { 0.0 } else { (energy / scale).sqrt() }
 }
 
 /// What the estimates of a step say.
@@ -117,13 +113,7 @@ impl AccumulatedError {
 
     /// What the last step may have of a total error `target` (relative, likely) if all steps are to have the same share
     /// of what is left; `left` steps of `steps` are to be solved, this one with them.
-    pub(crate) fn share(
-        &self,
-        own: &AlgebraicError,
-        target: f64,
-        left: usize,
-        steps: usize,
-    ) -> f64 {
+    pub(crate) fn share(&self, own: &AlgebraicError, target: f64, left: usize, steps: usize) -> f64 {
         if own.scale <= 0.0 {
             return target;
         }

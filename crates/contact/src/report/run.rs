@@ -36,12 +36,7 @@ pub struct RunReport {
 
 impl RunReport {
     /// Takes a step into account.
-    pub(crate) fn enter(
-        &mut self,
-        report: &StepReport,
-        failure: Option<StepFailure>,
-        certificate: f64,
-    ) {
+    pub(crate) fn enter(&mut self, report: &StepReport, failure: Option<StepFailure>, certificate: f64) {
         self.steps += 1;
         self.counters += report.counters;
         if certificate.is_nan() || certificate > self.largest_certificate {
@@ -74,10 +69,7 @@ impl RunReport {
 }
 
 /// An error for a step that failed, or an earlier one on whose displacement it depends.
-pub(crate) fn require(
-    failure: Option<StepFailure>,
-    history: Option<usize>,
-) -> Result<(), ContactError> {
+pub(crate) fn require(failure: Option<StepFailure>, history: Option<usize>) -> Result<(), ContactError> {
     match (failure, history) {
         (Some(failure), _) => Err(ContactError::NotConverged(failure)),
         (None, Some(step)) => Err(ContactError::UnconvergedHistory { step }),

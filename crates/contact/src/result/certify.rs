@@ -57,8 +57,7 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
         c.gap.worsen(-open, displacement);
         c.sign.worsen(force, contact_force);
         let product = (force * open.max(0.0)).abs();
-        c.complementarity
-            .worsen(product, contact_force * displacement);
+        c.complementarity.worsen(product, contact_force * displacement);
         let Some((row, count, scale)) = point.tangential_rows() else {
             continue;
         };
@@ -76,10 +75,8 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
             bound * slip[1] + length * friction[1],
         ];
         // a bound above all forces says that the point sticks: only its displacement counts
-        c.direction.worsen(
-            off[0].hypot(off[1]),
-            contact_force.max(bound) * displacement,
-        );
+        c.direction
+            .worsen(off[0].hypot(off[1]), contact_force.max(bound) * displacement);
     }
     judge(m, sizes, &mut c.gap);
     c
@@ -109,14 +106,9 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let sides = condition.sides.nodes();
-        let way: f64 = sides
-            .map(|(node, weight)| weight * along(node, normal))
-            .sum();
+        let way: f64 = sides.map(|(node, weight)| weight * along(node, normal)).sum();
         let depth = way - open;
-        let copies = model
-            .discrete
-            .decomposition
-            .copies(condition.node() as usize);
+        let copies = model.discrete.decomposition.copies(condition.node() as usize);
         let body = copies
             .first()
             .map_or(0, |c| model.bodies.of_subdomain(c.subdomain as usize));
@@ -183,9 +175,7 @@ mod tests {
             .with_contact(floor.clone().with_gap(0.05));
         close(judged(both, [0.0, 0.0, -0.25]), 0.2, 0.25);
         // nodes that supports hold are judged before anything is solved
-        let held = cube()
-            .with_contact(floor)
-            .with_support(Support::fixed(brick::Z_MIN));
+        let held = cube().with_contact(floor).with_support(Support::fixed(brick::Z_MIN));
         assert_eq!(judged(held, [0.0, 0.0, -0.25]).value, 0.0);
     }
 
@@ -195,9 +185,7 @@ mod tests {
         let moving = Contact::rigid(brick::Z_MIN)
             .with_gap_field(|x| 0.1 * x[0])
             .with_motion([1.0, 0.0, 0.05], ramp);
-        let scene = cube()
-            .with_contact(moving)
-            .with_analysis(Analysis::quasistatic(1.0, 1));
+        let scene = cube().with_contact(moving).with_analysis(Analysis::quasistatic(1.0, 1));
         // at x = 0 the gap is now -0.1 - 0.05
         close(judged(scene, [0.0, 0.0, -0.25]), 0.4, 0.25);
     }
@@ -223,20 +211,8 @@ mod tests {
             ("continuity", &[], &[(support, 1e-4)], 0.0, 1e-4),
             ("gap", &[], &[(row, 1e-4 * scale)], 0.0, 1e-4),
             ("sign", &[(row, 2.0)], &[at_floor], 0.0, 2.0 * scale),
-            (
-                "complementarity",
-                &[(row, -2.0)],
-                &[],
-                0.0,
-                2.0 * scale * GAP,
-            ),
-            (
-                "cone",
-                &[(row, -2.0), (along, 0.7)],
-                &[at_floor],
-                0.0,
-                0.1 * scale,
-            ),
+            ("complementarity", &[(row, -2.0)], &[], 0.0, 2.0 * scale * GAP),
+            ("cone", &[(row, -2.0), (along, 0.7)], &[at_floor], 0.0, 0.1 * scale),
             // sticks and moves
             (
                 "direction",
@@ -260,9 +236,7 @@ mod tests {
             let mut rows = problem.offset.clone();
             model.points.iter().for_each(|p| rows[p.row] = 0.0);
             multipliers.iter().for_each(|&(k, value)| lambda[k] = value);
-            moves
-                .iter()
-                .for_each(|&(k, by)| rows[k] = problem.offset[k] + by);
+            moves.iter().for_each(|&(k, by)| rows[k] = problem.offset[k] + by);
             let mut residual = vec![0.0; torn];
             residual[7] = off;
             let measured = Measured {

@@ -60,12 +60,7 @@ impl PointState {
 }
 
 /// Evaluates the contact points: `rows` is `B u` in row units.
-pub(crate) fn point_states(
-    model: &Model,
-    problem: &StepProblem,
-    lambda: &[f64],
-    rows: &[f64],
-) -> Vec<PointState> {
+pub(crate) fn point_states(model: &Model, problem: &StepProblem, lambda: &[f64], rows: &[f64]) -> Vec<PointState> {
     let states = model.points.iter().enumerate();
     states
         .map(|(k, point)| {
@@ -83,11 +78,7 @@ fn point_state(
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
-    let alpha = model
-        .scene
-        .analysis
-        .formula()
-        .map_or(1.0, |f| f.weights()[0]);
+    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.weights()[0]);
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),

@@ -138,13 +138,7 @@ pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<
 }
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
-fn take_rows(
-    model: &Model,
-    point: &ConstrainedPoint,
-    whole: &[f64; 3],
-    node: u32,
-    rest: &mut [f64; 3],
-) {
+fn take_rows(model: &Model, point: &ConstrainedPoint, whole: &[f64; 3], node: u32, rest: &mut [f64; 3]) {
     let subdomains = model.discrete.decomposition.subdomains();
     for (direction, row, scale) in point.directions() {
         let lambda = dot(whole, &direction) / scale;
@@ -205,8 +199,7 @@ fn by_support(
     let reaction = |(index, support): (usize, &NodeSupport)| {
         let mut reaction = SupportReaction::default();
         for node in &support.nodes {
-            let (Some(whole), Some(held)) = (forces.get(node), supports.directions.get(node))
-            else {
+            let (Some(whole), Some(held)) = (forces.get(node), supports.directions.get(node)) else {
                 continue;
             };
             let mut own = held.iter().filter(|h| h.support == index).peekable();

@@ -87,8 +87,7 @@ pub(crate) fn summarise(
             if active {
                 let [now, old] = [StepProblem::gap, StepProblem::gap_before];
                 let scene = &model.scene;
-                s.obstacle_work += point.normal_force
-                    * (now(problem, scene, touch)? - old(problem, scene, touch)?);
+                s.obstacle_work += point.normal_force * (now(problem, scene, touch)? - old(problem, scene, touch)?);
             }
         }
     }

@@ -137,9 +137,7 @@ impl Contact {
         // what has no direction stays as it is, and is refused with the scene
         let unit = outward.map(|c| if length > 0.0 { c / length } else { c });
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
-        Self::rigid(tag)
-            .with_normal(unit.map(|c| -c))
-            .with_gap_field(gap)
+        Self::rigid(tag).with_normal(unit.map(|c| -c)).with_gap_field(gap)
     }
 
     /// More facets of the same kind. For another gap, direction or friction give a scene another contact
@@ -153,11 +151,7 @@ impl Contact {
     /// A constant gap in m.
     #[must_use]
     pub fn with_gap(mut self, gap: f64) -> Self {
-        self.gap = if gap == 0.0 {
-            Gap::None
-        } else {
-            Gap::Constant(gap)
-        };
+        self.gap = if gap == 0.0 { Gap::None } else { Gap::Constant(gap) };
         self
     }
 
@@ -216,11 +210,7 @@ impl Contact {
     /// The friction law. A bound or coefficient that is zero everywhere is no friction.
     #[must_use]
     pub fn with_friction(mut self, friction: Friction) -> Self {
-        self.friction = if friction.is_zero() {
-            Friction::None
-        } else {
-            friction
-        };
+        self.friction = if friction.is_zero() { Friction::None } else { friction };
         self
     }
 

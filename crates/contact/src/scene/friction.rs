@@ -48,8 +48,7 @@ impl Friction {
     pub fn is_zero(&self) -> bool {
         match self {
             Self::None => true,
-            Self::Tresca(SlipBound::Stress(value))
-            | Self::Coulomb(Coefficient::Constant(value)) => *value == 0.0,
+            Self::Tresca(SlipBound::Stress(value)) | Self::Coulomb(Coefficient::Constant(value)) => *value == 0.0,
             _ => false,
         }
     }
@@ -134,10 +133,7 @@ impl Coefficient {
     /// Whether the slip rate matters; if not, none is computed.
     #[must_use]
     pub fn depends_on_rate(&self) -> bool {
-        matches!(
-            self,
-            Self::Exponential { .. } | Self::Table(_) | Self::RateField(_)
-        )
+        matches!(self, Self::Exponential { .. } | Self::Table(_) | Self::RateField(_))
     }
 
     /// The largest value at any slip rate; `None` if that is not known.
@@ -158,30 +154,20 @@ impl Coefficient {
             Self::Field(_) | Self::RateField(_) => Vec::new(),
             Self::Constant(value) => vec![("coefficient", *value)],
             Self::Exponential { fixed, kinetic, .. } => {
-                vec![
-                    ("coefficient at rest", *fixed),
-                    ("kinetic coefficient", *kinetic),
-                ]
+                vec![("coefficient at rest", *fixed), ("kinetic coefficient", *kinetic)]
             }
             Self::Table(points) => {
                 let mut before = f64::NEG_INFINITY;
                 for (entry, &(rate, _)) in points.iter().enumerate() {
                     if !(rate.is_finite() && rate > before) {
-                        return Err(ContactError::TableRate {
-                            contact,
-                            entry,
-                            rate,
-                        });
+                        return Err(ContactError::TableRate { contact, entry, rate });
                     }
                     before = rate;
                 }
                 if points.is_empty() {
                     return Err(ContactError::EmptyTable { contact });
                 }
-                points
-                    .iter()
-                    .map(|p| ("coefficient in the table", p.1))
-                    .collect()
+                points.iter().map(|p| ("coefficient in the table", p.1)).collect()
             }
         };
         let mut bad = numbers.into_iter().find(|(_, value)| !is_good(*value));
@@ -190,13 +176,7 @@ impl Coefficient {
         {
             bad = bad.or(Some(("decay rate", *decay)));
         }
-        let error = |(what, value)| {
-            Err(ContactError::Coefficient {
-                contact,
-                what,
-                value,
-            })
-        };
+        let error = |(what, value)| Err(ContactError::Coefficient { contact, what, value });
         bad.map_or(Ok(()), error)
     }
 
@@ -205,11 +185,7 @@ impl Coefficient {
         let value = match self {
             Self::Constant(value) => *value,
             Self::Field(field) => field(place),
-            Self::Exponential {
-                fixed,
-                kinetic,
-                decay,
-            } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
+            Self::Exponential { fixed, kinetic, decay } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
             Self::Table(points) => interpolate(points, rate),
             Self::RateField(field) => field(place, rate),
         };
@@ -228,11 +204,7 @@ impl fmt::Debug for Coefficient {
         match self {
             Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
             Self::Field(_) => f.write_str("Field(..)"),
-            Self::Exponential {
-                fixed,
-                kinetic,
-                decay,
-            } => f
+            Self::Exponential { fixed, kinetic, decay } => f
                 .debug_struct("Exponential")
                 .field("fixed", fixed)
                 .field("kinetic", kinetic)
@@ -272,21 +244,13 @@ mod tests {
         };
         law.validate(0).unwrap();
         assert!((law.value(0, [0.0; 3], 0.0).unwrap() - 0.3).abs() < 1e-15);
-        assert!(
-            (law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15
-        );
+        assert!((law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15);
     }
 
     #[test]
     fn tables_interpolate_and_are_constant_outside() {
         let law = Coefficient::Table(vec![(0.0, 0.4), (1.0, 0.2)]);
-        for (rate, expected) in [
-            (-1.0, 0.4),
-            (0.0, 0.4),
-            (0.25, 0.35),
-            (1.0, 0.2),
-            (7.0, 0.2),
-        ] {
+        for (rate, expected) in [(-1.0, 0.4), (0.0, 0.4), (0.25, 0.35), (1.0, 0.2), (7.0, 0.2)] {
             assert!((law.value(0, [0.0; 3], rate).unwrap() - expected).abs() < 1e-15);
         }
     }
@@ -302,10 +266,7 @@ mod tests {
             (Friction::coulomb(1e-9), false),
             (Friction::tresca(1e-9), false),
             (Friction::Coulomb(Coefficient::field(zero)), false),
-            (
-                Friction::Tresca(SlipBound::StressField(Arc::new(zero))),
-                false,
-            ),
+            (Friction::Tresca(SlipBound::StressField(Arc::new(zero))), false),
         ] {
             assert_eq!(law.is_zero(), is_zero, "{law:?}");
             let contact = crate::Contact::rigid(signorini_fem_mesh::FacetTag(1));

@@ -30,11 +30,7 @@ impl Partition {
     ///
     /// # Errors
     /// [`ContactError::Decomposition`] for a zero count, and for part numbers with gaps or disconnected parts.
-    pub(crate) fn decompose(
-        &self,
-        mesh: &TetMesh,
-        materials: &Materials,
-    ) -> Result<Decomposition, ContactError> {
+    pub(crate) fn decompose(&self, mesh: &TetMesh, materials: &Materials) -> Result<Decomposition, ContactError> {
         let even = |count| -> Result<Decomposition, ContactError> {
             let parts = even_parts(mesh, &same_material(mesh, materials)?, count)?;
             Ok(Decomposition::from_parts(mesh, &parts)?)

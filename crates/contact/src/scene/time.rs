@@ -166,10 +166,7 @@ impl Analysis {
         let (times, formula) = match self {
             Self::Static { time } if time.is_finite() => return Ok(()),
             Self::Static { time } => {
-                return Err(ContactError::Time {
-                    step: 0,
-                    time: *time,
-                });
+                return Err(ContactError::Time { step: 0, time: *time });
             }
             Self::Quasistatic { times, formula } => (times, formula),
         };

@@ -86,10 +86,7 @@ impl Scene {
         if let ContactNormal::Fixed(normal) = contact.normal {
             let length: f64 = normal.iter().map(|c| c * c).sum();
             if !(length.is_finite() && length > 0.0) {
-                return Err(ContactError::ObstacleNormal {
-                    contact: index,
-                    normal,
-                });
+                return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
         }
         if contact.motion.is_some() && !contact.partner.is_empty() {

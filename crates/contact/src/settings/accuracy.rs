@@ -42,15 +42,8 @@ impl Accuracy {
     pub(crate) fn validate(self) -> Result<(), ContactError> {
         let (name, value, range, good) = match self {
             Self::Tolerance => return Ok(()),
-            Self::Balanced { fraction: f } => {
-                ("accuracy.fraction", f, "(0, 1]", f > 0.0 && f <= 1.0)
-            }
-            Self::Relative(x) => (
-                "accuracy.relative",
-                x,
-                "[1e-11, 0.5]",
-                (1e-11..=0.5).contains(&x),
-            ),
+            Self::Balanced { fraction: f } => ("accuracy.fraction", f, "(0, 1]", f > 0.0 && f <= 1.0),
+            Self::Relative(x) => ("accuracy.relative", x, "[1e-11, 0.5]", (1e-11..=0.5).contains(&x)),
         };
         match good {
             true => Ok(()),

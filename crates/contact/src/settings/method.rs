@@ -37,9 +37,7 @@ impl Method {
     /// The paper's one inexact loop with the same settings.
     #[must_use]
     pub fn one_loop() -> Self {
-        Self::OneLoop {
-            smalse: paper_smalse(),
-        }
+        Self::OneLoop { smalse: paper_smalse() }
     }
 
     /// Which method it is, without its settings.

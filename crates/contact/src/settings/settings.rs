@@ -140,12 +140,7 @@ impl Settings {
         )?;
         self.inverse.validate()?;
         self.accuracy.validate()?;
-        check(
-            self.max_fixed_point > 0,
-            "max_fixed_point",
-            0.0,
-            "at least 1",
-        )?;
+        check(self.max_fixed_point > 0, "max_fixed_point", 0.0, "at least 1")?;
         check(
             self.max_fallback_products > 0,
             "max_fallback_products",

@@ -42,11 +42,7 @@ impl ByCertificate {
         let enough = largest <= self.aim || certified && !first;
         if enough || !status.converged() || self.tolerance <= LEAST_TOLERANCE {
             let refused = status.converged() && !certified;
-            return Some(if refused {
-                StepStatus::NotCertified
-            } else {
-                status
-            });
+            return Some(if refused { StepStatus::NotCertified } else { status });
         }
         let factor = if certified {
             (NEXT_AIM * self.aim / largest).max(NEXT_TOLERANCE)
@@ -115,19 +111,11 @@ impl Simulation {
         let history = plan.effects.history;
         let errors = &self.controller.errors;
         let share = if history {
-            errors.share(
-                &algebraic,
-                target,
-                plan.steps - self.problem.index,
-                plan.steps,
-            )
+            errors.share(&algebraic, target, plan.steps - self.problem.index, plan.steps)
         } else {
             target
         };
-        let (found, largest) = (
-            algebraic.relative(),
-            contact_violation(&recovered.certificate),
-        );
+        let (found, largest) = (algebraic.relative(), contact_violation(&recovered.certificate));
         let limit = certificate_limit(target);
         let (reached, certified) = (found <= share, largest <= limit);
         report.accuracy = Some(AccuracyReport {
@@ -159,11 +147,7 @@ impl Simulation {
     }
 
     /// The discretisation error of the step, or of an earlier one like it.
-    fn discretisation(
-        &mut self,
-        own: &AlgebraicError,
-        recovered: &Recovered,
-    ) -> Result<Discretisation, ContactError> {
+    fn discretisation(&mut self, own: &AlgebraicError, recovered: &Recovered) -> Result<Discretisation, ContactError> {
         let (known, step) = (self.controller.discretisation, self.problem.index);
         if known.holds(step, own.scale) {
             return Ok(known);

@@ -4,9 +4,7 @@ use crate::error::ContactError;
 use crate::estimate::{Caches, Solved};
 use crate::model::Model;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, require};
-use crate::result::{
-    Certificate, ContactSummary, PointState, Reactions, Recovered, nodal_reactions, reactions_about,
-};
+use crate::result::{Certificate, ContactSummary, PointState, Reactions, Recovered, nodal_reactions, reactions_about};
 use crate::scene::Scene;
 use crate::status::StepFailure;
 use crate::step::StepProblem;
@@ -233,9 +231,7 @@ pub(super) fn discretisation_error(
     caches: &Caches,
     recovered: &Recovered,
 ) -> Result<DiscretisationError, ContactError> {
-    let Scene {
-        mesh, materials, ..
-    } = &model.scene;
+    let Scene { mesh, materials, .. } = &model.scene;
     let recovery = caches.recovery.get_or_init(|| StrainRecovery::new(mesh));
     Ok(recovery.error(mesh, materials, &model.tfeti.nodal_mean(&recovered.torn))?)
 }

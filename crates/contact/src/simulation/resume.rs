@@ -33,12 +33,7 @@ impl Simulation {
         }
         let tfeti = &self.model.tfeti;
         let (rows, coarse) = (tfeti.dual_dim(), tfeti.coarse().rows());
-        state.fits(
-            rows,
-            coarse,
-            self.model.tangential_rows(),
-            self.model.points.len(),
-        )?;
+        state.fits(rows, coarse, self.model.tangential_rows(), self.model.points.len())?;
         state.origin = Some(origin);
         self.check_products(&mut state);
         self.result = None;
@@ -63,9 +58,7 @@ mod tests {
     use signorini_qp::{SymmetricOperator, vector};
 
     fn simulation(young: f64) -> Simulation {
-        let mesh = Brick::new([2.0, 1.0, 1.0], [2, 1, 1])
-            .build()
-            .expect("mesh");
+        let mesh = Brick::new([2.0, 1.0, 1.0], [2, 1, 1]).build().expect("mesh");
         let hooke = Hooke::isotropic(young, 0.3).expect("Hooke");
         let ramp = History::ramp(1.0, 1.0).expect("ramp");
         let scene = Scene::new(mesh, Materials::uniform(hooke))

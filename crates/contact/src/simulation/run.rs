@@ -12,10 +12,7 @@ impl Simulation {
     /// # Errors
     /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after
     /// it.
-    pub fn run(
-        &mut self,
-        observer: &mut (impl Observer + ?Sized),
-    ) -> Result<RunReport, ContactError> {
+    pub fn run(&mut self, observer: &mut (impl Observer + ?Sized)) -> Result<RunReport, ContactError> {
         observer.started(self.plan(), self.plan().steps - self.state.step());
         let mut report = RunReport {
             unconverged_history: self.state.unconverged_history(),
@@ -24,11 +21,7 @@ impl Simulation {
         let mut failed = None;
         while !self.is_finished() {
             let result = self.step()?;
-            report.enter(
-                result.report(),
-                result.failure(),
-                result.certificate().largest(),
-            );
+            report.enter(result.report(), result.failure(), result.certificate().largest());
             match observer.step(&result) {
                 Flow::Continue => {}
                 Flow::Stop => break,

@@ -39,9 +39,7 @@ impl Simulation {
         self.start(state);
         let (report, recovered) = self.solve()?;
         let (model, problem) = (&self.model, &self.problem);
-        let before: Vec<f64> = (0..model.tangential_rows())
-            .map(|k| state.traces(k).0)
-            .collect();
+        let before: Vec<f64> = (0..model.tangential_rows()).map(|k| state.traces(k).0).collect();
         Ok(StepResult {
             summary: summarise(model, problem, &recovered, &self.iterate.lambda, &before)?,
             model: model.clone(),
@@ -53,10 +51,7 @@ impl Simulation {
     }
 
     /// One run of the solver from the present iterate, and what is recovered from it.
-    pub(super) fn solve_once(
-        &mut self,
-        tolerance: f64,
-    ) -> Result<(StepReport, Recovered), ContactError> {
+    pub(super) fn solve_once(&mut self, tolerance: f64) -> Result<(StepReport, Recovered), ContactError> {
         let (model, problem, iterate) = (&self.model, &self.problem, &mut self.iterate);
         let settings = self.settings.clone().with_tolerance(tolerance);
         let task = Task {
@@ -90,8 +85,7 @@ impl Simulation {
         iterate.multiplier = start_vector(last, before, coarse, on);
         if state.sliding.iter().any(|s| *s) {
             let old = iterate.lambda.clone();
-            self.problem
-                .restore_sliding(model, &state.sliding, &mut iterate.lambda);
+            self.problem.restore_sliding(model, &state.sliding, &mut iterate.lambda);
             iterate.known &= old == iterate.lambda;
         }
     }

@@ -146,9 +146,7 @@ impl StepDoubling {
         };
         let run = |times: &[f64]| {
             let (times, formula) = (times.to_vec(), *formula);
-            let scene = scene
-                .clone()
-                .with_analysis(Analysis::Quasistatic { times, formula });
+            let scene = scene.clone().with_analysis(Analysis::Quasistatic { times, formula });
             Simulation::new(scene, settings.clone())
         };
         let half = halves(times);
@@ -272,11 +270,7 @@ fn compare(whole: &StepResult, half: &StepResult, work: [f64; 2]) -> TimeError {
     for (a, b) in whole.points().iter().zip(half.points()) {
         error.changed_points += usize::from(a.state != b.state);
         let forces = |p: &PointState| [[p.normal_force, 0.0, 0.0], p.friction_force];
-        for (a, b) in forces(a)
-            .as_flattened()
-            .iter()
-            .zip(forces(b).as_flattened())
-        {
+        for (a, b) in forces(a).as_flattened().iter().zip(forces(b).as_flattened()) {
             error.contact_force += (a - b).powi(2);
             error.contact_force_size += b.powi(2);
         }

@@ -17,8 +17,7 @@ use crate::settings::Settings;
 use crate::status::StepStatus;
 use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status,
-    active_set, vector,
+    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status, active_set, vector,
 };
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
@@ -39,11 +38,7 @@ pub(crate) struct ActiveSetSolver {
 }
 
 impl ActiveSetSolver {
-    pub(crate) fn new(
-        model: &Model,
-        settings: &Settings,
-        own: &ActiveSetSettings,
-    ) -> Result<Self, ContactError> {
+    pub(crate) fn new(model: &Model, settings: &Settings, own: &ActiveSetSettings) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
         let mut scale = vec![0.0; model.tfeti.dual_dim()];
@@ -55,20 +50,11 @@ impl ActiveSetSolver {
         }
         let gluing = model.tfeti.gluing();
         let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
-        for (_, scale) in scale
-            .iter_mut()
-            .enumerate()
-            .take(contact)
-            .filter(|s| shared(s.0))
-        {
+        for (_, scale) in scale.iter_mut().enumerate().take(contact).filter(|s| shared(s.0)) {
             *scale *= SHARED_ROWS;
         }
         Ok(Self {
-            space: ActiveSetProjector::new(
-                model.tfeti.coarse(),
-                contact,
-                model.tfeti.row_weights(),
-            )?,
+            space: ActiveSetProjector::new(model.tfeti.coarse(), contact, model.tfeti.row_weights())?,
             work: ActiveSetWorkspace::new(model.tfeti.dual(), &preconditioner),
             preconditioner,
             scale,
@@ -79,11 +65,7 @@ impl ActiveSetSolver {
         })
     }
 
-    pub(crate) fn solve(
-        &mut self,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-    ) -> Result<StepReport, ContactError> {
+    pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
         report.counters.inequality_solves = 1;
         let start = iterate.lambda.clone();
@@ -121,9 +103,7 @@ impl ActiveSetSolver {
         let [least, least_contact] = problem.least();
         let tolerance = task.settings.tolerance;
         let settings = self.settings.clone().with_tolerance(tolerance);
-        let settings = settings
-            .with_error_floor(least)
-            .with_contact_error_floor(least_contact);
+        let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {
             let slopes = problem.slip_slopes(model);
@@ -159,20 +139,14 @@ impl ActiveSetSolver {
                     outcome.status
                 }
                 // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
-                Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => {
-                    Status::Stagnated
-                }
+                Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => Status::Stagnated,
                 Err(error) => return Err(error.into()),
             };
             let size = vector::norm(&iterate.lambda).max(least);
             let limit = (&self.scale[..], CONTRADICTION * tolerance * size);
             let residual = self.work.residual();
             let solved = status == Status::Converged && turns < TURNS;
-            if !solved
-                || !self
-                    .exchanges
-                    .settle(task, residual, limit, &mut iterate.lambda)
-            {
+            if !solved || !self.exchanges.settle(task, residual, limit, &mut iterate.lambda) {
                 break status;
             }
             iterate.known = false;

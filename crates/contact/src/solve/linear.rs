@@ -38,11 +38,7 @@ impl LinearSolver {
         })
     }
 
-    pub(crate) fn solve(
-        &mut self,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-    ) -> Result<StepReport, ContactError> {
+    pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         self.rows.set_rhs(&task.problem.rhs);
         let tolerance = Tolerance::Error {
             factor: task.settings.tolerance * LINEAR_SLACK,

@@ -45,12 +45,7 @@ struct Place {
 impl Exchanges {
     pub(crate) fn new(model: &Model) -> Self {
         let dependencies = model.tfeti.gluing().dependencies();
-        Self(
-            dependencies
-                .into_iter()
-                .map(|d| Exchange::new(model, &d))
-                .collect(),
-        )
+        Self(dependencies.into_iter().map(|d| Exchange::new(model, &d)).collect())
     }
 
     /// Ends what the rows of a solved active set contradict; whether there was anything. `residual` is that of all
@@ -118,8 +113,7 @@ impl Contradiction<'_> {
                 found = self.way(lambda, false);
             }
             let (d, length) = found;
-            let small =
-                d.norm() <= self.task.model.discrete.rounding || d.norm() * stiffness <= limit;
+            let small = d.norm() <= self.task.model.discrete.rounding || d.norm() * stiffness <= limit;
             if small || !length.is_finite() {
                 break;
             }
@@ -154,9 +148,7 @@ impl Contradiction<'_> {
 
     /// The direction in which the multipliers move, and how far to the next bound.
     fn way(&self, lambda: &[f64], follow: bool) -> (DVector<f64>, f64) {
-        let Exchange {
-            rows: own, points, ..
-        } = self.exchange;
+        let Exchange { rows: own, points, .. } = self.exchange;
         let mut held = self.held(lambda);
         loop {
             let d = self.descent(&held);

@@ -25,11 +25,7 @@ fn units(model: &Model, problem: &StepProblem, start: &[f64]) -> Vec<f64> {
 }
 
 /// The data of a step and the iterate in units of the bodies, and the units of all rows; `None` for one body.
-pub(super) fn scaled(
-    model: &Model,
-    problem: &StepProblem,
-    iterate: &mut Iterate,
-) -> Option<(StepProblem, Units)> {
+pub(super) fn scaled(model: &Model, problem: &StepProblem, iterate: &mut Iterate) -> Option<(StepProblem, Units)> {
     let bodies = &model.bodies;
     if bodies.count() <= 1 {
         return None;
@@ -39,9 +35,7 @@ pub(super) fn scaled(
     let subdomains = 0..model.tfeti.subdomains();
     let units = Units {
         rows: rows.map(|row| own[bodies.of_row(row)]).collect(),
-        coarse: subdomains
-            .flat_map(|s| [own[bodies.of_subdomain(s)]; 6])
-            .collect(),
+        coarse: subdomains.flat_map(|s| [own[bodies.of_subdomain(s)]; 6]).collect(),
     };
     let mut scaled = problem.clone();
     divide(&mut scaled.linear, &units.rows);
@@ -98,12 +92,7 @@ mod tests {
 
     #[test]
     fn units_are_powers_of_two() {
-        for (size, unit) in [
-            (0.0, 1.0),
-            (f64::NAN, 1.0),
-            (3.1, 4.0),
-            (1e-3, 0.5f64.powi(10)),
-        ] {
+        for (size, unit) in [(0.0, 1.0), (f64::NAN, 1.0), (3.1, 4.0), (1e-3, 0.5f64.powi(10))] {
             assert_eq!(power_of_two(size), unit);
         }
     }

@@ -13,8 +13,8 @@ use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
-    NormSettings, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
-    Status, Tolerance, norm_estimate, smalse, vector,
+    NormSettings, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace, Status, Tolerance,
+    norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
@@ -80,11 +80,7 @@ impl SmalseSolver {
         report
     }
 
-    pub(crate) fn solve(
-        &mut self,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-    ) -> Result<StepReport, ContactError> {
+    pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         self.rows.set_rhs(&task.problem.rhs);
         iterate.multiplier.resize(self.rows.rhs.len(), 0.0);
         let mut report = StepReport::new();
@@ -104,12 +100,7 @@ impl SmalseSolver {
     }
 
     /// One problem whose slip bounds are known.
-    fn tresca(
-        &mut self,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-        report: &mut StepReport,
-    ) -> Result<(), ContactError> {
+    fn tresca(&mut self, task: Task<'_>, iterate: &mut Iterate, report: &mut StepReport) -> Result<(), ContactError> {
         task.problem
             .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
         report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
@@ -164,10 +155,7 @@ impl SmalseSolver {
             settings,
         } = task;
         let normal = model.tfeti.gluing().ranges().normal.clone();
-        let mut x: Vec<f64> = iterate.lambda[normal.clone()]
-            .iter()
-            .map(|v| v.min(0.0))
-            .collect();
+        let mut x: Vec<f64> = iterate.lambda[normal.clone()].iter().map(|v| v.min(0.0)).collect();
         let mut inner = Status::Converged;
         let mut tolerances = InnerTolerance::new(self.accuracy, settings.tolerance * SMALSE_SAFETY);
         let map = |x: &mut [f64], change: f64| {

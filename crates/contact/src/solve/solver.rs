@@ -27,9 +27,7 @@ impl Solver {
             return Ok(Self::Linear(Box::new(LinearSolver::new(model, settings)?)));
         }
         Ok(match &settings.method {
-            Method::ActiveSet(own) => {
-                Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?))
-            }
+            Method::ActiveSet(own) => Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?)),
             Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } => {
                 Self::Smalse(Box::new(SmalseSolver::new(model, settings)?))
             }
@@ -37,11 +35,7 @@ impl Solver {
     }
 
     /// Solves a step; every body in a unit of force of its own.
-    pub(crate) fn solve(
-        &mut self,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-    ) -> Result<StepReport, ContactError> {
+    pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         let Some((problem, units)) = scaled(task.model, task.problem, iterate) else {
             return self.solve_plain(task, iterate);
         };
@@ -56,11 +50,7 @@ impl Solver {
         report
     }
 
-    fn solve_plain(
-        &mut self,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-    ) -> Result<StepReport, ContactError> {
+    fn solve_plain(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         match self {
             Self::Linear(solver) => solver.solve(task, iterate),
             Self::ActiveSet(solver) => solver.solve(task, iterate),

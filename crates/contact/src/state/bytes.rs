@@ -61,8 +61,7 @@ impl State {
         if u64::from_le_bytes(*sum) != checksum(payload) {
             return Err(damaged("their checksum differs"));
         }
-        let (state, rest) =
-            postcard::take_from_bytes(payload).map_err(|e| damaged(&e.to_string()))?;
+        let (state, rest) = postcard::take_from_bytes(payload).map_err(|e| damaged(&e.to_string()))?;
         if rest.is_empty() {
             Ok(state)
         } else {

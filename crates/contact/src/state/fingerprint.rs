@@ -129,9 +129,7 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
     });
     let rows = gluing.ranges().dirichlet.clone();
     let entries = rows.flat_map(|row| gluing.row(row));
-    let entries = entries.flat_map(|(subdomain, dof, coefficient)| {
-        [subdomain as u64, dof as u64, number(coefficient)]
-    });
+    let entries = entries.flat_map(|(subdomain, dof, coefficient)| [subdomain as u64, dof as u64, number(coefficient)]);
     let scales = model.points.iter().flat_map(|point| {
         let rows = point.directions();
         rows.flat_map(|(direction, row, scale)| {

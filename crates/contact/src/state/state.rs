@@ -100,11 +100,7 @@ impl State {
     }
 
     /// Hands multipliers and their products to `renew` where they are not those that were stored with this F.
-    pub(crate) fn renew_products(
-        &mut self,
-        operator: u64,
-        mut renew: impl FnMut(&[f64], &mut Vec<f64>),
-    ) {
+    pub(crate) fn renew_products(&mut self, operator: u64, mut renew: impl FnMut(&[f64], &mut Vec<f64>)) {
         for k in 0..2 {
             let (lambda, f_lambda) = (&self.lambda[k], &mut self.f_lambda[k]);
             if !f_lambda.is_empty() && self.seals[k] != seal(operator, lambda, f_lambda) {
@@ -144,10 +140,7 @@ impl State {
         push(&mut self.lambda, new.lambda);
         push(&mut self.f_lambda, new.f_lambda);
         push(&mut self.multiplier, new.multiplier);
-        self.seals = [
-            seal(operator, &self.lambda[0], &self.f_lambda[0]),
-            self.seals[0],
-        ];
+        self.seals = [seal(operator, &self.lambda[0], &self.f_lambda[0]), self.seals[0]];
         // old tangential displacements are part of the model, not of the extrapolation
         self.trace.swap(0, 1);
         self.trace[0] = new.trace;
@@ -192,20 +185,14 @@ impl State {
                 "rows (gluing, supports, contact)",
                 pairs(&self.lambda, rows) && pairs(&self.f_lambda, rows),
             ),
-            (
-                "rigid motions of subdomains",
-                pairs(&self.multiplier, coarse),
-            ),
+            ("rigid motions of subdomains", pairs(&self.multiplier, coarse)),
         ];
         if let Some((part, _)) = parts.iter().find(|(_, good)| !good) {
             return refuse(format!(
                 "it belongs to another scene, with another number of {part}; continue with the scene that it was stored with"
             ));
         }
-        let sizes = self
-            .peaks
-            .iter()
-            .flat_map(|p| [p.multipliers, p.force, p.displacement]);
+        let sizes = self.peaks.iter().flat_map(|p| [p.multipliers, p.force, p.displacement]);
         let mut sizes = sizes.chain(self.controller.numbers());
         let damage = if !self.numbers().flatten().all(|v| v.is_finite()) {
             "it contains NaN or infinity"

@@ -1,9 +1,7 @@
 //! What chooses the tolerance of the next step by estimates of its error.
 
 use crate::report::AccumulatedError;
-use crate::tolerances::{
-    CHANGED, CONTACT_LIMIT, CONTACT_LIMITS, EXACT_MESH, LOOSEST, MARGIN, TIGHTEST,
-};
+use crate::tolerances::{CHANGED, CONTACT_LIMIT, CONTACT_LIMITS, EXACT_MESH, LOOSEST, MARGIN, TIGHTEST};
 
 /// An estimate of the discretisation error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -62,9 +60,7 @@ impl Default for Controller {
 impl Controller {
     /// All that it holds, to be checked.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
-        let Discretisation {
-            relative, scale, ..
-        } = self.discretisation;
+        let Discretisation { relative, scale, .. } = self.discretisation;
         [self.tolerance, relative, scale]
             .into_iter()
             .chain(self.errors.numbers())

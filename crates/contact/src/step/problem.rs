@@ -47,37 +47,21 @@ pub(crate) struct StepProblem {
 
 impl StepProblem {
     /// Computes the data of step `index` from the model and the state before it.
-    pub(crate) fn prepare(
-        &mut self,
-        model: &Model,
-        state: &State,
-        index: usize,
-    ) -> Result<(), ContactError> {
+    pub(crate) fn prepare(&mut self, model: &Model, state: &State, index: usize) -> Result<(), ContactError> {
         let analysis = &model.scene.analysis;
         let steps = analysis.steps();
-        let time = analysis
-            .time(index)
-            .ok_or(ContactError::Finished { steps })?;
+        let time = analysis.time(index).ok_or(ContactError::Finished { steps })?;
         self.index = index;
         self.time = time;
         self.step = analysis.step_size(index);
         self.peaks.clear();
         self.peaks.extend_from_slice(&state.peaks);
-        self.peaks
-            .resize(model.bodies.count().max(1), Peak::default());
+        self.peaks.resize(model.bodies.count().max(1), Peak::default());
         self.factors.clear();
-        self.factors.extend(
-            model
-                .scene
-                .loads
-                .iter()
-                .map(|load| load.history.value(time)),
-        );
+        self.factors
+            .extend(model.scene.loads.iter().map(|load| load.history.value(time)));
         let rows = model.tfeti.dual_dim();
-        for (vector, len) in [
-            (&mut self.load, rows),
-            (&mut self.rhs, model.tfeti.coarse().rows()),
-        ] {
+        for (vector, len) in [(&mut self.load, rows), (&mut self.rhs, model.tfeti.coarse().rows())] {
             vector.clear();
             vector.resize(len, 0.0);
         }
@@ -140,9 +124,7 @@ impl StepProblem {
         let before = index.checked_sub(1).and_then(|i| analysis.time(i));
         self.obstacles = [Some(self.time), before].map(|time| {
             let contacts = model.scene.contacts.iter();
-            contacts
-                .map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t)))
-                .collect()
+            contacts.map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t))).collect()
         });
     }
 
@@ -152,11 +134,7 @@ impl StepProblem {
     }
 
     /// The same a step before.
-    pub(crate) fn gap_before(
-        &self,
-        scene: &Scene,
-        point: &ConstrainedPoint,
-    ) -> Result<f64, ContactError> {
+    pub(crate) fn gap_before(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[1])
     }
 
@@ -168,12 +146,7 @@ impl StepProblem {
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:
     /// `value` is what `B u` has of it.
-    pub(crate) fn relative(
-        &self,
-        surface: usize,
-        (direction, row, scale): ([f64; 3], usize, f64),
-        value: f64,
-    ) -> f64 {
+    pub(crate) fn relative(&self, surface: usize, (direction, row, scale): ([f64; 3], usize, f64), value: f64) -> f64 {
         (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(surface, &direction)
     }
 
@@ -194,10 +167,7 @@ impl StepProblem {
         let sizes: [fn(&Peak) -> f64; 2] = [|p| p.multipliers, |p| p.force];
         sizes.map(|size| match self.peaks.len() {
             0 | 1 => self.at_rest(0, size),
-            n => (0..n)
-                .map(|b| self.at_rest(b, size).powi(2))
-                .sum::<f64>()
-                .sqrt(),
+            n => (0..n).map(|b| self.at_rest(b, size).powi(2)).sum::<f64>().sqrt(),
         })
     }
 
@@ -208,11 +178,7 @@ impl StepProblem {
     }
 }
 
-fn gap_brought(
-    scene: &Scene,
-    point: &ConstrainedPoint,
-    obstacles: &[[f64; 3]],
-) -> Result<f64, ContactError> {
+fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[[f64; 3]]) -> Result<f64, ContactError> {
     match obstacles.get(point.contact.surface) {
         Some(way) => point.contact.gap_brought(scene, way),
         None => Ok(point.contact.gap),

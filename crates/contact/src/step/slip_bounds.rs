@@ -10,11 +10,7 @@ use signorini_tfeti::TangentialRows;
 
 impl StepProblem {
     /// Coefficients and Tresca bounds of all points; anew only where the coefficient follows the slip rate.
-    pub(super) fn find_friction(
-        &mut self,
-        model: &Model,
-        state: &State,
-    ) -> Result<(), ContactError> {
+    pub(super) fn find_friction(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
         let known = !self.coefficients.is_empty() && !model.any_law(Friction::depends_on_rate);
         if known || !model.any_law(Friction::is_some) {
             return Ok(());
@@ -38,8 +34,7 @@ impl StepProblem {
     /// Slip bound of a point in units of force of its body (newtons): `-F_i lambda_nu,i`, or that of Tresca friction; 0
     /// where it has no tangential rows.
     pub(crate) fn slip_bound(&self, k: usize, point: &ConstrainedPoint, lambda: &[f64]) -> f64 {
-        let (Some(tresca), Some(coefficient)) = (self.tresca.get(k), self.coefficients.get(k))
-        else {
+        let (Some(tresca), Some(coefficient)) = (self.tresca.get(k), self.coefficients.get(k)) else {
             return 0.0;
         };
         if point.tangential == TangentialRows::None {

@@ -25,8 +25,7 @@ fn a_relative_accuracy_is_reached_and_reported() {
             let d: Vec<f64> = (result.displacement.iter().zip(&exact[k].displacement))
                 .map(|(a, b)| a - b)
                 .collect();
-            let energy =
-                fields::strain_energy(scene.mesh(), scene.materials(), &d).expect("energy");
+            let energy = fields::strain_energy(scene.mesh(), scene.materials(), &d).expect("energy");
             let truth = (energy / report.algebraic.elastic).sqrt();
             // with all that the steps before have left in it
             assert!(truth <= 1.2 * target, "step {k}: {truth:e} for {target:e}");
@@ -59,8 +58,7 @@ fn the_error_of_the_mesh_is_estimated_now_and_then() {
 fn a_target_out_of_reach_is_no_success() {
     let solved = |accuracy| {
         let settings = Settings::default().with_accuracy(accuracy);
-        let mut simulation =
-            Simulation::new(pressed(3, Friction::coulomb(0.3)), settings).expect("set-up");
+        let mut simulation = Simulation::new(pressed(3, Friction::coulomb(0.3)), settings).expect("set-up");
         let report = step(&mut simulation).report;
         (report.status, report.accuracy.expect("a report"))
     };
@@ -106,12 +104,9 @@ fn balanced_saves_products_and_keeps_the_error() {
         )
     };
     let (fixed, _, products, _) = error(at(1e-6));
-    let (balanced, estimate, fewer, report) =
-        error(Settings::default().with_accuracy(Accuracy::balanced()));
+    let (balanced, estimate, fewer, report) = error(Settings::default().with_accuracy(Accuracy::balanced()));
     let report = report.accuracy.expect("a report");
-    println!(
-        "fixed 1e-6: {fixed:.5} with {products} products; balanced: {balanced:.5} with {fewer}"
-    );
+    println!("fixed 1e-6: {fixed:.5} with {products} products; balanced: {balanced:.5} with {fewer}");
     println!(
         "index of the discretisation estimate with contact: {:.3}",
         estimate / balanced
@@ -124,10 +119,7 @@ fn balanced_saves_products_and_keeps_the_error() {
 
 #[test]
 fn unusable_accuracies_are_refused() {
-    for accuracy in [
-        Accuracy::Relative(0.0),
-        Accuracy::Balanced { fraction: 2.0 },
-    ] {
+    for accuracy in [Accuracy::Relative(0.0), Accuracy::Balanced { fraction: 2.0 }] {
         let settings = Settings::default().with_accuracy(accuracy);
         let error = Simulation::new(pressed(1, Friction::None), settings).expect_err("refused");
         assert!(matches!(error, ContactError::Setting { .. }), "{error}");
@@ -151,9 +143,7 @@ fn what_weighs_little_in_the_energy_is_certified_too() {
     for cells in [[6, 2, 2], [9, 3, 2]] {
         for (pressure, friction) in [(600.0, 0.64), (1600.0, 0.9), (2100.0, 0.71)] {
             for accuracy in [1e-3, 1e-4, 1e-5, 1e-6].map(Accuracy::Relative) {
-                let settings = Settings::default()
-                    .with_accuracy(accuracy)
-                    .with_method(Method::paper());
+                let settings = Settings::default().with_accuracy(accuracy).with_method(Method::paper());
                 let scene = pulled(cells, pressure, friction);
                 let mut simulation = Simulation::new(scene, settings).expect("set-up");
                 let result = step(&mut simulation);
@@ -179,11 +169,7 @@ fn an_accuracy_asked_for_is_kept_over_many_steps() {
     let scene = benchmark(up_down_up(), 50);
     let exact = rest(&mut Simulation::new(scene.clone(), at(1e-10)).expect("set-up"));
     println!("accuracy | products | largest true error over target | likely over target");
-    for accuracy in [
-        Accuracy::Relative(1e-4),
-        Accuracy::Relative(1e-6),
-        Accuracy::balanced(),
-    ] {
+    for accuracy in [Accuracy::Relative(1e-4), Accuracy::Relative(1e-6), Accuracy::balanced()] {
         let settings = Settings::default().with_accuracy(accuracy);
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
         let (mut worst, mut likely) = (0.0_f64, 0.0_f64);
@@ -191,11 +177,7 @@ fn an_accuracy_asked_for_is_kept_over_many_steps() {
             let frame = simulation.step().expect("step");
             let report = frame.report().accuracy.expect("a report");
             assert!(report.reached && frame.report().status.converged());
-            let truth = relative_distance(
-                &scene,
-                frame.displacement().as_flattened(),
-                &result.displacement,
-            );
+            let truth = relative_distance(&scene, frame.displacement().as_flattened(), &result.displacement);
             worst = worst.max(truth / report.target);
             likely = likely.max(report.accumulated.likely() / report.target);
         }

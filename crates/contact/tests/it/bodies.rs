@@ -57,12 +57,7 @@ fn both(young: f64) -> Scene {
 }
 
 /// Points of the last step that belong to a body, which must be certified.
-fn last(
-    scene: Scene,
-    settings: Settings,
-    keep: impl Fn(f64) -> bool,
-    what: &str,
-) -> Vec<PointState> {
+fn last(scene: Scene, settings: Settings, keep: impl Fn(f64) -> bool, what: &str) -> Vec<PointState> {
     let mut simulation = Simulation::new(scene, settings).expect("set-up");
     let positions: Vec<f64> = simulation
         .constrained_points()
@@ -91,10 +86,7 @@ fn of_the_block(y: f64) -> bool {
 fn a_light_body_is_solved_beside_a_heavy_one() {
     let friction = || Friction::coulomb(0.3);
     let alone = last(
-        on_the_floor(
-            cube_loads(Scene::new(cube(), uniform(2e11, 0.3)), 1.0),
-            friction(),
-        ),
+        on_the_floor(cube_loads(Scene::new(cube(), uniform(2e11, 0.3)), 1.0), friction()),
         tight(),
         of_the_block,
         "block",
@@ -105,13 +97,7 @@ fn a_light_body_is_solved_beside_a_heavy_one() {
         of_the_bar,
         "bar",
     );
-    for (young, factor) in [
-        (2e11, 1e-12),
-        (2e11, 1e-7),
-        (2e11, 1e9),
-        (2e4, 1e-7),
-        (2e18, 1e7),
-    ] {
+    for (young, factor) in [(2e11, 1e-12), (2e11, 1e-7), (2e11, 1e9), (2e4, 1e-7), (2e18, 1e7)] {
         // steps of the paper's methods are those of the softest body: without a preconditioner stiff ones wait for ever
         let count = if young == 2e11 { 3 } else { 1 };
         for method in methods().into_iter().take(count) {
@@ -122,10 +108,7 @@ fn a_light_body_is_solved_beside_a_heavy_one() {
             let scaled: Vec<f64> = forces(&points).iter().map(|f| f / factor).collect();
             let off = distance(&scaled, &forces(&alone));
             assert!(off < 2e-5, "{what}: the block is {off:e} off");
-            let off = distance(
-                &forces(&last(scene(), settings, of_the_bar, &what)),
-                &forces(&bar),
-            );
+            let off = distance(&forces(&last(scene(), settings, of_the_bar, &what)), &forces(&bar));
             assert!(off < 2e-5, "{what}: the bar is {off:e} off");
         }
     }
@@ -147,9 +130,7 @@ fn given_slip_bounds_keep_their_newtons() {
     let off = distance(&forces(&points), &forces(&alone));
     assert!(off < 2e-5, "{off:e}");
     assert!(
-        points
-            .iter()
-            .any(|p| p.slip_bound > 0.0 && p.slip_rate > 0.0),
+        points.iter().any(|p| p.slip_bound > 0.0 && p.slip_rate > 0.0),
         "some slide"
     );
 }
@@ -173,18 +154,14 @@ fn a_body_that_only_moves_is_solved_beside_a_loaded_one() {
 #[test]
 fn a_body_that_moves_without_forces_does_not_disturb_another() {
     let bar = last(
-        on_the_floor(
-            bar_loads(Scene::new(bar(), uniform(2e11, 0.3))),
-            Friction::None,
-        ),
+        on_the_floor(bar_loads(Scene::new(bar(), uniform(2e11, 0.3))), Friction::None),
         tight(),
         of_the_bar,
         "bar",
     );
     for (young, motion) in [(0.2, 1e-5), (2.0, 1e-5), (0.2, 1e-3), (2e11, 1e-5)] {
         let top = Support::fixed(other(brick::Z_MAX));
-        let scene =
-            bar_loads(both(young)).with_support(top.with_motion([motion, 0.0, motion], ramp()));
+        let scene = bar_loads(both(young)).with_support(top.with_motion([motion, 0.0, motion], ramp()));
         let scene = on_the_floor(scene, Friction::None);
         let points = last(scene, Settings::default(), of_the_bar, "both");
         let off = distance(&forces(&points), &forces(&bar));
@@ -290,17 +267,11 @@ fn a_ball_joint_carries_its_share() {
     let corner = joined([1.0, 1.0, 1.0]);
     let scene = Scene::new(corner, uniform(1e6, 0.3))
         .with_support(Support::fixed(brick::X_MIN))
-        .with_load(Load::new(LoadDensity::pressure(
-            second(brick::Z_MAX),
-            500.0,
-        )));
+        .with_load(Load::new(LoadDensity::pressure(second(brick::Z_MAX), 500.0)));
     let refused = Simulation::new(scene.clone(), at(1e-9));
     assert!(matches!(refused, Err(ContactError::NotHeld { .. })));
     let held = scene
-        .with_support(Support::components(
-            second(brick::X_MAX),
-            [false, true, true],
-        ))
+        .with_support(Support::components(second(brick::X_MAX), [false, true, true]))
         .with_boxes([2, 1, 2]);
     let (_, results) = run(held, at(1e-9));
     assert!(norm(&results[0].displacement) > 0.0);

@@ -59,8 +59,7 @@ fn column(steps: usize, formula: DifferenceFormula, exact: &Point) -> Scene {
     let side = |tag, sign: f64| Load::traction(tag, [0.0, 0.0, sign]).with_history(shear.clone());
     Scene::new(block([1.0, 0.5, 1.0], [2, 1, 2]), uniform(YOUNG, 0.0))
         .with_support(
-            Support::components(brick::Z_MAX, [true, true, false])
-                .with_motion([1.0, 0.0, 0.0], History::function(top)),
+            Support::components(brick::Z_MAX, [true, true, false]).with_motion([1.0, 0.0, 0.0], History::function(top)),
         )
         .with_load(Load::pressure(brick::Z_MAX, PRESSURE))
         .with_load(side(brick::X_MAX, 1.0))
@@ -80,10 +79,7 @@ fn compare(steps: usize, formula: DifferenceFormula, method: Method) -> (f64, f6
     for (i, result) in results.iter().enumerate() {
         for p in &result.points {
             let (slip, force) = (p.tangential_displacement[0], -p.friction_force[0] / p.area);
-            assert!(
-                (slip - exact.slip[i]).abs() < 1e-8 * AMPLITUDE,
-                "step {i}: {slip}"
-            );
+            assert!((slip - exact.slip[i]).abs() < 1e-8 * AMPLITUDE, "step {i}: {slip}");
             assert!(
                 (force - exact.stress[i]).abs() < 1e-7 * COEFFICIENT * PRESSURE,
                 "step {i}"
@@ -123,10 +119,7 @@ fn the_papers_formula_has_a_first_order_signature() {
     assert!((loss / 0.1 - 0.85383).abs() < 1e-5, "{}", loss / 0.1);
     for steps in [40, 80, 160] {
         let order = (error(steps) / error(2 * steps)).log2();
-        assert!(
-            (0.9..1.1).contains(&order),
-            "order {order} at {steps} steps"
-        );
+        assert!((0.9..1.1).contains(&order), "order {order} at {steps} steps");
     }
 }
 

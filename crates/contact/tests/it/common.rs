@@ -4,8 +4,8 @@ pub(crate) use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 pub(crate) use signorini_contact::*;
 pub(crate) use signorini_fem_mesh::{
-    Brick, Decomposition, Facet, FacetTag, History, Hooke, LoadDensity, Materials, Surface,
-    TetMesh, assemble_load, brick, fields,
+    Brick, Decomposition, Facet, FacetTag, History, Hooke, LoadDensity, Materials, Surface, TetMesh, assemble_load,
+    brick, fields,
 };
 
 /// Solves the next step.
@@ -130,9 +130,7 @@ pub(crate) fn weakening() -> Friction {
 
 /// The benchmark's contact surface with another friction law.
 pub(crate) fn foundation(friction: Friction) -> Contact {
-    Contact::rigid(brick::Z_MIN)
-        .with_gap(0.1)
-        .with_friction(friction)
+    Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(friction)
 }
 
 /// The brick of the benchmark on a mesh, without contact and analysis.
@@ -175,9 +173,7 @@ pub(crate) fn lifted(mesh: &TetMesh, by: f64) -> TetMesh {
 
 /// A second body behind the first, with tags of its own.
 pub(crate) fn with_second(first: &TetMesh, other: &TetMesh) -> TetMesh {
-    first
-        .append(&other.clone().map_tags(second))
-        .expect("two bodies")
+    first.append(&other.clone().map_tags(second)).expect("two bodies")
 }
 
 /// Why a scene is refused: the plan says the same before any work.

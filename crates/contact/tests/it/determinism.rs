@@ -13,11 +13,7 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 #[test]
 fn the_number_of_threads_changes_no_bit() {
     for method in methods() {
-        let run = |threads| {
-            with_threads(threads, || {
-                fingerprint(benchmark(up_down_up(), 5), by(method.clone()))
-            })
-        };
+        let run = |threads| with_threads(threads, || fingerprint(benchmark(up_down_up(), 5), by(method.clone())));
         let one = run(1);
         assert!(one.0.iter().all(|result| !result.is_empty()) && one.1.memory() > 0);
         for threads in [2, 3] {
@@ -71,12 +67,8 @@ fn threads_change_no_bit_between_bodies() {
     let mesh = with_second(&lower, &lifted(&lower, 1.0));
     let scene = Scene::new(mesh, steel())
         .with_support(Support::fixed(brick::Z_MIN))
-        .with_load(
-            Load::traction(second(brick::Z_MAX), [2e8, 0.0, -1e9]).with_history(up_down_up()),
-        )
-        .with_contact(
-            Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(weakening()),
-        )
+        .with_load(Load::traction(second(brick::Z_MAX), [2e8, 0.0, -1e9]).with_history(up_down_up()))
+        .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(weakening()))
         .with_boxes([2, 2, 4])
         .with_analysis(paper_steps(1.0, 4));
     let run = |threads| with_threads(threads, || fingerprint(scene.clone(), Settings::default()));

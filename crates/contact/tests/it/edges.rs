@@ -53,11 +53,7 @@ fn hydrostatic(contacts: &[Contact], boxes: [usize; 3], method: Method) {
     }
     let corner = results[0].points.iter().filter(|p| p.node == 0).count();
     assert_eq!(corner, 3);
-    let error = simulation
-        .result()
-        .expect("a step")
-        .algebraic_error()
-        .relative();
+    let error = simulation.result().expect("a step").algebraic_error().relative();
     assert!(error < 1e-5, "estimate {error:e}");
 }
 
@@ -187,15 +183,12 @@ fn each_surface_has_its_own_law() {
             .filter(|n| n % 5 == 4 && (n / 5) % 3 > 0 && n / 15 > 0)
             .collect();
         Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e6, 0.3))
-            .with_contact(
-                Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(coefficient)),
-            )
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(coefficient)))
             .with_contact(Contact::rigid(brick::Y_MIN).with_friction(wall))
             .with_load(Load::body([0.0, -side / 2.0, -weight / 2.0]))
             .with_boxes([2, 1, 1])
             .with_support(
-                Support::components(back, [true, false, false])
-                    .with_motion([0.1, 0.0, 0.0], History::constant(1.0)),
+                Support::components(back, [true, false, false]).with_motion([0.1, 0.0, 0.0], History::constant(1.0)),
             )
     };
     let walls = [
@@ -242,9 +235,7 @@ fn parts_of_a_floor_share_their_nodes() {
     let scene = Scene::new(mesh, uniform(1e6, 0.3))
         .with_contact(law(brick::Z_MIN, 0.4))
         .with_contact(law(slick, 0.1))
-        .with_support(
-            Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -1e-3], History::constant(1.0)),
-        );
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -1e-3], History::constant(1.0)));
     let result = solve(scene, at(1e-9));
     assert_eq!(result.points.len(), 15);
     let area: f64 = result.points.iter().map(|p| p.area).sum();
@@ -267,10 +258,7 @@ fn a_sliding_block_runs_against_a_wall() {
             .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.4)))
             .with_contact(Contact::rigid(brick::X_MAX).with_gap(gap))
             .with_load(Load::pressure(brick::Z_MAX, 1e3))
-            .with_load(
-                Load::pressure(brick::X_MIN, 2e3)
-                    .with_history(History::ramp(1.0, 1.0).expect("ramp")),
-            )
+            .with_load(Load::pressure(brick::X_MIN, 2e3).with_history(History::ramp(1.0, 1.0).expect("ramp")))
             .with_boxes(boxes)
             .with_analysis(Analysis::quasistatic(1.0, steps))
     };
@@ -297,8 +285,7 @@ fn a_sliding_block_runs_against_a_wall() {
 /// One tag between two obstacles: each node of the floor may also meet the wall.
 #[test]
 fn one_tag_may_meet_two_obstacles() {
-    let floor = Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0])
-        .with_friction(Friction::coulomb(0.2));
+    let floor = Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]).with_friction(Friction::coulomb(0.2));
     // a slope without friction that begins under the edge of the block
     let wall = Contact::half_space(brick::Z_MIN, [1.0, 0.0, 0.0], [-1.0, 0.0, 1.0]);
     let scene = Scene::new(cube(2), uniform(YOUNG, POISSON))
@@ -323,19 +310,12 @@ fn one_tag_may_meet_two_obstacles() {
     let points = solve(same, at(1e-9)).points;
     assert_eq!(points.len(), 9);
     let area: f64 = points.iter().map(|p| p.area).sum();
-    assert!(
-        (area - 1.0).abs() < 1e-12,
-        "the same facets count once: {area}"
-    );
+    assert!((area - 1.0).abs() < 1e-12, "the same facets count once: {area}");
 }
 
 #[test]
 fn the_angle_of_a_crease_is_checked_and_can_be_chosen() {
-    let contact = |degrees| {
-        Contact::rigid(brick::X_MIN)
-            .with_tag(brick::Z_MIN)
-            .with_crease(degrees)
-    };
+    let contact = |degrees| Contact::rigid(brick::X_MIN).with_tag(brick::Z_MIN).with_crease(degrees);
     for bad in [0.0, -1.0, 181.0, f64::NAN] {
         let scene = cornered(&[contact(bad)], 2);
         assert!(matches!(
@@ -344,15 +324,12 @@ fn the_angle_of_a_crease_is_checked_and_can_be_chosen() {
         ));
     }
     let rows = |degrees| {
-        let scene = cornered(&[contact(degrees)], 2)
-            .with_support(Support::components(brick::Y_MIN, [false, true, false]));
+        let scene =
+            cornered(&[contact(degrees)], 2).with_support(Support::components(brick::Y_MIN, [false, true, false]));
         let simulation = Simulation::new(scene, at(1e-9)).expect("set-up");
         simulation.constrained_points().len()
     };
-    assert_eq!(
-        (rows(60.0), rows(89.0), rows(91.0), rows(180.0)),
-        (18, 18, 15, 15)
-    );
+    assert_eq!((rows(60.0), rows(89.0), rows(91.0), rows(180.0)), (18, 18, 15, 15));
 }
 
 /// Dependent rows or not: the number of threads changes no bit.
@@ -398,8 +375,7 @@ fn a_wall_pushes_a_rough_edge_along_a_floor() {
                         let held = Support::components(tag, [false, true, false]);
                         scene = scene.with_support(held);
                     }
-                    let mut simulation =
-                        Simulation::new(scene, Settings::default()).expect("set-up");
+                    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
                     while !simulation.is_finished() {
                         let frame = simulation.step().expect("step");
                         let found = frame.certificate().largest();

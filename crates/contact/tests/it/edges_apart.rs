@@ -6,16 +6,10 @@ use crate::common::*;
 /// How deep nodes are inside an obstacle with one normal, over the largest displacement.
 fn depth(scene: &Scene, result: &Solved, tag: FacetTag, normal: [f64; 3], gap: f64) -> f64 {
     let u = result.displacement.as_chunks::<3>().0;
-    let size = result
-        .displacement
-        .iter()
-        .fold(0.0_f64, |m, v| m.max(v.abs()));
+    let size = result.displacement.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let nodes = scene.mesh().nodes_on(tag).into_iter();
     let along = |k: u32| (0..3).map(|c| u[k as usize][c] * normal[c]).sum::<f64>();
-    nodes
-        .map(|k| along(k) - gap)
-        .fold(f64::NEG_INFINITY, f64::max)
-        / size
+    nodes.map(|k| along(k) - gap).fold(f64::NEG_INFINITY, f64::max) / size
 }
 
 /// A floor, and a wall that leans outwards such that their normals differ by so many degrees.
@@ -45,10 +39,7 @@ fn edges_of_any_angle_stay_outside_both_obstacles() {
             assert_eq!(result.points.len(), 45);
             let floor = depth(&scene, &result, brick::Z_MIN, [0.0, 0.0, -1.0], 0.0);
             let wall = depth(&scene, &result, brick::X_MAX, wall, 2e-3);
-            assert!(
-                floor < 1e-6 && wall < 1e-6,
-                "{degrees} {friction}: {floor:e} {wall:e}"
-            );
+            assert!(floor < 1e-6 && wall < 1e-6, "{degrees} {friction}: {floor:e} {wall:e}");
         }
     }
 }
@@ -77,9 +68,7 @@ fn kinked(angle: f64) -> TetMesh {
 /// Pressed by 1 mm and moved along by 2 mm.
 fn pressed(mesh: TetMesh, left: Contact, right: Contact) -> Scene {
     Scene::new(mesh, uniform(1e9, 0.3))
-        .with_support(
-            Support::fixed(brick::Z_MAX).with_motion([2e-3, 0.0, -1e-3], History::constant(1.0)),
-        )
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([2e-3, 0.0, -1e-3], History::constant(1.0)))
         .with_contact(left)
         .with_contact(right)
         .with_boxes([2, 1, 1])
@@ -96,10 +85,7 @@ fn the_smaller_the_angle_the_more_it_is_one_side() {
         let result = step(&mut simulation);
         let found = result.certificate.largest();
         // rows that nearly depend on one another leave the certificate above the tolerance, not above its limit
-        assert!(
-            result.report.status.converged() && found < 3e-5,
-            "{found:e}"
-        );
+        assert!(result.report.status.converged() && found < 3e-5, "{found:e}");
         for (tag, normal) in [
             (brick::Z_MIN, [0.0, 0.0, -1.0]),
             (RIGHT, [angle.sin(), 0.0, -angle.cos()]),
@@ -230,17 +216,12 @@ fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
         .map(|(n, _)| n)
         .collect();
     assert_eq!(border.len(), 3);
-    let part = |tag, gap, mu| {
-        Contact::rigid(tag)
-            .with_gap(gap)
-            .with_friction(Friction::coulomb(mu))
-    };
+    let part = |tag, gap, mu| Contact::rigid(tag).with_gap(gap).with_friction(Friction::coulomb(mu));
     let (first, second) = (part(brick::Z_MIN, near, 0.4), part(RIGHT, far, 0.1));
     for contacts in [[first.clone(), second.clone()], [second, first]] {
         let nearer = contacts.iter().position(|c| c.tags() == [brick::Z_MIN]);
-        let scene = Scene::new(mesh.clone(), uniform(1e6, 0.3)).with_support(
-            Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -press], History::constant(1.0)),
-        );
+        let scene = Scene::new(mesh.clone(), uniform(1e6, 0.3))
+            .with_support(Support::fixed(brick::Z_MAX).with_motion([1e-2, 0.0, -press], History::constant(1.0)));
         let scene = contacts.into_iter().fold(scene, Scene::with_contact);
         let result = solve(scene, tight());
         for &node in &border {

@@ -48,10 +48,7 @@ fn given_friction_is_one_quadratic_program_a_step() {
     }
     let (_, results) = run(scene(), Settings::default());
     for result in &results {
-        assert_eq!(
-            result.report.counters.slip_bound_updates - set_by_hook(result),
-            0
-        );
+        assert_eq!(result.report.counters.slip_bound_updates - set_by_hook(result), 0);
         assert!(result.report.fixed_point.is_none());
     }
     // Coulomb friction needs more than one, so that the counter can tell
@@ -81,10 +78,7 @@ fn static_scenes_hold_no_history() {
         assert!(results[0].points.iter().all(|p| p.slip_rate == 0.0));
     }
     // one quasistatic step does keep something
-    let (simulation, _) = run(
-        small_benchmark(Friction::coulomb(0.3), 2),
-        Settings::default(),
-    );
+    let (simulation, _) = run(small_benchmark(Friction::coulomb(0.3), 2), Settings::default());
     assert!(simulation.plan().effects.history && simulation.state().memory() > 0);
 }
 
@@ -117,10 +111,7 @@ fn a_body_without_foundation_never_enters_an_inequality_solver() {
         let expected = Counters::default();
         assert_eq!(counters.inequality_solves, expected.inequality_solves);
         assert_eq!((counters.quadratic_programs, counters.active_sets), (0, 0));
-        assert_eq!(
-            (counters.setup_products, counters.slip_bound_updates),
-            (0, 0)
-        );
+        assert_eq!((counters.setup_products, counters.slip_bound_updates), (0, 0));
         assert!(counters.products > 0 && results.iter().all(|l| l.points.is_empty()));
     }
     let (simulation, _) = run(small_benchmark(Friction::None, 3), Settings::default());
@@ -166,8 +157,7 @@ fn no_gap_no_offset() {
 
 #[test]
 fn one_supported_subdomain_has_no_interface_rows() {
-    let whole = loaded_brick(block([3.0, 1.0, 1.0], [6, 2, 2]), ramp())
-        .with_contact(foundation(Friction::None));
+    let whole = loaded_brick(block([3.0, 1.0, 1.0], [6, 2, 2]), ramp()).with_contact(foundation(Friction::None));
     let simulation = set_up(whole.clone());
     assert!(simulation.tfeti().gluing().ranges().interface.is_empty());
     assert!(!simulation.plan().effects.gluing && simulation.plan().interface_rows == 0);
@@ -182,8 +172,7 @@ fn supports_that_rest_have_no_motion() {
     let scene = statics(Friction::None);
     assert!(!set_up(scene.clone()).plan().effects.motion);
     let moved = scene.with_support(
-        Support::components(brick::X_MAX, [false, true, false])
-            .with_motion([0.0, 1e-3, 0.0], History::constant(1.0)),
+        Support::components(brick::X_MAX, [false, true, false]).with_motion([0.0, 1e-3, 0.0], History::constant(1.0)),
     );
     assert!(set_up(moved).plan().effects.motion);
 }

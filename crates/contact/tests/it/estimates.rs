@@ -4,10 +4,7 @@
 use crate::common::*;
 
 /// Steps with their estimates.
-pub(crate) fn estimated(
-    scene: &Scene,
-    settings: Settings,
-) -> Vec<(Solved, AlgebraicError, AccumulatedError)> {
+pub(crate) fn estimated(scene: &Scene, settings: Settings) -> Vec<(Solved, AlgebraicError, AccumulatedError)> {
     let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
     let mut sum = AccumulatedError::default();
     let mut out = Vec::new();
@@ -43,10 +40,7 @@ fn motions_oblique_to_the_normal_count_once() {
             for (k, own) in estimated(&scene, at(tolerance)).iter().enumerate() {
                 let truth = energy_distance(&scene, &own.0.displacement, &exact[k].0.displacement);
                 let index = own.2.likely() * own.1.scale.sqrt() / truth;
-                println!(
-                    "{} directions, {tolerance:e}, step {k}: {index:.2}",
-                    directions.len()
-                );
+                println!("{} directions, {tolerance:e}, step {k}: {index:.2}", directions.len());
                 assert!((0.6..5.0).contains(&index), "{index}");
             }
         }
@@ -168,9 +162,7 @@ const OFF: [(f64, f64); 4] = [(0.0, 0.0), (0.5, 1.0), (0.75, 0.0), (1.0, 0.0)];
 /// Estimates are relative to a scale at steps without any displacement, too; `rounding` is the relative error that
 /// rounding leaves.
 fn has_a_scale(scene: Scene, rounding: f64) {
-    let scene = scene
-        .with_boxes([2, 1, 1])
-        .with_analysis(Analysis::quasistatic(1.0, 8));
+    let scene = scene.with_boxes([2, 1, 1]).with_analysis(Analysis::quasistatic(1.0, 8));
     for accuracy in [
         Accuracy::Tolerance,
         Accuracy::balanced(),
@@ -209,10 +201,7 @@ fn a_body_without_load_has_a_scale() {
     has_a_scale(resting_clamped().with_contact(floor(0.3)), 0.0);
     has_a_scale(resting().with_contact(floor(0.3)), 0.0);
     let clamp = Load::pressure(brick::X_MIN, 1e6);
-    has_a_scale(
-        resting_clamped().with_load(clamp).with_contact(floor(0.3)),
-        0.0,
-    );
+    has_a_scale(resting_clamped().with_load(clamp).with_contact(floor(0.3)), 0.0);
 }
 
 #[test]
@@ -248,11 +237,7 @@ fn a_body_under_even_strain_has_a_scale() {
 
 #[test]
 fn the_gap_bounds_the_error_and_is_not_far_above_it() {
-    for friction in [
-        Friction::None,
-        Friction::tresca(3e7),
-        Friction::coulomb(0.3),
-    ] {
+    for friction in [Friction::None, Friction::tresca(3e7), Friction::coulomb(0.3)] {
         let scene = pressed(4, friction.clone());
         let reference = solve(scene.clone(), at(1e-11));
         for method in [Method::default(), Method::paper()] {
@@ -268,8 +253,7 @@ fn the_gap_bounds_the_error_and_is_not_far_above_it() {
                     .zip(&reference.displacement)
                     .map(|(a, b)| a - b)
                     .collect();
-                let energy = fields::strain_energy(scene.mesh(), scene.materials(), &difference)
-                    .expect("energy");
+                let energy = fields::strain_energy(scene.mesh(), scene.materials(), &difference).expect("energy");
                 let truth = (energy / gap.elastic).sqrt();
                 println!(
                     "{name}: true {truth:.2e}, estimated {:.2e}, index {:.2}",
@@ -306,24 +290,13 @@ fn errors_of_earlier_steps_add_up() {
             for result in &exact {
                 let frame = simulation.step().expect("step");
                 sum.add(&frame);
-                truth = relative_distance(
-                    &scene,
-                    frame.displacement().as_flattened(),
-                    &result.displacement,
-                );
-                let estimates = [
-                    frame.algebraic_error().relative(),
-                    sum.likely(),
-                    sum.at_most(),
-                ];
+                truth = relative_distance(&scene, frame.displacement().as_flattened(), &result.displacement);
+                let estimates = [frame.algebraic_error().relative(), sum.likely(), sum.at_most()];
                 indices.push(estimates.map(|e| e / truth));
             }
             let text = [0, 1, 2].map(|k| {
                 let of = indices.iter().map(|i| i[k]);
-                let (least, most) = (
-                    of.clone().fold(f64::INFINITY, f64::min),
-                    of.fold(0.0, f64::max),
-                );
+                let (least, most) = (of.clone().fold(f64::INFINITY, f64::min), of.fold(0.0, f64::max));
                 let end = indices.last().map_or(f64::NAN, |i| i[k]);
                 format!("{end:.2} ({least:.2} to {most:.2})")
             });
@@ -342,20 +315,12 @@ fn errors_of_earlier_steps_add_up() {
 #[test]
 fn an_open_edge_has_an_estimate() {
     for friction in [Friction::None, Friction::coulomb(0.3)] {
-        let side = |tag| {
-            Contact::rigid(tag)
-                .with_gap(0.5)
-                .with_friction(friction.clone())
-        };
+        let side = |tag| Contact::rigid(tag).with_gap(0.5).with_friction(friction.clone());
         let scene = clamped()
             .with_contact(side(brick::Z_MIN))
             .with_contact(side(brick::Y_MIN))
             .with_boxes([2, 1, 1]);
-        for accuracy in [
-            Accuracy::Tolerance,
-            Accuracy::Relative(1e-6),
-            Accuracy::balanced(),
-        ] {
+        for accuracy in [Accuracy::Tolerance, Accuracy::Relative(1e-6), Accuracy::balanced()] {
             let settings = Settings::default().with_accuracy(accuracy);
             let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
             let frame = simulation.step().expect("step");

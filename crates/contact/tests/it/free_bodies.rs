@@ -51,9 +51,7 @@ fn close(found: f64, expected: f64) {
 #[test]
 fn the_force_on_a_free_body_is_its_load() {
     for boxes in [[1, 1, 1], [2, 2, 1]] {
-        let scene = cube()
-            .with_load(Load::pressure(brick::Z_MAX, 1e7))
-            .with_boxes(boxes);
+        let scene = cube().with_load(Load::pressure(brick::Z_MAX, 1e7)).with_boxes(boxes);
         let (result, body, mode, force) = not_held(scene);
         close(force, 1e7);
         assert_eq!(
@@ -74,10 +72,7 @@ fn the_force_is_that_of_the_step_at_which_it_acts() {
     // y is held, x is not; at t = 0.75 half of it acts
     let (result, _, mode, force) = not_held(scene);
     close(force, 1.5e6);
-    assert_eq!(
-        (result, mode.as_str()),
-        (2, "its translation (1.000, 0.000, 0.000)")
-    );
+    assert_eq!((result, mode.as_str()), (2, "its translation (1.000, 0.000, 0.000)"));
 }
 
 /// A couple of 1e6 N at distance 1 m: the moment is the force times the radius that the message names.
@@ -92,10 +87,7 @@ fn a_couple_is_a_moment() {
         .and_then(|rest| rest.strip_suffix(" m"))
         .and_then(|number| number.parse::<f64>().ok())
         .expect("radius");
-    assert!(
-        (force * radius / 1e6 - 1.0).abs() < 1e-3,
-        "{force:e} at {radius}"
-    );
+    assert!((force * radius / 1e6 - 1.0).abs() < 1e-3, "{force:e} at {radius}");
 }
 
 /// Two cubes far from each other, each with its own load: the one with the larger load is named, with its load alone.
@@ -112,9 +104,7 @@ fn of_two_bodies_the_one_pushed_most_is_named() {
         nodes: f.nodes.map(|n| n + count),
         tag: FacetTag(f.tag.0 + 100),
     }));
-    let parts = (0..tets.len())
-        .map(|t| u32::from(t >= one.tets().len()))
-        .collect();
+    let parts = (0..tets.len()).map(|t| u32::from(t >= one.tets().len())).collect();
     let other = FacetTag(brick::Z_MAX.0 + 100);
     let scene = free(TetMesh::new(points, tets, facets).expect("mesh"))
         .with_parts(parts)
@@ -122,10 +112,7 @@ fn of_two_bodies_the_one_pushed_most_is_named() {
         .with_load(Load::pressure(other, 4e6));
     let (_, body, mode, force) = not_held(scene);
     close(force, 4e6);
-    assert_eq!(
-        (body, mode.as_str()),
-        (1, "its translation (0.000, 0.000, -1.000)")
-    );
+    assert_eq!((body, mode.as_str()), (1, "its translation (0.000, 0.000, -1.000)"));
 }
 
 /// What the friction cone cannot hold is the force: on a smooth floor all of the pull.
@@ -214,10 +201,7 @@ fn a_pull_beyond_friction_is_named() {
             error => panic!("{error}"),
         }
     };
-    for (friction, weight) in [
-        (Friction::coulomb(0.19), 1e4),
-        (Friction::tresca(1.9e3), 1e5),
-    ] {
+    for (friction, weight) in [(Friction::coulomb(0.19), 1e4), (Friction::tresca(1.9e3), 1e5)] {
         let (text, factor) = refused(friction.clone(), [2.46e3, 3.28e3, 0.0], weight);
         let factor = factor.expect("friction could");
         assert!((factor / (4.1 / 1.9) - 1.0).abs() < 2e-4, "{factor}");
@@ -227,9 +211,6 @@ fn a_pull_beyond_friction_is_named() {
         // what friction cannot hold at all
         let (text, factor) = refused(friction, [4.1e3, 0.0, 1.5 * weight], weight);
         assert_eq!(factor, None);
-        assert!(
-            text.contains("held neither by supports nor by contact"),
-            "{text}"
-        );
+        assert!(text.contains("held neither by supports nor by contact"), "{text}");
     }
 }

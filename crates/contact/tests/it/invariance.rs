@@ -21,11 +21,7 @@ fn scene(mesh: TetMesh, parts: Vec<u32>, r: &Rotation, shift: [f64; 3], law: Fri
         .with_support(Support::fixed(brick::X_MIN))
         .with_load(traction(brick::Z_MAX, [0.0, 4e8, -30e8]).with_history(ramp()))
         .with_load(traction(brick::X_MAX, [9e8, 3e8, -15e8]).with_history(up_down_up()))
-        .with_contact(
-            Contact::rigid(brick::Z_MIN)
-                .with_gap(0.1)
-                .with_friction(law),
-        )
+        .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(law))
         .with_parts(parts)
         .with_analysis(paper_steps(1.0, 4))
 }
@@ -37,9 +33,7 @@ fn brick_mesh() -> TetMesh {
 /// Three parts along x, by element.
 fn three_parts(mesh: &TetMesh) -> Vec<u32> {
     let centre = |t: usize| mesh.tet_points(t).iter().map(|p| p[0]).sum::<f64>() / 4.0;
-    (0..mesh.tets().len())
-        .map(|t| centre(t).floor() as u32)
-        .collect()
+    (0..mesh.tets().len()).map(|t| centre(t).floor() as u32).collect()
 }
 
 /// Everything of all steps that has a direction, turned back by the inverse of `r`, by mesh node.
@@ -90,12 +84,7 @@ fn quarter_turns_and_general_rotations() {
             let right_handed = cross(turn(&r, [1.0, 0.0, 0.0]), turn(&r, [0.0, 1.0, 0.0]));
             assert_close(&right_handed, &turn(&r, [0.0, 0.0, 1.0]), 1e-14, "rotation");
             let found = solved(&mesh, &r, [0.3, -2.0, 5.0], &law);
-            assert_close(
-                &found,
-                &reference,
-                1e-6,
-                &format!("{law:?}, {axis:?}, {angle}"),
-            );
+            assert_close(&found, &reference, 1e-6, &format!("{law:?}, {axis:?}, {angle}"));
         }
     }
 }
@@ -141,13 +130,7 @@ fn renumbered(mesh: &TetMesh, seed: u64) -> (TetMesh, Vec<usize>) {
 fn check_renumbering(seed: u64, law: &Friction) {
     let mesh = brick_mesh();
     let solve = |mesh: &TetMesh| {
-        let scene = scene(
-            mesh.clone(),
-            three_parts(mesh),
-            &IDENTITY,
-            [0.0; 3],
-            law.clone(),
-        );
+        let scene = scene(mesh.clone(), three_parts(mesh), &IDENTITY, [0.0; 3], law.clone());
         run(scene, at(1e-8)).1
     };
     let reference = solve(&mesh);
@@ -162,11 +145,7 @@ fn check_renumbering(seed: u64, law: &Friction) {
         let mut expected = Vec::new();
         for p in &b.points {
             let new = places[p.node as usize] as u32;
-            let q = a
-                .points
-                .iter()
-                .find(|q| q.node == new)
-                .expect("contact node");
+            let q = a.points.iter().find(|q| q.node == new).expect("contact node");
             forces.push(q.normal_force);
             forces.extend(q.friction_force);
             expected.push(p.normal_force);
@@ -190,17 +169,8 @@ fn renumbering_nodes_elements_and_facets() {
 fn renumbering_subdomains() {
     let mesh = brick_mesh();
     let solve = |names: [u32; 3]| {
-        let parts = three_parts(&mesh)
-            .iter()
-            .map(|&p| names[p as usize])
-            .collect();
-        let scene = scene(
-            mesh.clone(),
-            parts,
-            &IDENTITY,
-            [0.0; 3],
-            Friction::coulomb(0.3),
-        );
+        let parts = three_parts(&mesh).iter().map(|&p| names[p as usize]).collect();
+        let scene = scene(mesh.clone(), parts, &IDENTITY, [0.0; 3], Friction::coulomb(0.3));
         let (_, results) = run(scene, at(1e-8));
         turned_back(&results, &IDENTITY, mesh.points().len())
     };
@@ -285,9 +255,7 @@ fn scene_in_units(law: usize, length: f64, force: f64, time: f64) -> Scene {
     )
     .with_support(Support::fixed(brick::X_MIN))
     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]).with_history(history(ramp)))
-    .with_load(
-        Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(history(up_down_up)),
-    )
+    .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(history(up_down_up)))
     .with_load(Load::body([0.0, 1e7 * force / length.powi(3), 0.0]))
     .with_contact(
         Contact::rigid(brick::Z_MIN)
@@ -299,13 +267,7 @@ fn scene_in_units(law: usize, length: f64, force: f64, time: f64) -> Scene {
 }
 
 /// Compares a scene in other units with the original; returns the products of both.
-fn compare_units(
-    law: usize,
-    settings: &Settings,
-    length: f64,
-    force: f64,
-    time: f64,
-) -> [usize; 2] {
+fn compare_units(law: usize, settings: &Settings, length: f64, force: f64, time: f64) -> [usize; 2] {
     let (a, reference) = run(scene_in_units(law, 1.0, 1.0, 1.0), settings.clone());
     let (b, results) = run(scene_in_units(law, length, force, time), settings.clone());
     for (k, (x, y)) in results.iter().zip(&reference).enumerate() {
@@ -336,21 +298,13 @@ fn stiffness_and_lengths_scale() {
     for law in 0..4 {
         for method in methods() {
             let settings = accurate.clone().with_method(method);
-            for (length, force) in [
-                (1.0, 1e9),
-                (1.0, 1e-9),
-                (1e-3, 1e-6 * 1e9),
-                (1e3, 1.0),
-                (1e-3, 1.0),
-            ] {
+            for (length, force) in [(1.0, 1e9), (1.0, 1e-9), (1e-3, 1e-6 * 1e9), (1e3, 1.0), (1e-3, 1.0)] {
                 let [a, b] = compare_units(law, &settings, length, force, 1.0);
                 // the same iterations up to rounding
                 assert!(a.abs_diff(b) <= 5 + a / 10, "{a} and {b} products");
             }
         }
-        let settings = accurate
-            .clone()
-            .with_preconditioner(Preconditioner::Dirichlet);
+        let settings = accurate.clone().with_preconditioner(Preconditioner::Dirichlet);
         compare_units(law, &settings, 1e-3, 1e3, 1e3);
     }
 }

@@ -9,20 +9,12 @@ const POISSON: f64 = 0.3;
 
 /// u = (sin pi x cos y, x y z, cos(pi y) exp(z) / 4).
 fn exact([x, y, z]: [f64; 3]) -> [f64; 3] {
-    [
-        (PI * x).sin() * y.cos(),
-        x * y * z,
-        (PI * y).cos() * z.exp() / 4.0,
-    ]
+    [(PI * x).sin() * y.cos(), x * y * z, (PI * y).cos() * z.exp() / 4.0]
 }
 
 fn gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     [
-        [
-            PI * (PI * x).cos() * y.cos(),
-            -(PI * x).sin() * y.sin(),
-            0.0,
-        ],
+        [PI * (PI * x).cos() * y.cos(), -(PI * x).sin() * y.sin(), 0.0],
         [y * z, x * z, x * y],
         [
             0.0,
@@ -97,10 +89,7 @@ fn boundary(mesh: &TetMesh) -> (Vec<u32>, Vec<[f64; 3]>) {
         .collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let values = nodes
-        .iter()
-        .map(|&n| exact(mesh.points()[n as usize]))
-        .collect();
+    let values = nodes.iter().map(|&n| exact(mesh.points()[n as usize])).collect();
     (nodes, values)
 }
 
@@ -111,9 +100,7 @@ fn orders_of_convergence() {
         let mesh = block([1.0; 3], [cells; 3]);
         let (nodes, values) = boundary(&mesh);
         let scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
-            .with_support(
-                Support::fixed(Place::Nodes(nodes)).with_motions(values, History::constant(1.0)),
-            )
+            .with_support(Support::fixed(Place::Nodes(nodes)).with_motions(values, History::constant(1.0)))
             .with_load(Load::new(LoadDensity::body_field(force)))
             .with_boxes([2, 2, 2]);
         let (_, results) = run(scene, tight());

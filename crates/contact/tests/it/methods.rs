@@ -17,24 +17,15 @@ fn is_near(found: usize, measured: usize, part: usize) -> bool {
 #[test]
 fn all_methods_agree_in_every_step() {
     for history in [ramp(), up_down_up()] {
-        let [default, paper, one_loop] =
-            methods().map(|m| run(benchmark(history.clone(), 10), by(m)).1);
+        let [default, paper, one_loop] = methods().map(|m| run(benchmark(history.clone(), 10), by(m)).1);
         for (name, other) in [("paper", &paper), ("one-loop", &one_loop)] {
             for (k, (a, b)) in default.iter().zip(other).enumerate() {
                 let (x, y) = (&a.summary, &b.summary);
                 let parts = [
                     ("nodal forces", forces(&a.points), forces(&b.points)),
                     ("normal force", vec![x.normal_force], vec![y.normal_force]),
-                    (
-                        "friction force",
-                        x.friction_force.to_vec(),
-                        y.friction_force.to_vec(),
-                    ),
-                    (
-                        "displacement",
-                        a.displacement.clone(),
-                        b.displacement.clone(),
-                    ),
+                    ("friction force", x.friction_force.to_vec(), y.friction_force.to_vec()),
+                    ("displacement", a.displacement.clone(), b.displacement.clone()),
                 ];
                 for (what, p, q) in parts {
                     let d = distance(&p, &q);
@@ -43,10 +34,7 @@ fn all_methods_agree_in_every_step() {
                 assert_eq!(x.active, y.active, "{name}, step {k}");
             }
         }
-        assert!(
-            default.iter().any(|l| l.summary.stick > 0)
-                && default.iter().any(|l| l.summary.slip > 0)
-        );
+        assert!(default.iter().any(|l| l.summary.stick > 0) && default.iter().any(|l| l.summary.slip > 0));
     }
 }
 
@@ -111,8 +99,7 @@ fn the_state_at_the_end_depends_on_the_loading_history() {
     };
     let (b, c) = (last(ramp()), last(up_down_up()));
     assert_eq!(b.load, c.load);
-    let friction =
-        |l: &Solved| -> Vec<f64> { l.points.iter().flat_map(|p| p.friction_force).collect() };
+    let friction = |l: &Solved| -> Vec<f64> { l.points.iter().flat_map(|p| p.friction_force).collect() };
     let normal = |l: &Solved| -> Vec<f64> { l.points.iter().map(|p| p.normal_force).collect() };
     let (t, n, u) = (
         distance(&friction(&b), &friction(&c)),
@@ -135,9 +122,7 @@ fn a_body_that_just_touches_is_solved_by_every_method() {
             for steps in [5, 10, 15, 20, 40] {
                 let down = down.clone();
                 let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e9, 0.3))
-                    .with_support(
-                        Support::fixed(brick::Z_MAX).with_motion([2e-4, 1e-4, -1e-3], down),
-                    )
+                    .with_support(Support::fixed(brick::Z_MAX).with_motion([2e-4, 1e-4, -1e-3], down))
                     .with_contact(
                         Contact::rigid(brick::Z_MIN)
                             .with_gap(4e-4)
@@ -195,8 +180,7 @@ fn jumps_on_interfaces_are_solved() {
             Friction::None
         };
         let (status, certificate, found, fallback) = soft_part_solved(ratio, law);
-        let what =
-            format!("ratio {ratio:e}, F {friction}: {found} products, certificate {certificate:e}");
+        let what = format!("ratio {ratio:e}, F {friction}: {found} products, certificate {certificate:e}");
         println!("{what}, fallback {fallback}");
         assert!(status.converged() && certificate <= 1e-5, "{what}");
         assert!(!fallback && found <= products, "{what}");
@@ -239,14 +223,8 @@ fn unloaded(gap: f64, friction: Friction) -> Scene {
     let hooke = Hooke::isotropic(1e3, 0.3).expect("material");
     Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), Materials::uniform(hooke))
         .with_support(Support::fixed(brick::X_MIN))
-        .with_load(
-            Load::traction(brick::Z_MAX, [0.2, 0.0, -1.0]).with_history(history.expect("history")),
-        )
-        .with_contact(
-            Contact::rigid(brick::Z_MIN)
-                .with_gap(gap)
-                .with_friction(friction),
-        )
+        .with_load(Load::traction(brick::Z_MAX, [0.2, 0.0, -1.0]).with_history(history.expect("history")))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_gap(gap).with_friction(friction))
         .with_boxes([2, 1, 1])
         .with_analysis(paper_steps(1.0, 10))
 }

@@ -55,10 +55,7 @@ fn the_pressure_goes_with_a_ball_that_is_dragged() {
 fn a_step_is_that_of_an_obstacle_that_stands_there() {
     let way = [1.3, 0.2, -0.01];
     let contact = Contact::rigid(brick::Z_MIN);
-    let moving = contact
-        .clone()
-        .with_gap_field(ball(2.0))
-        .with_motion(way, ramp());
+    let moving = contact.clone().with_gap_field(ball(2.0)).with_motion(way, ramp());
     let (_, results) = run(scene(moving.clone(), 3), at(1e-9));
     for result in &results {
         let w = way.map(|c| result.time * c);
@@ -67,12 +64,7 @@ fn a_step_is_that_of_an_obstacle_that_stands_there() {
             .clone()
             .with_gap_field(move |p| there([p[0] - w[0], p[1] - w[1], p[2]]) - w[2]);
         let (_, still) = run(scene(still, 1), at(1e-9));
-        assert_close(
-            &result.displacement,
-            &still[0].displacement,
-            1e-7,
-            "displacement",
-        );
+        assert_close(&result.displacement, &still[0].displacement, 1e-7, "displacement");
         for (a, b) in result.points.iter().zip(&still[0].points) {
             assert!((a.gap - b.gap).abs() < 1e-9);
         }
@@ -103,12 +95,7 @@ fn a_plane_is_where_its_point_has_moved() {
     let moved = solved(point, Some(way));
     let there = solved([0, 1, 2].map(|c| point[c] + way[c]), None);
     assert!(there.summary.active > 3);
-    assert_close(
-        &moved.displacement,
-        &there.displacement,
-        1e-8,
-        "displacement",
-    );
+    assert_close(&moved.displacement, &there.displacement, 1e-8, "displacement");
 }
 
 /// What a wedge that is driven under the block does to it without friction is elastic energy, up to a part that falls
@@ -162,9 +149,7 @@ fn fields_are_asked_at_all_places_that_pass() {
         .with_gap_field(known)
         .with_motion([0.5, 0.0, 0.0], ramp());
     match refused(&scene(contact.clone(), 4)) {
-        ContactError::Gap {
-            contact, position, ..
-        } => assert_eq!((contact, position[0]), (0, -0.125)),
+        ContactError::Gap { contact, position, .. } => assert_eq!((contact, position[0]), (0, -0.125)),
         error => panic!("{error}"),
     }
     let away = contact.with_motion([0.0, 0.0, -0.5], ramp());
@@ -236,10 +221,7 @@ fn curved_sides_take_fields_along_short_ways() {
         ContactError::MovedField { contact, turn, .. } => {
             // 0.5 m on a circle of 2 m
             let expected = 0.25_f64.to_degrees();
-            assert!(
-                contact == 0 && (turn / expected - 1.0).abs() < 0.1,
-                "{turn}"
-            );
+            assert!(contact == 0 && (turn / expected - 1.0).abs() < 0.1, "{turn}");
         }
         error => panic!("{error}"),
     }
@@ -248,11 +230,7 @@ fn curved_sides_take_fields_along_short_ways() {
 /// A gap that is the same everywhere only knows the way along the normal.
 #[test]
 fn a_constant_gap_has_nothing_to_bring() {
-    let contact = |way: [f64; 3]| {
-        Contact::rigid(brick::Z_MIN)
-            .with_gap(0.01)
-            .with_motion(way, ramp())
-    };
+    let contact = |way: [f64; 3]| Contact::rigid(brick::Z_MIN).with_gap(0.01).with_motion(way, ramp());
     let loaded = |c| {
         let load = Load::traction(brick::X_MAX, [0.0, 0.0, -1e4]);
         scene(c, 2).with_load(load)

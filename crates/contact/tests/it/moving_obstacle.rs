@@ -107,10 +107,7 @@ fn the_work_of_the_obstacle_is_stored_or_lost() {
         (dragged + sum - lost - stored) / dragged
     };
     let (coarse, fine) = (miss(8), miss(32));
-    assert!(
-        coarse.abs() < 0.5 && fine.abs() < 0.4 * coarse.abs(),
-        "{coarse} {fine}"
-    );
+    assert!(coarse.abs() < 0.5 && fine.abs() < 0.4 * coarse.abs(), "{coarse} {fine}");
 }
 
 /// An obstacle that comes up: the gap closes, then the block is pressed against its support.
@@ -131,11 +128,7 @@ fn an_obstacle_that_rises_closes_the_gap() {
     for result in &results {
         let depth = (rise * result.time - gap).max(0.0);
         let force = result.summary.normal_force;
-        assert!(
-            (force - 1e6 * depth).abs() < 1e-4,
-            "{}: {force}",
-            result.time
-        );
+        assert!((force - 1e6 * depth).abs() < 1e-4, "{}: {force}", result.time);
         let open = (gap - rise * result.time).max(0.0);
         for point in &result.points {
             assert!((point.gap - open).abs() < 1e-10);
@@ -176,13 +169,7 @@ fn obstacles_that_move_are_checked() {
     assert!(matches!(bad, Some(ContactError::Setting { .. })));
     let wild = History::function(|t| 1.0 / (t - 0.5));
     let bad = refused(up.with_motion([0.0, 0.0, -0.1], wild), x());
-    assert!(matches!(
-        bad,
-        Some(ContactError::HistoryValue {
-            what: "contact",
-            ..
-        })
-    ));
+    assert!(matches!(bad, Some(ContactError::HistoryValue { what: "contact", .. })));
 }
 
 /// Traces are relative to the obstacle, and its place follows from the time: a run goes on from a state bit for bit.

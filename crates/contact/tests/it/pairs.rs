@@ -55,9 +55,7 @@ fn a_body_and_its_image_touch_like_a_body_and_a_plane() {
                 assert_close(upper, &b.displacement, 1e-6, &what);
                 let image: Vec<f64> = lower.chunks(3).flat_map(|u| [u[0], u[1], -u[2]]).collect();
                 assert_close(&image, &b.displacement, 1e-6, &what);
-                let normal = |points: &[PointState]| -> Vec<f64> {
-                    points.iter().map(|p| p.normal_force).collect()
-                };
+                let normal = |points: &[PointState]| -> Vec<f64> { points.iter().map(|p| p.normal_force).collect() };
                 assert_close(&normal(&a.points), &normal(&b.points), 1e-6, &what);
             }
         }
@@ -130,9 +128,7 @@ pub(crate) fn beam(plate: Option<f64>) -> Scene {
         scene
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]).with_history(ramp()))
-            .with_load(
-                Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(up_down_up()),
-            )
+            .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(up_down_up()))
             .with_analysis(paper_steps(1.0, 6))
     };
     let Some(young) = plate else {
@@ -148,9 +144,7 @@ pub(crate) fn beam(plate: Option<f64>) -> Scene {
     let materials = Materials::new(vec![(0, steel), (1, stiff)]).expect("materials");
     let scene = Scene::new(mesh.with_regions(regions).expect("regions"), materials)
         .with_support(Support::fixed(second(brick::Z_MIN)))
-        .with_contact(
-            Contact::between(brick::Z_MIN, second(brick::Z_MAX)).with_friction(weakening()),
-        );
+        .with_contact(Contact::between(brick::Z_MIN, second(brick::Z_MAX)).with_friction(weakening()));
     loads(scene).with_boxes([3, 1, 2])
 }
 
@@ -214,9 +208,7 @@ fn friction_between_bodies_holds_up_to_its_coefficient() {
         }
     }
     match Simulation::new(scene(0.31), Settings::default()) {
-        Err(ContactError::NotHeld {
-            body, node, mode, ..
-        }) => {
+        Err(ContactError::NotHeld { body, node, mode, .. }) => {
             // nodes of the upper block come after the 27 of the lower
             assert!(body == 1 && node >= 27, "{body} {node}");
             assert!(mode.contains("translation"), "{mode}");
@@ -242,11 +234,7 @@ fn a_body_drags_the_other_one() {
         let whole = norm(&reactions.of_supports().force).max(frame.summary().normal_force);
         let rest = reactions.imbalance();
         assert!(norm(&rest.force) < 1e-7 * whole && norm(&rest.moment) < 1e-7 * whole);
-        assert_eq!(
-            norm(&reactions.contact.force),
-            0.0,
-            "forces between bodies cancel"
-        );
+        assert_eq!(norm(&reactions.contact.force), 0.0, "forces between bodies cancel");
     }
     let frame = simulation.result().expect("a step");
     let sum = frame.summary();
@@ -291,15 +279,9 @@ fn what_cannot_be_paired_is_refused() {
         matches!(error, ContactError::NoPartner { contact: 0, beside, .. } if beside > 0.1 && beside < 0.5),
         "{error}"
     );
-    assert!(
-        error.to_string().contains("meshes of both sides"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("meshes of both sides"), "{error}");
     // sides that do not face each other
-    let error = fails(
-        column([2; 3]),
-        Contact::between(second(brick::Z_MIN), brick::Z_MIN),
-    );
+    let error = fails(column([2; 3]), Contact::between(second(brick::Z_MIN), brick::Z_MIN));
     assert!(
         matches!(error, ContactError::NoPartner { beside, .. } if beside.is_infinite()),
         "{error}"
@@ -307,14 +289,9 @@ fn what_cannot_be_paired_is_refused() {
     // two nodes on one normal
     let error = fails(
         column([2; 3]),
-        joint()
-            .with_tag(second(brick::X_MIN))
-            .with_normal([0.0, 0.0, -1.0]),
+        joint().with_tag(second(brick::X_MIN)).with_normal([0.0, 0.0, -1.0]),
     );
-    assert!(
-        matches!(error, ContactError::SharedPartner { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, ContactError::SharedPartner { .. }), "{error}");
     // sides that look away from each other
     let outer = Contact::between(second(brick::Z_MAX), brick::Z_MIN);
     let error = fails(column([2; 3]), outer);
@@ -323,10 +300,7 @@ fn what_cannot_be_paired_is_refused() {
         "{error}"
     );
     let error = fails(column([2; 3]), joint().with_motion([1.0, 0.0, 0.0], ramp()));
-    assert!(
-        matches!(error, ContactError::MovedPartner { contact: 0 }),
-        "{error}"
-    );
+    assert!(matches!(error, ContactError::MovedPartner { contact: 0 }), "{error}");
     // bodies that lie behind each other, unless that is what is meant
     let behind = Contact::between(brick::Z_MIN, second(brick::Z_MAX));
     let error = fails(column([2; 3]), behind.clone());
@@ -375,25 +349,15 @@ fn wall(friction: &Friction) -> Scene {
         .expect("three bodies");
     let rough = |contact: Contact| contact.with_friction(friction.clone());
     Scene::new(mesh, uniform(1e9, 0.3))
-        .with_contact(rough(
-            Contact::rigid(brick::Z_MIN).with_tag(second(brick::Z_MIN)),
-        ))
-        .with_contact(rough(
-            Contact::rigid(brick::X_MIN).with_tag(third(brick::X_MIN)),
-        ))
+        .with_contact(rough(Contact::rigid(brick::Z_MIN).with_tag(second(brick::Z_MIN))))
+        .with_contact(rough(Contact::rigid(brick::X_MIN).with_tag(third(brick::X_MIN))))
         .with_contact(rough(Contact::between(brick::X_MAX, second(brick::X_MIN))))
         .with_contact(rough(
             Contact::between(brick::Z_MAX, third(brick::Z_MIN)).with_tag(second(brick::Z_MAX)),
         ))
         .with_support(Support::components(brick::Y_MIN, [false, true, false]))
-        .with_support(Support::components(
-            second(brick::Y_MIN),
-            [false, true, false],
-        ))
-        .with_support(Support::components(
-            third(brick::Y_MIN),
-            [false, true, false],
-        ))
+        .with_support(Support::components(second(brick::Y_MIN), [false, true, false]))
+        .with_support(Support::components(third(brick::Y_MIN), [false, true, false]))
         .with_load(Load::pressure(third(brick::Z_MAX), 1e6))
         .with_load(Load::pressure(second(brick::X_MAX), 4e5))
         .with_load(Load::pressure(third(brick::X_MAX), 4e5))

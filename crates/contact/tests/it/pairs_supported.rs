@@ -12,10 +12,7 @@ fn pushed(mesh: TetMesh, contact: Contact) -> Scene {
     let q = 2e6;
     let shear = Load::traction(second(brick::Z_MAX), [0.0, 0.1 * q, -q]);
     Scene::new(mesh, uniform(1e9, 0.3))
-        .with_support(Support::components(
-            second(brick::X_MAX),
-            [true, true, false],
-        ))
+        .with_support(Support::components(second(brick::X_MAX), [true, true, false]))
         .with_load(shear)
         .with_contact(contact.with_friction(weakening()))
         .with_analysis(paper_steps(1.0, 5))
@@ -47,19 +44,13 @@ fn a_surface_that_supports_move_is_an_obstacle_that_moves() {
             assert_close(&forces(&a.points), &forces(&b.points), 1e-6, &what);
             let works = [a, b].map(|l| l.summary.friction_work);
             let size = b.summary.normal_force * norm(&motion);
-            assert!(
-                (works[0] - works[1]).abs() < 1e-6 * size,
-                "{what}: {works:?}"
-            );
+            assert!((works[0] - works[1]).abs() < 1e-6 * size, "{what}: {works:?}");
         }
     }
 }
 
 fn held(scene: Scene, tag: FacetTag, directions: &[[f64; 3]]) -> Scene {
-    scene.with_support(Support::partial(
-        tag,
-        Directions::Vectors(directions.to_vec()),
-    ))
+    scene.with_support(Support::partial(tag, Directions::Vectors(directions.to_vec())))
 }
 
 /// Supports at contact nodes of the lower body, of the upper one, and of both, along the axes and oblique.
@@ -69,14 +60,8 @@ fn supported(friction: &Friction) -> [Scene; 5] {
         let q = 2e6;
         Scene::new(block_on(&block([1.0; 3], [2; 3])), uniform(1e9, 0.3))
             .with_support(Support::fixed(brick::Z_MIN))
-            .with_load(Load::traction(
-                second(brick::Z_MAX),
-                [0.1 * q, 0.05 * q, -q],
-            ))
-            .with_contact(
-                Contact::between(second(brick::Z_MIN), brick::Z_MAX)
-                    .with_friction(friction.clone()),
-            )
+            .with_load(Load::traction(second(brick::Z_MAX), [0.1 * q, 0.05 * q, -q]))
+            .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(friction.clone()))
             .with_boxes([2, 1, 2])
     };
     let (lower, upper) = (brick::X_MIN, second(brick::X_MIN));
@@ -85,11 +70,7 @@ fn supported(friction: &Friction) -> [Scene; 5] {
         held(held(scene(), lower, &[z]), upper, &[x, y]),
         held(held(scene(), lower, &[x]), upper, &[y]),
         held(scene(), lower, &[[1.0, 0.5, 0.7]]),
-        held(
-            held(scene(), lower, &[[1.0, 0.5, 0.7]]),
-            upper,
-            &[[0.3, -1.0, 0.6], x],
-        ),
+        held(held(scene(), lower, &[[1.0, 0.5, 0.7]]), upper, &[[0.3, -1.0, 0.6], x]),
     ]
 }
 
@@ -133,10 +114,7 @@ fn the_algebraic_error_is_estimated_where_both_sides_are_held() {
             let found = frame.displacement();
             let truth = relative_distance(frame.scene(), found.as_flattened(), &exact);
             let ratio = frame.algebraic_error().relative() / truth;
-            assert!(
-                (0.9..30.0).contains(&ratio),
-                "{k} {friction:?}: {ratio}, {truth:e}"
-            );
+            assert!((0.9..30.0).contains(&ratio), "{k} {friction:?}: {ratio}, {truth:e}");
         }
     }
 }
@@ -160,10 +138,7 @@ fn friction_joins_bodies_that_no_normal_row_joins() {
     assert!((force.resultant[0] + 1e5).abs() < 1.0, "{force:?}");
     assert!(force.normal_force > 4e5, "{force:?}");
     for method in methods() {
-        let result = solve(
-            scene(1e5).with_boxes([2, 1, 2]),
-            tight().with_method(method),
-        );
+        let result = solve(scene(1e5).with_boxes([2, 1, 2]), tight().with_method(method));
         assert_close(&result.displacement, &reference.displacement, 1e-6, "cut");
     }
 }
@@ -174,9 +149,9 @@ fn the_algebraic_error_is_estimated() {
     let held = |tag: FacetTag| Support::components(tag, [false, true, false]);
     for sides in [&[][..], &[brick::Y_MIN], &[second(brick::Y_MIN)]] {
         let scene = || {
-            let scene = sides.iter().fold(beam(Some(4e11)), |scene, tag| {
-                scene.with_support(held(*tag))
-            });
+            let scene = sides
+                .iter()
+                .fold(beam(Some(4e11)), |scene, tag| scene.with_support(held(*tag)));
             scene.with_analysis(Analysis::Static { time: 1.0 })
         };
         let exact = solve(scene(), tight().with_tolerance(1e-11)).displacement;
@@ -186,9 +161,6 @@ fn the_algebraic_error_is_estimated() {
         let truth = relative_distance(frame.scene(), found.as_flattened(), &exact);
         let estimate = frame.algebraic_error();
         let ratio = estimate.relative() / truth;
-        assert!(
-            (0.9..30.0).contains(&ratio),
-            "{sides:?}: {ratio}, {truth:e}"
-        );
+        assert!((0.9..30.0).contains(&ratio), "{sides:?}: {ratio}, {truth:e}");
     }
 }

@@ -18,10 +18,7 @@ fn direct(mesh: &TetMesh) -> Vec<f64> {
     let hooke = Hooke::isotropic(211.9e9, 0.277).expect("Hooke");
     let whole = Decomposition::whole(mesh);
     let mut force = vec![0.0; 3 * mesh.points().len()];
-    for (tag, traction) in [
-        (brick::Z_MAX, [0.0, 0.0, -30e8]),
-        (brick::X_MAX, [9e8, 0.0, -15e8]),
-    ] {
+    for (tag, traction) in [(brick::Z_MAX, [0.0, 0.0, -30e8]), (brick::X_MAX, [9e8, 0.0, -15e8])] {
         let local = assemble_load(mesh, &whole, &LoadDensity::traction(tag, traction));
         for (f, l) in force.iter_mut().zip(&local.expect("load")[0]) {
             *f += l;
@@ -86,12 +83,7 @@ fn compare(scene: &Scene, what: &str) {
         };
         for (k, (a, b)) in found.iter().zip(reference).enumerate() {
             assert_close(&a.0, &b.0, 1e-7, &format!("{what}, {boxes:?}, step {k}: u"));
-            assert_close(
-                &a.1,
-                &b.1,
-                1e-7,
-                &format!("{what}, {boxes:?}, step {k}: forces"),
-            );
+            assert_close(&a.1, &b.1, 1e-7, &format!("{what}, {boxes:?}, step {k}: forces"));
         }
     }
 }

@@ -9,11 +9,7 @@ const PRESSURE: f64 = 10.0;
 fn slanted_parts(mesh: &TetMesh) -> Vec<u32> {
     let part = |tet: usize| {
         let p = mesh.tet_points(tet);
-        let s: f64 = p
-            .iter()
-            .map(|p| p[0] + 0.5 * p[1] + 0.25 * p[2])
-            .sum::<f64>()
-            / 4.0;
+        let s: f64 = p.iter().map(|p| p[0] + 0.5 * p[1] + 0.25 * p[2]).sum::<f64>() / 4.0;
         (s / 1.3 * 3.0).floor().min(2.0) as u32
     };
     let parts: Vec<u32> = (0..mesh.tets().len()).map(part).collect();
@@ -41,10 +37,7 @@ fn cuts(scene: &Scene) -> Vec<(&'static str, Scene)> {
         ("whole", scene.clone()),
         ("3 boxes", scene.clone().with_boxes([3, 1, 1])),
         ("24 boxes", scene.clone().with_boxes([3, 4, 2])),
-        (
-            "slanted parts",
-            scene.clone().with_parts(slanted_parts(scene.mesh())),
-        ),
+        ("slanted parts", scene.clone().with_parts(slanted_parts(scene.mesh()))),
     ]
 }
 
@@ -60,10 +53,7 @@ fn normal_patch_on_any_mesh_and_decomposition() {
     for (mesh_name, mesh) in meshes() {
         // statically determinate in the plane: no reaction
         let scene = Scene::new(mesh.clone(), uniform(YOUNG, poisson))
-            .with_support(Support::components(
-                vec![node_at(&mesh, [0.0; 3])],
-                [true, true, false],
-            ))
+            .with_support(Support::components(vec![node_at(&mesh, [0.0; 3])], [true, true, false]))
             .with_support(Support::components(
                 vec![node_at(&mesh, [1.5, 0.0, 0.0])],
                 [false, true, false],
@@ -133,8 +123,8 @@ fn friction_patch_in_all_directions() {
             );
             for p in &result.points {
                 let expected = [-t * c * p.area, -t * s * p.area, 0.0];
-                let error = distance(&p.friction_force, &expected)
-                    .max((p.normal_force / (-PRESSURE * p.area) - 1.0).abs());
+                let error =
+                    distance(&p.friction_force, &expected).max((p.normal_force / (-PRESSURE * p.area) - 1.0).abs());
                 assert!(error <= 1e-9, "{what}, node {}: {error:e}", p.node);
             }
         }
@@ -155,34 +145,19 @@ fn the_threshold_of_sliding_is_bracketed_to_a_millionth() {
                 let top = [t / shear * c, t / shear * s, -PRESSURE / YOUNG];
                 // the sides carry the stress that friction can hold
                 let scene = sheared(mesh.clone(), t.min(limit), angle, coefficient)
-                    .with_support(
-                        Support::fixed(brick::Z_MAX).with_motion(top, History::constant(1.0)),
-                    )
+                    .with_support(Support::fixed(brick::Z_MAX).with_motion(top, History::constant(1.0)))
                     .with_boxes([2, 1, 1]);
                 solve(scene, at(1e-9).with_method(method.clone()))
             };
             // the state is reported to 1e-5 of the bound, the difference itself is sharper
             let clear = at(limit * (1.0 - 2e-5));
-            assert_eq!(
-                count(&clear.points, ContactState::Stick),
-                9,
-                "{}",
-                method.kind()
-            );
+            assert_eq!(count(&clear.points, ContactState::Stick), 9, "{}", method.kind());
             let below = at(limit * (1.0 - 1e-6));
             let above = at(limit * (1.0 + 1e-6));
-            assert_eq!(
-                count(&above.points, ContactState::Slip),
-                9,
-                "{}",
-                method.kind()
-            );
+            assert_eq!(count(&above.points, ContactState::Slip), 9, "{}", method.kind());
             for (a, b) in above.points.iter().zip(&below.points) {
                 let slip = norm(&a.difference);
-                assert!(
-                    (slip / (1e-6 * limit / shear) - 1.0).abs() < 1e-2,
-                    "{slip:e}"
-                );
+                assert!((slip / (1e-6 * limit / shear) - 1.0).abs() < 1e-2, "{slip:e}");
                 let stick = norm(&b.difference);
                 assert!(stick < 1e-9 * limit / shear, "{stick:e}");
             }
@@ -225,11 +200,7 @@ fn held_by_friction(margin: f64) {
         let t = 0.3 * PRESSURE * (1.0 - margin);
         let scene = sheared(block([1.0; 3], [2, 2, 2]), t, angle, 0.3).with_boxes([2, 1, 1]);
         let result = solve(scene, Settings::default());
-        assert_eq!(
-            count(&result.points, ContactState::Stick),
-            9,
-            "{angle}, {margin:e}"
-        );
+        assert_eq!(count(&result.points, ContactState::Stick), 9, "{angle}, {margin:e}");
     }
 }
 

@@ -63,18 +63,12 @@ fn forces_and_moments_are_in_balance() {
             }
             let mut reaction = vec![[0.0; 3]; mesh.points().len()];
             let size = norm(&result.load);
-            for (node, f) in internal_forces(&simulation, &result.torn)
-                .iter()
-                .enumerate()
-            {
+            for (node, f) in internal_forces(&simulation, &result.torn).iter().enumerate() {
                 let rest = [0, 1, 2].map(|c| f[c] - load[node][c] - contact[node][c]);
                 if fixed.contains(&(node as u32)) {
                     reaction[node] = rest;
                 } else {
-                    assert!(
-                        norm(&rest) <= 1e-6 * size,
-                        "step {k}, node {node}: {rest:?}"
-                    );
+                    assert!(norm(&rest) <= 1e-6 * size, "step {k}, node {node}: {rest:?}");
                 }
             }
             let points = mesh.points();
@@ -110,18 +104,12 @@ fn no_step_has_negative_dissipation() {
             assert!(total > 0.0, "{law:?}: nothing slides");
             for (k, result) in results.iter().enumerate() {
                 let s = &result.summary;
-                assert!(
-                    s.dissipation >= -1e-6 * total,
-                    "{law:?}, step {k}: {:e}",
-                    s.dissipation
-                );
+                assert!(s.dissipation >= -1e-6 * total, "{law:?}, step {k}: {:e}", s.dissipation);
                 for p in &result.points {
                     let work: f64 = (0..3).map(|c| p.friction_force[c] * p.difference[c]).sum();
                     assert!(work <= 1e-6 * total, "{law:?}, step {k}, node {}", p.node);
                     if p.state == ContactState::Open {
-                        assert!(
-                            matches!(law, Friction::Tresca(_)) || norm(&p.friction_force) == 0.0
-                        );
+                        assert!(matches!(law, Friction::Tresca(_)) || norm(&p.friction_force) == 0.0);
                     }
                 }
                 if formula.is_one_step() {
@@ -146,14 +134,8 @@ fn assert_balance(simulation: &Simulation, tolerance: f64, what: &str) {
             let parts = r.supports.iter().map(|s| norm(&f(&s.resultant)));
             parts.sum::<f64>() + norm(&f(&r.contact)) + norm(&f(&r.loads))
         };
-        assert!(
-            norm(&rest.force) <= tolerance * size(|r| r.force),
-            "{what}: {rest:?}"
-        );
-        assert!(
-            norm(&rest.moment) <= tolerance * size(|r| r.moment),
-            "{what}: {rest:?}"
-        );
+        assert!(norm(&rest.force) <= tolerance * size(|r| r.force), "{what}: {rest:?}");
+        assert!(norm(&rest.moment) <= tolerance * size(|r| r.moment), "{what}: {rest:?}");
     }
 }
 
@@ -205,15 +187,8 @@ fn a_pressed_column_has_the_reaction_of_its_pressure_at_every_node() {
         assert!(norm(&x.resultant.force) + norm(&y.resultant.force) <= 1e-7 * force);
         assert_eq!(stand.nodes.len(), foot.nodes().len());
         for (node, area) in foot.nodes().iter().zip(foot.areas()) {
-            let found = stand
-                .nodes
-                .iter()
-                .find(|n| n.node == *node)
-                .expect("a node");
-            assert!(
-                (found.force[2] - pressure * area).abs() <= 1e-7 * force,
-                "{found:?}"
-            );
+            let found = stand.nodes.iter().find(|n| n.node == *node).expect("a node");
+            assert!((found.force[2] - pressure * area).abs() <= 1e-7 * force, "{found:?}");
             // a smooth support has no force along its plane
             assert_eq!(found.force[..2], [0.0; 2]);
         }
@@ -225,10 +200,7 @@ fn a_moved_support_pulls_with_the_force_of_the_strain() {
     // E A d / L at half of the ramp
     let (stretch, expected) = (0.01, 1000.0 * 2.0 * (0.5 * 0.01) / 3.0);
     let scene = column()
-        .with_support(
-            Support::components(brick::Z_MAX, [false, false, true])
-                .with_motion([0.0, 0.0, stretch], ramp()),
-        )
+        .with_support(Support::components(brick::Z_MAX, [false, false, true]).with_motion([0.0, 0.0, stretch], ramp()))
         .with_boxes([2, 1, 2])
         .with_analysis(paper_steps(1.0, 2));
     let mut simulation = Simulation::new(scene, tight()).expect("set-up");
@@ -236,10 +208,7 @@ fn a_moved_support_pulls_with_the_force_of_the_strain() {
     let r = frame.reactions();
     for (k, sign) in [(0, -1.0), (3, 1.0)] {
         let found = r.supports[k].resultant.force[2];
-        assert!(
-            (found - sign * expected).abs() <= 1e-7 * expected,
-            "{k}: {found}"
-        );
+        assert!((found - sign * expected).abs() <= 1e-7 * expected, "{k}: {found}");
     }
     assert_eq!(norm(&r.loads.force) + norm(&r.contact.force), 0.0);
     assert_balance(&simulation, 1e-7, "moved");
@@ -329,12 +298,7 @@ fn what_two_supports_share_is_counted_once_for_the_first() {
     );
     let (simulation, _) = run(oblique, tight());
     let r = reactions(&simulation, [0.0; 3]);
-    assert_close(
-        &r.supports[1].resultant.force,
-        &[0.0, -4.0, 0.0],
-        1e-8,
-        "oblique",
-    );
+    assert_close(&r.supports[1].resultant.force, &[0.0, -4.0, 0.0], 1e-8, "oblique");
     assert_balance(&simulation, 1e-8, "oblique");
 }
 
@@ -416,10 +380,7 @@ fn reactions_at_contact_nodes_have_no_contact_forces() {
         assert_balance(&simulation, 1e-7, "between");
         let r = reactions(&simulation, [0.0; 3]);
         let [held, push] = [0, 1].map(|k| r.supports[k].resultant.force[0]);
-        assert!(
-            (push - 3.0).abs() < 1e-6 && (held + 3.0).abs() < 1e-6,
-            "{push} {held}"
-        );
+        assert!((push - 3.0).abs() < 1e-6 && (held + 3.0).abs() < 1e-6, "{push} {held}");
     }
     // a guide that is oblique to the floor
     let oblique = Directions::Vectors(vec![[1.0, 0.0, 1.0]]);

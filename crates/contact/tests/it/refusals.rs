@@ -133,9 +133,7 @@ fn a_clamp_that_starts_inside_the_obstacle_is_refused() {
         let scene = beam(Support::fixed(brick::X_MIN), contact).with_analysis(Analysis::statics());
         match refused(&scene) {
             ContactError::SupportInObstacle {
-                depth,
-                displacement,
-                ..
+                depth, displacement, ..
             } => {
                 assert!((depth - expected).abs() < 1e-15, "{depth}");
                 assert_eq!(displacement, 0.0);
@@ -151,10 +149,7 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
     let down = |d: f64| Support::fixed(brick::X_MIN).with_motion([0.0, 0.0, -d], ramp());
     let tilt = 0.37_f64;
     // a plane through the lower edge of the clamp, far from the origin of its coordinates
-    let (up, along) = (
-        [-tilt.sin(), 0.0, tilt.cos()],
-        [tilt.cos(), 0.0, tilt.sin()],
-    );
+    let (up, along) = ([-tilt.sin(), 0.0, tilt.cos()], [tilt.cos(), 0.0, tilt.sin()]);
     let slope = Contact::half_space(brick::Z_MIN, along.map(|c| -70.0 * c), up);
     for scene in [
         beam(down(0.1), floor(0.1)),
@@ -167,17 +162,10 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
         ),
         beam(Support::fixed(brick::X_MIN), slope),
         // not fixed along the normal: the contact row holds it
-        beam(
-            Support::components(brick::X_MIN, [true, true, false]),
-            floor(-1e-3),
-        )
-        .with_support(Support::components(vec![62], [true, true, false])),
+        beam(Support::components(brick::X_MIN, [true, true, false]), floor(-1e-3))
+            .with_support(Support::components(vec![62], [true, true, false])),
     ] {
-        Simulation::new(
-            scene.with_load(Load::pressure(brick::Z_MAX, 1e5)),
-            Settings::default(),
-        )
-        .expect("accepted");
+        Simulation::new(scene.with_load(Load::pressure(brick::Z_MAX, 1e5)), Settings::default()).expect("accepted");
     }
     let error = refused(&beam(down(0.1), floor(0.1 * (1.0 - 1e-8))));
     assert!(
@@ -189,9 +177,7 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
 /// A block that is moved on two adjacent sides, the second with history `h`.
 fn two_sides(second: [f64; 3], first_history: &History, second_history: &History) -> Scene {
     Scene::new(block([1.0; 3], [2, 2, 2]), steel())
-        .with_support(
-            Support::fixed(brick::Z_MAX).with_motion([1e-3, 0.0, -1e-3], first_history.clone()),
-        )
+        .with_support(Support::fixed(brick::Z_MAX).with_motion([1e-3, 0.0, -1e-3], first_history.clone()))
         .with_support(Support::fixed(brick::X_MAX).with_motion(second, second_history.clone()))
         .with_load(Load::pressure(brick::X_MIN, 1e7))
         .with_analysis(Analysis::quasistatic(1.0, 2))
@@ -207,8 +193,7 @@ fn adjacent_supports_with_one_motion_agree() {
         (function.clone(), function.clone()),
         (History::constant(0.25), History::constant(0.25)),
     ] {
-        let mut simulation =
-            Simulation::new(two_sides(way, &first, &second), tight()).expect("accepted");
+        let mut simulation = Simulation::new(two_sides(way, &first, &second), tight()).expect("accepted");
         while !simulation.is_finished() {
             let frame = simulation.step().expect("step");
             let status = frame.report().status;
@@ -273,23 +258,11 @@ fn sizes_whose_squares_overflow_are_named() {
     };
     let pressed = press(1.0).with_load(Load::body([0.0, 0.0, -1.0]).with_history(large(1e200)));
     let cases = [
-        (
-            press(1e200).with_contact(floor()),
-            "load 0 at time 1 s",
-            "N",
-        ),
+        (press(1e200).with_contact(floor()), "load 0 at time 1 s", "N"),
         (press(1e308).with_contact(floor()), "load 0", "N"),
         (pressed.with_contact(floor()), "load 1", "N"),
-        (
-            moved(-1e200).with_contact(floor()),
-            "support 0 at time 1 s",
-            "m",
-        ),
-        (
-            press(1.0).with_contact(floor().with_gap(1e200)),
-            "contact at node",
-            "m",
-        ),
+        (moved(-1e200).with_contact(floor()), "support 0 at time 1 s", "m"),
+        (press(1.0).with_contact(floor().with_gap(1e200)), "contact at node", "m"),
         (press(1e200), "load 0", "N"),
     ];
     for (scene, place, unit) in cases {
@@ -300,8 +273,7 @@ fn sizes_whose_squares_overflow_are_named() {
     let solid = |young: f64| Scene::new(block([2.0, 1.0, 1.0], [2, 1, 1]), uniform(young, 0.3));
     for (scene, place) in [
         (
-            solid(1e60)
-                .with_support(Support::fixed(brick::X_MIN).with_motion([0.0, 1e40, 0.0], ramp())),
+            solid(1e60).with_support(Support::fixed(brick::X_MIN).with_motion([0.0, 1e40, 0.0], ramp())),
             "support 0 at time 1 s: its displacement times",
         ),
         (

@@ -25,9 +25,7 @@ impl Parts {
             materials: steel(),
             boxes: [3, 1, 1],
             supports: vec![Support::fixed(brick::X_MIN)],
-            contact: Contact::rigid(brick::Z_MIN)
-                .with_gap(0.1)
-                .with_friction(weakening()),
+            contact: Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(weakening()),
             load: Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(ramp()),
             analysis: paper_steps(1.0, 4),
         }
@@ -97,28 +95,19 @@ fn another_scene_is_refused_with_the_part_that_differs() {
             "coordinates of the mesh",
             Parts::with(|p| p.mesh = moved.expect("mesh")),
         ),
-        (
-            "tetrahedra",
-            Parts::with(|p| p.mesh = swapped.expect("mesh")),
-        ),
+        ("tetrahedra", Parts::with(|p| p.mesh = swapped.expect("mesh"))),
         ("subdomains", Parts::with(|p| p.boxes = [1, 1, 3])),
         (
             "nodes or directions of supports",
             Parts::with(|p| p.supports = vec![Support::fixed(brick::X_MAX)]),
         ),
-        (
-            "nodes or directions of supports",
-            Parts::with(|p| p.supports = oblique),
-        ),
+        ("nodes or directions of supports", Parts::with(|p| p.supports = oblique)),
         ("contact points", Parts::with(|p| p.contact = tilted())),
         (
             "weights of the difference formula",
             Parts::with(|p| p.analysis = Analysis::quasistatic(1.0, 4)),
         ),
-        (
-            "times of the steps solved",
-            Parts::with(|p| p.analysis = times),
-        ),
+        ("times of the steps solved", Parts::with(|p| p.analysis = times)),
     ];
     let state = stored();
     for (part, parts) in cases {
@@ -179,14 +168,8 @@ fn tilted() -> Contact {
 fn another_scene_on_purpose_is_possible_by_name() {
     let tilted = Parts::with(|p| p.contact = tilted());
     let mut simulation = tilted.clone().simulation();
-    simulation
-        .resume(stored().without_origin())
-        .expect("resume");
-    assert!(
-        rest(&mut simulation)
-            .iter()
-            .all(|l| l.report.status.converged())
-    );
+    simulation.resume(stored().without_origin()).expect("resume");
+    assert!(rest(&mut simulation).iter().all(|l| l.report.status.converged()));
     // from here on it is a state of this scene
     let state = simulation.state().clone();
     tilted.simulation().resume(state.clone()).expect("resume");
@@ -253,17 +236,9 @@ fn stiff_as(young: f64) -> Simulation {
     let mut scene = Scene::new(base.mesh().clone(), elastic)
         .with_boxes([3, 1, 1])
         .with_analysis(base.analysis().clone());
-    scene = base
-        .supports()
-        .iter()
-        .cloned()
-        .fold(scene, Scene::with_support);
+    scene = base.supports().iter().cloned().fold(scene, Scene::with_support);
     scene = base.loads().iter().cloned().fold(scene, Scene::with_load);
-    scene = base
-        .contacts()
-        .iter()
-        .cloned()
-        .fold(scene, Scene::with_contact);
+    scene = base.contacts().iter().cloned().fold(scene, Scene::with_contact);
     Simulation::new(scene, Settings::default()).expect("set-up")
 }
 
@@ -280,10 +255,7 @@ fn products_of_other_materials_are_computed_anew() {
         let mut simulation = stiff_as(factor * young);
         simulation.resume(before.state().clone()).expect("resume");
         for (k, result) in rest(&mut simulation).iter().enumerate() {
-            assert_certified(
-                result,
-                &format!("modulus times {factor}, step {k} after it"),
-            );
+            assert_certified(result, &format!("modulus times {factor}, step {k} after it"));
         }
     }
 }
@@ -295,9 +267,7 @@ fn restarts_bit_by_bit(method: &Method) {
         Friction::coulomb(0.3),
         weakening(),
     ] {
-        let new = || {
-            Simulation::new(small_benchmark(law.clone(), 8), by(method.clone())).expect("set-up")
-        };
+        let new = || Simulation::new(small_benchmark(law.clone(), 8), by(method.clone())).expect("set-up");
         let (whole, end) = fingerprint(small_benchmark(law.clone(), 8), by(method.clone()));
         for after in [0, 1, 2, 5, 7] {
             let mut first = new();

@@ -37,8 +37,7 @@ fn doubled_steps_tell_the_error_of_the_time_steps() {
 
 #[test]
 fn whole_steps_are_those_of_a_run_without_doubling() {
-    let scene =
-        small_benchmark(Friction::coulomb(0.3), 10).with_analysis(Analysis::quasistatic(1.0, 10));
+    let scene = small_benchmark(Friction::coulomb(0.3), 10).with_analysis(Analysis::quasistatic(1.0, 10));
     let mut doubling = StepDoubling::new(&scene, &tight()).expect("set-up");
     let mut plain = Simulation::new(scene, tight()).expect("set-up");
     while !doubling.is_finished() {
@@ -79,17 +78,9 @@ fn noise_of_the_solver_is_no_error_of_the_time_steps() {
     };
     let (fine, coarse) = (last(1e-10), last(1e-2));
     let below = |told: &[TimeError]| told.iter().filter(|e| e.is_below_solver()).count();
-    println!(
-        "below the solver: {} and {} of 160",
-        below(&fine),
-        below(&coarse)
-    );
+    println!("below the solver: {} and {} of 160", below(&fine), below(&coarse));
     assert!(below(&fine) < 80 && below(&coarse) > 120);
-    assert!(
-        coarse
-            .iter()
-            .all(|e| e.is_below_solver() == e.is_reliable().is_none())
-    );
+    assert!(coarse.iter().all(|e| e.is_below_solver() == e.is_reliable().is_none()));
 }
 
 fn results(scene: &Scene, settings: Settings) -> Vec<Solved> {
@@ -128,15 +119,10 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
                 last = Some(error);
             }
             let last = last.expect("a step");
-            let (order, trust) = (
-                last.order.expect("order"),
-                last.is_reliable().expect("told"),
-            );
+            let (order, trust) = (last.order.expect("order"), last.is_reliable().expect("told"));
             let (plain, better) = ((plain / truth).sqrt(), (better / truth).sqrt());
             let truth = (truth / steps as f64).sqrt();
-            println!(
-                "{formula:?} {steps} {truth:.1e} | {plain:.2} | {better:.2} | {order:.1}, {trust}"
-            );
+            println!("{formula:?} {steps} {truth:.1e} | {plain:.2} | {better:.2} | {order:.1}, {trust}");
             assert!((0.6..2.5).contains(&better), "{better}");
             // trusted where the true error falls at least in half with half the steps, as for first order, and only
             // there

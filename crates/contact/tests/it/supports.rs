@@ -50,10 +50,7 @@ fn the_certificate_of_a_thin_bedded_plate_tells_its_error() {
         let (u, certificate, status) = solve(tolerance);
         let off = distance(u.as_flattened(), exact.as_flattened());
         println!("{tolerance:e}: error {off:.1e}, certificate {certificate:.1e}, {status:?}");
-        assert!(
-            !status.converged() || off < 30.0 * tolerance,
-            "{tolerance:e}: {off:e}"
-        );
+        assert!(!status.converged() || off < 30.0 * tolerance, "{tolerance:e}: {off:e}");
     }
 }
 
@@ -86,8 +83,7 @@ fn a_body_that_is_lowered_touches_at_the_right_step() {
         (0.99, 1.0, [0.1, 0.0]),
         (1e-3, 0.9e-3, [0.0; 2]),
     ] {
-        let mut simulation =
-            Simulation::new(lowered(gap, depth, tilt), Settings::default()).expect("set-up");
+        let mut simulation = Simulation::new(lowered(gap, depth, tilt), Settings::default()).expect("set-up");
         while !simulation.is_finished() {
             let result = step(&mut simulation);
             let reach = depth * result.time;
@@ -147,9 +143,8 @@ fn dragged(method: Method, boxes: [usize; 3]) {
     let name = method.kind();
     let length = 1e-2;
     let way = [0.6 * length, 0.8 * length, 0.0];
-    let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 8).with_support(
-        Support::components(brick::Z_MIN, [true, true, false]).with_motion(way, there_and_back()),
-    );
+    let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 8)
+        .with_support(Support::components(brick::Z_MIN, [true, true, false]).with_motion(way, there_and_back()));
     let (mut work, mut before) = (0.0, 0.0);
     let (_, results) = run(scene, at(1e-9).with_method(method));
     for result in &results {
@@ -198,10 +193,8 @@ fn a_bottom_of_eight_parts_that_is_dragged_slides_with_friction() {
 #[test]
 fn what_is_dragged_moves_as_without_friction() {
     let scene = |friction| {
-        pressed(friction, [2, 1, 1], 4).with_support(
-            Support::components(brick::Z_MIN, [true, true, false])
-                .with_motion([1e-2, 0.0, 0.0], ramp()),
-        )
+        pressed(friction, [2, 1, 1], 4)
+            .with_support(Support::components(brick::Z_MIN, [true, true, false]).with_motion([1e-2, 0.0, 0.0], ramp()))
     };
     let rough = run(scene(Friction::coulomb(COEFFICIENT)), at(1e-9)).1;
     let smooth = run(scene(Friction::None), at(1e-9)).1;
@@ -220,21 +213,12 @@ fn a_block_that_is_dragged_drifts_with_a_force_across() {
     for boxes in [[1, 1, 1], [2, 1, 1]] {
         let scene = pressed(Friction::coulomb(COEFFICIENT), boxes, 1)
             .with_load(Load::body([0.0, across / 2.0, 0.0]))
-            .with_support(
-                Support::components(brick::Z_MIN, [true, false, false])
-                    .with_motion([way, 0.0, 0.0], ramp()),
-            );
+            .with_support(Support::components(brick::Z_MIN, [true, false, false]).with_motion([way, 0.0, 0.0], ramp()));
         let (_, results) = run(scene, at(1e-9));
         let what = format!("{boxes:?}: {:?}", results[0].report);
         let friction = results[0].summary.friction_force;
-        assert!(
-            (friction[0] + along).abs() < 1e-4 * bound,
-            "{what}: {friction:?}"
-        );
-        assert!(
-            (friction[1] + across).abs() < 1e-4 * bound,
-            "{what}: {friction:?}"
-        );
+        assert!((friction[0] + along).abs() < 1e-4 * bound, "{what}: {friction:?}");
+        assert!((friction[1] + across).abs() < 1e-4 * bound, "{what}: {friction:?}");
         for point in &results[0].points {
             let [x, y, _] = point.tangential_displacement;
             assert!((x / way - 1.0).abs() < 1e-9, "{what}");
@@ -248,16 +232,11 @@ fn a_block_that_is_dragged_drifts_with_a_force_across() {
 #[test]
 fn given_friction_of_what_is_dragged() {
     let stress = 40.0;
-    let scene = pressed(Friction::tresca(stress), [2, 1, 1], 2).with_support(
-        Support::components(brick::Z_MIN, [true, true, false])
-            .with_motion([1e-2, 0.0, 0.0], ramp()),
-    );
+    let scene = pressed(Friction::tresca(stress), [2, 1, 1], 2)
+        .with_support(Support::components(brick::Z_MIN, [true, true, false]).with_motion([1e-2, 0.0, 0.0], ramp()));
     for result in run(scene, at(1e-9)).1 {
         let friction = result.summary.friction_force[0];
-        assert!(
-            (friction + 2.0 * stress).abs() < 1e-6 * stress,
-            "{friction}"
-        );
+        assert!((friction + 2.0 * stress).abs() < 1e-6 * stress, "{friction}");
     }
 }
 
@@ -287,10 +266,7 @@ fn half(friction: Friction) -> Scene {
 #[test]
 fn sliding_nodes_in_a_plane_of_symmetry_have_the_friction_of_the_law() {
     let (mu, stress) = (0.3, 2e5);
-    for (friction, given) in [
-        (Friction::coulomb(mu), 0.0),
-        (Friction::tresca(stress), stress),
-    ] {
+    for (friction, given) in [(Friction::coulomb(mu), 0.0), (Friction::tresca(stress), stress)] {
         for method in methods() {
             let name = method.kind();
             let (_, results) = run(half(friction.clone()), at(1e-9).with_method(method));

@@ -38,11 +38,7 @@ fn case(seed: u64) -> Case {
 }
 
 fn bound_at(case: &Case, x: [f64; 3]) -> f64 {
-    if case.half && x[0] > 1.6 {
-        0.0
-    } else {
-        case.bound
-    }
+    if case.half && x[0] > 1.6 { 0.0 } else { case.bound }
 }
 
 fn scene(case: &Case) -> Scene {
@@ -109,9 +105,7 @@ fn reference(case: &Case, simulation: &Simulation) -> Vec<f64> {
         let local = assemble_load(mesh, simulation.decomposition(), load).expect("load");
         let response = tfeti.load_response(&local).expect("response");
         d.iter_mut().zip(&response.dual).for_each(|(d, v)| *d -= v);
-        e.iter_mut()
-            .zip(&response.coarse)
-            .for_each(|(e, v)| *e += v);
+        e.iter_mut().zip(&response.coarse).for_each(|(e, v)| *e += v);
     }
     let mut cones = Cones::default();
     for (k, right) in e.iter().enumerate() {
@@ -123,18 +117,9 @@ fn reference(case: &Case, simulation: &Simulation) -> Vec<f64> {
         let row = entries.filter(|(_, v)| *v != 0.0).collect();
         cones.add(vec![row], &[*right], SupportedConeT::ZeroConeT(1));
     }
-    for (info, point) in tfeti
-        .gluing()
-        .contact()
-        .iter()
-        .zip(simulation.constrained_points())
-    {
+    for (info, point) in tfeti.gluing().contact().iter().zip(simulation.constrained_points()) {
         d[info.row] += info.scale * GAP;
-        cones.add(
-            vec![vec![(info.row, 1.0)]],
-            &[0.0],
-            SupportedConeT::NonnegativeConeT(1),
-        );
+        cones.add(vec![vec![(info.row, 1.0)]], &[0.0], SupportedConeT::NonnegativeConeT(1));
         let bound = bound_at(case, point.position()) * point.area();
         match info.tangential {
             TangentialRows::Disc { row, scale } => cones.add(
@@ -172,8 +157,7 @@ fn reference(case: &Case, simulation: &Simulation) -> Vec<f64> {
         ..DefaultSettings::default()
     };
     let (p, a) = (csc(&upper, n), csc(&cones.rows, n));
-    let mut solver =
-        DefaultSolver::new(&p, &q, &a, &cones.right, &cones.kinds, settings).expect("clarabel");
+    let mut solver = DefaultSolver::new(&p, &q, &a, &cones.right, &cones.kinds, settings).expect("clarabel");
     solver.solve();
     assert!(
         matches!(
@@ -196,11 +180,7 @@ fn nodal_forces(lambda: &[f64], simulation: &Simulation) -> Vec<f64> {
             TangentialRows::Disc { row, scale } => point
                 .frame()
                 .vector(0.0, [scale * lambda[row], scale * lambda[row + 1]]),
-            TangentialRows::Interval {
-                row,
-                direction,
-                scale,
-            } => direction.map(|c| c * scale * lambda[row]),
+            TangentialRows::Interval { row, direction, scale } => direction.map(|c| c * scale * lambda[row]),
             _ => [0.0; 3],
         });
     }
@@ -231,10 +211,7 @@ fn all_methods_agree_with_clarabel() {
         }
     }
     // the cases must reach everything that they are meant to reach
-    assert!(
-        open > 0 && sliding > 0 && sticking > 0,
-        "{open} {sliding} {sticking}"
-    );
+    assert!(open > 0 && sliding > 0 && sticking > 0, "{open} {sliding} {sticking}");
 }
 
 /// The rows of the dual problem are the ones that the certificate measures: no slip bound, no friction.
@@ -245,12 +222,7 @@ fn a_zero_bound_is_no_friction() {
     let with = solve(scene(&case), tight());
     let bare = scene(&case).replace_contact(Some(Contact::rigid(brick::Z_MIN).with_gap(GAP)));
     let without = solve(bare, tight());
-    assert_close(
-        &with.displacement,
-        &without.displacement,
-        1e-8,
-        "displacement",
-    );
+    assert_close(&with.displacement, &without.displacement, 1e-8, "displacement");
     assert_eq!(with.summary.friction_norm, 0.0);
     assert_eq!(with.summary.active, without.summary.active);
 }

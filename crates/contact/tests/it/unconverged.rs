@@ -43,10 +43,7 @@ fn later_steps_name_the_first_step_that_did_not_converge() {
                     ..
                 }))
             )),
-            _ => assert!(matches!(
-                strict,
-                Err(ContactError::UnconvergedHistory { step: 0 })
-            )),
+            _ => assert!(matches!(strict, Err(ContactError::UnconvergedHistory { step: 0 }))),
         }
     }
     // lifted off the obstacle the body is certified, but where it stands along the obstacle depends on step 0
@@ -94,28 +91,20 @@ fn an_observer_can_end_a_run_at_the_first_such_step() {
 fn a_resumed_run_knows_what_it_continues() {
     let mut first = rough();
     let _ = first.step().expect("step");
-    let mut second =
-        Simulation::new(cantilever(Friction::coulomb(0.8)), Settings::default()).expect("set-up");
+    let mut second = Simulation::new(cantilever(Friction::coulomb(0.8)), Settings::default()).expect("set-up");
     second.resume(first.state().clone()).expect("resume");
     let report = second.run(&mut Silent).expect("run");
     assert!(report.failures.is_empty());
     assert_eq!(report.unconverged_history, Some(0));
-    let error = report
-        .require_converged()
-        .expect_err("an unconverged history");
-    assert!(matches!(
-        error,
-        ContactError::UnconvergedHistory { step: 0 }
-    ));
+    let error = report.require_converged().expect_err("an unconverged history");
+    assert!(matches!(error, ContactError::UnconvergedHistory { step: 0 }));
 }
 
 /// Without friction a step depends on nothing that an earlier one found.
 #[test]
 fn scenes_without_memory_never_set_it() {
     let short = Settings::default()
-        .with_method(Method::ActiveSet(
-            ActiveSetSettings::default().with_max_products(1),
-        ))
+        .with_method(Method::ActiveSet(ActiveSetSettings::default().with_max_products(1)))
         .with_max_fallback_products(1);
     let mut simulation = Simulation::new(cantilever(Friction::None), short).expect("set-up");
     let report = simulation.run(&mut Silent).expect("run");
@@ -130,8 +119,7 @@ fn scenes_without_memory_never_set_it() {
 fn runs_that_converge_are_converged() {
     for method in methods() {
         let settings = by(method);
-        let mut simulation =
-            Simulation::new(cantilever(Friction::coulomb(0.05)), settings).expect("set-up");
+        let mut simulation = Simulation::new(cantilever(Friction::coulomb(0.05)), settings).expect("set-up");
         let report = simulation.run(&mut Silent).expect("run");
         assert!(report.converged() && report.largest_certificate <= 1e-6);
         report.require_converged().expect("converged");
@@ -176,16 +164,10 @@ fn no_method_claims_what_it_did_not_find() {
             for coefficient in [0.05, 0.3, 0.5, 0.7, 0.9, 1.1, 1.5, 3.0] {
                 let scene = weighed_cantilever(coefficient, tilt, axial);
                 let (status, _, _, certificate) = first_step(scene, method.clone());
-                let what = format!(
-                    "{}, tilt {tilt}, axial {axial}, F {coefficient}",
-                    method.kind()
-                );
+                let what = format!("{}, tilt {tilt}, axial {axial}, F {coefficient}", method.kind());
                 assert!(certificate.is_finite(), "{what}");
                 if status.converged() {
-                    assert!(
-                        certificate <= 1e-6,
-                        "{what}: converged with {certificate:e}"
-                    );
+                    assert!(certificate <= 1e-6, "{what}: converged with {certificate:e}");
                 } else {
                     unsolved += 1;
                 }

@@ -9,12 +9,7 @@ const WEIGHT: f64 = 1.0;
 const VOLUME: f64 = 4.0;
 
 /// Coefficients with the published ratios.
-const TABLE: [(f64, f64); 4] = [
-    (0.0, 0.1),
-    (0.1, 0.2020202),
-    (0.2, 0.3061224),
-    (0.3, 0.4123711),
-];
+const TABLE: [(f64, f64); 4] = [(0.0, 0.1), (0.1, 0.2020202), (0.2, 0.3061224), (0.3, 0.4123711)];
 
 fn threshold(coefficient: f64) -> f64 {
     (SLOPE + coefficient) / (1.0 - coefficient * SLOPE)
@@ -113,10 +108,7 @@ fn without_friction_the_block_is_recognised_as_not_held() {
 #[test]
 fn half_of_the_threshold_is_held() {
     for (coefficient, _) in &TABLE[1..] {
-        let result = solve(
-            pushed(0.5 * threshold(*coefficient), *coefficient),
-            Settings::default(),
-        );
+        let result = solve(pushed(0.5 * threshold(*coefficient), *coefficient), Settings::default());
         let normal = result.summary.normal_force;
         assert!(norm(&result.summary.friction_force) <= coefficient * normal * (1.0 + 1e-6));
     }

@@ -38,28 +38,16 @@ impl Line {
     }
 
     /// The entries, at most so many.
-    pub(crate) fn at_most(
-        &self,
-        most: usize,
-        wanted: &'static str,
-    ) -> Result<Vec<&str>, DeckError> {
+    pub(crate) fn at_most(&self, most: usize, wanted: &'static str) -> Result<Vec<&str>, DeckError> {
         let fields = self.fields();
         match fields.get(most) {
-            Some(extra) => Err(self.fault(
-                if extra.is_empty() { "," } else { extra },
-                Fault::Expected(wanted),
-            )),
+            Some(extra) => Err(self.fault(if extra.is_empty() { "," } else { extra }, Fault::Expected(wanted))),
             None => Ok(fields),
         }
     }
 
     /// A finite number; `None` if the entry is missing or blank.
-    pub(crate) fn optional(
-        &self,
-        fields: &[&str],
-        at: usize,
-        wanted: &'static str,
-    ) -> Result<Option<f64>, DeckError> {
+    pub(crate) fn optional(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<Option<f64>, DeckError> {
         match fields.get(at) {
             None | Some(&"") => Ok(None),
             Some(text) => match real(text) {
@@ -70,29 +58,15 @@ impl Line {
     }
 
     /// A finite number.
-    pub(crate) fn real(
-        &self,
-        fields: &[&str],
-        at: usize,
-        wanted: &'static str,
-    ) -> Result<f64, DeckError> {
+    pub(crate) fn real(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<f64, DeckError> {
         let value = self.optional(fields, at, wanted)?;
         value.ok_or_else(|| self.fault(self.text.trim(), Fault::Expected(wanted)))
     }
 
     /// A number of a node or element.
-    pub(crate) fn label(
-        &self,
-        fields: &[&str],
-        at: usize,
-        wanted: &'static str,
-    ) -> Result<u32, DeckError> {
+    pub(crate) fn label(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<u32, DeckError> {
         let text = fields.get(at).copied().unwrap_or("");
-        let word = if text.is_empty() {
-            self.text.trim()
-        } else {
-            text
-        };
+        let word = if text.is_empty() { self.text.trim() } else { text };
         label(text).ok_or_else(|| self.fault(word, Fault::Expected(wanted)))
     }
 }
@@ -199,9 +173,7 @@ impl Card {
         match self.param(key) {
             None => Ok(false),
             Some(Param { value: None, .. }) => Ok(true),
-            Some(param) => {
-                Err(self.param_fault(param, Fault::Expected("this parameter without a value")))
-            }
+            Some(param) => Err(self.param_fault(param, Fault::Expected("this parameter without a value"))),
         }
     }
 
@@ -223,12 +195,7 @@ impl Card {
     }
 
     /// The value of a parameter, one of those listed (upper case, without blanks), by its position.
-    pub(crate) fn choice(
-        &self,
-        key: &str,
-        choices: &[&str],
-        wanted: &'static str,
-    ) -> Result<Option<usize>, DeckError> {
+    pub(crate) fn choice(&self, key: &str, choices: &[&str], wanted: &'static str) -> Result<Option<usize>, DeckError> {
         let Some(value) = self.value(key)? else {
             return Ok(None);
         };

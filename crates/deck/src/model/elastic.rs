@@ -58,10 +58,7 @@ pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         return Err(twice(card, first.line));
     }
     let law = match (wanted, &numbers[..]) {
-        (ORTHOTROPIC, n) => orthotropic(
-            [[n[0], n[1], n[3]], [n[1], n[2], n[4]], [n[3], n[4], n[5]]],
-            &n[6..9],
-        ),
+        (ORTHOTROPIC, n) => orthotropic([[n[0], n[1], n[3]], [n[1], n[2], n[4]], [n[3], n[4], n[5]]], &n[6..9]),
         (ENGINEERING, n) => orthotropic(inverse(n), &n[6..9]),
         (_, n) => Hooke::isotropic(n[0], n[1]),
     };

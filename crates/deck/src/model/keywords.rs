@@ -77,15 +77,9 @@ const REFUSED: [(&str, &str); 37] = [
     ("MEMBRANESECTION", SOLID),
     ("SPRING", SOLID),
     ("MASS", SOLID),
-    (
-        "PRE-TENSIONSECTION",
-        "bolts cannot be tightened from a deck",
-    ),
+    ("PRE-TENSIONSECTION", "bolts cannot be tightened from a deck"),
     ("MODELCHANGE", "what a scene holds is there in all steps"),
-    (
-        "CHANGEFRICTION",
-        "a coefficient of friction holds for all steps",
-    ),
+    ("CHANGEFRICTION", "a coefficient of friction holds for all steps"),
     (
         "CLEARANCE",
         "the gap is measured between the nodes; move one of the bodies",
@@ -123,11 +117,7 @@ pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
     match step {
         Some(step) => {
             let why = "the step does not end; put *END STEP after it";
-            Err(DeckError::at(
-                &step.location,
-                "*STEP",
-                Fault::Misplaced(why),
-            ))
+            Err(DeckError::at(&step.location, "*STEP", Fault::Misplaced(why)))
         }
         None => Ok(model),
     }
@@ -171,9 +161,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             let why = "the step before has not ended; put *END STEP before this one";
             Err(card.fault(Fault::Misplaced(why)))
         }
-        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "ENDSTEP", None) => {
-            Err(card.fault(Fault::Misplaced(INSIDE)))
-        }
+        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "ENDSTEP", None) => Err(card.fault(Fault::Misplaced(INSIDE))),
         ("STATIC", Some(step)) => step.procedure(model, card),
         ("CLOAD", Some(step)) => step::forces(model, step, card),
         ("DLOAD", Some(step)) => step::distributed(model, step, card, false),
@@ -183,11 +171,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             card.lines_at_most(0, "no data")?;
             if step.time.is_none() {
                 let why = "the step has no procedure; put *STATIC into it";
-                return Err(DeckError::at(
-                    &step.location,
-                    "*STEP",
-                    Fault::Misplaced(why),
-                ));
+                return Err(DeckError::at(&step.location, "*STEP", Fault::Misplaced(why)));
             }
             model.steps.extend(current.take());
             Ok(())

@@ -25,11 +25,7 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
             *value = given.unwrap_or(0.0);
         }
         let location = line.location.clone();
-        model.nodes.push(Node {
-            label,
-            point,
-            location,
-        });
+        model.nodes.push(Node { label, point, location });
         if set.is_some() {
             members.push((Member::One(label), line.location.clone()));
         }
@@ -49,11 +45,7 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         (None, Some(param)) => {
             return Err(card.param_fault(param, Fault::Unsupported(TYPES)));
         }
-        (Some(Kind::Triangle), _) => (
-            Kind::Triangle,
-            3,
-            "an element number and three node numbers",
-        ),
+        (Some(Kind::Triangle), _) => (Kind::Triangle, 3, "an element number and three node numbers"),
         (kind, _) => (
             kind.unwrap_or(Kind::Solid),
             4,
@@ -136,10 +128,7 @@ fn member(line: &Line, field: &str) -> Result<Member, DeckError> {
 fn range(line: &Line) -> Result<Member, DeckError> {
     let wanted = "first number, last number and, if it is not 1, the increment";
     let fields = line.at_most(3, wanted)?;
-    let [from, to] = [
-        line.label(&fields, 0, wanted)?,
-        line.label(&fields, 1, wanted)?,
-    ];
+    let [from, to] = [line.label(&fields, 0, wanted)?, line.label(&fields, 1, wanted)?];
     let step = match fields.get(2) {
         None | Some(&"") => 1,
         Some(_) => line.label(&fields, 2, wanted)?,
@@ -167,11 +156,7 @@ pub(super) fn target(line: &Line, field: &str) -> Result<Target, DeckError> {
     let wanted = "a number from 1 to 2147483647, or the name of a set";
     let begins = field.chars().next();
     if begins.is_none_or(|c| c.is_ascii_digit() || "+-.".contains(c)) {
-        let word = if field.is_empty() {
-            line.text.trim()
-        } else {
-            field
-        };
+        let word = if field.is_empty() { line.text.trim() } else { field };
         return Err(line.fault(word, Fault::Expected(wanted)));
     }
     Ok(Target::Name(name(field)))
@@ -200,8 +185,7 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     }
     let mut faces = Vec::new();
     for line in &card.lines {
-        let wanted =
-            "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets)";
+        let wanted = "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets)";
         let fields = line.at_most(2, wanted)?;
         let side = match fields.get(1).map(|f| name(f)).as_deref() {
             Some("S1") => Side::Face(1),

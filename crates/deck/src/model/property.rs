@@ -5,19 +5,14 @@ use crate::error::{DeckError, Fault};
 use crate::lexer::{Card, Param, label, name};
 use signorini_fem_mesh::History;
 
-pub(super) const PENALTY: &str =
-    "contact and friction are exact here, without penalty numbers and stick slopes";
+pub(super) const PENALTY: &str = "contact and friction are exact here, without penalty numbers and stick slopes";
 
 fn word(param: Option<&Param>) -> String {
     param.map(|p| p.word.clone()).unwrap_or_default()
 }
 
 /// The material or interaction that a card belongs to: the last one.
-pub(super) fn inside<'a, T>(
-    last: Option<&'a mut T>,
-    card: &Card,
-    what: &'static str,
-) -> Result<&'a mut T, DeckError> {
+pub(super) fn inside<'a, T>(last: Option<&'a mut T>, card: &Card, what: &'static str) -> Result<&'a mut T, DeckError> {
     last.ok_or_else(|| card.fault(Fault::Misplaced(what)))
 }
 
@@ -79,11 +74,7 @@ pub(super) fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "TIME", "VALUE", "DEFINITION"])?;
     let amplitude = card.need("NAME")?;
-    card.choice(
-        "VALUE",
-        &["RELATIVE"],
-        "VALUE=RELATIVE; other values are not supported",
-    )?;
+    card.choice("VALUE", &["RELATIVE"], "VALUE=RELATIVE; other values are not supported")?;
     card.choice(
         "DEFINITION",
         &["TABULAR"],
@@ -103,17 +94,11 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
         }
     }
     if numbers.len() % 2 == 1 {
-        return Err(card.fault(Fault::Expected(
-            "pairs of time and value; one value is missing",
-        )));
+        return Err(card.fault(Fault::Expected("pairs of time and value; one value is missing")));
     }
     let points: Vec<(f64, f64)> = numbers.chunks_exact(2).map(|p| (p[0], p[1])).collect();
     let history = History::table(points.clone()).map_err(|e| card.fault(Fault::History(e)))?;
-    let new = Amplitude {
-        history,
-        points,
-        total,
-    };
+    let new = Amplitude { history, points, total };
     model.amplitudes.add(amplitude, new);
     Ok(())
 }
@@ -149,10 +134,8 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         card,
         "*SURFACE BEHAVIOR belongs to an interaction; put *SURFACE INTERACTION before it",
     )?;
-    if let (Some(law), Some(param)) = (
-        card.value("PRESSURE-OVERCLOSURE")?,
-        card.param("PRESSURE-OVERCLOSURE"),
-    ) && law != "HARD"
+    if let (Some(law), Some(param)) = (card.value("PRESSURE-OVERCLOSURE")?, card.param("PRESSURE-OVERCLOSURE"))
+        && law != "HARD"
     {
         let why = "contact is hard and exact here, without a stiffness; write PRESSURE-OVERCLOSURE=HARD and \
         remove the data lines (tied surfaces: merge their nodes)";
@@ -187,10 +170,7 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             why: PENALTY,
         });
     };
-    if line
-        .optional(&fields, 1, "the stick slope, a number")?
-        .is_some()
-    {
+    if line.optional(&fields, 1, "the stick slope, a number")?.is_some() {
         ignore(&line.location, fields[1]);
     }
     for param in &card.params {

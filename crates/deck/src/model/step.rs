@@ -148,14 +148,7 @@ pub(crate) struct Step {
 
 impl Step {
     pub(super) fn new(model: &mut Model, card: &Card) -> Result<Self, DeckError> {
-        card.allow(&[
-            "NAME",
-            "INC",
-            "NLGEOM",
-            "AMPLITUDE",
-            "UNSYMM",
-            "PERTURBATION",
-        ])?;
+        card.allow(&["NAME", "INC", "NLGEOM", "AMPLITUDE", "UNSYMM", "PERTURBATION"])?;
         if let Some(param) = card.param("NLGEOM")
             && card.value("NLGEOM").ok().flatten().as_deref() != Some("NO")
         {
@@ -240,9 +233,7 @@ impl Step {
         if let Some((most, location, word)) = &self.increments
             && count > *most
         {
-            let text = format!(
-                "the step needs {count} increments of {increment}; raise INC or the increment"
-            );
+            let text = format!("the step needs {count} increments of {increment}; raise INC or the increment");
             return Err(DeckError::at(location, word, Fault::Cannot(text)));
         }
         let increments = Increments {
@@ -265,20 +256,12 @@ fn amplitude(model: &Model, card: &Card) -> Result<Option<usize>, DeckError> {
 }
 
 /// `*BOUNDARY`, in a step or before the first.
-pub(super) fn boundary(
-    model: &mut Model,
-    step: Option<&mut Step>,
-    card: &Card,
-) -> Result<(), DeckError> {
+pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) -> Result<(), DeckError> {
     card.allow(match &step {
         Some(_) => &["OP", "AMPLITUDE", "TYPE"],
         None => &["TYPE"],
     })?;
-    card.choice(
-        "TYPE",
-        &["DISPLACEMENT"],
-        "DISPLACEMENT; other types are not supported",
-    )?;
+    card.choice("TYPE", &["DISPLACEMENT"], "DISPLACEMENT; other types are not supported")?;
     let amplitude = amplitude(model, card)?;
     let mut lines = Vec::with_capacity(card.lines.len());
     for line in &card.lines {
@@ -308,11 +291,7 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
     let fields = line.at_most(4, wanted)?;
     let target = target(line, fields[0])?;
     let second = fields.get(1).copied().unwrap_or("");
-    let word = if second.is_empty() {
-        line.text.trim()
-    } else {
-        second
-    };
+    let word = if second.is_empty() { line.text.trim() } else { second };
     let by_name = |name: &str| {
         let on = match name {
             "ENCASTRE" => [1, 1, 1, 1, 1, 1],
@@ -360,10 +339,7 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
     if !second.starts_with(|c: char| c.is_ascii_digit())
         && let Some(extra) = fields.get(2)
     {
-        return Err(line.fault(
-            extra,
-            Fault::Expected("nothing after the name of a condition"),
-        ));
+        return Err(line.fault(extra, Fault::Expected("nothing after the name of a condition")));
     }
     Ok(Boundary {
         location: line.location.clone(),
@@ -405,12 +381,7 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
 }
 
 /// `*DLOAD`, and `*DSLOAD` with `on_surface`.
-pub(super) fn distributed(
-    model: &Model,
-    step: &mut Step,
-    card: &Card,
-    on_surface: bool,
-) -> Result<(), DeckError> {
+pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surface: bool) -> Result<(), DeckError> {
     card.allow(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(model, card)?;
     step.distributed.card(card)?;
@@ -435,11 +406,7 @@ pub(super) fn distributed(
             _ => None,
         };
         let Some(mut kind) = found else {
-            let word = if kind.is_empty() {
-                line.text.trim()
-            } else {
-                kind
-            };
+            let word = if kind.is_empty() { line.text.trim() } else { kind };
             return Err(line.fault(word, Fault::Expected(wanted)));
         };
         let value = line.real(&fields, 2, wanted)?;

@@ -19,8 +19,7 @@ pub(super) fn contacts(
     let model = known.model;
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
-        let fault =
-            |word: &str, text: String| DeckError::at(&pair.location, word, Fault::Cannot(text));
+        let fault = |word: &str, text: String| DeckError::at(&pair.location, word, Fault::Cannot(text));
         let interaction = named(&pair.interaction);
         let at = (&pair.location, pair.interaction.word.as_str());
         let found = model.interactions.find("interaction", &interaction, at)?;
@@ -28,8 +27,7 @@ pub(super) fn contacts(
         let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
         let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
         if slave.is_empty() {
-            let text =
-                "a rigid surface has to be the second (independent) one of a pair; swap them";
+            let text = "a rigid surface has to be the second (independent) one of a pair; swap them";
             return Err(fault(&pair.slave, text.into()));
         }
         if slave.iter().any(|tag| master.contains(tag)) {
@@ -45,9 +43,7 @@ pub(super) fn contacts(
             plane.map_err(|text| fault(&pair.master, text))?
         } else {
             let between = Contact::between(slave[0], master[0]);
-            master[1..]
-                .iter()
-                .fold(between, |c, tag| c.with_partner(*tag))
+            master[1..].iter().fold(between, |c, tag| c.with_partner(*tag))
         };
         for &tag in &slave[1..] {
             contact = contact.with_tag(tag);

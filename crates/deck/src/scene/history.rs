@@ -138,9 +138,7 @@ impl Law<'_> {
                     from + (to - from) * ((time - span.start) / (span.end - span.start))
                 }
             }
-            Self::Amplitude(factor, amplitude) => {
-                factor * amplitude.history.value(time - Self::shift(amplitude, span))
-            }
+            Self::Amplitude(factor, amplitude) => factor * amplitude.history.value(time - Self::shift(amplitude, span)),
         }
     }
 

@@ -115,18 +115,11 @@ impl Loads {
     }
 
     /// Groups pressures by value and history and notes the group of each face; forces at nodes if there are too many.
-    fn pressures(
-        &mut self,
-        context: Context,
-        tracks: &Tracks<u32>,
-        faces: &mut FaceTable,
-    ) -> Result<(), DeckError> {
+    fn pressures(&mut self, context: Context, tracks: &Tracks<u32>, faces: &mut FaceTable) -> Result<(), DeckError> {
         let mut of_face = Vec::with_capacity(tracks.0.len());
         let mut groups: BTreeMap<(u64, usize), usize> = BTreeMap::new();
         for (&face, track) in &tracks.0 {
-            let found = self
-                .histories
-                .add(context.known.model, context.timeline, track)?;
+            let found = self.histories.add(context.known.model, context.timeline, track)?;
             let Some((value, history)) = found else {
                 continue;
             };
@@ -163,9 +156,7 @@ impl Loads {
         type Group = (Target, bool, usize);
         let mut groups: BTreeMap<Group, (usize, [f64; 3], &Track)> = BTreeMap::new();
         for ((target, gravity, component), track) in &tracks.0 {
-            let found = self
-                .histories
-                .add(context.known.model, context.timeline, track)?;
+            let found = self.histories.add(context.known.model, context.timeline, track)?;
             if let Some((value, history)) = found {
                 let key = (target.clone(), *gravity, history);
                 let group = groups.entry(key).or_insert((track.order, [0.0; 3], track));
@@ -173,9 +164,7 @@ impl Loads {
             }
         }
         for ((target, gravity, history), (order, value, track)) in groups {
-            let Known {
-                model, sets, raw, ..
-            } = context.known;
+            let Known { model, sets, raw, .. } = context.known;
             let elements = sets.elements(model, &target, track.at())?;
             // rigid ones are held, whatever pulls them
             let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
@@ -189,8 +178,7 @@ impl Loads {
             let same = densities.iter().all(|d| *d == densities[0]);
             if same && elements.len() == raw.tets.len() {
                 let density = densities[0];
-                self.bodies
-                    .push((order, history, value.map(|v| density * v)));
+                self.bodies.push((order, history, value.map(|v| density * v)));
                 continue;
             }
             for (&element, density) in elements.iter().zip(densities) {
@@ -233,8 +221,7 @@ impl Loads {
             out.push((order, LoadDensity::body(value), history));
         }
         out.sort_by_key(|load| load.0);
-        let load =
-            |(_, density, history)| Load::new(density).with_history(self.histories.at(history));
+        let load = |(_, density, history)| Load::new(density).with_history(self.histories.at(history));
         out.into_iter().map(load).collect()
     }
 }
@@ -304,9 +291,7 @@ impl Context<'_> {
             }
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
-                self.known
-                    .sets
-                    .elements(self.known.model, &line.target, at)?;
+                self.known.sets.elements(self.known.model, &line.target, at)?;
                 let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
@@ -315,9 +300,7 @@ impl Context<'_> {
                 return Ok(());
             }
             DistributedKind::Body(component) => {
-                self.known
-                    .sets
-                    .elements(self.known.model, &line.target, at)?;
+                self.known.sets.elements(self.known.model, &line.target, at)?;
                 let key = (line.target.clone(), false, *component);
                 return bodies.set(key, when, given(line.value), at);
             }
@@ -334,12 +317,9 @@ impl Context<'_> {
             let (location, word) = track.at();
             DeckError::at(location, word, Fault::Cannot(text))
         };
-        let Known {
-            model, raw, sets, ..
-        } = self.known;
+        let Known { model, raw, sets, .. } = self.known;
         let sections = super::materials::sections(model, raw, sets)?;
-        let sections =
-            sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
+        let sections = sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
         let mut of_section = Vec::with_capacity(model.sections.len());
         for section in &model.sections {
             let (name, word) = &section.material;
@@ -349,11 +329,7 @@ impl Context<'_> {
         }
         let density = |&element: &u32| {
             let (density, name) = of_section[sections[element as usize] as usize];
-            density.ok_or_else(|| {
-                fault(format!(
-                    "gravity needs a density; give material {name} *DENSITY"
-                ))
-            })
+            density.ok_or_else(|| fault(format!("gravity needs a density; give material {name} *DENSITY")))
         };
         elements.iter().map(density).collect()
     }

@@ -11,11 +11,7 @@ const NONE: u32 = u32::MAX;
 
 /// The region of each tetrahedron, which is the number of its section from 0, and the materials; none for a
 /// deck without sections.
-pub(super) fn materials(
-    model: &Model,
-    raw: &Raw,
-    sets: &Sets,
-) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
+pub(super) fn materials(model: &Model, raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
     let sections = sections(model, raw, sets)?;
     let Some(sections) = sections else {
         return Ok((vec![0; raw.tets.len()], None));
@@ -24,9 +20,7 @@ pub(super) fn materials(
     for section in &model.sections {
         let (name, word) = &section.material;
         let at = (&section.location, word.as_str());
-        let material = model
-            .materials
-            .at(model.materials.find("material", name, at)?);
+        let material = model.materials.at(model.materials.find("material", name, at)?);
         let Some((_, law)) = &material.elastic else {
             let why = "the material has no *ELASTIC; put it behind *MATERIAL";
             return Err(DeckError::at(&material.location, name, Fault::Empty(why)));
@@ -48,11 +42,7 @@ pub(super) fn materials(
 }
 
 /// The section of each element, by position; `None` for a deck without sections.
-pub(super) fn sections(
-    model: &Model,
-    raw: &Raw,
-    sets: &Sets,
-) -> Result<Option<Vec<u32>>, DeckError> {
+pub(super) fn sections(model: &Model, raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckError> {
     if model.sections.is_empty() {
         return Ok(None);
     }

@@ -24,12 +24,7 @@ pub(super) struct Raw {
 }
 
 impl Raw {
-    pub(super) fn new(
-        path: &Path,
-        model: &Model,
-        sets: &Sets,
-        bodies: &RigidBodies,
-    ) -> Result<Self, DeckError> {
+    pub(super) fn new(path: &Path, model: &Model, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
         let (mut tets, mut elements) = (Vec::new(), Vec::new());
         let mut of_element = vec![None; model.elements.len()];
         let mut used = vec![false; model.nodes.len()];
@@ -118,12 +113,7 @@ impl Raw {
         volume(&self.tet_points(tet))
     }
 
-    pub(super) fn mesh(
-        &self,
-        path: &Path,
-        facets: Vec<Facet>,
-        regions: Vec<u32>,
-    ) -> Result<TetMesh, DeckError> {
+    pub(super) fn mesh(&self, path: &Path, facets: Vec<Facet>, regions: Vec<u32>) -> Result<TetMesh, DeckError> {
         let mesh = TetMesh::new(self.points.clone(), self.tets.clone(), facets);
         let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));
         mesh.map_err(|source| DeckError::Mesh {

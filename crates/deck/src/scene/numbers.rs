@@ -33,9 +33,7 @@ impl Numbers {
         let start = self.0.partition_point(|p| p.0 < from);
         let end = self.0.partition_point(|p| p.0 <= to);
         let inside = self.0[start..end.max(start)].iter();
-        inside
-            .filter(move |p| (p.0 - from).is_multiple_of(step))
-            .map(|p| p.1)
+        inside.filter(move |p| (p.0 - from).is_multiple_of(step)).map(|p| p.1)
     }
 }
 
@@ -57,13 +55,7 @@ impl Sets {
         let remedy = "give each element a number of its own";
         let element_numbers = numbers(model.elements.len(), at, remedy)?;
         let mut room = MEMBERS;
-        let nodes = resolve(
-            "node",
-            &model.nsets,
-            &node_numbers,
-            model.nodes.len(),
-            &mut room,
-        )?;
+        let nodes = resolve("node", &model.nsets, &node_numbers, model.nodes.len(), &mut room)?;
         let count = model.elements.len();
         let elements = resolve("element", &model.elsets, &element_numbers, count, &mut room)?;
         Ok(Self {
@@ -75,21 +67,9 @@ impl Sets {
     }
 
     /// Positions of the nodes of a target.
-    pub(super) fn nodes(
-        &self,
-        model: &Model,
-        target: &Target,
-        at: (&Location, &str),
-    ) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn nodes(&self, model: &Model, target: &Target, at: (&Location, &str)) -> Result<Vec<u32>, DeckError> {
         let what = ("node", "node set");
-        find(
-            what,
-            target,
-            &self.node_numbers,
-            &model.nsets,
-            &self.nodes,
-            at,
-        )
+        find(what, target, &self.node_numbers, &model.nsets, &self.nodes, at)
     }
 
     /// Positions of the elements of a target.
@@ -100,14 +80,7 @@ impl Sets {
         at: (&Location, &str),
     ) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
-        find(
-            what,
-            target,
-            &self.element_numbers,
-            &model.elsets,
-            &self.elements,
-            at,
-        )
+        find(what, target, &self.element_numbers, &model.elsets, &self.elements, at)
     }
 
     /// The sets of nodes and of elements by name, in the numbers of the mesh.
@@ -151,8 +124,7 @@ fn find(
     let name = match target {
         Target::Number(number) => {
             let found = numbers.get(*number);
-            let found =
-                found.ok_or_else(|| DeckError::at(location, word, Fault::UnknownNumber(what)))?;
+            let found = found.ok_or_else(|| DeckError::at(location, word, Fault::UnknownNumber(what)))?;
             return Ok(vec![found]);
         }
         Target::Name(name) => name,
@@ -197,11 +169,7 @@ fn resolve(
                     let mut inside = numbers.range(*from, *to, *step).peekable();
                     if inside.peek().is_none() {
                         let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(
-                            location,
-                            &format!("{from}, {to}, {step}"),
-                            fault,
-                        ));
+                        return Err(DeckError::at(location, &format!("{from}, {to}, {step}"), fault));
                     }
                     inside.for_each(&mut add);
                 }

@@ -53,8 +53,7 @@ impl RigidBodies {
             for element in sets.elements(model, &Target::Name(name.clone()), at)? {
                 if of_element[element as usize].replace(index as u32).is_some() {
                     let label = model.elements[element as usize].label;
-                    let text =
-                        format!("element {label} is in another rigid body; keep one of them");
+                    let text = format!("element {label} is in another rigid body; keep one of them");
                     return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
                 }
             }
@@ -86,12 +85,7 @@ impl RigidBodies {
 
     /// Refuses bodies that share nodes with elastic elements, which would be bonded to them; `elastic` are the nodes
     /// that such elements use.
-    pub(super) fn check_apart(
-        &self,
-        model: &Model,
-        sets: &Sets,
-        elastic: &[bool],
-    ) -> Result<(), DeckError> {
+    pub(super) fn check_apart(&self, model: &Model, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
         let fault = |location: &Location, word: &str, node: u32| {
             let text = format!(
                 "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not \
@@ -220,10 +214,7 @@ pub(super) fn half_space(
     }
     let triangles: Vec<[[f64; 3]; 3]> = faces
         .iter()
-        .flat_map(|face| {
-            (1..face.corners.len() - 1)
-                .map(|i| [face.corners[0], face.corners[i], face.corners[i + 1]])
-        })
+        .flat_map(|face| (1..face.corners.len() - 1).map(|i| [face.corners[0], face.corners[i], face.corners[i + 1]]))
         .collect();
     let largest = triangles
         .iter()
@@ -245,12 +236,14 @@ pub(super) fn half_space(
         .fold(size, f64::max);
     let flat = |t: &[[f64; 3]; 3]| {
         let own = area_vector(t);
-        t.iter().all(|x| height(x).abs() <= ROUNDING * reach)
-            && dot(own, normal) >= (1.0 - ROUNDING) * norm(own)
+        t.iter().all(|x| height(x).abs() <= ROUNDING * reach) && dot(own, normal) >= (1.0 - ROUNDING) * norm(own)
     };
     if !triangles.iter().all(flat) {
-        return Err("the rigid surface is not flat, and only a plane can be said exactly; give a plane, or a \
-        gap that depends on the place in a program (Contact::with_gap_field)".into());
+        return Err(
+            "the rigid surface is not flat, and only a plane can be said exactly; give a plane, or a \
+        gap that depends on the place in a program (Contact::with_gap_field)"
+                .into(),
+        );
     }
     for (label, x) in over {
         if !triangles.iter().any(|t| contains(t, normal, *x)) {

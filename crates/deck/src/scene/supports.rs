@@ -66,9 +66,7 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
             (label, key.1, held)
         });
         let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
-        if let (Some((label, component, _)), Some((location, word, _))) =
-            (released, &given.boundary.first)
-        {
+        if let (Some((label, component, _)), Some((location, word, _))) = (released, &given.boundary.first) {
             let text = format!(
                 "this releases component {} of node {label}; what is held in the first step is held to the \
                 end, so give it again here",
@@ -78,10 +76,7 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
         }
     }
     let rigid = std::mem::take(&mut table.rigid);
-    let rigid = rigid
-        .into_iter()
-        .map(|(key, held)| (key, held.track))
-        .collect();
+    let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
     let motions = known.bodies.motions(known.model, timeline, &rigid)?;
     let ignored = std::mem::take(&mut table.ignored);
     let (list, names) = table.lower(known.model, timeline)?;
@@ -183,11 +178,7 @@ impl Table {
         Ok(())
     }
 
-    fn lower(
-        self,
-        model: &Model,
-        timeline: &Timeline,
-    ) -> Result<(Vec<Support>, Vec<String>), DeckError> {
+    fn lower(self, model: &Model, timeline: &Timeline) -> Result<(Vec<Support>, Vec<String>), DeckError> {
         let mut histories = Histories::default();
         // by target, first component, history and components: nodes and their displacements
         type Key = (usize, usize, Option<usize>, [bool; 3]);

@@ -13,9 +13,7 @@ fn scene(rest: &str) -> Scene {
 
 fn times(scene: &Scene) -> Vec<f64> {
     let analysis = scene.analysis();
-    (0..analysis.steps())
-        .filter_map(|i| analysis.time(i))
-        .collect()
+    (0..analysis.steps()).filter_map(|i| analysis.time(i)).collect()
 }
 
 /// The force at node 27 along z at times, which is the only one.
@@ -39,23 +37,15 @@ fn step(lines: &str) -> String {
 
 #[test]
 fn increments_are_times() {
-    assert_eq!(
-        scene("*STEP\n*STATIC\n*END STEP\n").analysis(),
-        &Analysis::statics()
-    );
+    assert_eq!(scene("*STEP\n*STATIC\n*END STEP\n").analysis(), &Analysis::statics());
     assert_eq!(
         times(&scene("*STEP\n*STATIC\n0.25, 1.\n*END STEP\n")),
         [0.25, 0.5, 0.75, 1.0]
     );
     // the last one is shorter, none is larger than the largest
+    assert_eq!(times(&scene("*STEP\n*STATIC\n0.4, 1.\n*END STEP\n")), [0.4, 0.8, 1.0]);
     assert_eq!(
-        times(&scene("*STEP\n*STATIC\n0.4, 1.\n*END STEP\n")),
-        [0.4, 0.8, 1.0]
-    );
-    assert_eq!(
-        times(&scene(
-            "*STEP\n*STATIC, DIRECT\n1., 1., 1e-5, 0.5\n*END STEP\n"
-        )),
+        times(&scene("*STEP\n*STATIC, DIRECT\n1., 1., 1e-5, 0.5\n*END STEP\n")),
         [0.5, 1.0]
     );
     assert_eq!(times(&scene(&(step("") + &step("")))), [0.5, 1.0, 1.5, 2.0]);
@@ -69,18 +59,10 @@ fn increments_are_times() {
 /// A force grows to its value over the step, stays in the next, changes along a line, and goes where the deck removes it.
 #[test]
 fn forces_accumulate_over_steps() {
-    let four = step("*CLOAD\n27, 3, -8.\n")
-        + &step("")
-        + &step("*CLOAD, OP=MOD\n27, 3, 4.\n")
-        + &step("*CLOAD, OP=NEW\n");
-    let found = force_at(
-        &scene(&four),
-        &[0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 9.0],
-    );
-    assert_eq!(
-        found,
-        [0.0, -4.0, -8.0, -8.0, -8.0, -2.0, 4.0, 2.0, 0.0, 0.0]
-    );
+    let four =
+        step("*CLOAD\n27, 3, -8.\n") + &step("") + &step("*CLOAD, OP=MOD\n27, 3, 4.\n") + &step("*CLOAD, OP=NEW\n");
+    let found = force_at(&scene(&four), &[0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 9.0]);
+    assert_eq!(found, [0.0, -4.0, -8.0, -8.0, -8.0, -2.0, 4.0, 2.0, 0.0, 0.0]);
     // forces on one node in one step are added
     let twice = step("*CLOAD\n27, 3, -8.\n*CLOAD\nN6, 3, 1.\n");
     let scene = scene(&twice);
@@ -95,27 +77,16 @@ fn forces_accumulate_over_steps() {
 #[test]
 fn amplitudes() {
     let table = "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.5\n";
-    let step_time =
-        table.to_owned() + &step("") + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n") + &step("");
+    let step_time = table.to_owned() + &step("") + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n") + &step("");
     let at = [0.5, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
     // after its step the force stays as it was at its end
-    assert_eq!(
-        force_at(&scene(&step_time), &at),
-        [0.0, 0.0, 1.0, 2.0, 1.0, 1.0, 1.0]
-    );
+    assert_eq!(force_at(&scene(&step_time), &at), [0.0, 0.0, 1.0, 2.0, 1.0, 1.0, 1.0]);
     let table = "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 2., 4., 4., 0.\n";
-    let total =
-        table.to_owned() + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n") + &step("") + &step("");
-    assert_eq!(
-        force_at(&scene(&total), &[0.5, 1.0, 2.0, 3.0]),
-        [2.0, 4.0, 8.0, 4.0]
-    );
+    let total = table.to_owned() + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n") + &step("") + &step("");
+    assert_eq!(force_at(&scene(&total), &[0.5, 1.0, 2.0, 3.0]), [2.0, 4.0, 8.0, 4.0]);
     // a jump takes the first increment of its step
     let late = table.to_owned() + &step("") + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n");
-    assert_eq!(
-        force_at(&scene(&late), &[1.0, 1.25, 1.5, 2.0]),
-        [0.0, 3.0, 6.0, 8.0]
-    );
+    assert_eq!(force_at(&scene(&late), &[1.0, 1.25, 1.5, 2.0]), [0.0, 3.0, 6.0, 8.0]);
     // *STEP, AMPLITUDE=STEP: at once
     let at_once = step("*CLOAD\n27, 3, 2.\n").replace("*STEP\n", "*STEP, AMPLITUDE=STEP\n");
     assert_eq!(force_at(&scene(&at_once), &[0.1, 0.5, 1.0]), [2.0; 3]);
@@ -208,11 +179,7 @@ fn many_pressures() {
 #[test]
 fn gravity_and_body_forces() {
     let whole = scene(&step("*DLOAD\nALL, GRAV, 1e9, 0., 0., -2.\nALL, BX, 3.\n"));
-    let text: Vec<String> = whole
-        .loads()
-        .iter()
-        .map(|l| format!("{:?}", l.density()))
-        .collect();
+    let text: Vec<String> = whole.loads().iter().map(|l| format!("{:?}", l.density())).collect();
     let weight = 7.8e-9 * 1e9;
     assert_eq!(
         text,
@@ -270,31 +237,15 @@ fn orthotropic_laws() {
     );
     assert!(near(&law(&constants), &steel));
     // a stress along each axis strains as the constants say
-    let wood =
-        law("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n10., 2., 1., 0.4, 0.3, 0.2, 0.7, 0.6\n0.5\n");
+    let wood = law("*ELASTIC, TYPE=ENGINEERING CONSTANTS\n10., 2., 1., 0.4, 0.3, 0.2, 0.7, 0.6\n0.5\n");
     for (strain, stress) in [
-        (
-            [0.1, -0.04, -0.03, 0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        ),
-        (
-            [-0.04, 0.5, -0.1, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-        ),
-        (
-            [-0.03, -0.1, 1.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
-        ),
-        (
-            [0.0, 0.0, 0.0, 2.0, 1.0, 1.0],
-            [0.0, 0.0, 0.0, 1.0, 0.6, 0.7],
-        ),
+        ([0.1, -0.04, -0.03, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        ([-0.04, 0.5, -0.1, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
+        ([-0.03, -0.1, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
+        ([0.0, 0.0, 0.0, 2.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0, 0.6, 0.7]),
     ] {
         let found = wood.stress(&strain);
-        assert!(
-            (0..6).all(|i| (found[i] - stress[i]).abs() < 1e-12),
-            "{found:?}"
-        );
+        assert!((0..6).all(|i| (found[i] - stress[i]).abs() < 1e-12), "{found:?}");
     }
 }
 

@@ -34,21 +34,13 @@ fn the_way_of_writing_does_not_matter() {
         "*element ,\n elset = all ,\n** no\ntype=c3d4",
     ));
     same(&TWO.replace(" 5, 10, 20, 30, 40", "5,10,20,\n30,40"));
-    same(
-        &TWO.replace("0., 0., 0.", ",")
-            .replace("1., 0., 0.", "1.D0,"),
-    );
-    same(&format!(
-        "\u{feff}*HEADING\nany text, with = signs\nand more\n{TWO}"
-    ));
+    same(&TWO.replace("0., 0., 0.", ",").replace("1., 0., 0.", "1.D0,"));
+    same(&format!("\u{feff}*HEADING\nany text, with = signs\nand more\n{TWO}"));
     let latin = TWO.replace("*NODE", "** caf\u{e9}\n*NODE").into_bytes();
     let latin: Vec<u8> = latin.into_iter().filter(|b| *b != 0xc3).collect();
     let (_folder, path) = folder(&[("part.inp", "")]);
     std::fs::write(&path, latin).expect("written");
-    assert_eq!(
-        Deck::read(path).expect("deck").mesh(),
-        read(TWO).expect("deck").mesh()
-    );
+    assert_eq!(Deck::read(path).expect("deck").mesh(), read(TWO).expect("deck").mesh());
 }
 
 #[test]
@@ -56,10 +48,7 @@ fn numbers_are_arbitrary_and_unused_nodes_go() {
     let deck = read(TWO).expect("deck");
     assert_eq!(deck.node_numbers(), [10, 20, 30, 40, 50]);
     assert_eq!(deck.element_numbers(), [5, 7]);
-    assert_eq!(
-        (deck.node(50), deck.node(70), deck.node(1)),
-        (Some(4), None, None)
-    );
+    assert_eq!((deck.node(50), deck.node(70), deck.node(1)), (Some(4), None, None));
     assert_eq!(deck.mesh().points()[1], [1.0, 0.0, 0.0]);
 }
 
@@ -83,11 +72,7 @@ b, 40
 ";
     // 1, 21, 41, ... are no nodes: refused; 10, 30, 50 are
     assert!(read(&format!("{TWO}{sets}")).is_err());
-    let deck = read(&format!(
-        "{TWO}{}",
-        sets.replace("1, 100, 20", "10, 60, 20")
-    ))
-    .expect("deck");
+    let deck = read(&format!("{TWO}{}", sets.replace("1, 100, 20", "10, 60, 20"))).expect("deck");
     assert_eq!(deck.node_set("A").expect("A"), [0, 1, 2, 4]);
     assert_eq!(deck.node_set("b").expect("B"), [0, 1, 2, 4]);
     assert_eq!(deck.node_set("\"C d\"").expect("c d"), [0, 1, 2, 3, 4]);
@@ -123,20 +108,14 @@ fn files_are_included_where_they_stand() {
         std::fs::write(folder.path().join(name), text).expect("written");
     };
     // relative to the file that includes
-    write(
-        "Sub/nodes.txt",
-        "** data only\n*Include, Input=\"more.txt\"\n",
-    );
+    write("Sub/nodes.txt", "** data only\n*Include, Input=\"more.txt\"\n");
     write("Sub/more.txt", data);
     let deck = Deck::read(path).expect("deck");
     assert_eq!(deck.mesh(), read(TWO).expect("deck").mesh());
     write("Sub/more.txt", &data.replace("40, 0.", "40, zero"));
     let error = Deck::read(folder.path().join("part.inp")).expect_err("a word");
     let location = error.location().expect("a place");
-    assert!(
-        location.file.ends_with("Sub/more.txt") && location.line == 4,
-        "{error}"
-    );
+    assert!(location.file.ends_with("Sub/more.txt") && location.line == 4, "{error}");
 }
 
 #[test]
@@ -166,10 +145,7 @@ fn what_is_ignored_is_reported() {
     ];
     assert_eq!(words, wanted);
     let first = deck.ignored()[0].to_string();
-    assert!(
-        first.contains("part.inp:") && first.contains("ignored"),
-        "{first}"
-    );
+    assert!(first.contains("part.inp:") && first.contains("ignored"), "{first}");
 }
 
 #[test]
@@ -179,10 +155,7 @@ fn a_deck_without_steps_is_a_scene_to_add_to() {
     assert_eq!((scene.supports().len(), scene.loads().len()), (1, 0));
     assert_eq!(deck.support_names(), ["N5"]);
     // blanks in the data of a section, as Abaqus/CAE writes it
-    let text = cube("").replace(
-        STEEL,
-        &STEEL.replace("MATERIAL=STEEL\n", "MATERIAL=STEEL\n,\n"),
-    );
+    let text = cube("").replace(STEEL, &STEEL.replace("MATERIAL=STEEL\n", "MATERIAL=STEEL\n,\n"));
     assert!(read(&text).expect("deck").scene().is_ok());
 }
 

@@ -1,8 +1,6 @@
 //! The same scene by a program and by a deck gives the same bits.
 
-use signorini_contact::{
-    Analysis, Contact, DifferenceFormula, Friction, Load, Scene, Settings, Simulation, Support,
-};
+use signorini_contact::{Analysis, Contact, DifferenceFormula, Friction, Load, Scene, Settings, Simulation, Support};
 use signorini_fem_mesh::{Brick, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 
 use crate::write;
@@ -37,9 +35,7 @@ fn upper(tag: FacetTag) -> FacetTag {
 
 /// A block on a longer one, tags of the upper one 10 larger.
 fn two() -> TetMesh {
-    let lower = Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
-        .build()
-        .expect("brick");
+    let lower = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
     let block = Brick::new([1.0; 3], [2, 2, 2]).with_origin([1.0, 0.0, 1.0]);
     let block = block.build().expect("brick").map_tags(upper);
     lower.append(&block).expect("two bodies")
@@ -47,9 +43,7 @@ fn two() -> TetMesh {
 
 #[test]
 fn a_brick_under_pressure_and_gravity() {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
-        .build()
-        .expect("brick");
+    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
     let deck = write::mesh(&mesh)
         + write::STEEL
         + "*BOUNDARY\nN1, 1, 3\n*STEP\n*STATIC\n*DSLOAD\nS6, P, 2.5\n*DLOAD\nALL, GRAV, 9810., 0., 0., -1.\n*END STEP\n";
@@ -77,18 +71,10 @@ fn two_bodies_with_friction_and_an_amplitude() {
     let pull = LoadDensity::nodal_forces(forces.map(|n| (n, [0.02, 0.0, 0.0])).collect());
     let program = Scene::new(mesh, steel())
         .with_support(Support::fixed(brick::Z_MIN))
-        .with_load(
-            Load::pressure(upper(brick::Z_MAX), 3.0)
-                .with_history(History::ramp(1.0, 1.0).expect("ramp")),
-        )
+        .with_load(Load::pressure(upper(brick::Z_MAX), 3.0).with_history(History::ramp(1.0, 1.0).expect("ramp")))
         .with_load(Load::new(pull).with_history(History::table(back).expect("table")))
-        .with_contact(
-            Contact::between(upper(brick::Z_MIN), brick::Z_MAX)
-                .with_friction(Friction::coulomb(0.3)),
-        )
-        .with_analysis(
-            Analysis::quasistatic(1.0, 4).with_formula(DifferenceFormula::BACKWARD_EULER),
-        );
+        .with_contact(Contact::between(upper(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)))
+        .with_analysis(Analysis::quasistatic(1.0, 4).with_formula(DifferenceFormula::BACKWARD_EULER));
     compare(&deck, program);
 }
 
@@ -115,10 +101,7 @@ fn two_steps() {
             Support::components(top, [false, true, true])
                 .with_motion([0.0, 0.0, -1e-4], History::ramp(1.0, 1.0).expect("ramp")),
         )
-        .with_contact(
-            Contact::between(upper(brick::Z_MIN), brick::Z_MAX)
-                .with_friction(Friction::coulomb(0.2)),
-        )
+        .with_contact(Contact::between(upper(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.2)))
         .with_analysis(Analysis::Quasistatic {
             times,
             formula: DifferenceFormula::BACKWARD_EULER,
@@ -147,9 +130,7 @@ fn on_a_plane(floor: &str) {
                 .with_motion([0.02, 0.0, 0.51], ramp)
                 .with_friction(Friction::coulomb(0.25)),
         )
-        .with_analysis(
-            Analysis::quasistatic(2.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER),
-        );
+        .with_analysis(Analysis::quasistatic(2.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER));
     compare(&deck, program);
 }
 

@@ -76,4 +76,5 @@ pub(crate) fn cube(rest: &str) -> String {
 }
 
 /// Material and section of all elements.
-pub(crate) const STEEL: &str = "*MATERIAL, NAME=STEEL\n*ELASTIC\n2.1e5, 0.3\n*DENSITY\n7.8e-9\n*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n";
+pub(crate) const STEEL: &str =
+    "*MATERIAL, NAME=STEEL\n*ELASTIC\n2.1e5, 0.3\n*DENSITY\n7.8e-9\n*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n";

@@ -38,9 +38,7 @@ pub fn compact_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Vec<u32>, Decompos
 /// As [`compact_parts`]; parts do not reach from one group into another.
 pub(crate) fn compact(mesh: &TetMesh, bodies: &[u32], parts: &[u32]) -> Vec<u32> {
     let tets = parts.len();
-    let centres: Vec<Vec3> = (0..tets)
-        .map(|tet| vec3::centroid(&mesh.tet_points(tet)))
-        .collect();
+    let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let mut parts = within_bodies(bodies, parts);
     for _ in 0..SWEEPS {
         let next = sweep(mesh, bodies, &centres, &parts);
@@ -149,8 +147,7 @@ pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
             .map(|&piece| {
                 let own = tets[range(&starts, piece)].iter();
                 let around = own.flat_map(|&tet| mesh.neighbours(tet as usize));
-                let same =
-                    |tet: &usize| groups[*tet] == groups[tets[starts[piece] as usize] as usize];
+                let same = |tet: &usize| groups[*tet] == groups[tets[starts[piece] as usize] as usize];
                 let mut fixed: Vec<u32> = around
                     .flatten()
                     .filter(same)

@@ -26,11 +26,7 @@ pub enum PartCount {
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`] for no parts.
-pub fn even_parts(
-    mesh: &TetMesh,
-    groups: &[u32],
-    count: PartCount,
-) -> Result<Vec<u32>, DecompositionError> {
+pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Vec<u32>, DecompositionError> {
     let tets = mesh.tets().len();
     expect_parts(mesh, groups)?;
     let (PartCount::Exactly(number) | PartCount::About(number)) = count;
@@ -39,9 +35,7 @@ pub fn even_parts(
     }
     let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
     let (starts, members) = buckets(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
-    let centres: Vec<Vec3> = (0..tets)
-        .map(|tet| vec3::centroid(&mesh.tet_points(tet)))
-        .collect();
+    let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let cutter = Cutter {
         mesh,
         centres: &centres,
@@ -157,12 +151,7 @@ impl Cutter<'_> {
     /// The axis along which these tetrahedra reach farthest, and how many slabs across it are as thick as cubes that share the volume.
     fn slabs(&self, tets: &[u32], count: usize) -> (usize, usize) {
         let (lengths, volume) = self.size(tets);
-        let longest = (1..3).fold(
-            0,
-            |best, d| {
-                if lengths[d] > lengths[best] { d } else { best }
-            },
-        );
+        let longest = (1..3).fold(0, |best, d| if lengths[d] > lengths[best] { d } else { best });
         let edge = (volume / count as f64).cbrt();
         let slabs = (lengths[longest] / edge).round().max(2.0) as usize;
         (longest, slabs.min(count))
@@ -173,9 +162,7 @@ impl Cutter<'_> {
         let reach = (SNAP * middle.min(tets.len() - middle) as f64) as usize;
         let from = middle.saturating_sub(reach).max(least).max(1);
         let to = (middle + reach).min(most);
-        let width = |k: usize| {
-            self.centres[tets[k] as usize][axis] - self.centres[tets[k - 1] as usize][axis]
-        };
+        let width = |k: usize| self.centres[tets[k] as usize][axis] - self.centres[tets[k - 1] as usize][axis];
         // in equal layers the nearest wins: wider by more than rounding counts
         let mut best = (width(middle), middle);
         let mut nearest: Vec<usize> = (from..=to).collect();

@@ -22,11 +22,7 @@ impl Decomposition {
         Self::checked(mesh, parts.to_vec(), count)
     }
 
-    fn checked(
-        mesh: &TetMesh,
-        part_of: Vec<u32>,
-        parts: usize,
-    ) -> Result<Self, DecompositionError> {
+    fn checked(mesh: &TetMesh, part_of: Vec<u32>, parts: usize) -> Result<Self, DecompositionError> {
         let part = first_gap(&part_of, parts);
         if part < parts {
             return Err(DecompositionError::EmptyPart { part, parts });

@@ -35,10 +35,7 @@ impl Subdomain {
     /// If the subdomain belongs to another, larger mesh.
     #[must_use]
     pub fn points(&self, mesh: &TetMesh) -> Vec<[f64; 3]> {
-        self.nodes
-            .iter()
-            .map(|&n| mesh.points()[n as usize])
-            .collect()
+        self.nodes.iter().map(|&n| mesh.points()[n as usize]).collect()
     }
 }
 
@@ -105,11 +102,7 @@ impl Decomposition {
                 }
                 let to_local = |tet: &u32| global(tet).map(|n| local[n as usize]);
                 let tets = elements.iter().map(to_local).collect();
-                Subdomain {
-                    nodes,
-                    tets,
-                    elements,
-                }
+                Subdomain { nodes, tets, elements }
             })
             .collect();
         let (copy_start, copies) = collect_copies(nodes, &subdomains);

@@ -44,14 +44,7 @@ impl Element {
 /// Strain of a displacement gradient `h[i][j]` = d u_i / d x_j.
 pub(crate) fn strain_of(h: &[[f64; 3]; 3]) -> [f64; 6] {
     let shear = |i: usize, j: usize| h[i][j] + h[j][i];
-    [
-        h[0][0],
-        h[1][1],
-        h[2][2],
-        shear(1, 2),
-        shear(0, 2),
-        shear(0, 1),
-    ]
+    [h[0][0], h[1][1], h[2][2], shear(1, 2), shear(0, 2), shear(0, 1)]
 }
 
 /// Stress of unit displacements of one node, times the volume: C B_b as a 6 x 3 matrix by rows.
@@ -69,8 +62,6 @@ pub(crate) fn nodal_stress(c: &[[f64; 6]; 6], g: [f64; 3], volume: f64) -> [[f64
 
 /// Block B_a^T (C B_b) of the stiffness, 3 x 3 by rows.
 pub(crate) fn stiffness_block(g: [f64; 3], s: &[[f64; 3]; 6]) -> [[f64; 3]; 3] {
-    let row = |i0: usize, i1: usize, i2: usize| {
-        [0, 1, 2].map(|k| g[0] * s[i0][k] + g[1] * s[i1][k] + g[2] * s[i2][k])
-    };
+    let row = |i0: usize, i1: usize, i2: usize| [0, 1, 2].map(|k| g[0] * s[i0][k] + g[1] * s[i1][k] + g[2] * s[i2][k]);
     [row(0, 5, 4), row(5, 1, 3), row(4, 3, 2)]
 }

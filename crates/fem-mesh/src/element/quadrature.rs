@@ -52,10 +52,7 @@ pub(crate) fn at<const N: usize>(nodes: &[[f64; 3]; N], barycentric: &[f64; N]) 
 
 /// Integrates over a mesh the function that `of_tet` makes of each tetrahedron, at barycentric coordinates. The sum
 /// runs in the order of the tetrahedra, whatever the threads do.
-pub(crate) fn integral<F: Fn(&[f64; 4]) -> f64>(
-    mesh: &TetMesh,
-    of_tet: impl Fn(usize) -> F + Sync,
-) -> f64 {
+pub(crate) fn integral<F: Fn(&[f64; 4]) -> f64>(mesh: &TetMesh, of_tet: impl Fn(usize) -> F + Sync) -> f64 {
     let rule = tetrahedron();
     let part = |tet: usize| {
         let value = of_tet(tet);
@@ -86,19 +83,10 @@ mod tests {
             if powers.iter().sum::<u32>() > 5 {
                 continue;
             }
-            let monomial = |l: &[f64]| -> f64 {
-                powers
-                    .iter()
-                    .zip(l)
-                    .map(|(&p, x)| x.powi(p as i32))
-                    .product()
-            };
+            let monomial = |l: &[f64]| -> f64 { powers.iter().zip(l).map(|(&p, x)| x.powi(p as i32)).product() };
             let tet: f64 = tetrahedron().iter().map(|(l, w)| w * monomial(l)).sum();
             let tri: f64 = triangle().iter().map(|(l, w)| w * monomial(l)).sum();
-            assert!(
-                (tet - mean(powers, 3)).abs() < 1e-15,
-                "tetrahedron {powers:?}"
-            );
+            assert!((tet - mean(powers, 3)).abs() < 1e-15, "tetrahedron {powers:?}");
             assert!((tri - mean(powers, 2)).abs() < 1e-15, "triangle {powers:?}");
         }
     }

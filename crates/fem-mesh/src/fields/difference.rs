@@ -52,10 +52,7 @@ impl<'m> Locator<'m> {
                 let value = |d: usize| points.iter().map(|p| p[d]).fold(start, pick);
                 locator.grid_box(std::array::from_fn(value))
             };
-            let (from, to) = (
-                corner(f64::min, f64::INFINITY),
-                corner(f64::max, f64::NEG_INFINITY),
-            );
+            let (from, to) = (corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     for k in from[2]..=to[2] {

@@ -12,11 +12,7 @@ use super::strain::{FieldError, nodal_vectors, strains};
 ///
 /// # Errors
 /// [`FieldError`] if the displacement has the wrong length or is not finite.
-pub fn l2_error(
-    mesh: &TetMesh,
-    u: &[f64],
-    exact: impl Fn([f64; 3]) -> [f64; 3] + Sync,
-) -> Result<f64, FieldError> {
+pub fn l2_error(mesh: &TetMesh, u: &[f64], exact: impl Fn([f64; 3]) -> [f64; 3] + Sync) -> Result<f64, FieldError> {
     let u = nodal_vectors(mesh, u)?;
     let exact = &exact;
     let square = integral(mesh, |tet| {

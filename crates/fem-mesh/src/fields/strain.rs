@@ -18,29 +18,18 @@ errors! {
 }
 
 /// Checks the length of a table.
-pub(crate) fn expect_entries(
-    what: &'static str,
-    given: usize,
-    expected: usize,
-) -> Result<(), FieldError> {
+pub(crate) fn expect_entries(what: &'static str, given: usize, expected: usize) -> Result<(), FieldError> {
     if given == expected {
         return Ok(());
     }
-    Err(FieldError::Length {
-        what,
-        given,
-        expected,
-    })
+    Err(FieldError::Length { what, given, expected })
 }
 
 /// The displacement of each node as a vector.
 pub(super) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, FieldError> {
     expect_entries("displacement", u.len(), 3 * mesh.points().len())?;
     let vectors: Vec<_> = u.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect();
-    match vectors
-        .iter()
-        .position(|v| v.iter().any(|x| !x.is_finite()))
-    {
+    match vectors.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
         Some(node) => Err(FieldError::NotFinite {
             node,
             value: vectors[node],
@@ -66,11 +55,7 @@ pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
 ///
 /// # Errors
 /// [`FieldError`] as [`strains`], and if a region has no material.
-pub fn stresses(
-    mesh: &TetMesh,
-    materials: &Materials,
-    u: &[f64],
-) -> Result<Vec<[f64; 6]>, FieldError> {
+pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
     let strains = strains(mesh, u)?;
     Ok(strains
@@ -104,10 +89,7 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 ///
 /// # Errors
 /// [`FieldError::Length`] unless there is one value for each tetrahedron.
-pub fn nodal_average<const N: usize>(
-    mesh: &TetMesh,
-    values: &[[f64; N]],
-) -> Result<Vec<[f64; N]>, FieldError> {
+pub fn nodal_average<const N: usize>(mesh: &TetMesh, values: &[[f64; N]]) -> Result<Vec<[f64; N]>, FieldError> {
     expect_entries("table of tetrahedra", values.len(), mesh.tets().len())?;
     let mut sums = vec![[0.0; N]; mesh.points().len()];
     let mut volumes = vec![0.0; mesh.points().len()];

@@ -20,9 +20,8 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// What the system says; the message names the file.
 pub fn replace_file(path: impl AsRef<Path>, contents: &[u8]) -> io::Result<()> {
-    replace(path.as_ref(), contents).map_err(|(path, source)| {
-        io::Error::new(source.kind(), format!("{}: {source}", path.display()))
-    })
+    replace(path.as_ref(), contents)
+        .map_err(|(path, source)| io::Error::new(source.kind(), format!("{}: {source}", path.display())))
 }
 
 /// The same; the error has the file that failed.

@@ -31,18 +31,14 @@ pub fn assemble_load(
     }
     match load {
         LoadDensity::Body(value) => body(mesh, decomposition, Density::Constant(*value)),
-        LoadDensity::BodyField(value) => {
-            body(mesh, decomposition, Density::Varying(&|x, _| value(x)))
-        }
-        LoadDensity::Traction { tag, value } => {
-            traction(mesh, decomposition, *tag, |_| Density::Constant(*value))
-        }
+        LoadDensity::BodyField(value) => body(mesh, decomposition, Density::Varying(&|x, _| value(x))),
+        LoadDensity::Traction { tag, value } => traction(mesh, decomposition, *tag, |_| Density::Constant(*value)),
         LoadDensity::TractionField { tag, value } => {
             traction(mesh, decomposition, *tag, |_| Density::Varying(&**value))
         }
-        LoadDensity::Pressure { tag, value } => traction(mesh, decomposition, *tag, |n| {
-            Density::Constant(scale(-value, n))
-        }),
+        LoadDensity::Pressure { tag, value } => {
+            traction(mesh, decomposition, *tag, |n| Density::Constant(scale(-value, n)))
+        }
         LoadDensity::NodalForces(forces) => nodal(mesh, decomposition, forces),
     }
 }
@@ -98,11 +94,7 @@ fn accumulate(vector: &mut [f64], node: u32, force: [f64; 3]) {
     }
 }
 
-fn body(
-    mesh: &TetMesh,
-    decomposition: &Decomposition,
-    density: Density<'_>,
-) -> Result<Vec<Vec<f64>>, LoadError> {
+fn body(mesh: &TetMesh, decomposition: &Decomposition, density: Density<'_>) -> Result<Vec<Vec<f64>>, LoadError> {
     let rule = quadrature::tetrahedron();
     let of_subdomain = |subdomain: &Subdomain| {
         let mut vector = vec![0.0; subdomain.dofs()];
@@ -116,13 +108,7 @@ fn body(
         }
         Ok(vector)
     };
-    first_error(
-        decomposition
-            .subdomains()
-            .par_iter()
-            .map(of_subdomain)
-            .collect(),
-    )
+    first_error(decomposition.subdomains().par_iter().map(of_subdomain).collect())
 }
 
 fn traction<'a>(
@@ -132,12 +118,7 @@ fn traction<'a>(
     density: impl Fn([f64; 3]) -> Density<'a> + Sync,
 ) -> Result<Vec<Vec<f64>>, LoadError> {
     let mut facets = vec![Vec::new(); decomposition.subdomains().len()];
-    for (facet, _) in mesh
-        .facets()
-        .iter()
-        .enumerate()
-        .filter(|(_, f)| f.tag == tag)
-    {
+    for (facet, _) in mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag) {
         facets[decomposition.part_of(mesh.facet_owner(facet)) as usize].push(facet);
     }
     if facets.iter().all(Vec::is_empty) {

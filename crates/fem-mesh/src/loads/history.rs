@@ -64,11 +64,7 @@ impl History {
             }
             if index > 0 && points[index - 1].0 >= time {
                 let before = points[index - 1].0;
-                return Err(HistoryError::NotIncreasing {
-                    index,
-                    before,
-                    time,
-                });
+                return Err(HistoryError::NotIncreasing { index, before, time });
             }
         }
         Ok(Self(Kind::Table(points)))

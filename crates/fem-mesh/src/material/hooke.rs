@@ -62,13 +62,7 @@ impl Hooke {
         // The eigenvalues are 2 mu and 3 K; their ratio tells whether Poisson's ratio is to blame.
         let ratio = (1.0 - 2.0 * poisson) / (1.0 + poisson);
         let extreme = ratio.min(1.0 / ratio) < 2.0 * ELLIPTICITY;
-        Self::from_voigt(&c).map_err(|error| {
-            if extreme {
-                HookeError::Poisson(poisson)
-            } else {
-                error
-            }
-        })
+        Self::from_voigt(&c).map_err(|error| if extreme { HookeError::Poisson(poisson) } else { error })
     }
 
     /// A general law from c_ijkl; see (2.8) for the conditions.
@@ -185,9 +179,7 @@ impl Hooke {
     }
 }
 
-fn for_all_indices(
-    mut visit: impl FnMut([usize; 4]) -> Result<(), HookeError>,
-) -> Result<(), HookeError> {
+fn for_all_indices(mut visit: impl FnMut([usize; 4]) -> Result<(), HookeError>) -> Result<(), HookeError> {
     (0..81).try_for_each(|n| visit([n / 27, n / 9 % 3, n / 3 % 3, n % 3]))
 }
 

@@ -76,22 +76,10 @@ errors! {
 
 /// Vertices of the unit cell by number: bit 0 is x, bit 1 is y, bit 2 is z.
 /// The five tetrahedra of a cell whose vertex 0 has an even index sum; the central one is last.
-const EVEN_CELL: [[usize; 4]; 5] = [
-    [1, 0, 5, 3],
-    [2, 3, 6, 0],
-    [4, 5, 0, 6],
-    [7, 6, 3, 5],
-    [0, 3, 6, 5],
-];
+const EVEN_CELL: [[usize; 4]; 5] = [[1, 0, 5, 3], [2, 3, 6, 0], [4, 5, 0, 6], [7, 6, 3, 5], [0, 3, 6, 5]];
 
 /// The five tetrahedra of a cell whose vertex 0 has an odd index sum: the mirror image.
-const ODD_CELL: [[usize; 4]; 5] = [
-    [0, 1, 2, 4],
-    [3, 2, 1, 7],
-    [5, 4, 7, 1],
-    [6, 7, 4, 2],
-    [1, 2, 4, 7],
-];
+const ODD_CELL: [[usize; 4]; 5] = [[0, 1, 2, 4], [3, 2, 1, 7], [5, 4, 7, 1], [6, 7, 4, 2], [1, 2, 4, 7]];
 
 impl Brick {
     /// A brick with its corner of smallest coordinates at the origin.
@@ -150,24 +138,14 @@ impl Brick {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         for (d, axis) in ["x", "y", "z"].into_iter().enumerate() {
             let fields = [
-                (
-                    "origin",
-                    self.origin[d],
-                    self.origin[d].is_finite(),
-                    "finite",
-                ),
+                ("origin", self.origin[d], self.origin[d].is_finite(), "finite"),
                 (
                     "lengths",
                     self.lengths[d],
                     positive(self.lengths[d]),
                     "positive and finite",
                 ),
-                (
-                    "cells",
-                    self.cells[d] as f64,
-                    self.cells[d] > 0,
-                    "at least 1",
-                ),
+                ("cells", self.cells[d] as f64, self.cells[d] > 0, "at least 1"),
                 (
                     "grading",
                     self.grading[d],
@@ -247,13 +225,8 @@ impl Brick {
         for k in 0..nz {
             for j in 0..ny {
                 for i in 0..nx {
-                    let vertex =
-                        |v: usize| self.node([i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)]) as u32;
-                    let cut = if (i + j + k) % 2 == 0 {
-                        &EVEN_CELL
-                    } else {
-                        &ODD_CELL
-                    };
+                    let vertex = |v: usize| self.node([i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)]) as u32;
+                    let cut = if (i + j + k) % 2 == 0 { &EVEN_CELL } else { &ODD_CELL };
                     tets.extend(cut.iter().map(|tet| tet.map(vertex)));
                 }
             }

@@ -78,11 +78,7 @@ pub(super) fn shapes(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError
             let volume = vec3::tet_volume(&p);
             Some(MeshError::InvertedTet { tet, nodes, volume })
         } else {
-            Some(MeshError::DegenerateTet {
-                tet,
-                nodes,
-                flatness,
-            })
+            Some(MeshError::DegenerateTet { tet, nodes, flatness })
         }
     });
     fault.map_or(Ok(()), Err)
@@ -116,10 +112,7 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), Me
             .iter()
             .for_each(|&node| bodies.join(tet[0] as usize, node as usize));
     }
-    match pairs
-        .into_iter()
-        .find(|&(a, b)| bodies.first(a) == bodies.first(b))
-    {
+    match pairs.into_iter().find(|&(a, b)| bodies.first(a) == bodies.first(b)) {
         Some((first, second)) => Err(MeshError::CoincidentNodes {
             first,
             second,

@@ -12,10 +12,7 @@ impl TetMesh {
     /// Replaces all facets: every triangle of the boundary for which `tag(centroid, normal)` gives
     /// a tag gets it. The normal has unit length and points outward.
     #[must_use]
-    pub fn tag_boundary(
-        mut self,
-        mut tag: impl FnMut([f64; 3], [f64; 3]) -> Option<FacetTag>,
-    ) -> Self {
+    pub fn tag_boundary(mut self, mut tag: impl FnMut([f64; 3], [f64; 3]) -> Option<FacetTag>) -> Self {
         self.facets.clear();
         self.owners.clear();
         for facet in self.boundary_facets() {
@@ -48,8 +45,7 @@ impl TetMesh {
     /// [`MeshError`] if the mapped mesh is not valid, for instance inverted by a reflection.
     pub fn map_points(&self, map: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, MeshError> {
         let points = self.points.iter().copied().map(map).collect();
-        Self::new(points, self.tets.clone(), self.facets.clone())?
-            .with_regions(self.regions.clone())
+        Self::new(points, self.tets.clone(), self.facets.clone())?.with_regions(self.regions.clone())
     }
 
     /// This mesh and, numbered after it, `other` as separate bodies. Tags and regions stay; the
@@ -65,8 +61,7 @@ impl TetMesh {
         let (by_node, by_tet) = (self.points.len() as u32, self.tets.len() as u32);
         let mut sum = self.clone();
         sum.points.extend(&other.points);
-        sum.tets
-            .extend(other.tets.iter().map(|t| t.map(|n| n + by_node)));
+        sum.tets.extend(other.tets.iter().map(|t| t.map(|n| n + by_node)));
         sum.facets.extend((other.facets.iter()).map(|f| Facet {
             nodes: f.nodes.map(|n| n + by_node),
             ..*f
@@ -74,8 +69,7 @@ impl TetMesh {
         sum.owners.extend(other.owners.iter().map(|t| t + by_tet));
         sum.regions.extend(&other.regions);
         let shift = |n: u32| if n == NONE { n } else { n + by_tet };
-        sum.neighbours
-            .extend(other.neighbours.iter().map(|t| t.map(shift)));
+        sum.neighbours.extend(other.neighbours.iter().map(|t| t.map(shift)));
         Ok(sum)
     }
 }
@@ -85,8 +79,7 @@ impl TetMesh {
 pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
     let mut turned = 0;
     for tet in tets {
-        if tet.iter().all(|&n| (n as usize) < points.len())
-            && vec3::tet_volume(&tet.map(|n| points[n as usize])) < 0.0
+        if tet.iter().all(|&n| (n as usize) < points.len()) && vec3::tet_volume(&tet.map(|n| points[n as usize])) < 0.0
         {
             tet.swap(2, 3);
             turned += 1;
@@ -117,12 +110,7 @@ pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
 /// assert!(!one.components().contains(&1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn merge_nodes(
-    points: &[[f64; 3]],
-    tets: &mut [[u32; 4]],
-    facets: &mut [Facet],
-    distance: f64,
-) -> usize {
+pub fn merge_nodes(points: &[[f64; 3]], tets: &mut [[u32; 4]], facets: &mut [Facet], distance: f64) -> usize {
     let pairs = check::close_pairs(points, distance);
     let mut sets = DisjointSets::new(points.len());
     for (a, b) in pairs {
@@ -132,20 +120,14 @@ pub fn merge_nodes(
     // numbers out of range are left for TetMesh::new to report
     let renumber = |node: u32| first.get(node as usize).copied().unwrap_or(node);
     tets.iter_mut().for_each(|t| *t = t.map(renumber));
-    facets
-        .iter_mut()
-        .for_each(|f| f.nodes = f.nodes.map(renumber));
+    facets.iter_mut().for_each(|f| f.nodes = f.nodes.map(renumber));
     (0..first.len()).filter(|&n| first[n] as usize != n).count()
 }
 
 /// Removes nodes that no tetrahedron uses and renumbers the others in the same order. Returns,
 /// for each node that stays, its old number. Facets that use a removed node, and numbers out of
 /// range, are left with a number out of range for [`TetMesh::new`] to report.
-pub fn drop_unused_nodes(
-    points: &mut Vec<[f64; 3]>,
-    tets: &mut [[u32; 4]],
-    facets: &mut [Facet],
-) -> Vec<u32> {
+pub fn drop_unused_nodes(points: &mut Vec<[f64; 3]>, tets: &mut [[u32; 4]], facets: &mut [Facet]) -> Vec<u32> {
     const GONE: u32 = u32::MAX;
     let mut new_number = vec![GONE; points.len()];
     for &node in tets.iter().flatten() {
@@ -162,9 +144,7 @@ pub fn drop_unused_nodes(
     }
     let renumber = |node: u32| new_number.get(node as usize).copied().unwrap_or(GONE);
     tets.iter_mut().for_each(|t| *t = t.map(renumber));
-    facets
-        .iter_mut()
-        .for_each(|f| f.nodes = f.nodes.map(renumber));
+    facets.iter_mut().for_each(|f| f.nodes = f.nodes.map(renumber));
     *points = kept.iter().map(|&old| points[old as usize]).collect();
     kept
 }

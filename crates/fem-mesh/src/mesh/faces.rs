@@ -53,9 +53,7 @@ pub(crate) enum Sides {
 impl FaceTable {
     /// Expects node numbers below `nodes`.
     pub(crate) fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
-        let faces = tets
-            .iter()
-            .flat_map(|tet| (0..4).map(|face| face_nodes(tet, face)));
+        let faces = tets.iter().flat_map(|tet| (0..4).map(|face| face_nodes(tet, face)));
         let smallest: Vec<u32> = faces.map(|[a, b, c]| a.min(b).min(c)).collect();
         let (start, slots) = buckets(nodes, &smallest);
         let entry = |&slot: &u32| {
@@ -129,10 +127,7 @@ impl FaceTable {
 
 /// Labels tetrahedra by the connected set they belong to, connected through faces across which
 /// `joined(tet, neighbour)` holds. Labels follow the smallest tetrahedron of each set.
-pub(crate) fn connected_sets(
-    neighbours: &[[u32; 4]],
-    joined: impl Fn(usize, usize) -> bool,
-) -> Vec<u32> {
+pub(crate) fn connected_sets(neighbours: &[[u32; 4]], joined: impl Fn(usize, usize) -> bool) -> Vec<u32> {
     let mut label = vec![NONE; neighbours.len()];
     let mut stack = Vec::new();
     let mut sets = 0;

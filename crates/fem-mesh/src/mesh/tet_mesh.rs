@@ -69,11 +69,7 @@ impl TetMesh {
     ///
     /// # Errors
     /// [`MeshError`] names the first fault and its remedy.
-    pub fn new(
-        points: Vec<[f64; 3]>,
-        tets: Vec<[u32; 4]>,
-        facets: Vec<Facet>,
-    ) -> Result<Self, MeshError> {
+    pub fn new(points: Vec<[f64; 3]>, tets: Vec<[u32; 4]>, facets: Vec<Facet>) -> Result<Self, MeshError> {
         check::sizes(points.len(), tets.len())?;
         check::coordinates(&points)?;
         check::connectivity(points.len(), &tets)?;
@@ -227,10 +223,7 @@ impl TetMesh {
         for (t, (tet, neighbours)) in self.tets.iter().zip(&self.neighbours).enumerate() {
             for face in (0..4).filter(|&f| neighbours[f] == NONE) {
                 let nodes = face_nodes(tet, face);
-                facets.push(BoundaryFacet {
-                    nodes,
-                    tet: t as u32,
-                });
+                facets.push(BoundaryFacet { nodes, tet: t as u32 });
             }
         }
         facets
@@ -292,11 +285,7 @@ fn place_facets(
 fn outward(given: [u32; 3], out: [u32; 3]) -> [u32; 3] {
     let [a, b, c] = given;
     let rotations = [out, [out[1], out[2], out[0]], [out[2], out[0], out[1]]];
-    if rotations.contains(&given) {
-        given
-    } else {
-        [a, c, b]
-    }
+    if rotations.contains(&given) { given } else { [a, c, b] }
 }
 
 /// Area vector (normal times area) of a facet.

@@ -55,20 +55,10 @@ impl DiscretisationError {
     /// # Errors
     /// [`FieldError::Length`] if the mesh has another number of tetrahedra, [`FieldError`] if a region
     /// has no material.
-    pub fn stress_errors(
-        &self,
-        mesh: &TetMesh,
-        materials: &Materials,
-    ) -> Result<Vec<f64>, FieldError> {
-        expect_entries(
-            "table of tetrahedra",
-            self.energies.len(),
-            mesh.tets().len(),
-        )?;
+    pub fn stress_errors(&self, mesh: &TetMesh, materials: &Materials) -> Result<Vec<f64>, FieldError> {
+        expect_entries("table of tetrahedra", self.energies.len(), mesh.tets().len())?;
         let laws = materials.of_tets(mesh.regions())?;
-        let value = |(tet, energy): (usize, &f64)| {
-            (2.0 * laws[tet].bound() * energy / mesh.volume(tet)).sqrt()
-        };
+        let value = |(tet, energy): (usize, &f64)| (2.0 * laws[tet].bound() * energy / mesh.volume(tet)).sqrt();
         Ok(self.energies.iter().enumerate().map(value).collect())
     }
 }

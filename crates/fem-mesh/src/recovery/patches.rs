@@ -110,9 +110,7 @@ impl StrainRecovery {
             }
             let mut wide: Vec<u32> = own
                 .iter()
-                .flat_map(|&tet| {
-                    mesh.tets()[tet as usize].map(|node| around.place(mesh, node, tet))
-                })
+                .flat_map(|&tet| mesh.tets()[tet as usize].map(|node| around.place(mesh, node, tet)))
                 .flat_map(|k| around.patch(k))
                 .copied()
                 .collect();
@@ -123,8 +121,7 @@ impl StrainRecovery {
                 None => (own.to_vec(), mean(&cells, own)),
             }
         };
-        let patches: Vec<(Vec<u32>, Vec<f64>)> =
-            (0..around.nodes.len()).into_par_iter().map(patch).collect();
+        let patches: Vec<(Vec<u32>, Vec<f64>)> = (0..around.nodes.len()).into_par_iter().map(patch).collect();
         let mut pointers = vec![0];
         let (mut tets, mut weights) = (Vec::new(), Vec::new());
         for (t, w) in patches {
@@ -132,9 +129,7 @@ impl StrainRecovery {
             weights.extend(w);
             pointers.push(tets.len());
         }
-        let corner = |(tet, nodes): (usize, &[u32; 4])| {
-            nodes.map(|node| around.place(mesh, node, tet as u32) as u32)
-        };
+        let corner = |(tet, nodes): (usize, &[u32; 4])| nodes.map(|node| around.place(mesh, node, tet as u32) as u32);
         Self {
             pointers,
             tets,
@@ -149,12 +144,7 @@ impl StrainRecovery {
     /// # Errors
     /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another
     /// number of tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
-    pub fn error(
-        &self,
-        mesh: &TetMesh,
-        materials: &Materials,
-        u: &[f64],
-    ) -> Result<DiscretisationError, FieldError> {
+    pub fn error(&self, mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<DiscretisationError, FieldError> {
         expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
         let laws = materials.of_tets(mesh.regions())?;
         let strains = strains(mesh, u)?;

@@ -36,8 +36,7 @@ fn voronoi(mesh: &TetMesh, count: usize, seed: u64) -> Vec<u32> {
         .collect();
     let nearest = |tet| {
         let c = centre(mesh, tet);
-        let nearer =
-            |a: &usize, b: &usize| distance(&points[*a], &c).total_cmp(&distance(&points[*b], &c));
+        let nearer = |a: &usize, b: &usize| distance(&points[*a], &c).total_cmp(&distance(&points[*b], &c));
         (0..count).min_by(nearer).unwrap() as u32
     };
     (0..mesh.tets().len()).map(nearest).collect()
@@ -116,11 +115,7 @@ fn parts_stay_within_their_body_and_hang_together() {
     assert_eq!(bodies.iter().max(), Some(&1));
     for seed in 1..6 {
         let parts = compact_parts(&mesh, &voronoi(&mesh, 12, seed)).unwrap();
-        assert_eq!(
-            split_disconnected(&mesh, &parts).unwrap(),
-            parts,
-            "connected, in order"
-        );
+        assert_eq!(split_disconnected(&mesh, &parts).unwrap(), parts, "connected, in order");
         let mut of = vec![None; 64];
         for (&part, &body) in parts.iter().zip(&bodies) {
             assert_eq!(*of[part as usize].get_or_insert(body), body);
@@ -135,8 +130,5 @@ fn parts_stay_within_their_body_and_hang_together() {
 #[test]
 fn a_number_for_each_tetrahedron() {
     let error = compact_parts(&brick(), &[0]).unwrap_err();
-    assert!(matches!(
-        error,
-        DecompositionError::PartCount { given: 1, .. }
-    ));
+    assert!(matches!(error, DecompositionError::PartCount { given: 1, .. }));
 }

@@ -6,9 +6,7 @@ use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::{Brick, Decomposition, TetMesh, split_disconnected};
 
 fn brick(n: usize) -> (TetMesh, Decomposition) {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n])
-        .build()
-        .unwrap();
+    let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build().unwrap();
     let parts = Decomposition::boxes(&mesh, [3 * n, n, n]).unwrap();
     (mesh, parts)
 }
@@ -19,9 +17,7 @@ fn torn_unknowns_are_those_of_table_6_1() {
         let (mesh, parts) = brick(n);
         assert_eq!(parts.subdomains().len(), 3 * n * n * n);
         assert_eq!(parts.torn_dofs(), expected);
-        let copies: usize = (0..mesh.points().len())
-            .map(|i| parts.copies(i).len())
-            .sum();
+        let copies: usize = (0..mesh.points().len()).map(|i| parts.copies(i).len()).sum();
         assert_eq!(3 * copies, expected);
     }
 }
@@ -83,10 +79,7 @@ fn whole_is_one_subdomain_a_body() {
 #[test]
 fn parts_by_number_agree_with_boxes() {
     let (mesh, boxes) = brick(1);
-    assert_eq!(
-        Decomposition::from_parts(&mesh, boxes.parts()).unwrap(),
-        boxes
-    );
+    assert_eq!(Decomposition::from_parts(&mesh, boxes.parts()).unwrap(), boxes);
 }
 
 /// Two towers of the same boxes, apart in y, beside a gap in x: towers[0] at x in (0, 1),
@@ -112,10 +105,7 @@ fn empty_boxes_are_dropped_and_disconnected_ones_split() {
     });
     assert_eq!(parts.parts(), expected.collect::<Vec<_>>());
     assert_eq!(parts.subdomains().len(), 6);
-    assert_eq!(
-        Decomposition::from_parts(&mesh, parts.parts()).unwrap(),
-        parts
-    );
+    assert_eq!(Decomposition::from_parts(&mesh, parts.parts()).unwrap(), parts);
 }
 
 /// Boxes that cut cells apart, more boxes than tetrahedra, and products that overflow.
@@ -131,10 +121,7 @@ fn any_counts_give_connected_subdomains() {
         );
         // the pieces of any numbers are the same sets
         let split = split_disconnected(&mesh, parts.parts()).unwrap();
-        assert_eq!(
-            split.iter().max(),
-            Some(&(parts.subdomains().len() as u32 - 1))
-        );
+        assert_eq!(split.iter().max(), Some(&(parts.subdomains().len() as u32 - 1)));
     }
     let all = Decomposition::boxes(&mesh, [usize::MAX; 3]).unwrap();
     assert_eq!(all.subdomains().len(), mesh.tets().len());

@@ -1,8 +1,6 @@
 //! The cut of a mesh that comes without one: connected parts of similar size, boxes where boxes are best.
 
-use signorini_fem_mesh::{
-    Brick, Decomposition, DecompositionError, PartCount, TetMesh, even_parts,
-};
+use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, PartCount, TetMesh, even_parts};
 
 fn brick(cells: [usize; 3]) -> TetMesh {
     Brick::new([3.0, 1.0, 1.0], cells).build().expect("a brick")
@@ -65,10 +63,7 @@ fn any_count_gives_connected_parts_of_similar_size() {
         let sizes = sizes(&parts);
         let (least, most) = (*sizes.iter().min().unwrap(), *sizes.iter().max().unwrap());
         assert_eq!(sizes.len(), count);
-        assert!(
-            most <= 3 * least,
-            "{count} parts: {least} to {most} tetrahedra"
-        );
+        assert!(most <= 3 * least, "{count} parts: {least} to {most} tetrahedra");
         Decomposition::from_parts(&mesh, &parts).expect("connected parts");
     }
 }
@@ -76,9 +71,7 @@ fn any_count_gives_connected_parts_of_similar_size() {
 #[test]
 fn no_part_reaches_into_another_body_or_group() {
     let one = brick([6, 2, 2]);
-    let far = one
-        .map_points(|p| [p[0] + 10.0, p[1], p[2]])
-        .expect("moved");
+    let far = one.map_points(|p| [p[0] + 10.0, p[1], p[2]]).expect("moved");
     let mesh = one.append(&far).expect("two bodies");
     let half: Vec<u32> = (0..mesh.tets().len())
         .map(|tet| u32::from(mesh.tet_points(tet).iter().map(|p| p[2]).sum::<f64>() > 2.0))

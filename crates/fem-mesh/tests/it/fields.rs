@@ -18,11 +18,7 @@ fn quadratic_gradient([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
 
 #[test]
 fn von_mises_of_plain_states() {
-    assert_abs_diff_eq!(
-        von_mises(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        5.0,
-        epsilon = 1e-14
-    );
+    assert_abs_diff_eq!(von_mises(&[5.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 5.0, epsilon = 1e-14);
     assert_eq!(von_mises(&[-3.0, -3.0, -3.0, 0.0, 0.0, 0.0]), 0.0);
     assert_abs_diff_eq!(
         von_mises(&[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]),
@@ -33,10 +29,7 @@ fn von_mises_of_plain_states() {
 
 #[test]
 fn norms_of_known_functions() {
-    let mesh = Brick::new([1.0; 3], [2; 3])
-        .perturbed(0.1, 1)
-        .build()
-        .unwrap();
+    let mesh = Brick::new([1.0; 3], [2; 3]).perturbed(0.1, 1).build().unwrap();
     let zero = vec![0.0; 3 * mesh.points().len()];
     // Integrals of x^4 + x^2 y^2 + (z^2 - y)^2 and of the squared gradient over the unit cube.
     let l2 = l2_error(&mesh, &zero, quadratic).unwrap();
@@ -49,10 +42,7 @@ fn norms_of_known_functions() {
 
 #[test]
 fn linear_functions_have_no_error() {
-    let mesh = Brick::new([1.0, 2.0, 3.0], [3; 3])
-        .perturbed(0.1, 1)
-        .build()
-        .unwrap();
+    let mesh = Brick::new([1.0, 2.0, 3.0], [3; 3]).perturbed(0.1, 1).build().unwrap();
     let linear = |[x, y, z]: [f64; 3]| [x - y, 2.0 * z, 1.0 + x + y + z];
     let gradient = |_| [[1.0, -1.0, 0.0], [0.0, 0.0, 2.0], [1.0, 1.0, 1.0]];
     let u = interpolate(&mesh, linear);
@@ -63,11 +53,7 @@ fn linear_functions_have_no_error() {
         assert!((0..6).all(|i| (strain[i] - expected[i]).abs() < 1e-12));
     }
     let nodal = nodal_average(&mesh, &strains(&mesh, &u).unwrap()).unwrap();
-    assert!(
-        nodal
-            .iter()
-            .all(|s| (0..6).all(|i| (s[i] - expected[i]).abs() < 1e-12))
-    );
+    assert!(nodal.iter().all(|s| (0..6).all(|i| (s[i] - expected[i]).abs() < 1e-12)));
 }
 
 #[test]
@@ -76,10 +62,7 @@ fn interpolation_converges_with_orders_two_and_one() {
         let mesh = Brick::new([1.0; 3], [n; 3]).build().unwrap();
         let u = interpolate(&mesh, quadratic);
         let l2 = l2_error(&mesh, &u, quadratic).unwrap();
-        (
-            l2,
-            h1_seminorm_error(&mesh, &u, quadratic_gradient).unwrap(),
-        )
+        (l2, h1_seminorm_error(&mesh, &u, quadratic_gradient).unwrap())
     };
     let (coarse, fine) = (errors(4), errors(8));
     assert_abs_diff_eq!((coarse.0 / fine.0).log2(), 2.0, epsilon = 0.05);

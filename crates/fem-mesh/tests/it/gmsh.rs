@@ -3,9 +3,7 @@
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_fem_mesh::gmsh::{
-    GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh,
-};
+use signorini_fem_mesh::gmsh::{GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh};
 use signorini_fem_mesh::{FacetTag, MeshError};
 
 /// Two tetrahedra in two volumes (groups 7 and 8) with a tagged face (group 3) of surface 1 and an
@@ -65,25 +63,13 @@ fn damaged(from: &str, to: &str) -> GmshError {
 /// The same file in binary, in either byte order.
 fn binary(big: bool) -> Vec<u8> {
     let int = |n: i32| {
-        if big {
-            n.to_be_bytes()
-        } else {
-            n.to_le_bytes()
-        }
+        if big { n.to_be_bytes() } else { n.to_le_bytes() }
     };
     let size = |n: u64| {
-        if big {
-            n.to_be_bytes()
-        } else {
-            n.to_le_bytes()
-        }
+        if big { n.to_be_bytes() } else { n.to_le_bytes() }
     };
     let real = |x: f64| {
-        if big {
-            x.to_be_bytes()
-        } else {
-            x.to_le_bytes()
-        }
+        if big { x.to_be_bytes() } else { x.to_le_bytes() }
     };
     let mut out = b"$MeshFormat\n4.1 1 8\n".to_vec();
     out.extend(int(1));
@@ -164,13 +150,7 @@ fn names_of_groups() {
         let error = names.surface(name).unwrap_err();
         let text = error.to_string();
         assert!(text.contains(name) && text.contains("surfaces in it are \"the foundation\""));
-        assert!(matches!(
-            error,
-            GmshError::UnknownName {
-                what: "surface",
-                ..
-            }
-        ));
+        assert!(matches!(error, GmshError::UnknownName { what: "surface", .. }));
     }
     let text = names.volume("middle").unwrap_err().to_string();
     assert!(text.contains("volumes in it are \"lower ") && text.contains(", \"upper\""));
@@ -192,10 +172,7 @@ fn names_of_groups() {
     let twice = TEXT.replace("1\n2 3 \"foundation\"\n", "2\n2 3 \"a\"\n2 4 \"a\"\n");
     assert!(parse_gmsh(twice.as_bytes()).is_ok());
     let error = parse_named_gmsh(twice.as_bytes()).unwrap_err();
-    assert!(matches!(
-        error,
-        GmshError::RepeatedName { groups: [3, 4], .. }
-    ));
+    assert!(matches!(error, GmshError::RepeatedName { groups: [3, 4], .. }));
     for (from, to) in [
         ("\"foundation\"", "foundation"),
         ("2 3 \"f", "2 x \"f"),
@@ -257,27 +234,15 @@ fn without_groups_the_entities_count() {
 fn damaged_files() {
     assert!(matches!(parse_gmsh(b""), Err(GmshError::NotGmsh)));
     assert!(matches!(parse_gmsh(b"solid cube"), Err(GmshError::NotGmsh)));
-    assert!(matches!(
-        read_gmsh("/nowhere/at.msh"),
-        Err(GmshError::Io { .. })
-    ));
+    assert!(matches!(read_gmsh("/nowhere/at.msh"), Err(GmshError::Io { .. })));
     assert!(matches!(damaged("4.1 0", "2.2 0"), GmshError::Version { found } if found == "2.2"));
-    assert!(matches!(
-        damaged("4.1 0", "4.1 7"),
-        GmshError::Damaged { .. }
-    ));
+    assert!(matches!(damaged("4.1 0", "4.1 7"), GmshError::Damaged { .. }));
     assert!(matches!(
         damaged("0 8\n", "0 99999999999999999999\n"),
         GmshError::Damaged { .. }
     ));
     let huge = damaged("2 1 0 3\n", "2 1 0 18446744073709551615\n");
-    assert!(matches!(
-        huge,
-        GmshError::Damaged {
-            section: "$Nodes",
-            ..
-        }
-    ));
+    assert!(matches!(huge, GmshError::Damaged { section: "$Nodes", .. }));
     let huge = damaged("3 2 4 1\n", "3 2 4 4611686018427387904\n");
     assert!(matches!(
         huge,
@@ -291,21 +256,9 @@ fn damaged_files() {
         GmshError::Damaged { .. }
     ));
     let empty = damaged("2 6 1 6", "2 0 1 6");
-    assert!(matches!(
-        empty,
-        GmshError::Damaged {
-            section: "$Nodes",
-            ..
-        }
-    ));
-    assert!(matches!(
-        damaged("2 1 0 3\n", "2 1 1 3\n"),
-        GmshError::Damaged { .. }
-    ));
-    assert!(matches!(
-        damaged("$EndNodes", "$EndNods"),
-        GmshError::Damaged { .. }
-    ));
+    assert!(matches!(empty, GmshError::Damaged { section: "$Nodes", .. }));
+    assert!(matches!(damaged("2 1 0 3\n", "2 1 1 3\n"), GmshError::Damaged { .. }));
+    assert!(matches!(damaged("$EndNodes", "$EndNods"), GmshError::Damaged { .. }));
     let hexahedron = damaged("3 1 4 1\n", "3 1 5 1\n");
     assert!(matches!(hexahedron, GmshError::Unsupported { kind: 5, .. }));
     assert!(matches!(
@@ -313,13 +266,7 @@ fn damaged_files() {
         GmshError::Unsupported { .. }
     ));
     let unknown = damaged("6 4 1 2 5", "6 4 1 2 77");
-    assert!(matches!(
-        unknown,
-        GmshError::UnknownNode {
-            element: 6,
-            node: 77
-        }
-    ));
+    assert!(matches!(unknown, GmshError::UnknownNode { element: 6, node: 77 }));
     assert!(matches!(
         damaged("5\n4\n6\n", "5\n4\n1\n"),
         GmshError::RepeatedNode { tag: 1 }
@@ -334,30 +281,19 @@ fn damaged_files() {
         }
     ));
     let flat = damaged("6 4 1 2 5", "6 3 1 2 2");
-    assert!(matches!(
-        flat,
-        GmshError::Mesh(MeshError::RepeatedNode { tet: 1, .. })
-    ));
+    assert!(matches!(flat, GmshError::Mesh(MeshError::RepeatedNode { tet: 1, .. })));
     let nan = damaged("1 1 1\n9", "nan 1 1\n9");
     assert!(matches!(nan, GmshError::Mesh(MeshError::NotFinite { .. })));
     assert!(matches!(
         damaged("1 1 1\n9", "one 1 1\n9"),
-        GmshError::Damaged {
-            section: "$Nodes",
-            ..
-        }
+        GmshError::Damaged { section: "$Nodes", .. }
     ));
     let inside = damaged("2 3 1 2\n", "2 1 2 5\n");
-    assert!(matches!(
-        inside,
-        GmshError::Mesh(MeshError::FacetInside { .. })
-    ));
+    assert!(matches!(inside, GmshError::Mesh(MeshError::FacetInside { .. })));
     let nodes = TEXT.split("$Elements").next().unwrap();
     assert!(matches!(
         parse_gmsh(nodes.as_bytes()),
-        Err(GmshError::MissingSection {
-            section: "$Elements"
-        })
+        Err(GmshError::MissingSection { section: "$Elements" })
     ));
 }
 

@@ -44,23 +44,11 @@ fn constant_loads() {
     for boxes in [[1, 1, 1], [3, 1, 2]] {
         // Volume 6 with centre (1.5, 0.5, 1); top of area 3 at z = 2.
         let body = LoadDensity::body([0.0, 0.0, -2.0]);
-        check(
-            resultant(&mesh, boxes, &body),
-            [0.0, 0.0, -12.0],
-            [-6.0, 18.0, 0.0],
-        );
+        check(resultant(&mesh, boxes, &body), [0.0, 0.0, -12.0], [-6.0, 18.0, 0.0]);
         let top = LoadDensity::traction(Z_MAX, [1.0, 0.0, -1.0]);
-        check(
-            resultant(&mesh, boxes, &top),
-            [3.0, 0.0, -3.0],
-            [-1.5, 10.5, -1.5],
-        );
+        check(resultant(&mesh, boxes, &top), [3.0, 0.0, -3.0], [-1.5, 10.5, -1.5]);
         let pressed = LoadDensity::pressure(X_MAX, 4.0);
-        check(
-            resultant(&mesh, boxes, &pressed),
-            [-8.0, 0.0, 0.0],
-            [0.0, -8.0, 4.0],
-        );
+        check(resultant(&mesh, boxes, &pressed), [-8.0, 0.0, 0.0], [0.0, -8.0, 4.0]);
     }
 }
 

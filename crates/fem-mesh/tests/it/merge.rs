@@ -8,9 +8,7 @@ use signorini_fem_mesh::{Facet, MeshError, TetMesh, drop_unused_nodes, merge_nod
 #[test]
 fn parts_meshed_apart_become_one_body() {
     let lower = Brick::new([1.0; 3], [2, 2, 2]).build().unwrap();
-    let upper = lower
-        .map_points(|[x, y, z]| [x + 1e-7, y, z + 1.0])
-        .unwrap();
+    let upper = lower.map_points(|[x, y, z]| [x + 1e-7, y, z + 1.0]).unwrap();
     let both = lower.append(&upper).unwrap();
     let top = |facets: &[Facet]| facets.iter().copied().find(|f| f.tag == Z_MAX);
     let merged = |distance: f64| {
@@ -21,11 +19,7 @@ fn parts_meshed_apart_become_one_body() {
         let count = merge_nodes(&points, &mut tets, &mut facets, distance);
         drop_unused_nodes(&mut points, &mut tets, &mut facets);
         let mesh = TetMesh::new(points, tets, facets).unwrap();
-        (
-            count,
-            mesh.components().iter().max().copied(),
-            mesh.total_volume(),
-        )
+        (count, mesh.components().iter().max().copied(), mesh.total_volume())
     };
     for (distance, count, last) in [(0.0, 0, 1), (1e-9, 0, 1), (1e-6, 9, 0), (f64::NAN, 0, 1)] {
         let (gone, body, volume) = merged(distance);
@@ -36,10 +30,7 @@ fn parts_meshed_apart_become_one_body() {
     let (points, mut tets) = (lower.points().to_vec(), lower.tets().to_vec());
     assert_eq!(merge_nodes(&points, &mut tets, &mut [], 0.6), 26);
     let error = TetMesh::new(points.clone(), tets, vec![]).unwrap_err();
-    assert!(
-        matches!(error, MeshError::RepeatedNode { tet: 0, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, MeshError::RepeatedNode { tet: 0, .. }), "{error}");
     let mut wrong = [[0, 1, 2, 99]];
     assert_eq!(merge_nodes(&points, &mut wrong, &mut [], 0.0), 0);
     assert_eq!(wrong[0][3], 99);

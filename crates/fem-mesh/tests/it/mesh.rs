@@ -10,10 +10,7 @@ fn area_vectors(mesh: &TetMesh, nodes: impl Iterator<Item = [u32; 3]>) -> [f64; 
     let mut sum = [0.0; 3];
     for nodes in nodes {
         let [p, q, r] = nodes.map(|n| mesh.points()[n as usize]);
-        let (a, b) = (
-            [0, 1, 2].map(|i| q[i] - p[i]),
-            [0, 1, 2].map(|i| r[i] - p[i]),
-        );
+        let (a, b) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             sum[i] += 0.5 * (a[j] * b[k] - a[k] * b[j]);
@@ -27,9 +24,7 @@ fn central_tetrahedra_join_even_vertices() {
     let brick = Brick::new([3.0, 2.0, 2.0], [3, 2, 2]);
     let mesh = brick.build().unwrap();
     // Unit cells: the coordinates are the indices.
-    let central: Vec<_> = (0..mesh.tets().len())
-        .filter(|&t| mesh.volume(t) > 0.3)
-        .collect();
+    let central: Vec<_> = (0..mesh.tets().len()).filter(|&t| mesh.volume(t) > 0.3).collect();
     assert_eq!(central.len(), 3 * 2 * 2);
     for t in central {
         for p in mesh.tet_points(t) {
@@ -49,11 +44,7 @@ fn sides_are_tagged_outward_and_complete() {
     let areas = [2.0, 6.0, 3.0];
     for d in 0..3 {
         for (end, tag) in SIDES[d].into_iter().enumerate() {
-            let of_tag = mesh
-                .facets()
-                .iter()
-                .filter(|f| f.tag == tag)
-                .map(|f| f.nodes);
+            let of_tag = mesh.facets().iter().filter(|f| f.tag == tag).map(|f| f.nodes);
             let sum = area_vectors(&mesh, of_tag);
             let sign = if end == 0 { -1.0 } else { 1.0 };
             for i in 0..3 {
@@ -93,10 +84,7 @@ fn grading_and_perturbation() {
     assert_abs_diff_eq!(perturbed.total_volume(), 2.0, epsilon = 1e-13);
     assert_eq!(perturbed, brick.clone().perturbed(0.15, 7).build().unwrap());
     assert_ne!(perturbed, brick.perturbed(0.15, 8).build().unwrap());
-    let one_cell = Brick::new([1.0; 3], [1; 3])
-        .graded([3.0; 3])
-        .build()
-        .unwrap();
+    let one_cell = Brick::new([1.0; 3], [1; 3]).graded([3.0; 3]).build().unwrap();
     assert_eq!(one_cell.extent().1, [1.0; 3]);
 }
 
@@ -113,24 +101,11 @@ fn several_bodies() {
         .unwrap();
     let both = below.append(&above).unwrap();
     assert_eq!(both.components().iter().filter(|&&c| c == 1).count(), 40);
-    assert_eq!(
-        both.nodes_on(FacetTag(Z_MIN.0 + 10))[0] as usize,
-        below.points().len()
-    );
+    assert_eq!(both.nodes_on(FacetTag(Z_MIN.0 + 10))[0] as usize, below.points().len());
     assert_eq!(both.regions()[40], 5);
     // The joined tables are those that the checks would have made.
-    let checked = TetMesh::new(
-        both.points().to_vec(),
-        both.tets().to_vec(),
-        both.facets().to_vec(),
-    );
-    assert_eq!(
-        checked
-            .unwrap()
-            .with_regions(both.regions().to_vec())
-            .unwrap(),
-        both
-    );
+    let checked = TetMesh::new(both.points().to_vec(), both.tets().to_vec(), both.facets().to_vec());
+    assert_eq!(checked.unwrap().with_regions(both.regions().to_vec()).unwrap(), both);
 }
 
 #[test]

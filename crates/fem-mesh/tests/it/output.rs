@@ -2,9 +2,7 @@
 
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, Z_MIN};
-use signorini_fem_mesh::output::{
-    Field, OutputError, PvdSeries, write_surface_vtu, write_vtu, write_vtu_pieces,
-};
+use signorini_fem_mesh::output::{Field, OutputError, PvdSeries, write_surface_vtu, write_vtu, write_vtu_pieces};
 use signorini_fem_mesh::{Decomposition, Surface, TetMesh};
 use vtkio::model::{Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, Vtk};
 
@@ -38,10 +36,7 @@ fn fields(mesh: &TetMesh) -> (Vec<Field>, Vec<Field>) {
         .map(|t| [0.0, 1.0, 2.0, 3.0, 4.0, 5.0 + t as f64])
         .collect();
     (
-        vec![
-            Field::vector("displacement", &u),
-            Field::scalar("height", heights),
-        ],
+        vec![Field::vector("displacement", &u), Field::scalar("height", heights)],
         vec![Field::symmetric_tensor("stress", &stress)],
     )
 }
@@ -87,23 +82,14 @@ fn a_piece_for_each_subdomain() {
         let height = values(&piece.data.point, "height");
         let expected = subdomain.points(&mesh);
         assert!(height.iter().zip(&expected).all(|(h, p)| *h == p[2]));
-        assert!(
-            values(&piece.data.cell, "part")
-                .iter()
-                .all(|&p| p == number as f64)
-        );
+        assert!(values(&piece.data.cell, "part").iter().all(|&p| p == number as f64));
     }
     let clash = [Field::scalar("part", vec![0.0; mesh.tets().len()])];
     let error = write_vtu_pieces(&path, &mesh, &parts, &[], &clash).unwrap_err();
     assert!(matches!(error, OutputError::RepeatedName { .. }));
     let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     let error = write_vtu_pieces(&path, &other, &parts, &[], &[]).unwrap_err();
-    assert!(matches!(
-        error,
-        OutputError::Foreign {
-            what: "decomposition"
-        }
-    ));
+    assert!(matches!(error, OutputError::Foreign { what: "decomposition" }));
 }
 
 #[test]
@@ -137,9 +123,7 @@ fn series() {
     let mut series = PvdSeries::create(folder.path().join("new"), "a&b").unwrap();
     for step in 0..3 {
         let time = Field::scalar("time", vec![f64::from(step); mesh.points().len()]);
-        series
-            .write(0.5 * f64::from(step), &mesh, &[time], &[])
-            .unwrap();
+        series.write(0.5 * f64::from(step), &mesh, &[time], &[]).unwrap();
     }
     let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
     series.write_pieces(2.0, &mesh, &parts, &[], &[]).unwrap();
@@ -148,11 +132,7 @@ fn series() {
     assert_eq!(list.matches("<DataSet").count(), 4);
     assert!(list.contains("timestep=\"0.5\"") && list.contains("file=\"a&amp;b_0001.vtu\""));
     let last = pieces(&folder.path().join("new/a&b_0002.vtu"));
-    assert!(
-        values(&last[0].data.point, "time")
-            .iter()
-            .all(|&t| t == 2.0)
-    );
+    assert!(values(&last[0].data.point, "time").iter().all(|&t| t == 2.0));
     for time in [2.0, 1.0, f64::NAN, f64::INFINITY] {
         let error = series.write(time, &mesh, &[], &[]).unwrap_err();
         assert!(matches!(error, OutputError::Time { before, .. } if before == 2.0));
@@ -183,10 +163,7 @@ fn a_series_is_continued() {
     assert!(matches!(error, OutputError::Time { .. }));
     write(&mut series, 2.0);
     assert_eq!((written(0), written(4)), (-1.0, 2.0));
-    assert_eq!(
-        PvdSeries::open(path, "a&b").unwrap().times(),
-        series.times()
-    );
+    assert_eq!(PvdSeries::open(path, "a&b").unwrap().times(), series.times());
 
     // the third time again, computed otherwise
     let mut series = PvdSeries::open_before(path, "a&b", 0.3).unwrap();
@@ -251,11 +228,7 @@ fn files_of_a_continued_series_are_whole_where_writing_fails() {
     let [piece] = &pieces(&file)[..] else {
         panic!("one piece is expected")
     };
-    assert!(
-        values(&piece.data.point, "height")
-            .iter()
-            .all(|&h| h == 7.0)
-    );
+    assert!(values(&piece.data.point, "height").iter().all(|&h| h == 7.0));
     let list = PvdSeries::open(folder.path(), "block").unwrap();
     assert_eq!(list.times(), [0.0, 1.5]);
 }
@@ -341,10 +314,7 @@ fn bad_fields() {
     let (nodes, cells) = (mesh.points().len(), mesh.tets().len());
     let point = |field| write_vtu(&path, &mesh, &[field], &[]).unwrap_err();
     let error = point(Field::vector("u", &vec![[0.0; 3]; nodes - 1]));
-    assert!(matches!(
-        error,
-        OutputError::FieldLength { what: "nodes", .. }
-    ));
+    assert!(matches!(error, OutputError::FieldLength { what: "nodes", .. }));
     let error = point(Field::scalar("", vec![0.0; nodes]));
     assert!(matches!(error, OutputError::Unnamed { what: "nodes" }));
     let mut values = vec![0.0; cells];
@@ -377,22 +347,10 @@ fn arrays_that_fill_their_last_block() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("full.vtu");
     write_vtu(&path, &mesh, &[Field::vector("u", mesh.points())], &[]).unwrap();
-    assert_eq!(
-        values(&pieces(&path)[0].data.point, "u"),
-        mesh.points().concat()
-    );
+    assert_eq!(values(&pieces(&path)[0].data.point, "u"), mesh.points().concat());
     let smaller = Brick::new([1.0; 3], [14; 3]).build().unwrap();
-    write_vtu(
-        &path,
-        &smaller,
-        &[Field::vector("u", smaller.points())],
-        &[],
-    )
-    .unwrap();
+    write_vtu(&path, &smaller, &[Field::vector("u", smaller.points())], &[]).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("vtkZLibDataCompressor"));
-    assert_eq!(
-        values(&pieces(&path)[0].data.point, "u"),
-        smaller.points().concat()
-    );
+    assert_eq!(values(&pieces(&path)[0].data.point, "u"), smaller.points().concat());
 }

@@ -2,8 +2,7 @@
 
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::{
-    Brick, Hooke, LoadDensity, Materials, TetMesh, discretisation_error, energy_of_difference,
-    energy_of_error,
+    Brick, Hooke, LoadDensity, Materials, TetMesh, discretisation_error, energy_of_difference, energy_of_error,
 };
 
 /// u = s(x) (1, -1, 0.5) with s = sin x sin y sin z, interpolated at the nodes. The energy error of the
@@ -35,8 +34,7 @@ fn material() -> Materials {
 /// plain conjugate gradients of the test's own.
 fn solve(mesh: &TetMesh) -> Vec<f64> {
     let hooke = Hooke::isotropic(1000.0, 0.3).expect("Hooke");
-    let k = signorini_fem_mesh::assemble_stiffness(mesh.points(), mesh.tets(), |_| &hooke)
-        .expect("stiffness");
+    let k = signorini_fem_mesh::assemble_stiffness(mesh.points(), mesh.tets(), |_| &hooke).expect("stiffness");
     let whole = signorini_fem_mesh::Decomposition::whole(mesh);
     let (shear, lame) = (1000.0 / 2.6, 300.0 / (1.3 * 0.4));
     // f = -(mu lap u + (lambda + mu) grad div u), lap s = -12 s
@@ -128,9 +126,7 @@ fn the_index_of_a_manufactured_solution_is_near_one_and_errors_fall_with_h() {
 
 #[test]
 fn a_linear_displacement_has_no_error_and_regions_are_kept_apart() {
-    let mesh = Brick::new([2.0, 1.0, 1.0], [6, 3, 3])
-        .build()
-        .expect("brick");
+    let mesh = Brick::new([2.0, 1.0, 1.0], [6, 3, 3]).build().expect("brick");
     let regions: Vec<u32> = (0..mesh.tets().len())
         .map(|t| u32::from(mesh.tet_points(t).iter().map(|p| p[0]).sum::<f64>() > 4.0))
         .collect();
@@ -142,17 +138,7 @@ fn a_linear_displacement_has_no_error_and_regions_are_kept_apart() {
     let u: Vec<f64> = mesh
         .points()
         .iter()
-        .flat_map(|p| {
-            [
-                if p[0] > 1.0 {
-                    1.0 + 1e-3 * (p[0] - 1.0)
-                } else {
-                    p[0]
-                },
-                0.0,
-                0.0,
-            ]
-        })
+        .flat_map(|p| [if p[0] > 1.0 { 1.0 + 1e-3 * (p[0] - 1.0) } else { p[0] }, 0.0, 0.0])
         .collect();
     let estimate = discretisation_error(&mesh, &materials, &u).expect("estimate");
     assert!(estimate.relative() < 1e-7, "{}", estimate.relative());

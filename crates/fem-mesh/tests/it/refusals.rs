@@ -4,10 +4,9 @@ use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, BrickError, Z_MIN};
 use signorini_fem_mesh::fields::{FieldError, nodal_average, strains, stresses};
 use signorini_fem_mesh::{
-    AssemblyError, Decomposition, DecompositionError, Facet, FacetTag, History, HistoryError,
-    Hooke, HookeError, LoadDensity, LoadError, MaterialError, Materials, MeshError, Surface,
-    SurfaceError, TetMesh, assemble_load, assemble_stiffness, discretisation_error,
-    drop_unused_nodes, orient_tets, split_disconnected,
+    AssemblyError, Decomposition, DecompositionError, Facet, FacetTag, History, HistoryError, Hooke, HookeError,
+    LoadDensity, LoadError, MaterialError, Materials, MeshError, Surface, SurfaceError, TetMesh, assemble_load,
+    assemble_stiffness, discretisation_error, drop_unused_nodes, orient_tets, split_disconnected,
 };
 
 const UNIT: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -35,14 +34,8 @@ fn brick() -> TetMesh {
 #[test]
 fn meshes() {
     let t = [[0, 1, 2, 3]];
-    assert_eq!(
-        mesh_error(&[], &[], &[]),
-        MeshError::Empty { what: "nodes" }
-    );
-    assert_eq!(
-        mesh_error(&UNIT, &[], &[]),
-        MeshError::Empty { what: "tetrahedra" }
-    );
+    assert_eq!(mesh_error(&[], &[], &[]), MeshError::Empty { what: "nodes" });
+    assert_eq!(mesh_error(&UNIT, &[], &[]), MeshError::Empty { what: "tetrahedra" });
     let mut points = UNIT;
     points[2][1] = f64::NAN;
     assert!(matches!(
@@ -73,10 +66,7 @@ fn meshes() {
     ));
     let error = mesh_error(&UNIT, &[[0, 1, 3, 2]], &[]);
     assert!(matches!(error, MeshError::InvertedTet { tet: 0, .. }));
-    assert!(
-        error.to_string().contains("swap its nodes 3 and 2"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("swap its nodes 3 and 2"), "{error}");
     let error = mesh_error(&with(&[[5.0; 3]]), &t, &[]);
     assert_eq!(error, MeshError::DanglingNode { node: 4, count: 1 });
     let error = mesh_error(&UNIT, &[t[0], t[0]], &[]);
@@ -186,10 +176,7 @@ fn repairs() {
         tag: FacetTag(7),
     }];
     assert_eq!(orient_tets(&points, &mut tets), 1);
-    assert_eq!(
-        drop_unused_nodes(&mut points, &mut tets, &mut facets),
-        [1, 2, 3, 4]
-    );
+    assert_eq!(drop_unused_nodes(&mut points, &mut tets, &mut facets), [1, 2, 3, 4]);
     let mesh = TetMesh::new(points, tets, facets).unwrap();
     assert_abs_diff_eq!(mesh.volume(0), 1.0 / 6.0, epsilon = 1e-15);
 }
@@ -203,21 +190,12 @@ fn bricks() {
     let good = || Brick::new([1.0; 3], [1; 3]);
     assert_eq!(field(Brick::new([1.0, 0.0, 1.0], [1; 3])), ("lengths", "y"));
     assert_eq!(field(Brick::new([1.0; 3], [1, 1, 0])), ("cells", "z"));
-    assert_eq!(
-        field(good().with_origin([f64::NAN, 0.0, 0.0])),
-        ("origin", "x")
-    );
+    assert_eq!(field(good().with_origin([f64::NAN, 0.0, 0.0])), ("origin", "x"));
     assert_eq!(field(good().graded([1.0, -1.0, 1.0])), ("grading", "y"));
-    assert_eq!(
-        field(good().perturbed(0.2, 1)),
-        ("perturbation", "all axes")
-    );
+    assert_eq!(field(good().perturbed(0.2, 1)), ("perturbation", "all axes"));
     for cells in [[usize::MAX; 3], [1 << 20, 1 << 20, 1]] {
         let error = Brick::new([1.0; 3], cells).build().unwrap_err();
-        assert!(matches!(
-            error,
-            BrickError::Mesh(MeshError::TooLarge { .. })
-        ));
+        assert!(matches!(error, BrickError::Mesh(MeshError::TooLarge { .. })));
     }
     // So far from the origin that the cells drown in rounding.
     let far = good().with_origin([1e20; 3]).build().unwrap_err();
@@ -227,16 +205,10 @@ fn bricks() {
 #[test]
 fn materials() {
     assert_eq!(Hooke::isotropic(0.0, 0.3), Err(HookeError::Young(0.0)));
-    assert!(matches!(
-        Hooke::isotropic(f64::NAN, 0.3),
-        Err(HookeError::Young(_))
-    ));
+    assert!(matches!(Hooke::isotropic(f64::NAN, 0.3), Err(HookeError::Young(_))));
     assert_eq!(Hooke::isotropic(1.0, 0.5), Err(HookeError::Poisson(0.5)));
     assert_eq!(Hooke::isotropic(1.0, -1.0), Err(HookeError::Poisson(-1.0)));
-    assert!(matches!(
-        Hooke::isotropic(1.0, f64::NAN),
-        Err(HookeError::Poisson(_))
-    ));
+    assert!(matches!(Hooke::isotropic(1.0, f64::NAN), Err(HookeError::Poisson(_))));
     for ratio in [0.5 - 1e-14, 0.5 - 1e-13, -1.0 + 1e-14] {
         for young in [1e-300, 1.0, 1e300] {
             let error = Hooke::isotropic(young, ratio).unwrap_err();
@@ -265,10 +237,7 @@ fn materials() {
         }
     ));
     assert!(matches!(changed(4, 4, 0.0), HookeError::NotElliptic { .. }));
-    assert!(matches!(
-        changed(4, 4, -1.0),
-        HookeError::NotElliptic { .. }
-    ));
+    assert!(matches!(changed(4, 4, -1.0), HookeError::NotElliptic { .. }));
     assert!(matches!(
         Hooke::from_voigt(&[[0.0; 6]; 6]),
         Err(HookeError::NotElliptic { .. })
@@ -276,19 +245,10 @@ fn materials() {
     let mut tensor = [[[[0.0; 3]; 3]; 3]; 3];
     tensor[0][1][0][1] = 1.0;
     let error = Hooke::from_tensor(&tensor).unwrap_err();
-    assert!(matches!(
-        error,
-        HookeError::NotSymmetric {
-            left: [0, 1, 0, 1],
-            ..
-        }
-    ));
+    assert!(matches!(error, HookeError::NotSymmetric { left: [0, 1, 0, 1], .. }));
 
     let table = vec![(3, good), (1, good), (3, good)];
-    assert_eq!(
-        Materials::new(table),
-        Err(MaterialError::Repeated { region: 3 })
-    );
+    assert_eq!(Materials::new(table), Err(MaterialError::Repeated { region: 3 }));
     let some = Materials::new(vec![(3, good), (1, good)]).unwrap();
     assert_eq!(
         some.get(2),
@@ -305,10 +265,7 @@ fn assembly_and_fields() {
     let mesh = brick();
     let law = Hooke::isotropic(1.0, 0.3).unwrap();
     let error = assemble_stiffness(&mesh.points()[..5], mesh.tets(), |_| &law).unwrap_err();
-    assert!(matches!(
-        error,
-        AssemblyError::NodeOutOfRange { nodes: 5, .. }
-    ));
+    assert!(matches!(error, AssemblyError::NodeOutOfRange { nodes: 5, .. }));
     let small = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     let rest = vec![0.0; 3 * mesh.points().len()];
     let estimate = discretisation_error(&mesh, &law.into(), &rest).unwrap();
@@ -324,15 +281,9 @@ fn assembly_and_fields() {
         Err(FieldError::Length { given: 5, .. })
     ));
     let mut u = vec![0.0; 3 * mesh.points().len()];
-    assert!(matches!(
-        stresses(&mesh, &elsewhere, &u),
-        Err(FieldError::Material(_))
-    ));
+    assert!(matches!(stresses(&mesh, &elsewhere, &u), Err(FieldError::Material(_))));
     u[7] = f64::NAN;
-    assert!(matches!(
-        strains(&mesh, &u),
-        Err(FieldError::NotFinite { node: 2, .. })
-    ));
+    assert!(matches!(strains(&mesh, &u), Err(FieldError::NotFinite { node: 2, .. })));
     assert!(matches!(
         nodal_average(&mesh, &[[0.0]]),
         Err(FieldError::Length { given: 1, .. })
@@ -348,32 +299,17 @@ fn decompositions() {
         DecompositionError::NoBoxes { axis: "y", .. }
     ));
     let parts = |p: &[u32]| Decomposition::from_parts(&mesh, p).unwrap_err();
-    assert_eq!(
-        parts(&[0; 9]),
-        DecompositionError::PartCount { given: 9, tets: 10 }
-    );
+    assert_eq!(parts(&[0; 9]), DecompositionError::PartCount { given: 9, tets: 10 });
     let gap = [0, 0, 0, 0, 0, 2, 2, 2, 2, 2];
-    assert_eq!(
-        parts(&gap),
-        DecompositionError::EmptyPart { part: 1, parts: 3 }
-    );
+    assert_eq!(parts(&gap), DecompositionError::EmptyPart { part: 1, parts: 3 });
     let huge = [0, 0, 0, 0, 0, 0, 0, 0, 0, u32::MAX];
-    assert!(matches!(
-        parts(&huge),
-        DecompositionError::EmptyPart { part: 1, .. }
-    ));
+    assert!(matches!(parts(&huge), DecompositionError::EmptyPart { part: 1, .. }));
     // The four corners of a cube touch only along edges.
     let corners = [1, 1, 1, 1, 0, 0, 0, 0, 0, 0];
     let error = parts(&corners);
     assert!(
-        matches!(
-            error,
-            DecompositionError::DisconnectedPart {
-                part: 0,
-                pieces: 2,
-                ..
-            }
-        ) || matches!(error, DecompositionError::DisconnectedPart { part: 1, .. }),
+        matches!(error, DecompositionError::DisconnectedPart { part: 0, pieces: 2, .. })
+            || matches!(error, DecompositionError::DisconnectedPart { part: 1, .. }),
         "{error}"
     );
     let split = split_disconnected(&mesh, &corners).unwrap();
@@ -386,18 +322,12 @@ fn surfaces() {
     let mesh = brick();
     let error = |tags: &[FacetTag]| Surface::new(&mesh, tags).unwrap_err();
     assert_eq!(error(&[]), SurfaceError::NoTags);
-    assert!(matches!(
-        error(&[FacetTag(99)]),
-        SurfaceError::UnknownTag { .. }
-    ));
+    assert!(matches!(error(&[FacetTag(99)]), SurfaceError::UnknownTag { .. }));
     assert_eq!(
         error(&[FacetTag(99)]).to_string(),
         "no facet has tag 99; the mesh has the tags 1, 2, 3, 4, 5, 6"
     );
-    assert_eq!(
-        error(&[Z_MIN, Z_MIN]),
-        SurfaceError::RepeatedTag { tag: Z_MIN }
-    );
+    assert_eq!(error(&[Z_MIN, Z_MIN]), SurfaceError::RepeatedTag { tag: Z_MIN });
     // Two tetrahedra that meet tip to tip: the normals around the common node cancel.
     let points = with(&[[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]);
     let tips = TetMesh::new(points, vec![[0, 1, 2, 3], [0, 4, 6, 5]], vec![]).unwrap();
@@ -412,10 +342,7 @@ fn loads() {
     let parts = Decomposition::whole(&mesh);
     let error = |load: LoadDensity| assemble_load(&mesh, &parts, &load).unwrap_err();
     let nan = [0.0, f64::NAN, 0.0];
-    assert!(matches!(
-        error(LoadDensity::body(nan)),
-        LoadError::NotFinite { .. }
-    ));
+    assert!(matches!(error(LoadDensity::body(nan)), LoadError::NotFinite { .. }));
     assert!(matches!(
         error(LoadDensity::traction(Z_MIN, nan)),
         LoadError::NotFinite { .. }
@@ -429,10 +356,7 @@ fn loads() {
     let missing = LoadDensity::traction(FacetTag(77), [1.0; 3]);
     assert!(matches!(
         error(missing),
-        LoadError::UnknownTag {
-            tag: FacetTag(77),
-            ..
-        }
+        LoadError::UnknownTag { tag: FacetTag(77), .. }
     ));
     let bare = TetMesh::new(mesh.points().to_vec(), mesh.tets().to_vec(), vec![]).unwrap();
     for (mesh, tags) in [(&mesh, "the tags 1, 2, 3, 4, 5, 6"), (&bare, "no tags")] {
@@ -443,13 +367,7 @@ fn loads() {
         );
     }
     let nowhere = LoadDensity::nodal_forces(vec![(99, [1.0; 3])]);
-    assert_eq!(
-        error(nowhere),
-        LoadError::UnknownNode {
-            node: 99,
-            nodes: 12
-        }
-    );
+    assert_eq!(error(nowhere), LoadError::UnknownNode { node: 99, nodes: 12 });
     let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     let foreign = assemble_load(&other, &parts, &LoadDensity::body([1.0; 3])).unwrap_err();
     assert_eq!(

@@ -5,9 +5,7 @@ use nalgebra::SMatrix;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::fields::{strain_energy, stresses};
-use signorini_fem_mesh::{
-    Brick, Decomposition, Hooke, Materials, Subdomain, TetMesh, assemble_stiffness,
-};
+use signorini_fem_mesh::{Brick, Decomposition, Hooke, Materials, Subdomain, TetMesh, assemble_stiffness};
 use sprs::{CsMat, TriMat};
 
 /// A law without any symmetry beyond (2.8).
@@ -43,9 +41,7 @@ fn element_stiffness(points: &[[f64; 3]; 4], law: &Hooke) -> SMatrix<f64, 12, 12
 fn times(k: &CsMat<f64>, u: &[f64]) -> Vec<f64> {
     let mut f = vec![0.0; u.len()];
     for (column, vector) in k.outer_iterator().enumerate() {
-        vector
-            .iter()
-            .for_each(|(row, value)| f[row] += value * u[column]);
+        vector.iter().for_each(|(row, value)| f[row] += value * u[column]);
     }
     f
 }
@@ -108,17 +104,9 @@ fn assembly_is_the_sum_of_elements() {
         }
     }
     let expected: CsMat<f64> = triplets.to_csc();
-    assert_eq!(
-        (k.indptr(), k.indices()),
-        (expected.indptr(), expected.indices())
-    );
+    assert_eq!((k.indptr(), k.indices()), (expected.indptr(), expected.indices()));
     let scale = largest(expected.data());
-    let difference: Vec<f64> = k
-        .data()
-        .iter()
-        .zip(expected.data())
-        .map(|(a, b)| a - b)
-        .collect();
+    let difference: Vec<f64> = k.data().iter().zip(expected.data()).map(|(a, b)| a - b).collect();
     assert!(largest(&difference) < 1e-14 * scale);
 }
 
@@ -129,10 +117,7 @@ fn symmetric_bit_for_bit_and_free_of_thread_count() {
     let transposed = k.transpose_view().to_csc();
     assert_eq!(k.data(), transposed.data());
     for threads in [1, 2, 5] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         assert_eq!(pool.install(|| stiffness(&mesh, &law)), k);
     }
     let element = element_stiffness(&mesh.tet_points(3), &law);
@@ -177,17 +162,12 @@ fn linear_patch() {
     assert_abs_diff_eq!(energy / expected, 1.0, epsilon = 1e-12);
     // K u: the tractions sigma n, a third of each triangle's force to its nodes, nothing inside.
     let f = times(&stiffness(&mesh, &law), &u);
-    assert!(
-        (f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() / (2.0 * expected) - 1.0).abs() < 1e-12
-    );
+    assert!((f.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() / (2.0 * expected) - 1.0).abs() < 1e-12);
     let sigma = [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]];
     let mut rest = f;
     for facet in 0..mesh.facets().len() {
         let [p, q, r] = mesh.facet_points(facet);
-        let (a, b) = (
-            [0, 1, 2].map(|i| q[i] - p[i]),
-            [0, 1, 2].map(|i| r[i] - p[i]),
-        );
+        let (a, b) = ([0, 1, 2].map(|i| q[i] - p[i]), [0, 1, 2].map(|i| r[i] - p[i]));
         let n = [
             a[1] * b[2] - a[2] * b[1],
             a[2] * b[0] - a[0] * b[2],
@@ -228,12 +208,7 @@ fn subdomains_add_up_to_the_whole() {
     }
     let sum: CsMat<f64> = sum.to_csc();
     let scale = largest(k.data());
-    let difference: Vec<f64> = k
-        .data()
-        .iter()
-        .zip(sum.data())
-        .map(|(a, b)| a - b)
-        .collect();
+    let difference: Vec<f64> = k.data().iter().zip(sum.data()).map(|(a, b)| a - b).collect();
     assert_eq!(k.indices(), sum.indices());
     assert!(largest(&difference) < 1e-14 * scale);
 }

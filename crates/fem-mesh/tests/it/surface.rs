@@ -19,11 +19,7 @@ fn paper_frame_on_the_brick() {
         assert_eq!(frame.normal, [0.0, 0.0, -1.0]);
         assert_eq!(frame.tangents, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         let components = frame.normal.iter().chain(frame.tangents.iter().flatten());
-        assert!(
-            components
-                .into_iter()
-                .all(|c| *c != 0.0 || c.is_sign_positive())
-        );
+        assert!(components.into_iter().all(|c| *c != 0.0 || c.is_sign_positive()));
     }
     assert_abs_diff_eq!(surface.total_area(), 3.0, epsilon = 1e-13);
     for (place, &node) in surface.nodes().iter().enumerate() {

@@ -18,9 +18,7 @@
 //! | `c`, `f` | rows of the modes on constrained components, and their right sides |
 //! | `s` | `y - a c b` |
 
-use crate::problem::{
-    Constrained, LooseMode, ProductSet, for_constrained, for_discs, solve_cholesky,
-};
+use crate::problem::{Constrained, LooseMode, ProductSet, for_constrained, for_discs, solve_cholesky};
 use crate::tolerances::{BALANCED, HALVINGS, NEWTON_DECREASE, NEWTON_STEPS, NO_IMBALANCE, SHIFT};
 
 /// The search for the amplitudes.
@@ -44,12 +42,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(
-        modes: &'a [LooseMode],
-        set: &'a ProductSet,
-        e: &[f64],
-        (y, a): (&'a [f64], &[f64]),
-    ) -> Self {
+    pub(crate) fn new(modes: &'a [LooseMode], set: &'a ProductSet, e: &[f64], (y, a): (&'a [f64], &[f64])) -> Self {
         let side = |m: &LooseMode| m.amplitudes.iter().zip(e).map(|(a, e)| a * e).sum();
         let mut a = a.to_vec();
         for_discs(set, |i, _, _| a[i + 1] = a[i]);
@@ -105,9 +98,7 @@ impl<'a> Search<'a> {
         }
         let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
         for_constrained(set, |block| match block {
-            Constrained::Bound {
-                i, lower, upper, ..
-            } => {
+            Constrained::Bound { i, lower, upper, .. } => {
                 let s = x[i];
                 x[i] = s.max(lower).min(upper);
                 if a[i] > 0.0 {
@@ -117,11 +108,7 @@ impl<'a> Search<'a> {
             Constrained::Disc { i, radius, .. } => {
                 let length = x[i].hypot(x[i + 1]);
                 let kept = length.min(radius);
-                let share = if length > radius {
-                    radius / length
-                } else {
-                    1.0
-                };
+                let share = if length > radius { radius / length } else { 1.0 };
                 x[i] *= share;
                 x[i + 1] *= share;
                 value += kept * (2.0 * length - kept) / (2.0 * a[i]);
@@ -170,15 +157,10 @@ impl<'a> Search<'a> {
             y[i] - a[i] * moved
         };
         for_constrained(set, |block| match block {
-            Constrained::Bound {
-                i, lower, upper, ..
-            } => {
+            Constrained::Bound { i, lower, upper, .. } => {
                 let s = s(i);
                 if s > lower && s < upper {
-                    modes
-                        .iter()
-                        .zip(&mut along)
-                        .for_each(|(m, c)| *c = m.row[i]);
+                    modes.iter().zip(&mut along).for_each(|(m, c)| *c = m.row[i]);
                     add(a[i], &along);
                 }
             }
@@ -258,11 +240,7 @@ mod tests {
 
     /// Bounds and discs with modes that are sums of components, as translations are.
     fn set() -> ProductSet {
-        ProductSet::new(vec![
-            Segment::upper(vec![0.0; 4]),
-            Segment::discs(vec![1.0, 2.0, 0.5]),
-        ])
-        .expect("a set")
+        ProductSet::new(vec![Segment::upper(vec![0.0; 4]), Segment::discs(vec![1.0, 2.0, 0.5])]).expect("a set")
     }
 
     fn modes() -> Vec<LooseMode> {

@@ -123,8 +123,7 @@ impl ActiveSet {
         let before = blocked.iter().filter(|b| **b).count();
         for_bounds(set, |i, k, lo, hi| {
             let end = x[i] + reach * step[i];
-            blocked[k] |=
-                (x[i].min(end) <= lo && step[i] < 0.0) || (x[i].max(end) >= hi && step[i] > 0.0);
+            blocked[k] |= (x[i].min(end) <= lo && step[i] < 0.0) || (x[i].max(end) >= hi && step[i] > 0.0);
         });
         for_discs(set, |i, k, radius| {
             let outward = x[i] * step[i] + x[i + 1] * step[i + 1];

@@ -45,9 +45,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             0.0
         };
         let enough = start.zip(goal.limits, |start, limit| {
-            (goal.forcing * start)
-                .max(ENOUGH * limit)
-                .max(digits * first.all)
+            (goal.forcing * start).max(ENOUGH * limit).max(digits * first.all)
         });
         let last = goal.max_products.min(self.report.products() + MOST_STEPS);
         self.first_direction();
@@ -92,14 +90,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         let work = &mut *self.work;
         let coupled = work.coupling.on;
         if coupled {
-            work.coupling
-                .extend(self.projector, self.set, &work.active, &work.p);
+            work.coupling.extend(self.projector, self.set, &work.active, &work.p);
         }
-        let q = if coupled {
-            &work.coupling.step
-        } else {
-            &work.p
-        };
+        let q = if coupled { &work.coupling.step } else { &work.p };
         let operator = self.problem.operator;
         operator.apply(q, &mut work.ap, &mut work.operator);
         self.report.cg_steps += 1;
@@ -134,11 +127,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     /// A step of this length: `x`, `ax` and both residuals; `ap` becomes that of the residual on the set.
     fn advance(&mut self, length: f64, coupled: bool) {
         let work = &mut *self.work;
-        let q = if coupled {
-            &work.coupling.step
-        } else {
-            &work.p
-        };
+        let q = if coupled { &work.coupling.step } else { &work.p };
         vector::axpy(length, q, self.x);
         vector::axpy(length, &work.ap, self.ax);
         let constrained = work.restricted.len();

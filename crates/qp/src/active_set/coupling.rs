@@ -8,9 +8,7 @@
 //! left for the move to the next set is of second order, so that nearly nothing is lost by it.
 
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, for_discs};
-use crate::tolerances::{
-    COUPLED_GROWTH, COUPLED_LEAST, COUPLED_LOST, COUPLED_NEAR, COUPLED_STEPS, COUPLED_WAIT,
-};
+use crate::tolerances::{COUPLED_GROWTH, COUPLED_LEAST, COUPLED_LOST, COUPLED_NEAR, COUPLED_STEPS, COUPLED_WAIT};
 
 use super::blocks::{ActiveSet, Disc};
 
@@ -86,9 +84,7 @@ impl Coupling {
         self.growth.fill(0.0);
         let (growth, by_disc) = (&mut self.growth, &self.by_disc);
         for_discs(set, |i, k, _| {
-            if let (Disc::Sliding { tau, .. }, Some((component, slope))) =
-                (active.discs[k], by_disc[k])
-            {
+            if let (Disc::Sliding { tau, .. }, Some((component, slope))) = (active.discs[k], by_disc[k]) {
                 let radius = slope * p[component];
                 growth[i] = radius * tau[1];
                 growth[i + 1] = -radius * tau[0];
@@ -111,8 +107,7 @@ impl Coupling {
 
     /// Whether the iteration goes badly after that many steps: the estimate was `start` and is `now`.
     pub(crate) fn too_strong(&mut self, steps: usize, start: f64, now: f64) -> bool {
-        self.failed |=
-            self.on && (steps >= COUPLED_STEPS || now.is_nan() || now > COUPLED_GROWTH * start);
+        self.failed |= self.on && (steps >= COUPLED_STEPS || now.is_nan() || now > COUPLED_GROWTH * start);
         self.on && self.failed
     }
 
@@ -122,9 +117,7 @@ impl Coupling {
         if !self.on {
             return forcing;
         }
-        (COUPLED_LOST * jump / first_error)
-            .max(COUPLED_LEAST)
-            .min(forcing)
+        (COUPLED_LOST * jump / first_error).max(COUPLED_LEAST).min(forcing)
     }
 }
 
@@ -141,17 +134,11 @@ mod tests {
             coupling.on
         };
         assert!(!begins(true, 0.5, 0) && !begins(true, 0.5, COUPLED_WAIT - 1));
-        assert!(
-            begins(true, 0.5, COUPLED_WAIT),
-            "far, but nothing else helps"
-        );
+        assert!(begins(true, 0.5, COUPLED_WAIT), "far, but nothing else helps");
         assert!(begins(true, 0.5, 2 * COUPLED_WAIT - 1));
         assert!(begins(true, 0.05, 0) && !begins(false, 0.01, 0));
         assert!(begins(true, 0.02, 1) && begins(true, 0.02, COUPLED_WAIT));
-        assert!(
-            !begins(true, 0.02, COUPLED_WAIT + 1),
-            "four sets since it began"
-        );
+        assert!(!begins(true, 0.02, COUPLED_WAIT + 1), "four sets since it began");
         assert!(!begins(true, 1e-9, 0), "for the rest of the solve");
     }
 
@@ -160,11 +147,7 @@ mod tests {
     fn discs_follow_the_components_that_slopes_name() {
         let segments = vec![Segment::upper(vec![0.0; 2]), Segment::discs(vec![1.0; 3])];
         let set = ProductSet::new(segments).expect("set");
-        let slope = |disc, component, slope| RadiusSlope {
-            disc,
-            component,
-            slope,
-        };
+        let slope = |disc, component, slope| RadiusSlope { disc, component, slope };
         let mut coupling = Coupling::default();
         coupling.start(&set, 8);
         assert!(coupling.failed, "nothing follows");

@@ -72,8 +72,7 @@ impl DescentSafeguard {
         vector::subtract(&self.x, &mut self.step);
         vector::copy(ax, &mut self.astep);
         vector::subtract(&self.ax, &mut self.astep);
-        self.full =
-            vector::dot(&self.step, &self.residual) + 0.5 * vector::dot(&self.step, &self.astep);
+        self.full = vector::dot(&self.step, &self.residual) + 0.5 * vector::dot(&self.step, &self.astep);
         let progress = self.exact && -self.full < PROGRESS * self.best;
         if progress {
             self.best = -self.full;
@@ -111,11 +110,7 @@ impl DescentSafeguard {
         let limit = 2.0 * INSIDE * vector::norm(x);
         self.exact = set.violation(&self.x) <= limit && set.violation(x) <= limit;
         self.stuck = false;
-        let reach = if self.exact {
-            (REACH * t).min(SHORT)
-        } else {
-            0.0
-        };
+        let reach = if self.exact { (REACH * t).min(SHORT) } else { 0.0 };
         (self.exact && !self.descends(x, ax, t), reach)
     }
 
@@ -149,10 +144,7 @@ mod tests {
     fn safeguard() -> DescentSafeguard {
         let mut safeguard = DescentSafeguard::new(2);
         safeguard.enter(&[0.0; 2], &[0.0; 2], &[-1.0; 2]);
-        assert!(
-            !safeguard.leave(&[1.0; 2], &[1.0; 2]),
-            "the first step tells nothing"
-        );
+        assert!(!safeguard.leave(&[1.0; 2], &[1.0; 2]), "the first step tells nothing");
         safeguard
     }
 
@@ -165,10 +157,7 @@ mod tests {
         let mut safeguard = safeguard();
         assert_eq!(safeguard.full, -1.0);
         assert!(safeguard.descends(&[1.0; 2], &[1.0; 2], 1.0));
-        assert!(
-            !safeguard.descends(&[2.0; 2], &[2.0; 2], 1.0),
-            "as high as the start"
-        );
+        assert!(!safeguard.descends(&[2.0; 2], &[2.0; 2], 1.0), "as high as the start");
         let (mut x, mut ax) = ([9.0; 2], [9.0; 2]);
         safeguard.shorten(0.25, &mut x, &mut ax);
         assert_eq!((x, ax), ([0.25; 2], [0.25; 2]));
@@ -207,19 +196,14 @@ mod tests {
         let mut safeguard = safeguard();
         assert!(!safeguard.releases(false, true, 1.0, 0.0), "there are none");
         // points that are not feasible: as the caller says
-        assert!(
-            safeguard.releases(true, true, 0.5, 0.0) && !safeguard.releases(true, false, 0.0, 1.0)
-        );
+        assert!(safeguard.releases(true, true, 0.5, 0.0) && !safeguard.releases(true, false, 0.0, 1.0));
         safeguard.judge(&half_space(), &[0.0; 2], &[0.0; 2], 1.0);
         assert!(!safeguard.releases(true, true, 0.5, 0.0));
         assert!(
             safeguard.releases(true, false, RELEASE, 0.0),
             "a hundredth of the error"
         );
-        assert!(
-            safeguard.releases(true, false, 0.5, 0.5),
-            "within the limit"
-        );
+        assert!(safeguard.releases(true, false, 0.5, 0.5), "within the limit");
         safeguard.back(&mut [0.0; 2], &mut [0.0; 2]);
         assert!(
             !safeguard.releases(true, true, 0.0, 1.0),

@@ -1,9 +1,7 @@
 //! The iterate on its present active set: what conjugate gradients, and the moves between sets, work on.
 
 use crate::error::QpError;
-use crate::problem::{
-    Constrained, ConvexSet, EqualityProjector, ProductSet, SymmetricOperator, for_constrained,
-};
+use crate::problem::{Constrained, ConvexSet, EqualityProjector, ProductSet, SymmetricOperator, for_constrained};
 use crate::tolerances::MAY_SLIDE;
 use crate::vector;
 
@@ -109,8 +107,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     pub(crate) fn start_residual(&mut self) {
         let work = &mut *self.work;
         let constrained = work.restricted.len();
-        work.restricted
-            .copy_from_slice(&work.residual[..constrained]);
+        work.restricted.copy_from_slice(&work.residual[..constrained]);
         work.active.restrict(self.set, &mut work.restricted);
     }
 
@@ -184,9 +181,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         let mut y = self.x[..constrained].to_vec();
         let mut lengths = self.problem.scale[..constrained].to_vec();
         for_constrained(self.set, |block| match block {
-            Constrained::Bound {
-                i, lower, upper, ..
-            } => {
+            Constrained::Bound { i, lower, upper, .. } => {
                 if y[i] <= lower || y[i] >= upper {
                     lengths[i] = 0.0;
                 }

@@ -65,11 +65,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
                 at.work.active.aim(at.set, at.x, &map);
                 let balances = at.project();
                 if round == rounds {
-                    self.moved.unbalanced = if balances {
-                        0
-                    } else {
-                        self.moved.unbalanced + 1
-                    };
+                    self.moved.unbalanced = if balances { 0 } else { self.moved.unbalanced + 1 };
                 }
             } else if !at.project_start() {
                 at.project();

@@ -53,10 +53,8 @@ impl ActiveSet {
             let s = map.of(x, i);
             // a component is active only if it also is at its bound
             let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
-            let active = lo >= hi
-                || (x[i] <= lo && agrees(s <= lo))
-                || (x[i] >= hi && agrees(s >= hi))
-                || (near && stays(k));
+            let active =
+                lo >= hi || (x[i] <= lo && agrees(s <= lo)) || (x[i] >= hi && agrees(s >= hi)) || (near && stays(k));
             changed += usize::from(free[k] == active);
             free[k] = !active;
             free_bounds += usize::from(!active);
@@ -67,9 +65,7 @@ impl ActiveSet {
             discs[k] = match (foreseen.get(bounds + k), state) {
                 (Some(true), Disc::Free) => along_circle(at, radius),
                 (Some(false), Disc::Sliding { .. }) => Disc::Free,
-                (None, Disc::Free) if stays(bounds + k) => {
-                    along_circle(at, if near { 0.0 } else { radius })
-                }
+                (None, Disc::Free) if stays(bounds + k) => along_circle(at, if near { 0.0 } else { radius }),
                 _ => state,
             };
         });
@@ -97,13 +93,7 @@ impl ActiveSet {
     }
 
     /// Whether the natural map would free an active bound, and move it by more than `limit`.
-    pub(crate) fn contradicted(
-        &self,
-        set: &ProductSet,
-        x: &[f64],
-        map: &NaturalMap<'_>,
-        limit: f64,
-    ) -> bool {
+    pub(crate) fn contradicted(&self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>, limit: f64) -> bool {
         let mut found = false;
         for_bounds(set, |i, k, lower, upper| {
             if !self.free[k] && lower < upper {
@@ -285,15 +275,11 @@ mod tests {
                 assert_eq!((own.changed, own.free_bounds), (0, counts.1), "{what}");
             });
         }
-        with(
-            Segment::bounds(vec![1.0], vec![1.0]),
-            &[-3.0],
-            |set, map| {
-                let mut own = active_set(set, &[], false);
-                own.classify(set, &[1.0], map);
-                assert_eq!(own.free, [false]);
-            },
-        );
+        with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
+            let mut own = active_set(set, &[], false);
+            own.classify(set, &[1.0], map);
+            assert_eq!(own.free, [false]);
+        });
     }
 
     #[test]
@@ -312,13 +298,9 @@ mod tests {
                 assert_eq!(own.contradicted(set, &[x], map, 0.1), expected, "{x} {g}");
             });
         }
-        with(
-            Segment::bounds(vec![1.0], vec![1.0]),
-            &[-3.0],
-            |set, map| {
-                assert!(!active_set(set, &[], false).contradicted(set, &[1.0], map, 0.1));
-            },
-        );
+        with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
+            assert!(!active_set(set, &[], false).contradicted(set, &[1.0], map, 0.1));
+        });
     }
 
     #[test]
@@ -350,10 +332,7 @@ mod tests {
             })
         };
         assert_eq!(state(0.0, [0.0; 2], [1.0; 2], false, false), Disc::Fixed);
-        assert_eq!(
-            state(radius, [0.6, 0.8], [-6.0, -8.0], false, false),
-            Disc::Free
-        );
+        assert_eq!(state(radius, [0.6, 0.8], [-6.0, -8.0], false, false), Disc::Free);
         // drawn inward
         assert_eq!(state(radius, on, [0.6, 0.8], false, false), Disc::Free);
         // pushed out with 3 N: curvature 3 / 2, scale 2
@@ -376,19 +355,11 @@ mod tests {
         near(damp, 0.25);
         near(own, 1.5 * (2.0 * 0.25_f64).powi(2));
         // stopped there: along the circle without curvature; inside of it only if it is to stay where it is
-        for (x, near, slides) in [
-            (on, false, true),
-            ([0.6, 0.8], false, false),
-            ([0.6, 0.8], true, true),
-        ] {
+        for (x, near, slides) in [(on, false, true), ([0.6, 0.8], false, false), ([0.6, 0.8], true, true)] {
             let state = state(radius, x, [0.6, 0.8], true, near);
             match state {
                 Disc::Sliding {
-                    tau,
-                    kappa,
-                    own,
-                    slip,
-                    ..
+                    tau, kappa, own, slip, ..
                 } if slides => {
                     assert!((tau[0] + 0.8).abs() < 1e-14 && (tau[1] - 0.6).abs() < 1e-14);
                     assert_eq!([kappa, own, slip], [0.0; 3]);

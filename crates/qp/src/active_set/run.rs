@@ -5,9 +5,7 @@ use std::mem::Discriminant;
 use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
-use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PROGRESS, SHRUNK, SMALL_PART,
-};
+use crate::tolerances::{FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PROGRESS, SHRUNK, SMALL_PART};
 use crate::vector;
 
 use super::cg::Goal;
@@ -82,9 +80,7 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
 
-impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
-    Run<'s, 'h, A, C, M>
-{
+impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'s, 'h, A, C, M> {
     pub(crate) fn new(
         problem: &'s ActiveSetProblem<'s, A, M>,
         projector: &'s mut C,
@@ -203,8 +199,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             constrained: settings.tolerance * part,
         };
         at.report.error = ratio(errors.all, limits.all / settings.tolerance);
-        at.report.constrained_error =
-            ratio(errors.constrained, limits.constrained / settings.tolerance);
+        at.report.constrained_error = ratio(errors.constrained, limits.constrained / settings.tolerance);
         if !(errors.all.is_finite() && x_norm.is_finite()) {
             return Err(at.not_finite("the error estimate"));
         }
@@ -234,9 +229,10 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     pub(crate) fn releases(&mut self, place: &Place) -> bool {
         let blocked = &mut self.at.work.active.blocked;
         let (error, limit) = (place.errors.constrained, place.limits.constrained);
-        let releases = self.safeguard.as_mut().is_some_and(|safeguard| {
-            safeguard.releases(!blocked.is_empty(), place.solved, error, limit)
-        });
+        let releases = self
+            .safeguard
+            .as_mut()
+            .is_some_and(|safeguard| safeguard.releases(!blocked.is_empty(), place.solved, error, limit));
         if releases {
             blocked.clear();
         }
@@ -247,13 +243,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// bounds, judged by the residual on this set, which the last classification did not have, stay active.
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
-        let current = self
-            .safeguard
-            .as_ref()
-            .is_none_or(|safeguard| safeguard.current);
+        let current = self.safeguard.as_ref().is_none_or(|safeguard| safeguard.current);
         let moved = self.moved.length();
-        let settled =
-            at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
+        let settled = at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
         let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
         place.errors.within(place.limits)
             && settled
@@ -289,8 +281,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         self.follow()?;
         self.moved.followed = true;
         let (at, limit) = (&self.at, place.limits.constrained);
-        let moved =
-            at.set.violation(at.x) > limit || at.work.active.grew(at.set, &at.work.before, limit);
+        let moved = at.set.violation(at.x) > limit || at.work.active.grew(at.set, &at.work.before, limit);
         Ok(!moved)
     }
 
@@ -328,10 +319,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         if self.moved.unbalanced >= settings.patience.saturating_mul(LONGER) {
             return Some(Status::Infeasible);
         }
-        let held_up = self
-            .safeguard
-            .as_ref()
-            .map_or(0, |safeguard| safeguard.held_up);
+        let held_up = self.safeguard.as_ref().map_or(0, |safeguard| safeguard.held_up);
         if self.progress.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
             return Some(Status::Stagnated);
         }

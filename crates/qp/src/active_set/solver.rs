@@ -101,11 +101,7 @@ fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         ("the projector", projector.dim(), n),
         ("the workspace", work.z.len(), n),
     ])?;
-    expect_length(
-        "the right side of the equality",
-        problem.rhs.len(),
-        projector.rows(),
-    )?;
+    expect_length("the right side of the equality", problem.rhs.len(), projector.rows())?;
     set.validate()?;
     expect_finite("x", x)?;
     expect_finite("the linear term", problem.linear)?;

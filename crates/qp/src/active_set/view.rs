@@ -1,8 +1,6 @@
 //! What an active set leaves free, as preconditioners see it.
 
-use crate::problem::{
-    Constrained, DenseOperator, Identity, ProductSet, SymmetricOperator, for_constrained,
-};
+use crate::problem::{Constrained, DenseOperator, Identity, ProductSet, SymmetricOperator, for_constrained};
 
 use super::blocks::{ActiveSet, Disc};
 

@@ -74,13 +74,7 @@ pub struct EqualityPart<'a, C> {
 ///
 /// # Errors
 /// As [`check_with`].
-pub fn check<A: SymmetricOperator>(
-    a: &A,
-    b: &[f64],
-    set: &ProductSet,
-    x: &[f64],
-    scale: f64,
-) -> Result<Kkt, QpError> {
+pub fn check<A: SymmetricOperator>(a: &A, b: &[f64], set: &ProductSet, x: &[f64], scale: f64) -> Result<Kkt, QpError> {
     check_with(a, b, set, None::<EqualityPart<'_, DenseEquality>>, x, scale)
 }
 
@@ -218,13 +212,7 @@ impl Sums {
             (false, false) => r,
         };
         let sign = if low || high { wrong } else { 0.0 };
-        self.add(
-            at,
-            outside * outside,
-            natural * natural,
-            wrong * wrong,
-            sign * sign,
-        );
+        self.add(at, outside * outside, natural * natural, wrong * wrong, sign * sign);
     }
 
     fn disc(&mut self, at: usize, [x0, x1]: [f64; 2], [r0, r1]: [f64; 2], radius: f64) {

@@ -22,10 +22,7 @@ pub struct LawViolation {
 }
 
 /// The first of the laws, each with its error and what is allowed, that does not hold.
-fn hold<const N: usize>(
-    sample: usize,
-    laws: [(&'static str, f64, f64); N],
-) -> Result<(), LawViolation> {
+fn hold<const N: usize>(sample: usize, laws: [(&'static str, f64, f64); N]) -> Result<(), LawViolation> {
     let broken = |(_, error, allowed): &(_, f64, f64)| error.is_nan() || error > allowed;
     match laws.into_iter().find(broken) {
         Some((law, error, _)) => Err(LawViolation { law, error, sample }),
@@ -62,11 +59,7 @@ fn failed(condition: bool) -> f64 {
 ///
 /// # Errors
 /// The first law that is violated beyond `tolerance` (relative; 1e-12 suits a well-scaled operator).
-pub fn check_operator_laws<A: SymmetricOperator>(
-    a: &A,
-    samples: usize,
-    tolerance: f64,
-) -> Result<(), LawViolation> {
+pub fn check_operator_laws<A: SymmetricOperator>(a: &A, samples: usize, tolerance: f64) -> Result<(), LawViolation> {
     let n = a.dim();
     let mut s = a.scratch();
     let mut random = Sequence(1);
@@ -105,11 +98,7 @@ pub fn check_operator_laws<A: SymmetricOperator>(
 ///
 /// # Errors
 /// The first law that is violated beyond `tolerance` (relative).
-pub fn check_equality_laws<C: Equality>(
-    c: &C,
-    samples: usize,
-    tolerance: f64,
-) -> Result<(), LawViolation> {
+pub fn check_equality_laws<C: Equality>(c: &C, samples: usize, tolerance: f64) -> Result<(), LawViolation> {
     let (n, m) = (c.dim(), c.rows());
     let mut s = c.scratch();
     let mut random = Sequence(2);
@@ -124,10 +113,7 @@ pub fn check_equality_laws<C: Equality>(
         let off = vector::distance(&cty, &y) / vector::norm(&y).max(f64::MIN_POSITIVE);
         let adjoint = "the product and the transposed product are adjoint";
         let orthonormal = "the rows are orthonormal, C C' = I";
-        hold(
-            k,
-            [(adjoint, gap, tolerance), (orthonormal, off, tolerance)],
-        )?;
+        hold(k, [(adjoint, gap, tolerance), (orthonormal, off, tolerance)])?;
     }
     Ok(())
 }
@@ -136,11 +122,7 @@ pub fn check_equality_laws<C: Equality>(
 ///
 /// # Errors
 /// The first law that is violated beyond rounding.
-pub fn check_set_laws<S: ConvexSet + ?Sized>(
-    set: &S,
-    scale: f64,
-    samples: usize,
-) -> Result<(), LawViolation> {
+pub fn check_set_laws<S: ConvexSet + ?Sized>(set: &S, scale: f64, samples: usize) -> Result<(), LawViolation> {
     let n = set.dim();
     let mut random = Sequence(3);
     for k in 0..samples {
@@ -177,12 +159,7 @@ fn projected<S: ConvexSet + ?Sized>(set: &S, x: &[f64]) -> Vec<f64> {
 }
 
 /// `sample` holds the projections of `u` and `w`.
-fn check_projection<S: ConvexSet + ?Sized>(
-    set: &S,
-    sample: &Sample,
-    u: &[f64],
-    w: &[f64],
-) -> Result<(), LawViolation> {
+fn check_projection<S: ConvexSet + ?Sized>(set: &S, sample: &Sample, u: &[f64], w: &[f64]) -> Result<(), LawViolation> {
     let Sample { k, size, x, y } = sample;
     let again = vector::distance(&projected(set, x), x) / size;
     let moved = (vector::distance(u, x) - set.violation(u)).abs() / size;
@@ -192,22 +169,10 @@ fn check_projection<S: ConvexSet + ?Sized>(
         *k,
         [
             ("projecting twice changes nothing", again, 0.0),
-            (
-                "a projected point is in the set",
-                set.violation(x) / size,
-                1e-15,
-            ),
-            (
-                "the violation is the distance to the projection",
-                moved,
-                LAW,
-            ),
+            ("a projected point is in the set", set.violation(x) / size, 1e-15),
+            ("the violation is the distance to the projection", moved, LAW),
             ("the projection does not expand", stretch, LAW),
-            (
-                "the projection is the nearest point",
-                cone / size / size,
-                LAW,
-            ),
+            ("the projection is the nearest point", cone / size / size, LAW),
         ],
     )
 }
@@ -226,8 +191,8 @@ fn check_split<S: ConvexSet + ?Sized>(
     set.chopped(x, g, &mut chopped);
     let gg = vector::dot(g, g).max(f64::MIN_POSITIVE);
     let shared = (0..n).map(|i| (free[i] * chopped[i]).abs()).sum();
-    let norms_off = (norms.free - vector::dot(&free, &free)).abs()
-        + (norms.chopped - vector::dot(&chopped, &chopped)).abs();
+    let norms_off =
+        (norms.free - vector::dot(&free, &free)).abs() + (norms.chopped - vector::dot(&chopped, &chopped)).abs();
     // Moreau: g = projected gradient + normal part, orthogonal; the normal part is in minus the normal cone
     let tangent: Vec<f64> = free.iter().zip(&chopped).map(|(a, b)| a + b).collect();
     let normal: Vec<f64> = g.iter().zip(&tangent).map(|(a, b)| a - b).collect();
@@ -249,17 +214,9 @@ fn check_split<S: ConvexSet + ?Sized>(
                 outward / gg.sqrt() / size,
                 LAW_ON_CIRCLE,
             ),
-            (
-                "the reduced gradient is (x - P(x - a g)) / a",
-                reduced_off,
-                1e-8,
-            ),
+            ("the reduced gradient is (x - P(x - a g)) / a", reduced_off, 1e-8),
             ("the reduced gradient is not longer", longer, LAW_ON_CIRCLE),
-            (
-                "reduced and free gradient agree in direction",
-                bent,
-                1e-12 * gg,
-            ),
+            ("reduced and free gradient agree in direction", bent, 1e-12 * gg),
         ],
     )?;
     Ok(free)
@@ -289,11 +246,7 @@ fn check_feasible_step<S: ConvexSet + ?Sized>(
     hold(
         *k,
         [
-            (
-                "the feasible step stays in the set",
-                set.violation(&on) / size,
-                1e-15,
-            ),
+            ("the feasible step stays in the set", set.violation(&on) / size, 1e-15),
             ("the feasible step is the longest", failed(!longest), 0.0),
             ("the feasible step ends on the boundary", failed(!ends), 0.0),
         ],

@@ -49,10 +49,7 @@ pub struct NormEstimate {
 ///
 /// # Errors
 /// Settings out of range; a product that is not finite.
-pub fn norm_estimate<A: SymmetricOperator>(
-    operator: &A,
-    settings: &NormSettings,
-) -> Result<NormEstimate, QpError> {
+pub fn norm_estimate<A: SymmetricOperator>(operator: &A, settings: &NormSettings) -> Result<NormEstimate, QpError> {
     settings.validate()?;
     let m = settings.max_products;
     let n = operator.dim();
@@ -102,9 +99,7 @@ pub fn norm_estimate<A: SymmetricOperator>(
 /// Entries of the start vector: reproducible, without pattern, in [0.5, 1.5] up to sign.
 fn start_entry(i: usize) -> f64 {
     // splitmix64
-    let mut z = (i as u64)
-        .wrapping_add(1)
-        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut z = (i as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^= z >> 31;
@@ -116,11 +111,7 @@ fn start_entry(i: usize) -> f64 {
 fn is_above(diagonal: &[f64], off: &[f64], lambda: f64) -> bool {
     let mut pivot = f64::INFINITY;
     for (i, &a) in diagonal.iter().enumerate() {
-        let coupling = if i == 0 {
-            0.0
-        } else {
-            off[i - 1] * off[i - 1] / pivot
-        };
+        let coupling = if i == 0 { 0.0 } else { off[i - 1] * off[i - 1] / pivot };
         pivot = a - lambda - coupling;
         if pivot >= 0.0 {
             return false;
@@ -135,11 +126,7 @@ fn largest_eigenvalue(diagonal: &[f64], off: &[f64]) -> f64 {
     let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     for (i, &a) in diagonal.iter().enumerate() {
         let left = if i == 0 { 0.0 } else { off[i - 1].abs() };
-        let right = if i + 1 < diagonal.len() {
-            off[i].abs()
-        } else {
-            0.0
-        };
+        let right = if i + 1 < diagonal.len() { off[i].abs() } else { 0.0 };
         lo = lo.max(a);
         hi = hi.max(a + left + right);
     }
@@ -179,8 +166,7 @@ mod tests {
         let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
         assert!((lambda - exact).abs() < 1e-13);
         // eigenvector entries sin(j pi / (n + 1)), squares sum to (n + 1) / 2
-        let last =
-            (std::f64::consts::PI / (n as f64 + 1.0)).sin().powi(2) / (0.5 * (n as f64 + 1.0));
+        let last = (std::f64::consts::PI / (n as f64 + 1.0)).sin().powi(2) / (0.5 * (n as f64 + 1.0));
         assert!((last_weight(&vec![2.0; n], &vec![-1.0; n - 1], lambda) - last).abs() < 1e-9);
     }
 
@@ -198,16 +184,11 @@ mod tests {
         let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
         let a = DenseOperator::new(n, a).expect("matrix");
         let e = norm_estimate(&a, &NormSettings::default()).expect("estimate");
-        assert!(
-            e.lower <= exact * (1.0 + 1e-12) && e.upper >= exact,
-            "{e:?} {exact}"
-        );
+        assert!(e.lower <= exact * (1.0 + 1e-12) && e.upper >= exact, "{e:?} {exact}");
         assert!(e.upper <= 1.1 * exact && e.products <= 20);
         let zero = DenseOperator::new(3, vec![0.0; 9]).expect("matrix");
         assert_eq!(
-            norm_estimate(&zero, &NormSettings::default())
-                .expect("estimate")
-                .upper,
+            norm_estimate(&zero, &NormSettings::default()).expect("estimate").upper,
             0.0
         );
     }

@@ -25,8 +25,7 @@ use crate::problem::{ConvexSet, GradientNorms, SymmetricOperator};
 use crate::report::{Products, Status, Steps, Tolerance, usable};
 use crate::settings::expect_setting;
 use crate::tolerances::{
-    COST_RISE, DRIFTED, FAILED_CHECKS, KPRGP_PATIENCE, KPRGP_PROGRESS, LONG_STEP,
-    NEGATIVE_CURVATURE, ROUNDED_GRADIENT,
+    COST_RISE, DRIFTED, FAILED_CHECKS, KPRGP_PATIENCE, KPRGP_PROGRESS, LONG_STEP, NEGATIVE_CURVATURE, ROUNDED_GRADIENT,
 };
 use crate::vector;
 

@@ -159,11 +159,7 @@ impl Shape<2> for Disc {
     #[inline]
     fn project(self, x: [f64; 2]) -> [f64; 2] {
         let n = x[0].hypot(x[1]);
-        if n > self.radius() {
-            self.on_circle(x, n)
-        } else {
-            x
-        }
+        if n > self.radius() { self.on_circle(x, n) } else { x }
     }
 
     #[inline]

@@ -27,11 +27,7 @@ impl DenseOperator {
             for col in 0..row {
                 let difference = (a[n * row + col] - a[n * col + row]).abs();
                 if difference > ASYMMETRY * largest {
-                    return Err(QpError::NotSymmetric {
-                        row,
-                        col,
-                        difference,
-                    });
+                    return Err(QpError::NotSymmetric { row, col, difference });
                 }
             }
         }
@@ -110,10 +106,7 @@ impl DenseEquality {
         expect_length("the equality matrix", g.len(), rows.saturating_mul(n))?;
         expect_finite("the equality matrix", g)?;
         if n < rows {
-            return Err(QpError::DependentRow {
-                row: n,
-                remainder: 0.0,
-            });
+            return Err(QpError::DependentRow { row: n, remainder: 0.0 });
         }
         let mut c = g.to_vec();
         let mut l = vec![0.0; rows * rows];

@@ -66,19 +66,12 @@ impl DenseProjector {
     fn times(&self, x: &[f64], weighted: bool, out: &mut [f64]) {
         for (i, o) in out.iter_mut().enumerate() {
             let terms = self.row(i).iter().zip(x).zip(&self.w);
-            *o = terms
-                .map(|((g, x), w)| g * x * if weighted { *w } else { 1.0 })
-                .sum();
+            *o = terms.map(|((g, x), w)| g * x * if weighted { *w } else { 1.0 }).sum();
         }
     }
 
     /// `x -= W Gᵀ (G W Gᵀ)⁻¹ defect(x)`, or without the first `W`.
-    fn subtract(
-        &mut self,
-        weighted: bool,
-        x: &mut [f64],
-        defect: impl FnOnce(&Self, &[f64], &mut [f64]),
-    ) {
+    fn subtract(&mut self, weighted: bool, x: &mut [f64], defect: impl FnOnce(&Self, &[f64], &mut [f64])) {
         let mut small = std::mem::take(&mut self.small);
         defect(self, x, &mut small);
         solve_cholesky(self.rows, &self.factor, &mut small);
@@ -109,9 +102,7 @@ impl EqualityProjector for DenseProjector {
             for j in 0..=i {
                 let products = self.row(i).iter().zip(self.row(j)).zip(w);
                 let value: f64 = products.map(|((a, b), w)| a * b * w).sum();
-                let known: f64 = (0..j)
-                    .map(|k| self.factor[i * n + k] * self.factor[j * n + k])
-                    .sum();
+                let known: f64 = (0..j).map(|k| self.factor[i * n + k] * self.factor[j * n + k]).sum();
                 if i == j {
                     largest = largest.max(value);
                     let pivot = value - known;

@@ -199,23 +199,18 @@ impl ProductSet {
 
     /// Components up to the last constrained one.
     pub(crate) fn constrained(&self) -> usize {
-        let constrained = |(segment, range): (&Segment, Range<usize>)| {
-            (!matches!(segment, Segment::Free(_))).then_some(range.end)
-        };
+        let constrained =
+            |(segment, range): (&Segment, Range<usize>)| (!matches!(segment, Segment::Free(_))).then_some(range.end);
         self.parts().filter_map(constrained).last().unwrap_or(0)
     }
 
     /// Kind and length of each segment.
     pub(crate) fn shape(&self) -> impl Iterator<Item = (Discriminant<Segment>, usize)> {
-        self.segments
-            .iter()
-            .map(|s| (std::mem::discriminant(s), s.len()))
+        self.segments.iter().map(|s| (std::mem::discriminant(s), s.len()))
     }
 
     fn parts(&self) -> impl Iterator<Item = (&Segment, Range<usize>)> {
-        self.segments
-            .iter()
-            .zip(self.offsets.windows(2).map(|w| w[0]..w[1]))
+        self.segments.iter().zip(self.offsets.windows(2).map(|w| w[0]..w[1]))
     }
 }
 
@@ -353,17 +348,8 @@ impl ConvexSet for ProductSet {
 
 /// A constrained block of a set: its first component `i`, its number `k` among the blocks of its kind, and its data.
 pub(crate) enum Constrained {
-    Bound {
-        i: usize,
-        k: usize,
-        lower: f64,
-        upper: f64,
-    },
-    Disc {
-        i: usize,
-        k: usize,
-        radius: f64,
-    },
+    Bound { i: usize, k: usize, lower: f64, upper: f64 },
+    Disc { i: usize, k: usize, radius: f64 },
 }
 
 /// Hands every constrained block in order to `f`.

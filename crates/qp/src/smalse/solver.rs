@@ -190,8 +190,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
     fn start(&mut self) -> Result<(), QpError> {
         let (o, settings) = (&mut self.o, self.settings);
         // eps_1 = eps |P h|
-        let (reference, rounding) =
-            reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        let (reference, rounding) = reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
         self.least = self.least.max(rounding / o.norm);
         o.floor = usable(settings.tolerance.resolve(reference))?;
         o.cap = settings.gradient_cap * reference;
@@ -222,8 +221,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
         self.gradient = inner.projected_gradient;
         self.outer += 1;
         self.set_equality_tolerance();
-        self.within =
-            self.gradient <= self.o.floor && self.o.equality() <= self.o.equality_tolerance;
+        self.within = self.gradient <= self.o.floor && self.o.equality() <= self.o.equality_tolerance;
         Ok(inner)
     }
 

@@ -3,23 +3,15 @@
 use crate::common::{Random, from_zero, spd};
 use proptest::prelude::*;
 use signorini_qp::{
-    ActiveSetReport, ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet,
-    QpError, Segment, Status, SymmetricOperator, vector,
+    ActiveSetReport, ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status,
+    SymmetricOperator, vector,
 };
 
 /// Natural residual `x - P(x - (A x - b + Gᵀ mu))`, in its own loop.
-fn natural_residual(
-    a: &DenseOperator,
-    b: &[f64],
-    set: &ProductSet,
-    x: &[f64],
-    force: &[f64],
-) -> f64 {
+fn natural_residual(a: &DenseOperator, b: &[f64], set: &ProductSet, x: &[f64], force: &[f64]) -> f64 {
     let mut g = vec![0.0; x.len()];
     a.apply(x, &mut g, &mut a.scratch());
-    let mut y: Vec<f64> = (0..x.len())
-        .map(|i| x[i] - (g[i] - b[i] + force[i]))
-        .collect();
+    let mut y: Vec<f64> = (0..x.len()).map(|i| x[i] - (g[i] - b[i] + force[i])).collect();
     set.project(&mut y);
     vector::distance(x, &y)
 }
@@ -55,13 +47,7 @@ fn problem(seed: u64) -> Problem {
     let a = DenseOperator::new(n, m).expect("symmetric");
     let b = r.vector(n);
     let radii = (0..discs)
-        .map(|k| {
-            if k % 3 == 2 {
-                0.0
-            } else {
-                0.6 * r.real().abs()
-            }
-        })
+        .map(|k| if k % 3 == 2 { 0.0 } else { 0.6 * r.real().abs() })
         .collect();
     let set = ProductSet::new(vec![
         Segment::upper(vec![0.0; bounds]),
@@ -76,33 +62,15 @@ fn problem(seed: u64) -> Problem {
         g[i * n + n - 1 - i] += 3.0;
     }
     let e = r.vector(rows);
-    Problem {
-        a,
-        b,
-        set,
-        g,
-        e,
-        rows,
-    }
+    Problem { a, b, set, g, e, rows }
 }
 
-fn solve(
-    p: &Problem,
-    settings: &ActiveSetSettings,
-) -> Result<(Vec<f64>, Vec<f64>, ActiveSetReport), QpError> {
+fn solve(p: &Problem, settings: &ActiveSetSettings) -> Result<(Vec<f64>, Vec<f64>, ActiveSetReport), QpError> {
     let n = p.b.len();
     let mut projector = DenseProjector::new(p.rows, n, p.g.clone())?;
     let (mut set, data) = (p.set.clone(), (&p.b[..], &p.e[..]));
     let start = (true, &[][..]);
-    let solved = from_zero(
-        &p.a,
-        &mut projector,
-        &mut set,
-        data,
-        settings,
-        start,
-        &mut |_, _| {},
-    )?;
+    let solved = from_zero(&p.a, &mut projector, &mut set, data, settings, start, &mut |_, _| {})?;
     let force = (0..n).map(|i| solved.residual[i] - (solved.ax[i] - p.b[i]));
     Ok((solved.x, force.collect(), solved.report))
 }
@@ -143,9 +111,7 @@ fn a_problem_without_constraints_is_one_active_set_and_no_correction() {
         e: vec![],
         rows: 0,
     };
-    let settings = ActiveSetSettings::default()
-        .with_forcing(1e-9)
-        .with_tolerance(1e-9);
+    let settings = ActiveSetSettings::default().with_forcing(1e-9).with_tolerance(1e-9);
     let (_, _, report) = solve(&p, &settings).expect("no breakdown");
     assert_eq!(
         (report.status, report.active_sets, report.hook_calls),
@@ -158,10 +124,8 @@ fn a_problem_without_constraints_is_one_active_set_and_no_correction() {
 #[test]
 fn the_hook_follows_a_coupled_radius() {
     // one bound, one disc whose radius is half the bounded component: a scalar Coulomb law
-    let a = DenseOperator::new(3, vec![2.0, 0.3, 0.0, 0.3, 2.0, 0.0, 0.0, 0.0, 2.0])
-        .expect("symmetric");
-    let set =
-        ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
+    let a = DenseOperator::new(3, vec![2.0, 0.3, 0.0, 0.3, 2.0, 0.0, 0.0, 0.0, 2.0]).expect("symmetric");
+    let set = ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
     let mut hook = |x: &[f64], set: &mut ProductSet| {
         if let Ok(radii) = set.radii_mut(1) {
             radii[0] = -0.5 * x[0];
@@ -170,16 +134,8 @@ fn the_hook_follows_a_coupled_radius() {
     let settings = ActiveSetSettings::default().with_tolerance(1e-10);
     let (mut projector, data) = (no_equality(3), (&[-2.0, 3.0, 0.0][..], &[][..]));
     let start = (true, &[][..]);
-    let solved = from_zero(
-        &a,
-        &mut projector,
-        &mut set.clone(),
-        data,
-        &settings,
-        start,
-        &mut hook,
-    )
-    .expect("no breakdown");
+    let solved =
+        from_zero(&a, &mut projector, &mut set.clone(), data, &settings, start, &mut hook).expect("no breakdown");
     let (x, report) = (solved.x, solved.report);
     assert_eq!(report.status, Status::Converged);
     // sliding: 2 x0 + 0.3 x1 = -2 and x1 = -x0 / 2
@@ -213,9 +169,7 @@ fn wrong_input_is_refused() {
     ));
     let mut negative = problem(2);
     let n = negative.b.len();
-    let entries = (0..n * n)
-        .map(|k| if k % (n + 1) == 0 { -1.0 } else { 0.0 })
-        .collect();
+    let entries = (0..n * n).map(|k| if k % (n + 1) == 0 { -1.0 } else { 0.0 }).collect();
     negative.a = DenseOperator::new(n, entries).expect("symmetric");
     assert!(matches!(
         solve(&negative, &ActiveSetSettings::default()),
@@ -226,8 +180,7 @@ fn wrong_input_is_refused() {
 #[test]
 fn a_limit_of_products_is_a_status() {
     let p = problem(5);
-    let (_, _, report) =
-        solve(&p, &ActiveSetSettings::default().with_max_products(2)).expect("no breakdown");
+    let (_, _, report) = solve(&p, &ActiveSetSettings::default().with_max_products(2)).expect("no breakdown");
     assert_eq!(report.status, Status::IterationLimit);
 }
 
@@ -239,49 +192,24 @@ fn a_point_outside_the_set_is_no_solution() {
     let mut set = ProductSet::new(vec![Segment::bounds(vec![0.0; 2], vec![1.0; 2])]).expect("set");
     let data = (&[0.0; 2][..], &[3.0][..]);
     let (settings, start) = (ActiveSetSettings::default(), (false, &[][..]));
-    let solved = from_zero(
-        &a,
-        &mut projector,
-        &mut set,
-        data,
-        &settings,
-        start,
-        &mut |_, _| {},
-    );
+    let solved = from_zero(&a, &mut projector, &mut set, data, &settings, start, &mut |_, _| {});
     assert!(solved.is_err() || solved.is_ok_and(|s| s.report.status != Status::Converged));
 }
 
 /// Radii that are 0.3 times other components, none of which is known at the start.
 #[test]
 fn the_set_has_followed_before_convergence() {
-    let a = DenseOperator::new(
-        9,
-        (0..81).map(|k| f64::from(u8::from(k % 10 == 0))).collect(),
-    )
-    .expect("operator");
+    let a = DenseOperator::new(9, (0..81).map(|k| f64::from(u8::from(k % 10 == 0))).collect()).expect("operator");
     let bounds = Segment::upper(vec![0.0; 3]);
     let mut set = ProductSet::new(vec![bounds, Segment::discs(vec![0.0; 3])]).expect("set");
     let linear = [-1.0, -2.0, -3.0, 1.0, 0.0, 2.0, 0.0, 3.0, 0.0];
     let mut hook = |x: &[f64], set: &mut ProductSet| {
         let radii = [0, 1, 2].map(|k: usize| 0.3 * x[k].abs());
-        *set = ProductSet::new(vec![
-            Segment::upper(vec![0.0; 3]),
-            Segment::discs(radii.to_vec()),
-        ])
-        .expect("set");
+        *set = ProductSet::new(vec![Segment::upper(vec![0.0; 3]), Segment::discs(radii.to_vec())]).expect("set");
     };
     let (settings, start) = (ActiveSetSettings::default(), (false, &[][..]));
     let data = (&linear[..], &[][..]);
-    let solved = from_zero(
-        &a,
-        &mut no_equality(9),
-        &mut set,
-        data,
-        &settings,
-        start,
-        &mut hook,
-    )
-    .expect("a report");
+    let solved = from_zero(&a, &mut no_equality(9), &mut set, data, &settings, start, &mut hook).expect("a report");
     let (x, report) = (solved.x, solved.report);
     assert_eq!(report.status, Status::Converged);
     assert!(report.hook_calls > 0);

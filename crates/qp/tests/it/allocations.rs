@@ -3,8 +3,8 @@
 use crate::common::{self, Random};
 use allocation_counter::measure;
 use signorini_qp::{
-    Expansion, KprgpSettings, KprgpWorkspace, ProductSet, Segment, SmalseSettings, SmalseWorkspace,
-    Tolerance, kprgp, smalse,
+    Expansion, KprgpSettings, KprgpWorkspace, ProductSet, Segment, SmalseSettings, SmalseWorkspace, Tolerance, kprgp,
+    smalse,
 };
 
 #[test]

@@ -1,9 +1,9 @@
 //! Random problems from a fixed sequence.
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseEquality,
-    DenseOperator, EqualityProjector, Identity, KprgpSettings, KprgpWorkspace, ProductSet,
-    Projected, QpError, RadiusSlope, Segment, SmalseReport, SmalseSettings, SmalseWorkspace,
-    Status, SymmetricOperator, Tolerance, active_set, kprgp, norm_estimate, smalse, vector,
+    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseEquality, DenseOperator,
+    EqualityProjector, Identity, KprgpSettings, KprgpWorkspace, ProductSet, Projected, QpError, RadiusSlope, Segment,
+    SmalseReport, SmalseSettings, SmalseWorkspace, Status, SymmetricOperator, Tolerance, active_set, kprgp,
+    norm_estimate, smalse, vector,
 };
 
 /// Reproducible numbers.
@@ -89,13 +89,7 @@ pub(crate) fn set(r: &mut Random) -> ProductSet {
                 let lower: Vec<f64> = (0..n).map(|_| r.real()).collect();
                 let upper = lower
                     .iter()
-                    .map(|l| {
-                        if r.below(4) == 0 {
-                            *l
-                        } else {
-                            l + 0.5 * r.real().abs()
-                        }
-                    })
+                    .map(|l| if r.below(4) == 0 { *l } else { l + 0.5 * r.real().abs() })
                     .collect();
                 Segment::bounds(lower, upper)
             }
@@ -116,12 +110,7 @@ pub(crate) fn set(r: &mut Random) -> ProductSet {
 }
 
 /// Feasible equality: `C x = e` holds at a point of the set.
-pub(crate) fn equality(
-    n: usize,
-    rows: usize,
-    set: &ProductSet,
-    r: &mut Random,
-) -> (DenseEquality, Vec<f64>) {
+pub(crate) fn equality(n: usize, rows: usize, set: &ProductSet, r: &mut Random) -> (DenseEquality, Vec<f64>) {
     use signorini_qp::{ConvexSet, Equality};
     let g: Vec<f64> = r.vector(rows * n);
     let c = DenseEquality::orthonormal(rows, n, &g).expect("independent rows");
@@ -171,23 +160,11 @@ pub(crate) struct Quadratic {
 }
 
 impl Quadratic {
-    pub(crate) fn new(
-        a: DenseOperator,
-        b: Vec<f64>,
-        (c, e): (DenseEquality, Vec<f64>),
-        set: ProductSet,
-    ) -> Self {
+    pub(crate) fn new(a: DenseOperator, b: Vec<f64>, (c, e): (DenseEquality, Vec<f64>), set: ProductSet) -> Self {
         let projected = Projected::new(&a, &c).expect("dimensions");
         let norm = norm_estimate(&projected, &Default::default()).expect("norm");
         let norm = norm.upper.max(1e-3);
-        Self {
-            a,
-            b,
-            c,
-            e,
-            set,
-            norm,
-        }
+        Self { a, b, c, e, set, norm }
     }
 
     /// SMALSE: its report, `A y - b` and the multiplier of the equality.
@@ -198,20 +175,10 @@ impl Quadratic {
         x: &mut [f64],
         beta: &mut [f64],
     ) -> (SmalseReport, Vec<f64>, Vec<f64>) {
-        let Self {
-            a,
-            b,
-            c,
-            e,
-            set,
-            norm,
-        } = self;
+        let Self { a, b, c, e, set, norm } = self;
         let mut work = SmalseWorkspace::new(a, c);
         let report = smalse(a, b, c, e, set, *norm, settings, hook, x, beta, &mut work);
-        let (residual, multiplier) = (
-            work.residual().to_vec(),
-            work.equality_multiplier().to_vec(),
-        );
+        let (residual, multiplier) = (work.residual().to_vec(), work.equality_multiplier().to_vec());
         (report.expect("solve"), residual, multiplier)
     }
 }

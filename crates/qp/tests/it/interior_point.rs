@@ -4,8 +4,8 @@ use crate::common::{self, Quadratic, Random};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, KprgpWorkspace, ProductSet,
-    Segment, SmalseSettings, Tolerance, kprgp, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, KprgpWorkspace, ProductSet, Segment,
+    SmalseSettings, Tolerance, kprgp, vector,
 };
 
 /// Row-by-row matrix `rows x n` in compressed columns.
@@ -23,12 +23,7 @@ fn csc(rows: &[Vec<f64>], n: usize) -> CscMatrix<f64> {
     CscMatrix::new(rows.len(), n, colptr, rowval, nzval)
 }
 
-fn reference(
-    a: &DenseOperator,
-    b: &[f64],
-    set: &ProductSet,
-    equality: Option<(&DenseEquality, &[f64])>,
-) -> Vec<f64> {
+fn reference(a: &DenseOperator, b: &[f64], set: &ProductSet, equality: Option<(&DenseEquality, &[f64])>) -> Vec<f64> {
     let n = b.len();
     let unit = |i: usize, v: f64| {
         let mut row = vec![0.0; n];
@@ -89,15 +84,8 @@ fn reference(
         tol_feas: 1e-11,
         ..DefaultSettings::default()
     };
-    let mut solver = DefaultSolver::new(
-        &csc(&upper, n),
-        &q,
-        &csc(&rows, n),
-        &right,
-        &cones,
-        settings,
-    )
-    .expect("clarabel");
+    let mut solver =
+        DefaultSolver::new(&csc(&upper, n), &q, &csc(&rows, n), &right, &cones, settings).expect("clarabel");
     solver.solve();
     assert!(matches!(
         solver.solution.status,
@@ -130,17 +118,7 @@ fn bounds_and_discs_agree_with_clarabel() {
         let mut x = vec![0.0; n];
         let mut work = KprgpWorkspace::new(&a);
         let t = Tolerance::Relative(1e-10);
-        let report = kprgp(
-            &a,
-            &b,
-            &set,
-            norm,
-            t,
-            &KprgpSettings::default(),
-            &mut x,
-            &mut work,
-        )
-        .expect("solve");
+        let report = kprgp(&a, &b, &set, norm, t, &KprgpSettings::default(), &mut x, &mut work).expect("solve");
         assert!(report.status.converged());
         let y = reference(&a, &b, &set, None);
         let gap = vector::distance(&x, &y) / vector::norm(&x).max(1.0);

@@ -20,10 +20,7 @@ fn at(segments: Vec<Segment>, x: &[f64], r: &[f64]) -> Kkt {
 
 #[track_caller]
 fn near(found: f64, expected: f64, what: &str) {
-    assert!(
-        (found - expected).abs() < 1e-14,
-        "{what}: {found}, not {expected}"
-    );
+    assert!((found - expected).abs() < 1e-14, "{what}: {found}, not {expected}");
 }
 
 /// Infeasibility, stationarity, distance from the normal cone, wrong signs.
@@ -60,11 +57,7 @@ fn intervals() {
         distances(&kkt, expected);
         near(kkt.x_norm, x.abs(), "x");
         near(kkt.b_norm, (x - r).abs(), "b");
-        near(
-            kkt.primal_size,
-            x.abs().max(x.clamp(lo, hi).abs()),
-            "primal",
-        );
+        near(kkt.primal_size, x.abs().max(x.clamp(lo, hi).abs()), "primal");
     }
 }
 
@@ -130,11 +123,7 @@ fn blocks_and_equalities_together() {
 
     // the projection is farther from zero than the point: bounds 3 beside a disc of 4
     let beside = vec![Segment::lower(vec![3.0]), Segment::discs(vec![9.0])];
-    near(
-        at(beside, &[0.0, 4.0, 0.0], &[0.0; 3]).primal_size,
-        5.0,
-        "projection",
-    );
+    near(at(beside, &[0.0, 4.0, 0.0], &[0.0; 3]).primal_size, 5.0, "projection");
     // what is near a bound, against the largest component, is on it
     for (off, dual) in [(5e-5, 0.0), (2e-4, 0.4)] {
         let two = vec![Segment::lower(vec![0.0; 2])];
@@ -186,10 +175,8 @@ fn relative_figures_have_no_units() {
     let found = |unit: f64| {
         let a = DenseOperator::new(2, vec![2e9, 1e9, 1e9, 3e9]).expect("operator");
         let b = [0.0; 2];
-        let at_least = |low: f64| {
-            ProductSet::new(vec![Segment::bounds(vec![low; 2], vec![f64::INFINITY; 2])])
-                .expect("set")
-        };
+        let at_least =
+            |low: f64| ProductSet::new(vec![Segment::bounds(vec![low; 2], vec![f64::INFINITY; 2])]).expect("set");
         // no load, but pushed by a bound: 1e-3 off the bound, outside of it, and at zero
         let away = check(&a, &b, &at_least(unit), &[1.001 * unit, unit], 3e9).expect("figures");
         let outside = check(&a, &b, &at_least(unit), &[0.9 * unit, unit], 3e9).expect("figures");

@@ -4,8 +4,8 @@ use crate::common::{self, Random, pair, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::{
-    ConvexSet, DenseOperator, Expansion, KprgpSettings, KprgpWorkspace, ProductSet, QpError,
-    Segment, Status, Tolerance, kkt, kprgp, vector,
+    ConvexSet, DenseOperator, Expansion, KprgpSettings, KprgpWorkspace, ProductSet, QpError, Segment, Status,
+    Tolerance, kkt, kprgp, vector,
 };
 
 const EXPANSIONS: [Expansion; 4] = [
@@ -80,23 +80,12 @@ fn empty_and_fixed_problems_need_one_product() {
         run(&a, &[], &ProductSet::free(0), &mut [], &settings),
         Ok(Status::Converged)
     );
-    let fixed =
-        ProductSet::new(vec![Segment::bounds(vec![1.0, 2.0], vec![1.0, 2.0])]).expect("set");
+    let fixed = ProductSet::new(vec![Segment::bounds(vec![1.0, 2.0], vec![1.0, 2.0])]).expect("set");
     let mut x = [0.0; 2];
     let a = pair();
     let mut work = KprgpWorkspace::new(&a);
     let t = Tolerance::Relative(1e-10);
-    let report = kprgp(
-        &a,
-        &[1.0, 1.0],
-        &fixed,
-        3.0,
-        t,
-        &settings,
-        &mut x,
-        &mut work,
-    )
-    .expect("solve");
+    let report = kprgp(&a, &[1.0, 1.0], &fixed, 3.0, t, &settings, &mut x, &mut work).expect("solve");
     assert_eq!(
         (report.status, report.products.total(), x),
         (Status::Converged, 1, [1.0, 2.0])
@@ -121,10 +110,7 @@ fn a_zero_right_side_and_a_solved_start_need_one_product() {
         &mut work,
     )
     .expect("solve");
-    assert_eq!(
-        (report.status, report.products.total()),
-        (Status::Converged, 1)
-    );
+    assert_eq!((report.status, report.products.total()), (Status::Converged, 1));
 }
 
 #[test]
@@ -229,11 +215,7 @@ impl signorini_qp::SymmetricOperator for Failing {
     fn apply(&self, x: &[f64], y: &mut [f64], _: &mut ()) {
         let count = self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         y[0] = 2.0 * x[0] + x[1];
-        y[1] = if count == 1 {
-            f64::NAN
-        } else {
-            x[0] + 2.0 * x[1]
-        };
+        y[1] = if count == 1 { f64::NAN } else { x[0] + 2.0 * x[1] };
     }
 }
 
@@ -246,20 +228,8 @@ fn not_a_number_is_noticed_where_it_appears() {
             let set = ProductSet::new(vec![Segment::lower(vec![-5.0, bound])]).expect("set");
             let mut work = KprgpWorkspace::new(&a);
             let t = Tolerance::Relative(1e-9);
-            let result = kprgp(
-                &a,
-                &[1.0, -1.0],
-                &set,
-                3.0,
-                t,
-                &settings,
-                &mut [0.0; 2],
-                &mut work,
-            );
-            assert!(
-                matches!(result, Err(QpError::NotFinite { .. })),
-                "{result:?}"
-            );
+            let result = kprgp(&a, &[1.0, -1.0], &set, 3.0, t, &settings, &mut [0.0; 2], &mut work);
+            assert!(matches!(result, Err(QpError::NotFinite { .. })), "{result:?}");
         }
     }
 }
@@ -281,26 +251,16 @@ fn a_norm_that_is_too_small_is_survived_and_reported() {
     let mut halved = 0;
     for seed in 0..20 {
         let mut r = Random::new(seed);
-        let set = ProductSet::new(vec![
-            Segment::lower(vec![-0.2; 10]),
-            Segment::discs(vec![0.1; 10]),
-        ])
-        .expect("set");
+        let set = ProductSet::new(vec![Segment::lower(vec![-0.2; 10]), Segment::discs(vec![0.1; 10])]).expect("set");
         let (a, norm) = common::spd(30, 2.0, &mut r);
         let b = r.vector(30);
         let mut x = vec![0.0; 30];
         let mut work = KprgpWorkspace::new(&a);
         let settings = KprgpSettings::default().with_expansion(Expansion::FixedStep);
         let t = Tolerance::Relative(1e-8);
-        let report =
-            kprgp(&a, &b, &set, 0.05 * norm, t, &settings, &mut x, &mut work).expect("solve");
+        let report = kprgp(&a, &b, &set, 0.05 * norm, t, &settings, &mut x, &mut work).expect("solve");
         assert!(report.status.converged(), "{report:?}");
-        assert!(
-            kkt::check(&a, &b, &set, &x, norm)
-                .expect("lengths")
-                .relative()
-                <= 1e-7
-        );
+        assert!(kkt::check(&a, &b, &set, &x, norm).expect("lengths").relative() <= 1e-7);
         halved += report.halvings;
     }
     assert!(halved > 0);

@@ -1,8 +1,8 @@
 //! MPRGP on an obstacle string, with the products of the best known code as a limit.
 
 use signorini_qp::{
-    BlockState, ConvexSet, Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, ProductSet,
-    Segment, SymmetricOperator, Tolerance, kkt, kprgp, vector,
+    BlockState, ConvexSet, Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, ProductSet, Segment,
+    SymmetricOperator, Tolerance, kkt, kprgp, vector,
 };
 use std::f64::consts::PI;
 
@@ -44,10 +44,7 @@ fn problem() -> (Vec<f64>, ProductSet) {
         .collect();
     lower[0] = 0.0;
     lower[N - 1] = 0.0;
-    (
-        b,
-        ProductSet::new(vec![Segment::lower(lower)]).expect("set"),
-    )
+    (b, ProductSet::new(vec![Segment::lower(lower)]).expect("set"))
 }
 
 fn solve(settings: &KprgpSettings, norm: f64, tolerance: f64) -> (KprgpReport, Vec<f64>) {
@@ -55,17 +52,7 @@ fn solve(settings: &KprgpSettings, norm: f64, tolerance: f64) -> (KprgpReport, V
     let mut x = vec![0.0; N];
     let mut work = KprgpWorkspace::new(&DirichletString);
     let relative = Tolerance::Relative(tolerance);
-    let report = kprgp(
-        &DirichletString,
-        &b,
-        &set,
-        norm,
-        relative,
-        settings,
-        &mut x,
-        &mut work,
-    )
-    .expect("solve");
+    let report = kprgp(&DirichletString, &b, &set, norm, relative, settings, &mut x, &mut work).expect("solve");
     assert!(report.status.converged(), "{report:?}");
     assert!(report.projected_gradient <= tolerance * vector::norm(&b));
     (report, x)
@@ -81,17 +68,13 @@ fn cost(x: &[f64]) -> f64 {
 fn at_bound(x: &[f64]) -> usize {
     let (_, set) = problem();
     let mut count = 0;
-    set.for_each_block(x, &mut |block| {
-        count += usize::from(block.state == BlockState::AtLower)
-    });
+    set.for_each_block(x, &mut |block| count += usize::from(block.state == BlockState::AtLower));
     count
 }
 
 /// Step 2 / norm and Gamma 1, as in the reference count.
 fn classical(expansion: Expansion) -> KprgpSettings {
-    KprgpSettings::default()
-        .with_step_length(2.0)
-        .with_expansion(expansion)
+    KprgpSettings::default().with_step_length(2.0).with_expansion(expansion)
 }
 
 #[test]
@@ -113,11 +96,7 @@ fn projected_cg_needs_no_more_than_the_best_known_code() {
 fn the_standard_expansion_repeats_the_reference_step_by_step() {
     let (report, x) = solve(&classical(Expansion::FixedStep), 0.995 * largest(), 1e-5);
     assert_eq!(
-        (
-            report.steps.cg,
-            report.steps.expansion,
-            report.steps.proportioning
-        ),
+        (report.steps.cg, report.steps.expansion, report.steps.proportioning),
         (156, 18, 7)
     );
     assert_eq!(report.products.total(), 200);
@@ -171,11 +150,7 @@ fn a_tight_tolerance_is_met_on_the_true_gradient() {
     let (report, x) = solve(&KprgpSettings::default(), largest(), 1e-12);
     let kkt = kkt::check(&DirichletString, &b, &set, &x, largest()).expect("lengths");
     assert!(kkt.stationarity <= 2e-12 * kkt.b_norm, "{kkt:?}");
-    assert!(
-        (cost(&x) - OPTIMUM).abs() <= 1e-12,
-        "{:e}",
-        cost(&x) - OPTIMUM
-    );
+    assert!((cost(&x) - OPTIMUM).abs() <= 1e-12, "{:e}", cost(&x) - OPTIMUM);
     assert!((report.cost - cost(&x)).abs() <= 1e-12);
     assert_eq!(at_bound(&x), 14);
 }
@@ -189,25 +164,12 @@ fn units_change_nothing() {
     let (reference, x) = solve(&KprgpSettings::default(), largest(), 1e-5);
     // lengths in other units, a power of two so that rounding is the same
     let unit = (2.0_f64).powi(30);
-    let small = ProductSet::new(vec![Segment::lower(
-        lower.iter().map(|v| v / unit).collect(),
-    )])
-    .expect("set");
+    let small = ProductSet::new(vec![Segment::lower(lower.iter().map(|v| v / unit).collect())]).expect("set");
     let b: Vec<f64> = b.iter().map(|v| v / unit).collect();
     let mut y = vec![0.0; N];
     let mut work = KprgpWorkspace::new(&DirichletString);
     let (t, s) = (Tolerance::Relative(1e-5), KprgpSettings::default());
-    let report = kprgp(
-        &DirichletString,
-        &b,
-        &small,
-        largest(),
-        t,
-        &s,
-        &mut y,
-        &mut work,
-    )
-    .expect("solve");
+    let report = kprgp(&DirichletString, &b, &small, largest(), t, &s, &mut y, &mut work).expect("solve");
     assert_eq!(report.products, reference.products);
     assert!(x.iter().zip(&y).all(|(u, v)| *u == v * unit));
 }

@@ -2,8 +2,8 @@
 
 use crate::common::{self, Random};
 use signorini_qp::{
-    CgWorkspace, ConvexSet, DenseEquality, DenseOperator, Equality, Identity, ProductSet, QpError,
-    Status, Tolerance, projected_cg, vector,
+    CgWorkspace, ConvexSet, DenseEquality, DenseOperator, Equality, Identity, ProductSet, QpError, Status, Tolerance,
+    projected_cg, vector,
 };
 
 #[test]
@@ -12,21 +12,11 @@ fn satisfies_the_saddle_point_system_and_a_preconditioner_helps() {
     let n = 40;
     let (dense, _) = common::spd(n, 1.0, &mut r);
     // a badly scaled operator, and its diagonal as preconditioner
-    let s: Vec<f64> = (0..n)
-        .map(|i| 10f64.powf(3.0 * i as f64 / n as f64))
-        .collect();
-    let entries = (0..n * n)
-        .map(|k| dense.entries()[k] * s[k / n] * s[k % n])
-        .collect();
+    let s: Vec<f64> = (0..n).map(|i| 10f64.powf(3.0 * i as f64 / n as f64)).collect();
+    let entries = (0..n * n).map(|k| dense.entries()[k] * s[k / n] * s[k % n]).collect();
     let a = DenseOperator::new(n, entries).expect("symmetric");
     let diagonal = (0..n * n)
-        .map(|k| {
-            if k / n == k % n {
-                1.0 / a.entries()[k]
-            } else {
-                0.0
-            }
-        })
+        .map(|k| if k / n == k % n { 1.0 / a.entries()[k] } else { 0.0 })
         .collect();
     let m = DenseOperator::new(n, diagonal).expect("symmetric");
     let (c, e) = common::equality(n, 4, &ProductSet::free(n), &mut r);
@@ -47,8 +37,7 @@ fn satisfies_the_saddle_point_system_and_a_preconditioner_helps() {
     let mut x = r.vector(n);
     let mut y = x.clone();
     let mut plain = CgWorkspace::new(&a, &c, &Identity(n));
-    let first =
-        projected_cg(&a, &b, &c, &e, &Identity(n), t, 10_000, &mut x, &mut plain).expect("solve");
+    let first = projected_cg(&a, &b, &c, &e, &Identity(n), t, 10_000, &mut x, &mut plain).expect("solve");
     let mut work = CgWorkspace::new(&a, &c, &m);
     let second = projected_cg(&a, &b, &c, &e, &m, t, 10_000, &mut y, &mut work).expect("solve");
     assert!(first.status.converged() && second.status.converged());
@@ -60,18 +49,7 @@ fn satisfies_the_saddle_point_system_and_a_preconditioner_helps() {
         second.products,
         first.products
     );
-    let limit = projected_cg(
-        &a,
-        &b,
-        &c,
-        &e,
-        &Identity(n),
-        t,
-        3,
-        &mut [0.0; 40],
-        &mut plain,
-    )
-    .expect("solve");
+    let limit = projected_cg(&a, &b, &c, &e, &Identity(n), t, 3, &mut [0.0; 40], &mut plain).expect("solve");
     assert_eq!((limit.status, limit.products), (Status::IterationLimit, 3));
 }
 
@@ -82,13 +60,8 @@ fn indefinite_and_misfitting_input_is_named() {
     let m = Identity(2);
     let mut work = CgWorkspace::new(&a, &c, &m);
     let t = Tolerance::Relative(1e-8);
-    let run = |e: &[f64], work: &mut _| {
-        projected_cg(&a, &[1.0; 2], &c, e, &m, t, 10, &mut [0.0; 2], work)
-    };
-    assert!(matches!(
-        run(&[0.0], &mut work),
-        Err(QpError::Indefinite { .. })
-    ));
+    let run = |e: &[f64], work: &mut _| projected_cg(&a, &[1.0; 2], &c, e, &m, t, 10, &mut [0.0; 2], work);
+    assert!(matches!(run(&[0.0], &mut work), Err(QpError::Indefinite { .. })));
     assert!(matches!(run(&[], &mut work), Err(QpError::Length { .. })));
     assert_eq!(ProductSet::free(2).dim(), 2);
 }
@@ -110,10 +83,7 @@ fn a_load_in_the_equality_is_solved_at_once() {
         (report.expect("solve"), vector::norm(&x))
     };
     let (report, size) = solve(Tolerance::Relative(1e-12));
-    assert!(
-        report.status.converged() && report.products <= 2,
-        "{report:?}"
-    );
+    assert!(report.status.converged() && report.products <= 2, "{report:?}");
     assert!(size < 1e-13, "{size:e}");
     // who names a size gets it
     let (report, _) = solve(Tolerance::Absolute(1e-300));

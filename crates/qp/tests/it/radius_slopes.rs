@@ -2,8 +2,7 @@
 
 use crate::common::{Random, from_zero};
 use signorini_qp::{
-    ActiveSetReport, ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, RadiusSlope,
-    Segment, Status, vector,
+    ActiveSetReport, ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, RadiusSlope, Segment, Status, vector,
 };
 
 /// Normals that press, a disc each whose radius is a coefficient times its normal, and free components; `G` acts on the
@@ -53,19 +52,9 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
             }
         }
     };
-    let settings = ActiveSetSettings::default()
-        .with_tolerance(1e-11)
-        .with_forcing(forcing);
+    let settings = ActiveSetSettings::default().with_tolerance(1e-11).with_forcing(forcing);
     let (data, start) = ((&linear[..], &[0.5, -0.2][..]), (true, &slopes[..]));
-    let solved = from_zero(
-        &a,
-        &mut projector,
-        &mut set,
-        data,
-        &settings,
-        start,
-        &mut hook,
-    );
+    let solved = from_zero(&a, &mut projector, &mut set, data, &settings, start, &mut hook);
     let solved = solved.expect("no breakdown");
     (solved.x, solved.report)
 }
@@ -81,10 +70,7 @@ fn slopes_change_the_way_and_not_the_solution() {
             (Status::Converged, Status::Converged),
             "seed {seed}"
         );
-        assert!(
-            vector::distance(&x, &y) <= 1e-9 * vector::norm(&x),
-            "seed {seed}"
-        );
+        assert!(vector::distance(&x, &y) <= 1e-9 * vector::norm(&x), "seed {seed}");
         without += report.products();
         with += coupled.products();
     }
@@ -97,14 +83,8 @@ fn a_strong_coupling_is_left_to_the_hook() {
     for seed in 0..20 {
         let (x, report) = sliding(seed, 3.0, false, 0.4);
         let (y, coupled) = sliding(seed, 3.0, true, 0.4);
-        assert!(
-            report.status.converged() && coupled.status.converged(),
-            "seed {seed}"
-        );
-        assert!(
-            vector::distance(&x, &y) <= 1e-8 * vector::norm(&x),
-            "seed {seed}"
-        );
+        assert!(report.status.converged() && coupled.status.converged(), "seed {seed}");
+        assert!(vector::distance(&x, &y) <= 1e-8 * vector::norm(&x), "seed {seed}");
     }
 }
 

@@ -1,8 +1,8 @@
 //! Wrong input is refused with an error that names it.
 
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, KprgpWorkspace, ProductSet, QpError, Segment,
-    SetError, SmalseSettings, SmalseWorkspace, Status, Tolerance, kprgp, smalse,
+    DenseEquality, DenseOperator, KprgpSettings, KprgpWorkspace, ProductSet, QpError, Segment, SetError,
+    SmalseSettings, SmalseWorkspace, Status, Tolerance, kprgp, smalse,
 };
 
 use crate::common::{pair, run};
@@ -24,10 +24,7 @@ fn wrong_input_of_kprgp_is_named() {
     ));
     assert!(matches!(
         run(&a, &[0.0; 2], &ProductSet::free(3), &mut [0.0; 2], &s),
-        Err(QpError::Length {
-            what: "the set",
-            ..
-        })
+        Err(QpError::Length { what: "the set", .. })
     ));
     assert!(matches!(
         run(&a, &[f64::NAN, 0.0], &free, &mut [0.0; 2], &s),
@@ -55,10 +52,7 @@ fn wrong_input_of_kprgp_is_named() {
         &mut [0.0; 2],
         &mut work,
     );
-    assert!(matches!(
-        wrong_norm,
-        Err(QpError::Setting { name: "norm", .. })
-    ));
+    assert!(matches!(wrong_norm, Err(QpError::Setting { name: "norm", .. })));
 }
 
 #[test]
@@ -128,12 +122,7 @@ fn sizes_that_cannot_be_counted_are_refused() {
 
 #[test]
 fn wrong_sets_are_named() {
-    let bounds = |l: f64, u: f64| {
-        ProductSet::new(vec![
-            Segment::Free(1),
-            Segment::bounds(vec![0.0, l], vec![1.0, u]),
-        ])
-    };
+    let bounds = |l: f64, u: f64| ProductSet::new(vec![Segment::Free(1), Segment::bounds(vec![0.0, l], vec![1.0, u])]);
     for (l, u) in [
         (2.0, 1.0),
         (f64::NAN, 1.0),

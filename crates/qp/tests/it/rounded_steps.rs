@@ -2,8 +2,7 @@
 
 use crate::common::{self, Random, Solved, from_zero};
 use signorini_qp::{
-    ActiveSetReport, ActiveSetSettings, DenseProjector, EqualityProjector, ProductSet, QpError,
-    Segment, vector,
+    ActiveSetReport, ActiveSetSettings, DenseProjector, EqualityProjector, ProductSet, QpError, Segment, vector,
 };
 
 /// Projections of steps are off by a share of their lengths.
@@ -63,8 +62,7 @@ fn solve(seed: u64, bounds: usize, off: f64) -> (ActiveSetReport, f64, f64) {
     let mut g = random.vector(rows * n);
     (0..rows).for_each(|i| g[i * n + n - 1 - i] += 3.0);
     let e = random.vector(rows);
-    let mut set =
-        ProductSet::new(vec![Segment::upper(vec![0.0; bounds]), Segment::Free(free)]).expect("set");
+    let mut set = ProductSet::new(vec![Segment::upper(vec![0.0; bounds]), Segment::Free(free)]).expect("set");
     let mut projector = Rounding {
         inner: DenseProjector::new(rows, n, g.clone()).expect("projector"),
         off,
@@ -72,25 +70,13 @@ fn solve(seed: u64, bounds: usize, off: f64) -> (ActiveSetReport, f64, f64) {
     };
     let settings = ActiveSetSettings::default().with_tolerance(1e-10);
     let (data, start) = ((&b[..], &e[..]), (false, &[][..]));
-    let solved = from_zero(
-        &a,
-        &mut projector,
-        &mut set,
-        data,
-        &settings,
-        start,
-        &mut |_, _| {},
-    );
+    let solved = from_zero(&a, &mut projector, &mut set, data, &settings, start, &mut |_, _| {});
     let Solved { x, ax, report, .. } = solved.expect("a report");
     let row = |i: usize| (0..n).map(|j| g[i * n + j] * x[j]).sum::<f64>() - e[i];
     let off = (0..rows).map(|i| row(i).powi(2)).sum::<f64>().sqrt();
     let exact = common::product(&a, &x);
     let product = vector::distance(&exact, &ax);
-    (
-        report,
-        off / vector::norm(&x),
-        product / vector::norm(&exact),
-    )
+    (report, off / vector::norm(&x), product / vector::norm(&exact))
 }
 
 #[test]
@@ -100,10 +86,7 @@ fn the_equality_holds_after_steps_that_round() {
         let (report, off, product) = solve(seed, bounds, 1e-6);
         assert!(report.status.converged(), "seed {seed}: {report:?}");
         assert!(off < 1e-10, "seed {seed}: {off:e}");
-        assert!(
-            product < 1e-12,
-            "seed {seed}: the product is {product:e} off"
-        );
+        assert!(product < 1e-12, "seed {seed}: the product is {product:e} off");
         let (few, many) = (exact.products(), report.products());
         assert!(
             many <= few + few / 2 + 3,

@@ -79,18 +79,13 @@ fn states_name_what_they_are() {
     let inf = f64::INFINITY;
     let set = ProductSet::new(vec![
         Segment::Free(2),
-        Segment::bounds(
-            vec![0.0, 0.0, 1.0, -inf, 0.0],
-            vec![1.0, 1.0, 1.0, inf, 1.0],
-        ),
+        Segment::bounds(vec![0.0, 0.0, 1.0, -inf, 0.0], vec![1.0, 1.0, 1.0, inf, 1.0]),
         Segment::Free(0),
         Segment::discs(vec![0.0, 5.0, 5.0]),
     ])
     .expect("valid");
     assert_eq!(set.dim(), 13);
-    let x = [
-        9.0, 9.0, 0.0, 1.0, 1.0, 7.0, 0.5, 0.0, 0.0, 3.0, 4.0, 3.0, 3.0,
-    ];
+    let x = [9.0, 9.0, 0.0, 1.0, 1.0, 7.0, 0.5, 0.0, 0.0, 3.0, 4.0, 3.0, 3.0];
     let mut blocks = Vec::new();
     set.for_each_block(&x, &mut |b| blocks.push((b.start, b.len, b.state)));
     use BlockState::{AtLower, AtUpper, Boundary, Fixed, Free, Interior};
@@ -110,16 +105,12 @@ fn states_name_what_they_are() {
 
 #[test]
 fn slip_bounds_can_be_written_in_place() {
-    let mut set =
-        ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![1.0])]).expect("valid");
+    let mut set = ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![1.0])]).expect("valid");
     set.radii_mut(1).expect("discs")[0] = 2.0;
     let mut x = vec![1.0, 3.0, 0.0];
     set.project(&mut x);
     assert_eq!(x, [0.0, 2.0, 0.0]);
-    assert!(matches!(
-        set.radii_mut(0),
-        Err(SetError::Kind { segment: 0, .. })
-    ));
+    assert!(matches!(set.radii_mut(0), Err(SetError::Kind { segment: 0, .. })));
     assert!(set.bounds_mut(0).is_ok() && set.bounds_mut(1).is_err());
     set.radii_mut(1).expect("discs")[0] = -1.0;
     assert!(matches!(

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kkt::{EqualityPart, check_with};
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment,
-    SmalseSettings, Status, Tolerance, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status,
+    Tolerance, vector,
 };
 
 fn config() -> ProptestConfig {
@@ -87,12 +87,7 @@ fn no_rows_no_outer_loop() {
     let c = DenseEquality::orthonormal(0, 8, &[]).expect("empty");
     let set = ProductSet::new(vec![Segment::lower(vec![0.0; 8])]).expect("set");
     let mut p = Quadratic::new(a, r.vector(8), (c, vec![]), set);
-    let (report, ..) = p.smalse(
-        &SmalseSettings::default(),
-        &mut |_, _| false,
-        &mut [0.0; 8],
-        &mut [],
-    );
+    let (report, ..) = p.smalse(&SmalseSettings::default(), &mut |_, _| false, &mut [0.0; 8], &mut []);
     assert!(report.status.converged() && report.outer == 1);
 }
 
@@ -161,11 +156,7 @@ fn the_hook_may_change_radii() {
         }
         p.smalse(&tight(), &mut |_, _| false, &mut y, &mut gamma);
     }
-    assert!(
-        vector::distance(&x, &y) <= 1e-6,
-        "{}",
-        vector::distance(&x, &y)
-    );
+    assert!(vector::distance(&x, &y) <= 1e-6, "{}", vector::distance(&x, &y));
 }
 
 #[test]
@@ -222,12 +213,7 @@ fn products_stay_within_a_band() {
     .expect("set");
     let mut p = Quadratic::new(a, b, (c, e), set);
     let (mut x, mut beta) = (vec![0.0; n], vec![0.0; rows]);
-    let (report, ..) = p.smalse(
-        &SmalseSettings::default(),
-        &mut |_, _| false,
-        &mut x,
-        &mut beta,
-    );
+    let (report, ..) = p.smalse(&SmalseSettings::default(), &mut |_, _| false, &mut x, &mut beta);
     assert!(report.status.converged(), "{report:?}");
     let products = report.products.total();
     assert!((90..=135).contains(&products), "{products}");

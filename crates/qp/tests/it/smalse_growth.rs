@@ -1,9 +1,7 @@
 //! Step 4 of SMALSE: how often the precision shrinks, against the Lagrangian computed anew.
 
 use crate::common::{self, Quadratic, Random};
-use signorini_qp::{
-    ConvexSet, Equality, KprgpSettings, ProductSet, SmalseReport, SmalseSettings, Tolerance, vector,
-};
+use signorini_qp::{ConvexSet, Equality, KprgpSettings, ProductSet, SmalseReport, SmalseSettings, Tolerance, vector};
 
 impl Quadratic {
     fn residual(&self, x: &[f64]) -> Vec<f64> {
@@ -64,14 +62,7 @@ fn the_precision_shrinks_where_the_lagrangian_grows_too_little() {
         let (a, norm) = common::spd(n, 2.0, &mut r);
         let (c, e) = common::equality(n, 1 + n / 4, &set, &mut r);
         let b = r.vector(n);
-        let mut problem = Quadratic {
-            a,
-            b,
-            c,
-            e,
-            set,
-            norm,
-        };
+        let mut problem = Quadratic { a, b, c, e, set, norm };
         let (report, iterates) = problem.iterates(precision);
         let rho = PENALTY * norm;
         let mut beta = vec![0.0; problem.e.len()];

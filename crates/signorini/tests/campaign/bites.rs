@@ -11,9 +11,7 @@ const MORE: f64 = 1.02;
 fn scaled(course: &Course) -> Course {
     match course {
         Course::Constant(value) => Course::Constant(MORE * value),
-        Course::Table(points) => {
-            Course::Table(points.iter().map(|(t, v)| (*t, MORE * v)).collect())
-        }
+        Course::Table(points) => Course::Table(points.iter().map(|(t, v)| (*t, MORE * v)).collect()),
         Course::Wave { size, pace, phase } => Course::Wave {
             size: MORE * size,
             pace: *pace,
@@ -42,9 +40,7 @@ const CHANGES: [Change; 8] = [
         }
     }),
     ("loads", |r| {
-        r.pushes
-            .iter_mut()
-            .for_each(|p| p.course = scaled(&p.course));
+        r.pushes.iter_mut().for_each(|p| p.course = scaled(&p.course));
     }),
     ("motions of supports", |r| {
         let motions = r.holds.iter_mut().filter_map(|h| h.motion.as_mut());

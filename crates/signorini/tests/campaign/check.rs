@@ -135,13 +135,7 @@ impl<'a> Judge<'a> {
         let quasistatic = matches!(self.recipe.clock, Clock::Steps { .. });
         self.rates = slips
             .iter()
-            .map(|s| {
-                if quasistatic {
-                    norm(s.slip) / step
-                } else {
-                    0.0
-                }
-            })
+            .map(|s| if quasistatic { norm(s.slip) / step } else { 0.0 })
             .collect();
         self.ways.swap(0, 1);
         self.ways[0] = slips.iter().map(|s| s.way).collect();
@@ -174,9 +168,7 @@ impl<'a> Judge<'a> {
             let own = &frame.torn_displacement()[start..start + 3 * subdomain.nodes.len()];
             let mut force = vec![0.0; own.len()];
             for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
-                let forces = self
-                    .mechanics
-                    .strain(element as usize, tet.map(|n| at(own, n)));
+                let forces = self.mechanics.strain(element as usize, tet.map(|n| at(own, n)));
                 for (n, f) in tet.iter().zip(forces) {
                     (0..3).for_each(|c| force[3 * *n as usize + c] += f[c]);
                 }
@@ -235,14 +227,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    fn equilibrium(
-        &self,
-        report: &Report<'_>,
-        load: &[f64],
-        strained: &[f64],
-        sizes: &[Size],
-        worst: &mut Worst,
-    ) {
+    fn equilibrium(&self, report: &Report<'_>, load: &[f64], strained: &[f64], sizes: &[Size], worst: &mut Worst) {
         let mut rest: Vec<Vec3> = (0..self.mechanics.points.len() as u32)
             .map(|n| sub(at(strained, n), at(load, n)))
             .collect();
@@ -300,11 +285,7 @@ impl<'a> Judge<'a> {
         let said = [&report.reactions.loads, &report.reactions.contact];
         for (own, said) in sums.iter().zip(said) {
             worst.add("reaction sums", norm(sub(own[0], said.force)), forces);
-            worst.add(
-                "reaction sums",
-                norm(sub(own[1], said.moment)),
-                far * forces,
-            );
+            worst.add("reaction sums", norm(sub(own[1], said.moment)), far * forces);
         }
         let [force, moment] = [0, 1].map(|k| norm(add(sums[0][k], add(sums[1][k], sums[2][k]))));
         worst.add("balance", force, forces);

@@ -29,8 +29,7 @@ const SEED: u64 = 20_240_229;
 
 fn number(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| {
-        text.parse()
-            .unwrap_or_else(|e| panic!("{name}={text}: {e}"))
+        text.parse().unwrap_or_else(|e| panic!("{name}={text}: {e}"))
     })
 }
 

@@ -85,8 +85,7 @@ impl Mechanics {
         let c = &self.laws[e.law];
         let s: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| c[i][j] * strain[j]).sum());
         let stress = [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]];
-        e.gradients
-            .map(|g| stress.map(|row| e.volume * dot(row, g)))
+        e.gradients.map(|g| stress.map(|row| e.volume * dot(row, g)))
     }
 
     fn diagonal(&self) -> Vec<f64> {
@@ -244,11 +243,7 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
         let [a, b, c] = facet.nodes.map(|n| points[n as usize]);
         let vector = scale(0.5, cross(sub(b, a), sub(c, a)));
         let inside = points[inner[&sorted(facet.nodes)] as usize];
-        let sign = if dot(vector, sub(inside, a)) > 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let sign = if dot(vector, sub(inside, a)) > 0.0 { -1.0 } else { 1.0 };
         Side {
             tag: facet.tag,
             nodes: facet.nodes,

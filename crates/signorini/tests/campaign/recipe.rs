@@ -133,11 +133,7 @@ impl Hold {
         let Some((values, course)) = &self.motion else {
             return [0.0; 3];
         };
-        let value = if values.len() == 1 {
-            values[0]
-        } else {
-            values[place]
-        };
+        let value = if values.len() == 1 { values[0] } else { values[place] };
         value.map(|v| v * course.value(time))
     }
 }
@@ -185,11 +181,9 @@ impl Law {
             Self::GivenField(stress) => stress.value(x) * area,
             Self::Coulomb(value) => value * force,
             Self::CoulombField(field) => field.value(x) * force,
-            Self::Exponential {
-                fixed,
-                kinetic,
-                decay,
-            } => (kinetic + (fixed - kinetic) * (-rate / decay).exp()) * force,
+            Self::Exponential { fixed, kinetic, decay } => {
+                (kinetic + (fixed - kinetic) * (-rate / decay).exp()) * force
+            }
             Self::Table(points) => line(points, rate) * force,
             Self::RateField(field, half) => field.value(x) / (1.0 + rate / half) * force,
         }

@@ -130,12 +130,7 @@ impl Tally {
         let mut wrong = file("wrong.txt")?;
         let mut refused = file("refused.txt")?;
         for entry in &self.entries {
-            let text = format!(
-                "{}: {}\n    {}\n",
-                entry.number,
-                entry.words.join(", "),
-                entry.story()
-            );
+            let text = format!("{}: {}\n    {}\n", entry.number, entry.words.join(", "), entry.story());
             all.write_all(text.as_bytes())?;
             if is_wrong(&entry.outcome) {
                 wrong.write_all(text.as_bytes())?;
@@ -158,10 +153,7 @@ impl Tally {
                 )?;
             }
         }
-        writeln!(
-            unsolved,
-            "\nWith the default settings, bodies held by supports first:"
-        )?;
+        writeln!(unsolved, "\nWith the default settings, bodies held by supports first:")?;
         let (held, loose): (Vec<_>, Vec<_>) = list.iter().partition(|e| e.held);
         let list: Vec<&&Entry> = held.into_iter().chain(loose).collect();
         for entry in list.iter().filter(|e| e.default) {
@@ -253,9 +245,7 @@ impl fmt::Display for Tally {
             for (kind, held) in [("held by supports", true), ("held by contact, too", false)] {
                 let such = |e: &&Entry| e.default == default && e.held == held;
                 let ran = self.entries.iter().filter(such);
-                let ran = ran
-                    .filter(|e| matches!(e.outcome, Outcome::Solved(_)))
-                    .count();
+                let ran = ran.filter(|e| matches!(e.outcome, Outcome::Solved(_))).count();
                 let bad = self.unsolved().into_iter().filter(such).count();
                 writeln!(
                     f,

@@ -1,8 +1,7 @@
 //! A recipe in the words of the library.
 
 use crate::recipe::{
-    Clock, Course, Density, Distance, Elastic, Ending, Fixed, Law, Pieces, Recipe, Solver, Touch,
-    Where,
+    Clock, Course, Density, Distance, Elastic, Ending, Fixed, Law, Pieces, Recipe, Solver, Touch, Where,
 };
 use crate::vec3::{Vec3, add, scale};
 use signorini::prelude::*;
@@ -23,11 +22,9 @@ fn density(density: &Density) -> LoadDensity {
         Density::Body(value) => LoadDensity::body(value),
         Density::BodyField(field) => LoadDensity::body_field(move |x| field.map(|p| p.value(x))),
         Density::Traction(tag, value) => LoadDensity::traction(tag, value),
-        Density::TractionField(tag, field, pull) => {
-            LoadDensity::traction_field(tag, move |x, n: Vec3| {
-                add(field.map(|p| p.value(x)), scale(pull.value(x), n))
-            })
-        }
+        Density::TractionField(tag, field, pull) => LoadDensity::traction_field(tag, move |x, n: Vec3| {
+            add(field.map(|p| p.value(x)), scale(pull.value(x), n))
+        }),
         Density::Pressure(tag, value) => LoadDensity::pressure(tag, value),
         Density::Nodes(forces) => LoadDensity::nodal_forces(forces),
     }
@@ -38,27 +35,17 @@ fn friction(law: &Law) -> Friction {
         Law::None => Friction::None,
         Law::Given(stress) => Friction::tresca(stress),
         Law::GivenField(field) => {
-            Friction::Tresca(SlipBound::StressField(std::sync::Arc::new(move |x| {
-                field.value(x)
-            })))
+            Friction::Tresca(SlipBound::StressField(std::sync::Arc::new(move |x| field.value(x))))
         }
         Law::Coulomb(value) => Friction::coulomb(value),
         Law::CoulombField(field) => Friction::Coulomb(Coefficient::field(move |x| field.value(x))),
-        Law::Exponential {
-            fixed,
-            kinetic,
-            decay,
-        } => Friction::Coulomb(Coefficient::Exponential {
-            fixed,
-            kinetic,
-            decay,
-        }),
-        Law::Table(points) => Friction::Coulomb(Coefficient::Table(points)),
-        Law::RateField(field, half) => {
-            Friction::Coulomb(Coefficient::rate_field(move |x, rate| {
-                field.value(x) / (1.0 + rate / half)
-            }))
+        Law::Exponential { fixed, kinetic, decay } => {
+            Friction::Coulomb(Coefficient::Exponential { fixed, kinetic, decay })
         }
+        Law::Table(points) => Friction::Coulomb(Coefficient::Table(points)),
+        Law::RateField(field, half) => Friction::Coulomb(Coefficient::rate_field(move |x, rate| {
+            field.value(x) / (1.0 + rate / half)
+        })),
     }
 }
 
@@ -114,8 +101,7 @@ pub(crate) fn scene(recipe: &Recipe) -> Result<Scene, Error> {
         [one] => Materials::uniform(*one),
         several => Materials::new((0..).zip(several.iter().copied()).collect())?,
     };
-    let mut scene =
-        Scene::new(recipe.mesh.clone(), materials).with_analysis(analysis(&recipe.clock)?);
+    let mut scene = Scene::new(recipe.mesh.clone(), materials).with_analysis(analysis(&recipe.clock)?);
     for hold in &recipe.holds {
         let place = match &hold.place {
             Where::Tag(tag) => Place::from(*tag),

@@ -31,27 +31,16 @@ pub(crate) fn spots(recipe: &Recipe, mechanics: &Mechanics) -> Vec<Spot> {
         let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (k, side) in mechanics.sides.iter().enumerate() {
             if touch.tags.contains(&side.tag) {
-                side.nodes
-                    .iter()
-                    .for_each(|n| around.entry(*n).or_default().push(k));
+                side.nodes.iter().for_each(|n| around.entry(*n).or_default().push(k));
             }
         }
         for (node, facets) in around {
-            let whole = touch.direction.is_some()
-                || touch.partner.is_some()
-                || matches!(touch.distance, Distance::Plane(..));
-            let parts = if whole {
-                vec![facets]
-            } else {
-                split(mechanics, &facets)
-            };
+            let whole =
+                touch.direction.is_some() || touch.partner.is_some() || matches!(touch.distance, Distance::Plane(..));
+            let parts = if whole { vec![facets] } else { split(mechanics, &facets) };
             for part in parts {
                 let sum = (part.iter()).fold([0.0; 3], |v, k| add(v, mechanics.sides[*k].vector));
-                let area = part
-                    .iter()
-                    .map(|k| norm(mechanics.sides[*k].vector))
-                    .sum::<f64>()
-                    / 3.0;
+                let area = part.iter().map(|k| norm(mechanics.sides[*k].vector)).sum::<f64>() / 3.0;
                 let normal = match (touch.direction, &touch.distance) {
                     (Some(direction), _) => direction,
                     (None, Distance::Plane(_, outward)) => scale(-1.0, *outward),

@@ -2,8 +2,7 @@
 
 use signorini::contact::{ContactError, InnerAccuracy};
 use signorini::fem_mesh::{
-    BrickError, DecompositionError, Facet, HistoryError, HookeError, LoadError, MaterialError,
-    MeshError, SurfaceError,
+    BrickError, DecompositionError, Facet, HistoryError, HookeError, LoadError, MaterialError, MeshError, SurfaceError,
 };
 use signorini::prelude::*;
 use signorini::qp::{ActiveSetSettings, QpError, SmalseSettings};
@@ -12,9 +11,7 @@ use signorini::tfeti::{InverseSettings, TfetiError};
 type Checked = Result<(), Error>;
 
 fn mesh() -> TetMesh {
-    Brick::new([3.0, 1.0, 1.0], [3, 1, 1])
-        .build()
-        .expect("brick")
+    Brick::new([3.0, 1.0, 1.0], [3, 1, 1]).build().expect("brick")
 }
 
 fn steel() -> Materials {
@@ -49,10 +46,7 @@ fn attempt_with(scene: Scene, settings: Settings) -> Checked {
         Err(ContactError::NotHeld { .. } | ContactError::NotDetermined { .. }) => {
             plan.expect("nothing that a plan sees");
         }
-        Err(error) => assert_eq!(
-            plan.expect_err("refused by the plan").to_string(),
-            error.to_string()
-        ),
+        Err(error) => assert_eq!(plan.expect_err("refused by the plan").to_string(), error.to_string()),
         Ok(_) => plan.expect("accepted by the plan"),
     }
     set_up?.step()?;
@@ -96,11 +90,7 @@ fn check(cases: Vec<Case>) -> usize {
                 // what a main that returns the error prints
                 assert_eq!(format!("{error:?}"), message, "{}", case.name);
                 for part in case.says {
-                    assert!(
-                        message.contains(part),
-                        "{}: '{message}' lacks '{part}'",
-                        case.name
-                    );
+                    assert!(message.contains(part), "{}: '{message}' lacks '{part}'", case.name);
                 }
             }
         }
@@ -308,9 +298,7 @@ fn times_and_settings() {
 #[test]
 fn checkpoints_and_the_end() {
     let scene = |cells| {
-        let mesh = Brick::new([3.0, 1.0, 1.0], [cells, 1, 1])
-            .build()
-            .expect("brick");
+        let mesh = Brick::new([3.0, 1.0, 1.0], [cells, 1, 1]).build().expect("brick");
         Scene::new(mesh, steel())
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e6]))
@@ -366,11 +354,9 @@ fn flipped_bits_of_a_checkpoint_do_not_panic() {
         damaged[at] ^= 0x80;
         assert!(State::from_bytes(&damaged).is_err(), "byte {at}");
         // the format and the checksum stand in the first 12 bytes; FNV-1a
-        let sum = damaged[12..]
-            .iter()
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-            });
+        let sum = damaged[12..].iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
         damaged[4..12].copy_from_slice(&sum.to_le_bytes());
         let Ok(state) = State::from_bytes(&damaged) else {
             continue;
@@ -380,8 +366,7 @@ fn flipped_bits_of_a_checkpoint_do_not_panic() {
             && !other.is_finished()
             && let Ok(frame) = other.step()
         {
-            let honest =
-                !frame.report().status.converged() || frame.certificate().largest() <= 1e-6;
+            let honest = !frame.report().status.converged() || frame.certificate().largest() <= 1e-6;
             assert!(honest, "byte {at}");
         }
     }
@@ -390,9 +375,7 @@ fn flipped_bits_of_a_checkpoint_do_not_panic() {
 /// A contact surface that is fixed entirely has nothing to decide: it is left out, not an error.
 #[test]
 fn a_contact_surface_that_is_fixed_is_left_out() {
-    let scene = good().replace_contact(Some(
-        Contact::rigid(brick::X_MIN).with_friction(Friction::coulomb(0.3)),
-    ));
+    let scene = good().replace_contact(Some(Contact::rigid(brick::X_MIN).with_friction(Friction::coulomb(0.3))));
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
     assert!(simulation.constrained_points().is_empty());
     let removed = simulation.tfeti().gluing().removed();

@@ -7,9 +7,7 @@ fn scene(levels: usize) -> Result<Scene, Error> {
     let steel = Hooke::isotropic(211.9e9, 0.277)?;
     Ok(Scene::new(mesh, Materials::uniform(steel))
         .with_support(Support::fixed(brick::X_MIN))
-        .with_load(
-            Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?),
-        )
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?))
         .with_contact(
             Contact::rigid(brick::Z_MIN)
                 .with_gap(0.1)
@@ -95,10 +93,7 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
     let Err(error @ ContactError::Observer { step: 1, .. }) = outcome else {
         panic!("an error is expected, not {outcome:?}");
     };
-    assert_eq!(
-        error.to_string(),
-        "observer, after step 1: the disk is full"
-    );
+    assert_eq!(error.to_string(), "observer, after step 1: the disk is full");
     assert_eq!(simulation.state().step(), 2);
     simulation.run(&mut Silent)?.require_converged()?;
     assert!(simulation.is_finished());
@@ -144,10 +139,7 @@ fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
     // a linear body without gap work: twice the energy is the work of all forces on the displacements
     let energy = frame.strain_energy();
     let points = frame.points();
-    let pressing = points
-        .iter()
-        .filter(|p| p.state != ContactState::Open)
-        .count();
+    let pressing = points.iter().filter(|p| p.state != ContactState::Open).count();
     assert_eq!(pressing, frame.summary().active);
     assert!(energy > 0.0 && pressing > 0);
     Ok(())
@@ -157,12 +149,7 @@ fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
 fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
     let plan = Plan::new(&scene(4)?, &Settings::default())?;
     let text = plan.to_string();
-    for part in [
-        "Coulomb",
-        "gaps 1.000e-1 to 1.000e-1 m",
-        "4 steps",
-        "active-set",
-    ] {
+    for part in ["Coulomb", "gaps 1.000e-1 to 1.000e-1 m", "4 steps", "active-set"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
     Ok(())
@@ -172,10 +159,7 @@ fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
 fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
     let pull = History::ramp(2.0, 1.0)?;
     let scene = scene(2)?
-        .with_support(
-            Support::components(vec![3, 5], [true, false, false])
-                .with_motion([1e-3, 0.0, 0.0], pull.clone()),
-        )
+        .with_support(Support::components(vec![3, 5], [true, false, false]).with_motion([1e-3, 0.0, 0.0], pull.clone()))
         .with_load(Load::body([0.0, 0.0, -1.0]).with_history(pull.clone()));
     let [clamp, moved] = scene.supports() else {
         panic!("two supports")

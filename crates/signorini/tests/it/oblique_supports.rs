@@ -32,9 +32,7 @@ fn scene(k: u64, angle: f64) -> Result<Scene, Error> {
         Friction::coulomb(0.35 + 0.2 * next())
     };
     let down = [0.0, d * next(), -d * (0.6 + 0.4 * next())];
-    let mut contact = Contact::rigid(brick::Z_MIN)
-        .with_gap(2e-4)
-        .with_friction(friction);
+    let mut contact = Contact::rigid(brick::Z_MIN).with_gap(2e-4).with_friction(friction);
     if k.is_multiple_of(2) {
         let way = [0.3 * d * next(), 0.3 * d * next(), 0.3 * d * next()];
         contact = contact.with_motion(turn(way), History::constant(1.0));

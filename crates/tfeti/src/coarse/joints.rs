@@ -45,10 +45,7 @@ fn copies(gluing: &Gluing, first_block: usize, nodes: usize, runs: usize) -> Vec
 }
 
 /// Pairs of subdomains that the interface joins rigidly, ascending.
-pub(crate) fn rigid_pairs(
-    gluing: &Gluing,
-    position: impl Fn(usize, usize) -> [f64; 3],
-) -> Vec<(u32, u32)> {
+pub(crate) fn rigid_pairs(gluing: &Gluing, position: impl Fn(usize, usize) -> [f64; 3]) -> Vec<(u32, u32)> {
     let mut pairs: HashMap<(u32, u32), Shared> = HashMap::new();
     for glob in gluing.globs() {
         let (nodes, runs) = (glob.nodes as usize, glob.runs as usize);
@@ -75,9 +72,7 @@ pub(crate) fn rigid_pairs(
             }
         }
     }
-    let rigid = pairs
-        .into_iter()
-        .filter(|(_, shared)| matches!(shared, Shared::Rigid));
+    let rigid = pairs.into_iter().filter(|(_, shared)| matches!(shared, Shared::Rigid));
     let mut out: Vec<(u32, u32)> = rigid.map(|(pair, _)| pair).collect();
     out.sort_unstable();
     out

@@ -45,13 +45,7 @@ impl<'a> ModeTable<'a> {
     }
 
     /// Row of `G^T`: `(subdomain, six coefficients)`, times `factor`, added to `out`.
-    pub(crate) fn row(
-        &self,
-        gluing: &Gluing,
-        nodal: usize,
-        factor: f64,
-        out: &mut Vec<(u32, [f64; 6])>,
-    ) {
+    pub(crate) fn row(&self, gluing: &Gluing, nodal: usize, factor: f64, out: &mut Vec<(u32, [f64; 6])>) {
         for e in gluing.nodal(nodal) {
             let modes = self.at(e.subdomain, e.local);
             let sum = entry(out, e.subdomain, [0.0; 6]);
@@ -121,10 +115,10 @@ impl CoarseMatrix {
         };
         for (list, values) in columns {
             for _ in 0..6 {
-                matrix.interface.rows.extend(
-                    list.iter()
-                        .flat_map(|&i| (0..6).map(move |r| 6 * i as usize + r)),
-                );
+                matrix
+                    .interface
+                    .rows
+                    .extend(list.iter().flat_map(|&i| (0..6).map(move |r| 6 * i as usize + r)));
                 matrix.interface.pointers.push(matrix.interface.rows.len());
             }
             matrix.neighbours.extend(list);
@@ -182,12 +176,7 @@ impl CoarseMatrix {
     }
 
     /// `G W G^T`; weight one for all rows if there are no weights.
-    pub(crate) fn assemble(
-        &self,
-        gluing: &Gluing,
-        modes: &ModeTable<'_>,
-        weights: Option<&RowWeights>,
-    ) -> Columns {
+    pub(crate) fn assemble(&self, gluing: &Gluing, modes: &ModeTable<'_>, weights: Option<&RowWeights>) -> Columns {
         let mut matrix = self.interface.clone();
         let values = &mut matrix.values;
         let start = gluing.ranges().interface.start;
@@ -313,11 +302,7 @@ fn block_column(
         }
     }
     for &nodal in nodal.of(subdomain) {
-        for e in gluing
-            .nodal(nodal as usize)
-            .iter()
-            .filter(|e| e.subdomain > own)
-        {
+        for e in gluing.nodal(nodal as usize).iter().filter(|e| e.subdomain > own) {
             entry(&mut moments, e.subdomain, Moments::default());
         }
     }

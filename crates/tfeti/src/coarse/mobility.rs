@@ -50,11 +50,7 @@ impl fmt::Display for FreeMotion {
         for (k, m) in self.bodies.iter().enumerate() {
             let [t, r] = [m.translation, m.rotation];
             let separator = if k > 0 { "; " } else { "" };
-            write!(
-                f,
-                "{separator}body {} (with subdomain {}): ",
-                m.body, m.subdomain
-            )?;
+            write!(f, "{separator}body {} (with subdomain {}): ", m.body, m.subdomain)?;
             write!(f, "translation ({:.3}, {:.3}, {:.3}), ", t[0], t[1], t[2])?;
             write!(f, "rotation ({:.3}, {:.3}, {:.3})", r[0], r[1], r[2])?;
         }
@@ -92,11 +88,7 @@ struct Body {
 
 impl Mobility {
     /// `centres` are the means of the nodes of the subdomains.
-    pub(crate) fn new(
-        subdomains: Arc<Subdomains>,
-        gluing: &Gluing,
-        centres: Vec<[f64; 3]>,
-    ) -> Self {
+    pub(crate) fn new(subdomains: Arc<Subdomains>, gluing: &Gluing, centres: Vec<[f64; 3]>) -> Self {
         let mut sets = DisjointSets::new(centres.len());
         let position = |s: usize, local: usize| {
             let kernel = subdomains.kernel(s);
@@ -198,10 +190,7 @@ impl Mobility {
     /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.
     ///
     /// Bodies that no row joins are judged one by one: what is little is little for a body, not for all of them.
-    pub(crate) fn free(
-        &self,
-        rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>,
-    ) -> Vec<FreeMotion> {
+    pub(crate) fn free(&self, rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>) -> Vec<FreeMotion> {
         let rows: Vec<_> = rows.chain(self.joints.iter().cloned()).collect();
         let mut sets = DisjointSets::new(self.bodies.len());
         for row in &rows {

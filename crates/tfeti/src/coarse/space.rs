@@ -69,10 +69,7 @@ impl Coarse {
             || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
             || {
                 let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
-                (
-                    mobility,
-                    RigidTables::new(&map, subdomains.clone(), &gluing),
-                )
+                (mobility, RigidTables::new(&map, subdomains.clone(), &gluing))
             },
         );
         let symbolic = symbolic?;
@@ -147,8 +144,7 @@ impl Coarse {
     pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
         let mut row = vec![0.0; self.dim()];
         let mut scratch = self.scratch();
-        self.0
-            .product_transpose(amplitudes, &mut row, &mut scratch.motions);
+        self.0.product_transpose(amplitudes, &mut row, &mut scratch.motions);
         row.truncate(contact);
         LooseMode::new(amplitudes.to_vec(), row)
     }
@@ -157,10 +153,7 @@ impl Coarse {
     ///
     /// # Errors
     /// [`TfetiError::Setting`] and [`TfetiError::Length`] for weights that cannot be used.
-    pub fn free_motions(
-        &self,
-        weights: Option<&RowWeights>,
-    ) -> Result<Vec<FreeMotion>, TfetiError> {
+    pub fn free_motions(&self, weights: Option<&RowWeights>) -> Result<Vec<FreeMotion>, TfetiError> {
         if let Some(weights) = weights {
             weights.validate(self.0.gluing.ranges())?;
         }
@@ -170,13 +163,7 @@ impl Coarse {
 
 impl CoarseData {
     /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
-    pub(crate) fn product(
-        &self,
-        x: &[f64],
-        weights: Option<&[f64]>,
-        out: &mut [f64],
-        sides: &mut [Wrench],
-    ) {
+    pub(crate) fn product(&self, x: &[f64], weights: Option<&[f64]>, out: &mut [f64], sides: &mut [Wrench]) {
         self.tables.wrenches(&self.map, x, weights, out, sides);
     }
 
@@ -240,8 +227,7 @@ impl CoarseData {
                 return None;
             }
             let mut out = Vec::new();
-            self.mobility
-                .act(gluing.nodal(nodal), weight(row).sqrt(), &mut out);
+            self.mobility.act(gluing.nodal(nodal), weight(row).sqrt(), &mut out);
             Some(out)
         });
         let combined = lines.iter().filter(|l| l.weight > 0.0).map(|line| {

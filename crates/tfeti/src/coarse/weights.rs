@@ -38,10 +38,7 @@ impl RowWeights {
     pub(crate) fn validate(&self, ranges: &RowRanges) -> Result<(), TfetiError> {
         TfetiError::check_length("row weights", self.diagonal.len(), ranges.total())?;
         let refuse = |name, value, range| Err(TfetiError::Setting { name, value, range });
-        let mut all = self
-            .diagonal
-            .iter()
-            .chain(self.lines.iter().map(|l| &l.weight));
+        let mut all = self.diagonal.iter().chain(self.lines.iter().map(|l| &l.weight));
         if let Some(&value) = all.find(|w| !(w.is_finite() && **w >= 0.0)) {
             return refuse("row weight", value, "finite and not negative");
         }

@@ -188,10 +188,7 @@ impl BoundaryMap {
         for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
             let range = pair[0] as usize..pair[1] as usize;
             let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            for (place, &weight) in self.block_places[range.clone()]
-                .iter()
-                .zip(&self.block_weights[range])
-            {
+            for (place, &weight) in self.block_places[range.clone()].iter().zip(&self.block_weights[range]) {
                 let value = place.read(y);
                 a += weight * value[0];
                 b += weight * value[1];
@@ -205,8 +202,7 @@ impl BoundaryMap {
 
     fn collect_rows(&self, y: &[f64], first: usize, out: &mut [f64]) {
         for (k, target) in out.iter_mut().enumerate() {
-            let range =
-                self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
+            let range = self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
             let entry = |e: usize| {
                 let value = self.row_places[e].read(y);
                 let v = &self.row_vectors[e];
@@ -218,10 +214,7 @@ impl BoundaryMap {
 
     /// Work memory of [`by_panels`](Self::by_panels); `more` tells how many numbers a panel needs besides those on the
     /// boundary, and what memory of solves.
-    pub(crate) fn scratch(
-        &self,
-        more: impl Fn(&Panel) -> Option<(usize, MemoryNeed)>,
-    ) -> PanelScratch {
+    pub(crate) fn scratch(&self, more: impl Fn(&Panel) -> Option<(usize, MemoryNeed)>) -> PanelScratch {
         let lane = |lane: &Lane| {
             let (mut gathered, mut full, mut need) = (0, 0, None);
             for panel in &self.panels[lane.panels.clone()] {
@@ -263,14 +256,7 @@ impl BoundaryMap {
             }
         };
         let offset = |lane: &Lane| 3 * lane.copy;
-        over_lanes(
-            &self.lanes,
-            &mut s.lanes,
-            &mut s.boundary,
-            &offset,
-            parallel,
-            &task,
-        );
+        over_lanes(&self.lanes, &mut s.lanes, &mut s.boundary, &offset, parallel, &task);
         self.collect(&s.boundary, y);
     }
 

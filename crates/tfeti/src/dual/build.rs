@@ -55,11 +55,7 @@ impl BoundaryMap {
     /// Cuts the members into panels of about equal width and the panels into lanes of about equal work.
     fn fill_panels(&mut self) {
         let mut work = Vec::new();
-        let touched = self
-            .classes
-            .iter()
-            .enumerate()
-            .filter(|(_, b)| !b.nodes.is_empty());
+        let touched = self.classes.iter().enumerate().filter(|(_, b)| !b.nodes.is_empty());
         for (class, boundary) in touched {
             let (members, nodes) = (boundary.members.len(), boundary.nodes.len());
             let count = members.div_ceil(PANEL);
@@ -81,24 +77,17 @@ impl BoundaryMap {
             copy: self.panels[panels.start].copies.start,
             panels,
         };
-        self.lanes = shares(&work, 1, self.panels.len())
-            .into_iter()
-            .map(lane)
-            .collect();
+        self.lanes = shares(&work, 1, self.panels.len()).into_iter().map(lane).collect();
     }
 
     fn numbering<'a>(&self, classes: &'a Classes) -> Numbering<'a> {
-        let places = self
-            .classes
-            .iter()
-            .zip(classes.classes())
-            .map(|(boundary, class)| {
-                let mut place = vec![u32::MAX; class.nodes];
-                for (k, &node) in boundary.nodes.iter().enumerate() {
-                    place[node as usize] = k as u32;
-                }
-                place
-            });
+        let places = self.classes.iter().zip(classes.classes()).map(|(boundary, class)| {
+            let mut place = vec![u32::MAX; class.nodes];
+            for (k, &node) in boundary.nodes.iter().enumerate() {
+                place[node as usize] = k as u32;
+            }
+            place
+        });
         let mut panels = vec![Vec::new(); self.classes.len()];
         for p in &self.panels {
             panels[p.class].push((p.columns.start, p.columns.len(), p.copies.start));
@@ -140,9 +129,7 @@ impl BoundaryMap {
         let (pointers, order) = transpose(&self.block_pointers, &copies[0], self.copies);
         self.spread_pointers = pointers;
         self.spread_blocks = order.iter().map(|&(block, _)| block).collect();
-        let weights = order
-            .iter()
-            .map(|&(_, entry)| self.block_weights[entry as usize]);
+        let weights = order.iter().map(|&(_, entry)| self.block_weights[entry as usize]);
         self.spread_weights = weights.collect();
         let (pointers, order) = transpose(&self.row_pointers, &copies[1], self.copies);
         for copy in 0..self.copies {
@@ -152,8 +139,7 @@ impl BoundaryMap {
             }
             self.nodal_copies.push(copy as u32);
             for &(nodal, entry) in &order[range] {
-                self.nodal_rows
-                    .push(gluing.nodal_row(nodal as usize) as u32);
+                self.nodal_rows.push(gluing.nodal_row(nodal as usize) as u32);
                 self.nodal_vectors.push(self.row_vectors[entry as usize]);
             }
             self.nodal_pointers.push(self.nodal_rows.len() as u32);
@@ -169,21 +155,13 @@ fn boundaries(classes: &Classes, gluing: &Gluing) -> Vec<BoundaryClass> {
         touched[classes.place(subdomain as usize).0][local as usize] = true;
     };
     for block in 0..gluing.blocks() {
-        gluing
-            .block(block)
-            .iter()
-            .for_each(|e| touch(e.subdomain, e.local));
+        gluing.block(block).iter().for_each(|e| touch(e.subdomain, e.local));
     }
     for nodal in 0..gluing.nodal_rows() {
-        gluing
-            .nodal(nodal)
-            .iter()
-            .for_each(|e| touch(e.subdomain, e.local));
+        gluing.nodal(nodal).iter().for_each(|e| touch(e.subdomain, e.local));
     }
     let boundary = |(class, touched): (&Class, Vec<bool>)| BoundaryClass {
-        nodes: (0..class.nodes as u32)
-            .filter(|&n| touched[n as usize])
-            .collect(),
+        nodes: (0..class.nodes as u32).filter(|&n| touched[n as usize]).collect(),
         members: class.members.clone(),
     };
     list.iter().zip(touched).map(boundary).collect()

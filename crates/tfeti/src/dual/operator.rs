@@ -25,11 +25,7 @@ pub struct DualOperator {
 pub struct DualScratch(PanelScratch);
 
 impl DualOperator {
-    pub(crate) fn new(
-        map: Arc<BoundaryMap>,
-        subdomains: Arc<Subdomains>,
-        inverses: Arc<Vec<ClassInverse>>,
-    ) -> Self {
+    pub(crate) fn new(map: Arc<BoundaryMap>, subdomains: Arc<Subdomains>, inverses: Arc<Vec<ClassInverse>>) -> Self {
         let parallel = product_flops(&map, &inverses) > PRODUCT;
         Self {
             map,
@@ -100,25 +96,14 @@ impl SymmetricOperator for DualOperator {
         DualScratch(self.map.scratch(|panel| {
             let (inverse, columns) = (&self.inverses[panel.class], panel.columns.len());
             let dim = self.subdomains.bases[panel.class].stiffness.dim;
-            let full = if inverse.full.is_packed() {
-                0
-            } else {
-                dim * columns
-            };
-            inverse
-                .boundary
-                .is_none()
-                .then(|| (full, inverse.full.need(columns)))
+            let full = if inverse.full.is_packed() { 0 } else { dim * columns };
+            inverse.boundary.is_none().then(|| (full, inverse.full.need(columns)))
         }))
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
-        self.map.by_panels(
-            x,
-            y,
-            self.parallel,
-            &mut s.0,
-            &|panel, x, y, full, memory| {
+        self.map
+            .by_panels(x, y, self.parallel, &mut s.0, &|panel, x, y, full, memory| {
                 let (columns, class) = (panel.columns.len(), panel.class);
                 let inverse = &self.inverses[class];
                 if let Some(matrix) = &inverse.boundary {
@@ -135,7 +120,6 @@ impl SymmetricOperator for DualOperator {
                     inverse.full.apply(&base.kernel, full, columns, memory);
                     restrict(nodes, full, y, dim);
                 }
-            },
-        );
+            });
     }
 }

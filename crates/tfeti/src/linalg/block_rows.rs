@@ -162,11 +162,7 @@ mod tests {
             for i in 0..dim {
                 for m in 0..members {
                     let (rows, values) = matrix.column(i);
-                    let expected: f64 = rows
-                        .iter()
-                        .zip(values)
-                        .map(|(&j, v)| v * x[j * members + m])
-                        .sum();
+                    let expected: f64 = rows.iter().zip(values).map(|(&j, v)| v * x[j * members + m]).sum();
                     assert!((y[i * members + m] - expected).abs() < 1e-13);
                 }
             }

@@ -32,15 +32,7 @@ pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize
 }
 
 /// `out += factor a b^T` for `a` of shape `m x k` and `b` of shape `n x k`.
-pub(crate) fn add_product_transposed(
-    out: &mut [f64],
-    factor: f64,
-    a: &[f64],
-    b: &[f64],
-    m: usize,
-    k: usize,
-    n: usize,
-) {
+pub(crate) fn add_product_transposed(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
     if m == 0 || n == 0 || k == 0 {
         return;
     }
@@ -62,21 +54,12 @@ pub(crate) fn cholesky(a: &mut [f64], n: usize, threshold: f64) -> Result<(), us
 
 /// Replaces the first `width` columns of a symmetric matrix of `height` rows, lower triangle, by those of its Cholesky
 /// factor. `Err(pivot)` as in [`cholesky`].
-pub(crate) fn cholesky_columns(
-    a: &mut [f64],
-    height: usize,
-    width: usize,
-    threshold: f64,
-) -> Result<(), usize> {
+pub(crate) fn cholesky_columns(a: &mut [f64], height: usize, width: usize, threshold: f64) -> Result<(), usize> {
     if width == 0 {
         return Ok(());
     }
     let params = Default::default();
-    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(
-        width,
-        Par::Seq,
-        params,
-    ));
+    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(width, Par::Seq, params));
     let columns = MatMut::from_column_major_slice_mut(&mut a[..height * width], height, width);
     let (mut triangle, below) = columns.split_at_row_mut(width);
     llt::factor::cholesky_in_place(

@@ -30,9 +30,7 @@ pub(crate) fn patterns(graph: &[Vec<u32>], blocks: &[u32]) -> Vec<Vec<u32>> {
                 own.push(p);
             }
         };
-        graph[block as usize]
-            .iter()
-            .for_each(|&b| add(place[b as usize]));
+        graph[block as usize].iter().for_each(|&b| add(place[b as usize]));
         for &child in &children[position] {
             patterns[child as usize].iter().for_each(|&p| add(p));
         }

@@ -42,9 +42,7 @@ impl Columns {
             list.sort_unstable();
             list.dedup();
             for _ in 0..unit {
-                let own = list
-                    .iter()
-                    .flat_map(|&b| (0..unit).map(move |c| unit * b as usize + c));
+                let own = list.iter().flat_map(|&b| (0..unit).map(move |c| unit * b as usize + c));
                 rows.extend(own);
                 pointers.push(rows.len());
             }
@@ -106,11 +104,7 @@ impl Symbolic {
     }
 
     /// The same with a given order of the blocks, new to old.
-    pub(crate) fn ordered(
-        pattern: &Columns,
-        order: &[u32],
-        block: usize,
-    ) -> Result<Self, FactorError> {
+    pub(crate) fn ordered(pattern: &Columns, order: &[u32], block: usize) -> Result<Self, FactorError> {
         let forward: Vec<usize> = (order.iter())
             .flat_map(|&b| block * b as usize..block * (b as usize + 1))
             .collect();
@@ -119,8 +113,7 @@ impl Symbolic {
             inverse[old] = new;
         }
         let dim = pattern.dim;
-        let symbolic =
-            SymbolicSparseColMatRef::new_checked(dim, dim, &pattern.pointers, None, &pattern.rows);
+        let symbolic = SymbolicSparseColMatRef::new_checked(dim, dim, &pattern.pointers, None, &pattern.rows);
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
@@ -163,16 +156,10 @@ pub(crate) fn quotient(pattern: &Columns, block: usize) -> (Vec<usize>, Vec<usiz
 }
 
 /// Order (new to old) of approximate minimum degree for a pattern given by pointers and rows.
-pub(crate) fn minimum_degree(
-    pointers: &[usize],
-    rows: &[usize],
-) -> Result<Vec<usize>, FactorError> {
+pub(crate) fn minimum_degree(pointers: &[usize], rows: &[usize]) -> Result<Vec<usize>, FactorError> {
     let count = pointers.len() - 1;
     let pattern = SymbolicSparseColMatRef::new_checked(count, count, pointers, None, rows);
-    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(
-        count,
-        rows.len(),
-    ));
+    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(count, rows.len()));
     let (mut forward, mut inverse) = (vec![0; count], vec![0; count]);
     amd::order_maybe_unsorted(
         &mut forward,
@@ -251,13 +238,8 @@ impl SparseCholesky {
                 .0
                 .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
         );
-        let pattern = SymbolicSparseColMatRef::new_checked(
-            matrix.dim,
-            matrix.dim,
-            &matrix.pointers,
-            None,
-            &matrix.rows,
-        );
+        let pattern =
+            SymbolicSparseColMatRef::new_checked(matrix.dim, matrix.dim, &matrix.pointers, None, &matrix.rows);
         symbolic
             .0
             .factorize_numeric_llt(
@@ -296,10 +278,9 @@ impl SparseCholesky {
     /// The groups of columns with one pattern.
     fn supernodes(&self) -> Option<(SupernodalLltRef<'_, usize, f64>, usize)> {
         match self.symbolic.0.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => Some((
-                SupernodalLltRef::new(symbolic, &self.values),
-                symbolic.n_supernodes(),
-            )),
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                Some((SupernodalLltRef::new(symbolic, &self.values), symbolic.n_supernodes()))
+            }
             SymbolicCholeskyRaw::Simplicial(_) => None,
         }
     }
@@ -376,12 +357,7 @@ impl SparseCholesky {
     }
 
     /// `out = P^T L^-T y`; `y` is overwritten.
-    pub(crate) fn half_solve_transpose(
-        &self,
-        y: &mut [f64],
-        out: &mut [f64],
-        memory: &mut SolveMemory,
-    ) {
+    pub(crate) fn half_solve_transpose(&self, y: &mut [f64], out: &mut [f64], memory: &mut SolveMemory) {
         let column = MatMut::from_column_major_slice_mut(&mut *y, self.dim(), 1);
         let memory = MemStack::new(&mut memory.memory);
         if let Some((factor, _)) = self.supernodes() {

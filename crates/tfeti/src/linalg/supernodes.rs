@@ -7,8 +7,7 @@
 //! half empty in between.
 
 use crate::linalg::tiles::{
-    LANES, PANEL, Stored, Tile, add_unit, copy, eliminate, eliminate_alike, panel, substitute,
-    substitute_alike, unit,
+    LANES, PANEL, Stored, Tile, add_unit, copy, eliminate, eliminate_alike, panel, substitute, substitute_alike, unit,
 };
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
@@ -55,9 +54,7 @@ impl Supernodes {
         self.tiles += Self::tiles_of(width, height);
         let single = width <= PANEL && !rows.is_empty();
         let before = self.nodes.last().filter(|last| {
-            last.columns.end == columns.start
-                && last.columns.len() == width
-                && last.rows.len() == rows.len()
+            last.columns.end == columns.start && last.columns.len() == width && last.rows.len() == rows.len()
         });
         let alike = match (single, before) {
             (false, _) => 0,
@@ -103,13 +100,7 @@ impl Supernodes {
     }
 
     /// `x = D^-1 L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind.
-    pub(crate) fn forward<T: Stored>(
-        &self,
-        tiles: &[T],
-        x: &mut [f64],
-        behind: &mut [f64],
-        buffer: &mut [f64],
-    ) {
+    pub(crate) fn forward<T: Stored>(&self, tiles: &[T], x: &mut [f64], behind: &mut [f64], buffer: &mut [f64]) {
         let (factor, forward) = (self, true);
         Arch::new().dispatch(Solve {
             factor,
@@ -122,13 +113,7 @@ impl Supernodes {
     }
 
     /// `x = L^-T x` for the columns' unknowns, given those `behind`, which stay.
-    pub(crate) fn backward<T: Stored>(
-        &self,
-        tiles: &[T],
-        x: &mut [f64],
-        behind: &mut [f64],
-        buffer: &mut [f64],
-    ) {
+    pub(crate) fn backward<T: Stored>(&self, tiles: &[T], x: &mut [f64], behind: &mut [f64], buffer: &mut [f64]) {
         let (factor, forward) = (self, false);
         Arch::new().dispatch(Solve {
             factor,
@@ -310,11 +295,7 @@ impl<T: Stored> Solve<'_, T> {
             let mut tiles = &self.tiles[node.tiles.clone()];
             let mut end = width;
             while end > 0 {
-                let count = if end.is_multiple_of(PANEL) {
-                    PANEL
-                } else {
-                    end % PANEL
-                };
+                let count = if end.is_multiple_of(PANEL) { PANEL } else { end % PANEL };
                 let start = end - count;
                 let length = count * (height - start).div_ceil(LANES);
                 let (rest, own) = tiles.split_at(tiles.len() - length);
@@ -342,16 +323,13 @@ mod tests {
             let mut first = 0;
             for (k, (&width, rows)) in widths.iter().zip(&units).enumerate() {
                 supernodes.push(first..first + width, rows.iter().copied());
-                let below = rows
-                    .iter()
-                    .flat_map(|&r| (0..unit).map(move |k| unit * r as usize + k));
+                let below = rows.iter().flat_map(|&r| (0..unit).map(move |k| unit * r as usize + k));
                 let places: Vec<usize> = (first..first + width).chain(below).collect();
                 let height = places.len();
                 let mut factor = vec![0.0; width * height];
                 for j in 0..width {
                     for i in j..height {
-                        let value =
-                            ((3 * i + 7 * j + k) as f64).sin() + if i == j { 9.0 } else { 0.0 };
+                        let value = ((3 * i + 7 * j + k) as f64).sin() + if i == j { 9.0 } else { 0.0 };
                         factor[i + j * height] = value;
                         dense[places[i] + (first + j) * all] = value;
                     }

@@ -137,11 +137,7 @@ fn product<S: Simd, T: Stored, const N: usize, const V: usize, const KEEP: bool>
 
 /// `A^T t` for the columns `A` of a panel.
 #[inline(always)]
-fn transposed<S: Simd, T: Stored, const N: usize, const V: usize>(
-    simd: S,
-    tiles: &[T],
-    t: &[f64],
-) -> [f64; N] {
+fn transposed<S: Simd, T: Stored, const N: usize, const V: usize>(simd: S, tiles: &[T], t: &[f64]) -> [f64; N] {
     let mut sums = [[simd.splat_f64s(0.0); V]; N];
     for (chunk, t) in tiles.chunks_exact(N).zip(t.chunks_exact(LANES)) {
         let (t, _) = S::as_simd_f64s(t);
@@ -201,13 +197,7 @@ pub(crate) type Alike<'a, T> = (
 
 /// Forward elimination of groups of one panel and one shape.
 #[inline(always)]
-pub(crate) fn eliminate_alike<
-    S: Simd,
-    T: Stored,
-    const N: usize,
-    const V: usize,
-    const U: usize,
->(
+pub(crate) fn eliminate_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
     simd: S,
     (tiles, rows, units, mut start, x, behind, t): Alike<'_, T>,
 ) {
@@ -226,13 +216,7 @@ pub(crate) fn eliminate_alike<
 
 /// Back substitution of groups of one panel and one shape.
 #[inline(always)]
-pub(crate) fn substitute_alike<
-    S: Simd,
-    T: Stored,
-    const N: usize,
-    const V: usize,
-    const U: usize,
->(
+pub(crate) fn substitute_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
     simd: S,
     (tiles, rows, units, start, x, behind, buffer): Alike<'_, T>,
 ) {

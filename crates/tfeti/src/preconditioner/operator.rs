@@ -9,9 +9,7 @@ use crate::dual::operator::multiply_members;
 use crate::error::TfetiError;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
-use crate::linalg::sparse::{
-    Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic,
-};
+use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use crate::preconditioner::scaling::Scaling;
 use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
@@ -91,37 +89,25 @@ impl DualPreconditioner {
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
         let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
-        Ok(Self {
-            map,
-            classes,
-            scaling,
-        })
+        Ok(Self { map, classes, scaling })
     }
 
     fn stiffness_product(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {
         let divide = self.scaling.as_ref().map(Scaling::weights);
-        self.map.by_panels(
-            x,
-            y,
-            self.map.is_large(),
-            s,
-            &|panel, x, y, interior, memory| {
+        self.map
+            .by_panels(x, y, self.map.is_large(), s, &|panel, x, y, interior, memory| {
                 let columns = panel.columns.len();
                 let weights = divide.map(|w| &w[panel.copies.clone()]);
                 scale_nodes(weights, x, columns);
                 self.classes[panel.class].apply(x, y, columns, interior, memory);
                 scale_nodes(weights, y, columns);
-            },
-        );
+            });
     }
 }
 
 fn scale_nodes(weights: Option<&[f64]>, values: &mut [f64], width: usize) {
     let Some(weights) = weights else { return };
-    for (weights, value) in weights
-        .chunks_exact(width)
-        .zip(values.chunks_exact_mut(3 * width))
-    {
+    for (weights, value) in weights.chunks_exact(width).zip(values.chunks_exact_mut(3 * width)) {
         for component in value.chunks_exact_mut(width) {
             component.iter_mut().zip(weights).for_each(|(v, w)| *v *= w);
         }
@@ -139,11 +125,7 @@ impl SymmetricOperator for DualPreconditioner {
         let panels = self
             .map
             .scratch(|panel| self.classes[panel.class].need(panel.columns.len()));
-        let dual = if self.scaling.is_some() {
-            self.dim()
-        } else {
-            0
-        };
+        let dual = if self.scaling.is_some() { self.dim() } else { 0 };
         DualPreconditionerScratch {
             panels,
             dual: vec![0.0; dual],
@@ -171,12 +153,7 @@ impl ActiveSetPreconditioner for DualPreconditioner {
 }
 
 impl BoundaryStiffness {
-    fn new(
-        base: &ClassBase,
-        map: &BoundaryMap,
-        class: usize,
-        kind: Kind,
-    ) -> Result<Self, TfetiError> {
+    fn new(base: &ClassBase, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
         let layout = &map.classes[class];
         let split = Split::new(&base.stiffness, &layout.nodes);
         let shared = layout.members.len() >= SHARED;
@@ -185,9 +162,7 @@ impl BoundaryStiffness {
             return Ok(Self::Lumped(BlockRows::new(&split.boundary)));
         }
         let subdomain = layout.members.first().map_or(0, |&s| s as usize);
-        let factor = match Symbolic::new(&split.interior, 3)
-            .and_then(|s| SparseCholesky::new(&s, &split.interior))
-        {
+        let factor = match Symbolic::new(&split.interior, 3).and_then(|s| SparseCholesky::new(&s, &split.interior)) {
             Ok(factor) => factor,
             Err(FactorError::Pivot(_)) => return Ok(Self::Lumped(BlockRows::new(&split.boundary))),
             Err(error) => return Err(TfetiError::pattern(error, subdomain)),
@@ -201,29 +176,20 @@ impl BoundaryStiffness {
             coupling: split.coupling,
             factor,
         };
-        Ok(if shared {
-            Self::Dense(sparse.dense())
-        } else {
-            sparse
-        })
+        Ok(if shared { Self::Dense(sparse.dense()) } else { sparse })
     }
 
     fn dim(&self) -> usize {
         match self {
             Self::Dense(values) => values.len().isqrt(),
-            Self::Lumped(matrix)
-            | Self::Schur {
-                boundary: matrix, ..
-            } => matrix.dim(),
+            Self::Lumped(matrix) | Self::Schur { boundary: matrix, .. } => matrix.dim(),
         }
     }
 
     /// Numbers and memory of solves that products with so many members need.
     fn need(&self, members: usize) -> Option<(usize, MemoryNeed)> {
         match self {
-            Self::Schur {
-                coupling, factor, ..
-            } => Some((coupling.interior * members, factor.need(members))),
+            Self::Schur { coupling, factor, .. } => Some((coupling.interior * members, factor.need(members))),
             _ => None,
         }
     }
@@ -231,11 +197,7 @@ impl BoundaryStiffness {
     /// The matrix in full, some columns at a time.
     fn dense(&self) -> Vec<f64> {
         let dim = self.dim();
-        let (mut out, mut x, mut y) = (
-            vec![0.0; dim * dim],
-            vec![0.0; dim * PANEL],
-            vec![0.0; dim * PANEL],
-        );
+        let (mut out, mut x, mut y) = (vec![0.0; dim * dim], vec![0.0; dim * PANEL], vec![0.0; dim * PANEL]);
         let (interior, need) = self.need(PANEL).unzip();
         let mut interior = vec![0.0; interior.unwrap_or(0)];
         let mut memory = need.map(SolveMemory::new);
@@ -256,14 +218,7 @@ impl BoundaryStiffness {
     }
 
     /// `y = S x` for the members of a panel, which are next to one another.
-    fn apply(
-        &self,
-        x: &[f64],
-        y: &mut [f64],
-        members: usize,
-        interior: &mut [f64],
-        memory: Option<&mut SolveMemory>,
-    ) {
+    fn apply(&self, x: &[f64], y: &mut [f64], members: usize, interior: &mut [f64], memory: Option<&mut SolveMemory>) {
         match self {
             Self::Dense(values) => multiply_members(y, x, values, members, y.len() / members),
             Self::Lumped(matrix) => matrix.apply(x, y, members),
@@ -279,9 +234,7 @@ impl BoundaryStiffness {
                 for (j, x) in x.chunks_exact(members).enumerate() {
                     let (rows, values) = coupling.columns.column(j);
                     for (&i, v) in rows.iter().zip(values) {
-                        x.iter()
-                            .enumerate()
-                            .for_each(|(m, x)| interior[m * dim + i] += v * x);
+                        x.iter().enumerate().for_each(|(m, x)| interior[m * dim + i] += v * x);
                     }
                 }
                 if let Some(memory) = memory {
@@ -318,11 +271,7 @@ impl Split {
         let mut place = vec![0; dim];
         let (mut boundary, mut interior) = (0, 0);
         for i in 0..dim {
-            let counter = if on_boundary[i] {
-                &mut boundary
-            } else {
-                &mut interior
-            };
+            let counter = if on_boundary[i] { &mut boundary } else { &mut interior };
             place[i] = *counter;
             *counter += 1;
         }
@@ -355,10 +304,7 @@ impl Split {
         Self {
             boundary: bb,
             interior: ii,
-            coupling: Coupling {
-                interior,
-                columns: ib,
-            },
+            coupling: Coupling { interior, columns: ib },
         }
     }
 }

@@ -56,15 +56,8 @@ impl Groups {
 
     /// Calls `f` with the rows of each group and its part of `inverses`.
     fn for_each(&self, inverses: &[f64], mut f: impl FnMut(&[u32], &[f64])) {
-        for (rows, inverse) in self
-            .pointers
-            .windows(2)
-            .zip(self.inverse_pointers.windows(2))
-        {
-            f(
-                &self.rows[rows[0]..rows[1]],
-                &inverses[inverse[0]..inverse[1]],
-            );
+        for (rows, inverse) in self.pointers.windows(2).zip(self.inverse_pointers.windows(2)) {
+            f(&self.rows[rows[0]..rows[1]], &inverses[inverse[0]..inverse[1]]);
         }
     }
 }
@@ -73,9 +66,7 @@ impl Scaling {
     pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
         let stiffness = system.copy_stiffness();
-        let mut compliance: Vec<f64> = (0..system.torn_dim() / 3)
-            .map(|k| 1.0 / stiffness.weight(k))
-            .collect();
+        let mut compliance: Vec<f64> = (0..system.torn_dim() / 3).map(|k| 1.0 / stiffness.weight(k)).collect();
         let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
         compliance.iter_mut().for_each(|v| *v /= smallest);
         // Rows by group: a mesh node, or nodes that contact points join.
@@ -118,9 +109,7 @@ impl Scaling {
                 }
             }
             if gluing.is_dependent(rows[0].0) {
-                let size = (0..count)
-                    .map(|k| matrix[k * (count + 1)])
-                    .fold(0.0, f64::max);
+                let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
                 (0..count).for_each(|k| matrix[k * (count + 1)] += DEPENDENT * size);
             }
             let node = rows[0].0;
@@ -131,16 +120,13 @@ impl Scaling {
                     *contact = (out.groups.count() as u32, place as u32);
                 }
             }
-            let target = if plain {
-                &mut out.triples
-            } else {
-                &mut out.groups
-            };
+            let target = if plain { &mut out.triples } else { &mut out.groups };
             target.push(rows.iter().map(|r| r.1), inverse);
         }
-        out.weights = system.parts.map.copy_values(|subdomain, local| {
-            compliance[system.torn_range(subdomain).start / 3 + local]
-        });
+        out.weights = system
+            .parts
+            .map
+            .copy_values(|subdomain, local| compliance[system.torn_range(subdomain).start / 3 + local]);
         Ok(out)
     }
 
@@ -192,9 +178,7 @@ impl Scaling {
             }
         }
         let own: f64 = places().map(|(place, value)| value * image[place]).sum();
-        let size = (0..count)
-            .map(|k| matrix[k * (count + 1)])
-            .fold(0.0, f64::max);
+        let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
         if own <= SINGULAR * size {
             return;
         }
@@ -218,16 +202,15 @@ impl Scaling {
                 y[target as usize] = products.map(|(v, &row)| v * x[row as usize]).sum();
             }
         });
-        self.triples
-            .for_each(&self.triples.inverses, |rows, inverse| {
-                for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
-                    let mut sum = [0.0; 3];
-                    for (v, &row) in column.iter().zip(rows) {
-                        let x = &x[row as usize..][..3];
-                        (0..3).for_each(|c| sum[c] += v * x[c]);
-                    }
-                    y[target as usize..][..3].copy_from_slice(&sum);
+        self.triples.for_each(&self.triples.inverses, |rows, inverse| {
+            for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
+                let mut sum = [0.0; 3];
+                for (v, &row) in column.iter().zip(rows) {
+                    let x = &x[row as usize..][..3];
+                    (0..3).for_each(|c| sum[c] += v * x[c]);
                 }
-            });
+                y[target as usize..][..3].copy_from_slice(&sum);
+            }
+        });
     }
 }

@@ -73,11 +73,7 @@ impl ActiveSetProjector {
     /// # Errors
     /// [`TfetiError::Setting`] if there are fewer contact rows or a weight is not usable, [`TfetiError::Length`] if
     /// `metric` is not as long as dual vectors, others if a factorisation fails.
-    pub fn new(
-        coarse: &Coarse,
-        contact_rows: usize,
-        metric: Option<Vec<f64>>,
-    ) -> Result<Self, TfetiError> {
+    pub fn new(coarse: &Coarse, contact_rows: usize, metric: Option<Vec<f64>>) -> Result<Self, TfetiError> {
         Self::with_factor(coarse, contact_rows, metric, ActiveSetFactor::Auto)
     }
 
@@ -109,9 +105,7 @@ impl ActiveSetProjector {
             ActiveSetFactor::Sparse => None,
             _ => coarse.split(contact_rows, metric.as_deref()),
         };
-        let pays = |base: &SplitBase| {
-            kind == ActiveSetFactor::Split || base.pays(coarse.rows(), coarse.factor_size())
-        };
+        let pays = |base: &SplitBase| kind == ActiveSetFactor::Split || base.pays(coarse.rows(), coarse.factor_size());
         let mut parts = SplitParts {
             base: base.filter(pays).map(Arc::new),
             contact_rows,
@@ -126,15 +120,9 @@ impl ActiveSetProjector {
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
         // weights that are added to those that hold every body leave the matrix better conditioned
-        let single = loose.is_empty()
-            && factor.has_short()
-            && factor.single_error(&mut scratch) <= ROUNDED_STEP;
+        let single = loose.is_empty() && factor.has_short() && factor.single_error(&mut scratch) <= ROUNDED_STEP;
         Ok(Self {
-            digits: if single {
-                Digits::Single
-            } else {
-                Digits::Double
-            },
+            digits: if single { Digits::Single } else { Digits::Double },
             scratch,
             coarse: coarse.clone(),
             always: factor.clone(),
@@ -173,11 +161,7 @@ impl ActiveSetProjector {
     fn check(&self, factor: &CoarseFactor) -> Result<(), QpError> {
         let size = norm(&self.coarse_rhs);
         let works = |a: &[f64]| dot(a, &self.coarse_rhs).abs() > WORK * size * norm(a);
-        match factor
-            .free_motions()
-            .iter()
-            .find(|motion| works(&motion.amplitudes))
-        {
+        match factor.free_motions().iter().find(|motion| works(&motion.amplitudes)) {
             Some(motion) => Err(QpError::CoarseDeficient {
                 motion: motion.to_string(),
             }),
@@ -203,20 +187,13 @@ impl SplitParts {
         spare: Option<SplitFactor>,
     ) -> Result<CoarseFactor, TfetiError> {
         weights.validate(coarse.0.gluing.ranges())?;
-        let usable = |base: &&Arc<SplitBase>| {
-            base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty()
-        };
+        let usable =
+            |base: &&Arc<SplitBase>| base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty();
         if let Some(base) = self.base.as_ref().filter(usable) {
-            self.contact
-                .set(&weights.diagonal[..self.contact_rows], &weights.lines);
+            self.contact.set(&weights.diagonal[..self.contact_rows], &weights.lines);
             if let Ok(factor) = base.factor(&self.contact, spare, &mut self.fronts) {
                 let factor = Factor::Split(base.clone(), factor);
-                return Ok(CoarseFactor::new(
-                    coarse.clone(),
-                    factor,
-                    Some(weights),
-                    Vec::new(),
-                ));
+                return Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()));
             }
         }
         coarse.factor_weighted(weights)
@@ -250,11 +227,7 @@ impl EqualityProjector for ActiveSetProjector {
         let (expected, found) = (self.coarse.dim(), w.len());
         if found != expected {
             let what = "the weights of an active set";
-            return Err(QpError::Length {
-                what,
-                found,
-                expected,
-            });
+            return Err(QpError::Length { what, found, expected });
         }
         let mut weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
         let metric = |row: usize| {
@@ -302,8 +275,7 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn project_transpose(&mut self, g: &mut [f64]) {
-        self.active
-            .project_transpose(g, &mut self.alpha, &mut self.scratch);
+        self.active.project_transpose(g, &mut self.alpha, &mut self.scratch);
     }
 
     fn rounds_steps(&self) -> bool {

@@ -111,18 +111,11 @@ impl Coarse {
 }
 
 impl CoarseFactor {
-    pub(super) fn new(
-        coarse: Coarse,
-        factor: Factor,
-        mut weights: Option<RowWeights>,
-        free: Vec<FreeMotion>,
-    ) -> Self {
+    pub(super) fn new(coarse: Coarse, factor: Factor, mut weights: Option<RowWeights>, free: Vec<FreeMotion>) -> Self {
         let ranges = coarse.0.gluing.ranges();
         if let Some(RowWeights { diagonal, lines }) = &mut weights {
             // products count these rows in full and are corrected by what the lines leave out
-            lines
-                .iter()
-                .for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
+            lines.iter().for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
         }
         let all = |range: Range<usize>, of: fn(&f64) -> bool| {
             weights
@@ -344,19 +337,14 @@ impl CoarseFactor {
     pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(e);
         self.solve_first(s, false);
-        self.0
-            .coarse
-            .0
-            .product_transpose(&s.first, x, &mut s.motions);
+        self.0.coarse.0.product_transpose(&s.first, x, &mut s.motions);
         self.weigh(x);
     }
 
     /// The sparse factor of a regular `G G^T`.
     pub(super) fn unweighted(&self) -> Option<&Arc<SparseCholesky>> {
         match &self.0.factor {
-            Factor::Sparse(factor) if self.0.weights.is_none() && self.0.free.is_empty() => {
-                Some(factor)
-            }
+            Factor::Sparse(factor) if self.0.weights.is_none() && self.0.free.is_empty() => Some(factor),
             _ => None,
         }
     }

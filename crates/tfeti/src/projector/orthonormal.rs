@@ -35,8 +35,7 @@ impl OrthonormalCoarse {
     /// If `beta` or `alpha` does not have one entry for each row.
     pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(beta);
-        self.cholesky
-            .half_solve_transpose(&mut s.first, alpha, &mut s.memory);
+        self.cholesky.half_solve_transpose(&mut s.first, alpha, &mut s.memory);
     }
 
     /// The factor.

@@ -58,12 +58,8 @@ impl Gluing {
             case.sort_by_key(|v| v.0);
         }
         let torn = decomposition.torn_dofs();
-        let of_contact = contact
-            .points
-            .iter()
-            .map(|p| if p.friction { 3 } else { 1 });
-        gluing.paper_rows =
-            torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
+        let of_contact = contact.points.iter().map(|p| if p.friction { 3 } else { 1 });
+        gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
         let count = gluing.block_entries.len().max(gluing.row_entries.len());
         if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
             let what = "entries of B";
@@ -98,19 +94,12 @@ impl Builder<'_> {
     }
 
     fn close(&mut self, node: u32) -> usize {
-        self.gluing
-            .row_pointers
-            .push(self.gluing.row_entries.len() as u32);
+        self.gluing.row_pointers.push(self.gluing.row_entries.len() as u32);
         self.gluing.row_nodes.push(node);
         self.gluing.row_pointers.len() - 2
     }
 
-    fn contact_row(
-        &mut self,
-        point: &ContactConstraint,
-        row: &ContactRow,
-        prescribed: &[(u32, [f64; 3])],
-    ) -> usize {
+    fn contact_row(&mut self, point: &ContactConstraint, row: &ContactRow, prescribed: &[(u32, [f64; 3])]) -> usize {
         for ((node, _), part) in point.nodes().zip(&row.parts) {
             self.spread(node, *part);
         }
@@ -148,24 +137,14 @@ impl Builder<'_> {
         let normal = self.gluing.nodal_rows();
         let mut ends = [normal; 2];
         for (end, count) in ends.iter_mut().zip([2, 1]) {
-            let with = points
-                .iter()
-                .enumerate()
-                .filter(|(_, p)| p.tangential.len() == count);
+            let with = points.iter().enumerate().filter(|(_, p)| p.tangential.len() == count);
             for (k, p) in with {
-                let rows = p
-                    .tangential
-                    .iter()
-                    .map(|t| self.contact_row(of(p), t, &p.prescribed));
+                let rows = p.tangential.iter().map(|t| self.contact_row(of(p), t, &p.prescribed));
                 let row = rows.min().unwrap_or_default();
                 let (direction, scale) = (p.tangential[0].direction, p.tangential[0].scale);
                 self.gluing.contact[k].tangential = match count {
                     2 => TangentialRows::Disc { row, scale },
-                    _ => TangentialRows::Interval {
-                        row,
-                        direction,
-                        scale,
-                    },
+                    _ => TangentialRows::Interval { row, direction, scale },
                 };
             }
             *end = self.gluing.nodal_rows();

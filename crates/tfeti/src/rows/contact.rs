@@ -97,11 +97,7 @@ struct Space {
 }
 
 impl Space {
-    fn new(
-        point: &ContactConstraint,
-        supports: &MergedSupports,
-        squares: &impl Fn(u32) -> f64,
-    ) -> Self {
+    fn new(point: &ContactConstraint, supports: &MergedSupports, squares: &impl Fn(u32) -> f64) -> Self {
         // A unit row on weighted means of copies: c w_i sqrt(s_i) with c = (sum w_i^2 s_i)^(-1/2).
         let sum: f64 = point.nodes().map(|(n, w)| w * w * squares(n)).sum();
         let scale = sum.sqrt().recip();
@@ -143,11 +139,7 @@ impl Space {
     /// The row of a direction that does not leave out what supports fix.
     fn full_row(&self, direction: Vector3<f64>) -> ContactRow {
         ContactRow {
-            parts: self
-                .nodes
-                .iter()
-                .map(|(c, _)| (direction * *c).into())
-                .collect(),
+            parts: self.nodes.iter().map(|(c, _)| (direction * *c).into()).collect(),
             direction: direction.into(),
             scale: self.scale,
         }
@@ -208,9 +200,7 @@ impl AllRows {
             });
             return;
         }
-        let dragged = point.friction
-            && !fixed.is_empty()
-            && (point.moving || space.is_dragged(&normal, &fixed));
+        let dragged = point.friction && !fixed.is_empty() && (point.moving || space.is_dragged(&normal, &fixed));
         let mut tangential = Vec::new();
         // With all three directions free the rows keep one common scale, so that the friction disc stays a disc. Where
         // friction and support act along the same directions, all rows are as without support.
@@ -239,11 +229,7 @@ impl AllRows {
                 space.unit_row(normal)
             }
         };
-        let prescribed = if dragged {
-            Vec::new()
-        } else {
-            space.prescribed
-        };
+        let prescribed = if dragged { Vec::new() } else { space.prescribed };
         self.rows.push(PointRows {
             point: index,
             normal,

@@ -28,10 +28,7 @@ impl Gluing {
                 members.entry(groups.of(node)).or_default().push(row);
             }
         }
-        members
-            .into_values()
-            .filter_map(|rows| self.dependency(rows))
-            .collect()
+        members.into_values().filter_map(|rows| self.dependency(rows)).collect()
     }
 
     fn dependency(&self, rows: Vec<usize>) -> Option<Dependency> {
@@ -39,9 +36,7 @@ impl Gluing {
         let gram = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
             let mut sum = 0.0;
             for (subdomain, dof, v) in &entries[i] {
-                let same = entries[j]
-                    .iter()
-                    .filter(|e| (e.0, e.1) == (*subdomain, *dof));
+                let same = entries[j].iter().filter(|e| (e.0, e.1) == (*subdomain, *dof));
                 sum += v * same.map(|e| e.2).sum::<f64>();
             }
             sum

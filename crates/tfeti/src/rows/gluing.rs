@@ -214,8 +214,7 @@ impl Gluing {
     }
 
     pub(crate) fn block(&self, block: usize) -> &[BlockEntry] {
-        &self.block_entries
-            [self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
+        &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
     }
 
     /// The globs, in the order of their blocks.

@@ -131,8 +131,7 @@ impl ContactConstraint {
     fn is_same(&self, other: &Self) -> bool {
         let cosine = dot(self.frame.normal, other.frame.normal);
         let seen = self.side == other.side && self.partner == other.partner;
-        let reversed = self.partner.as_ref() == Some(&other.side)
-            && other.partner.as_ref() == Some(&self.side);
+        let reversed = self.partner.as_ref() == Some(&other.side) && other.partner.as_ref() == Some(&self.side);
         seen && cosine > 1.0 - SAME || reversed && -cosine > 1.0 - SAME
     }
 
@@ -167,9 +166,8 @@ impl ContactConstraints {
     /// Points against a rigid obstacle, one frame per node.
     #[must_use]
     pub fn rigid(nodes: &[u32], frames: &[SurfaceFrame], friction: bool) -> Self {
-        let point = |(&node, frame): (&u32, &SurfaceFrame)| {
-            ContactConstraint::new(node, *frame).with_friction(friction)
-        };
+        let point =
+            |(&node, frame): (&u32, &SurfaceFrame)| ContactConstraint::new(node, *frame).with_friction(friction);
         nodes.iter().zip(frames).map(point).collect()
     }
 

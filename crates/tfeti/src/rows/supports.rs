@@ -47,11 +47,7 @@ impl Motion {
     fn check(&self, support: usize, nodes: usize, supports: usize) -> Result<(), TfetiError> {
         let (found, case) = (self.values.len(), self.case);
         if found != 1 && found != nodes {
-            return Err(TfetiError::MotionLength {
-                support,
-                found,
-                nodes,
-            });
+            return Err(TfetiError::MotionLength { support, found, nodes });
         }
         match (case as usize) < supports {
             true => Ok(()),
@@ -164,10 +160,7 @@ pub struct PrescribedDirection {
 ///
 /// # Errors
 /// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
-pub fn prescribed_directions(
-    supports: &[NodeSupport],
-    nodes: usize,
-) -> Result<Vec<PrescribedDirection>, TfetiError> {
+pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<Vec<PrescribedDirection>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
     let of = |node: &FixedNode| {
         let directions = node.directions.iter();
@@ -184,11 +177,7 @@ pub fn prescribed_directions(
     Ok(merged.nodes.iter().flat_map(of).collect())
 }
 
-pub(super) fn check_node(
-    node: u32,
-    nodes: usize,
-    place: impl FnOnce() -> String,
-) -> Result<(), TfetiError> {
+pub(super) fn check_node(node: u32, nodes: usize, place: impl FnOnce() -> String) -> Result<(), TfetiError> {
     match (node as usize) < nodes {
         true => Ok(()),
         false => Err(TfetiError::UnknownNode {
@@ -226,9 +215,7 @@ impl MergedSupports {
                 };
                 let entry = fixed[node as usize].get_or_insert_with(directions_of);
                 for direction in &directions {
-                    merged
-                        .removed
-                        .extend(add_direction(entry, s, *direction, motion)?);
+                    merged.removed.extend(add_direction(entry, s, *direction, motion)?);
                 }
             }
         }

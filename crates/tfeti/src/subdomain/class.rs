@@ -77,9 +77,7 @@ impl Classes {
                 let close = bucket[from..]
                     .iter()
                     .take_while(|(v, _)| *v <= candidate.signature + slack);
-                let same = |class: usize| {
-                    candidate.is_translate_of(&candidates[classes[class].members[0] as usize])
-                };
+                let same = |class: usize| candidate.is_translate_of(&candidates[classes[class].members[0] as usize]);
                 home = close.map(|&(_, class)| class).find(|&class| same(class));
                 if home.is_none() {
                     let at = bucket.partition_point(|&(v, _)| v < candidate.signature);
@@ -114,23 +112,17 @@ struct Candidate<'a> {
 }
 
 impl<'a> Candidate<'a> {
-    fn new(
-        mesh: &'a TetMesh,
-        subdomain: &'a Subdomain,
-        materials: &'a Materials,
-    ) -> Result<Self, TfetiError> {
+    fn new(mesh: &'a TetMesh, subdomain: &'a Subdomain, materials: &'a Materials) -> Result<Self, TfetiError> {
         let mut hooke: Vec<(usize, &Hooke)> = Vec::new();
         let mut last = None;
         for &element in &subdomain.elements {
             let region = mesh.regions()[element as usize];
             if last != Some(region) {
                 last = Some(region);
-                let law = materials
-                    .get(region)
-                    .map_err(|error| TfetiError::Material {
-                        element: element as usize,
-                        message: error.to_string(),
-                    })?;
+                let law = materials.get(region).map_err(|error| TfetiError::Material {
+                    element: element as usize,
+                    message: error.to_string(),
+                })?;
                 if hooke.last().is_none_or(|run| run.1.voigt() != law.voigt()) {
                     hooke.push((0, law));
                 }
@@ -140,10 +132,7 @@ impl<'a> Candidate<'a> {
             }
         }
         let points = mesh.points();
-        let origin = subdomain
-            .nodes
-            .first()
-            .map_or([0.0; 3], |&n| points[n as usize]);
+        let origin = subdomain.nodes.first().map_or([0.0; 3], |&n| points[n as usize]);
         let (mut size, mut largest, mut signature) = (0.0_f64, 0.0_f64, 0.0_f64);
         // Any fixed weights do; these are spread over [-1, 1] and do not repeat.
         let mut weight = 0.5_f64;
@@ -169,10 +158,7 @@ impl<'a> Candidate<'a> {
         }
         for (count, law) in &hooke {
             count.hash(&mut hasher);
-            law.voigt()
-                .iter()
-                .flatten()
-                .for_each(|v| v.to_bits().hash(&mut hasher));
+            law.voigt().iter().flatten().for_each(|v| v.to_bits().hash(&mut hasher));
         }
         Ok(Self {
             points,
@@ -189,8 +175,7 @@ impl<'a> Candidate<'a> {
         if nodes.len() != other_nodes.len() || self.subdomain.tets != other.subdomain.tets {
             return false;
         }
-        let same =
-            |(a, b): (&(usize, &Hooke), &(usize, &Hooke))| a.0 == b.0 && a.1.voigt() == b.1.voigt();
+        let same = |(a, b): (&(usize, &Hooke), &(usize, &Hooke))| a.0 == b.0 && a.1.voigt() == b.1.voigt();
         if self.hooke.len() != other.hooke.len() || !self.hooke.iter().zip(&other.hooke).all(same) {
             return false;
         }
@@ -198,10 +183,7 @@ impl<'a> Candidate<'a> {
         let (Some(&first), Some(&other_first)) = (nodes.first(), other_nodes.first()) else {
             return true;
         };
-        let (origin, other_origin) = (
-            self.points[first as usize],
-            self.points[other_first as usize],
-        );
+        let (origin, other_origin) = (self.points[first as usize], self.points[other_first as usize]);
         nodes.iter().zip(other_nodes).all(|(&a, &b)| {
             let (p, q) = (self.points[a as usize], self.points[b as usize]);
             (0..3).all(|c| ((p[c] - origin[c]) - (q[c] - other_origin[c])).abs() <= tolerance)

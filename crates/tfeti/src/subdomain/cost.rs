@@ -130,12 +130,7 @@ impl Size {
     }
 
     fn bytes(&self, dense: bool) -> u64 {
-        8 * (self.factor
-            + if dense {
-                self.boundary * self.boundary
-            } else {
-                0
-            }) as u64
+        8 * (self.factor + if dense { self.boundary * self.boundary } else { 0 }) as u64
     }
 
     /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single
@@ -183,13 +178,7 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
         })
         .collect();
     let (limit, auto) = (settings.memory_limit, settings.kind == InverseKind::Auto);
-    let bytes = |dense: &[bool]| {
-        sizes
-            .iter()
-            .zip(dense)
-            .map(|(s, d)| s.bytes(*d))
-            .sum::<u64>()
-    };
+    let bytes = |dense: &[bool]| sizes.iter().zip(dense).map(|(s, d)| s.bytes(*d)).sum::<u64>();
     let mut needed = bytes(&dense);
     if needed > limit && auto {
         // Give up the dense matrices that cost most memory for the time they save.
@@ -226,10 +215,7 @@ mod tests {
             factor: 39_740,
         };
         assert!(shared.prefers_dense(2000, true));
-        let single = Size {
-            members: 1,
-            ..shared
-        };
+        let single = Size { members: 1, ..shared };
         assert!(
             !single.prefers_dense(2000, false),
             "one solve streams less than the dense block"

@@ -89,11 +89,9 @@ impl Forecast {
         })?;
         // interface blocks and their entries: k - 1 Helmert rows over 2 to k copies
         let counts = (0..decomposition.nodes()).map(|n| decomposition.copies(n).len());
-        let (blocks, entries) = counts
-            .filter(|k| *k > 1)
-            .fold((0, 0), |(blocks, entries), k| {
-                (blocks + k - 1, entries + (k - 1) * (k + 2) / 2)
-            });
+        let (blocks, entries) = counts.filter(|k| *k > 1).fold((0, 0), |(blocks, entries), k| {
+            (blocks + k - 1, entries + (k - 1) * (k + 2) / 2)
+        });
         let words = copies + blocks + 2 + 3 * entries;
         Ok(Self {
             inverse_bytes: classes.iter().map(|c| c.bytes).sum(),
@@ -106,10 +104,7 @@ impl Forecast {
 
     /// Operations of a product with `F`.
     pub fn product_flops(&self) -> f64 {
-        self.classes
-            .iter()
-            .map(|c| c.members as f64 * c.flops())
-            .sum()
+        self.classes.iter().map(|c| c.members as f64 * c.flops()).sum()
     }
 
     /// Operations to form all inverses.

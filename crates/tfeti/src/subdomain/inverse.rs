@@ -31,8 +31,7 @@ impl Inverse {
         subdomain: usize,
     ) -> Result<Self, TfetiError> {
         let matrix = regularised(stiffness, kernel);
-        let factor = SparseCholesky::new(symbolic, &matrix)
-            .map_err(|error| TfetiError::pattern(error, subdomain))?;
+        let factor = SparseCholesky::new(symbolic, &matrix).map_err(|error| TfetiError::pattern(error, subdomain))?;
         let (smallest, pivot, largest) = factor.pivots();
         if smallest.is_nan() || smallest <= largest * threshold(stiffness.dim) {
             return Err(TfetiError::Singular { subdomain, pivot });
@@ -92,13 +91,7 @@ impl Inverse {
     }
 
     /// `X = K+ X` in place for column-major blocks.
-    pub(crate) fn apply(
-        &self,
-        kernel: &Kernel,
-        x: &mut [f64],
-        columns: usize,
-        memory: &mut SolveMemory,
-    ) {
+    pub(crate) fn apply(&self, kernel: &Kernel, x: &mut [f64], columns: usize, memory: &mut SolveMemory) {
         remove_rigid(kernel, x);
         self.solve(x, columns, memory);
         remove_rigid(kernel, x);
@@ -120,14 +113,8 @@ impl Inverse {
             x.fill(0.0);
             (0..count).for_each(|j| x[j * dim + dof(start + j)] = 1.0);
             self.solve(x, count, &mut memory);
-            for (column, target) in x
-                .chunks_exact(dim)
-                .zip(out[start * size..].chunks_exact_mut(size))
-            {
-                target
-                    .iter_mut()
-                    .enumerate()
-                    .for_each(|(i, v)| *v = column[dof(i)]);
+            for (column, target) in x.chunks_exact(dim).zip(out[start * size..].chunks_exact_mut(size)) {
+                target.iter_mut().enumerate().for_each(|(i, v)| *v = column[dof(i)]);
             }
         }
         // The rank-six correction by the rigid motions.
@@ -240,25 +227,16 @@ mod tests {
     use crate::linalg::sparse::FactorError;
     use signorini_fem_mesh::{Hooke, assemble_stiffness};
 
-    fn inverse(
-        points: &[[f64; 3]],
-        tets: &[[u32; 4]],
-    ) -> Result<(Columns, Kernel, Inverse), TfetiError> {
+    fn inverse(points: &[[f64; 3]], tets: &[[u32; 4]]) -> Result<(Columns, Kernel, Inverse), TfetiError> {
         let hooke = Hooke::isotropic(2.0e11, 0.3).unwrap();
-        let stiffness =
-            Columns::from_symmetric(&assemble_stiffness(points, tets, |_| &hooke).unwrap());
+        let stiffness = Columns::from_symmetric(&assemble_stiffness(points, tets, |_| &hooke).unwrap());
         let kernel = Kernel::new(points, 4).unwrap();
         let symbolic = Symbolic::new(&regularised(&stiffness, &kernel), 3).unwrap();
         let inverse = Inverse::new(&stiffness, &kernel, &symbolic, 4)?;
         Ok((stiffness, kernel, inverse))
     }
 
-    const TET: [[f64; 3]; 4] = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-    ];
+    const TET: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
     /// The four laws of Moore and Penrose, on the whole matrix.
     #[test]
@@ -270,9 +248,7 @@ mod tests {
         let mut k = vec![0.0; n * n];
         for j in 0..n {
             let (rows, values) = stiffness.column(j);
-            rows.iter()
-                .zip(values)
-                .for_each(|(&i, v)| k[i + j * n] = *v);
+            rows.iter().zip(values).for_each(|(&i, v)| k[i + j * n] = *v);
         }
         let times = |a: &[f64], b: &[f64]| {
             let mut out = vec![0.0; n * n];
@@ -303,14 +279,8 @@ mod tests {
     #[test]
     fn a_hinge_is_named() {
         // Two tetrahedra that share one edge turn about it without strain.
-        let points: Vec<[f64; 3]> = TET
-            .into_iter()
-            .chain([[-1.0, -1.0, 0.2], [-1.0, 0.1, -1.0]])
-            .collect();
+        let points: Vec<[f64; 3]> = TET.into_iter().chain([[-1.0, -1.0, 0.2], [-1.0, 0.1, -1.0]]).collect();
         let error = inverse(&points, &[[0, 1, 2, 3], [0, 1, 4, 5]]).unwrap_err();
-        assert!(
-            matches!(error, TfetiError::Singular { subdomain: 4, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, TfetiError::Singular { subdomain: 4, .. }), "{error}");
     }
 }

@@ -41,11 +41,7 @@ pub(crate) fn mean(points: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
 pub(crate) fn displacement(motion: &[f64; 6], arm: &[f64; 3]) -> [f64; 3] {
     let [tx, ty, tz, wx, wy, wz] = *motion;
     let [rx, ry, rz] = *arm;
-    [
-        tx + wy * rz - wz * ry,
-        ty + wz * rx - wx * rz,
-        tz + wx * ry - wy * rx,
-    ]
+    [tx + wy * rz - wz * ry, ty + wz * rx - wx * rz, tz + wx * ry - wy * rx]
 }
 
 /// Adds the work conjugate of [`displacement`]: force and moment of `force` at `arm`.

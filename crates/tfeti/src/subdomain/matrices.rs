@@ -43,22 +43,16 @@ impl Subdomains {
             let regions: Vec<u32> = elements.map(|&e| mesh.regions()[e as usize]).collect();
             let element = subdomain.elements[0] as usize;
             let material = |message| TfetiError::Material { element, message };
-            let hooke = materials
-                .of_tets(&regions)
-                .map_err(|e| material(e.to_string()))?;
-            let matrix = assemble_stiffness(&points, &subdomain.tets, |t| hooke[t])
-                .map_err(|e| material(e.to_string()))?;
+            let hooke = materials.of_tets(&regions).map_err(|e| material(e.to_string()))?;
+            let matrix =
+                assemble_stiffness(&points, &subdomain.tets, |t| hooke[t]).map_err(|e| material(e.to_string()))?;
             Ok(ClassBase {
                 stiffness: Columns::from_symmetric(&matrix),
                 blocks: OnceLock::new(),
                 kernel: Kernel::new(&points, s)?,
             })
         };
-        let bases = classes
-            .classes()
-            .par_iter()
-            .map(base)
-            .collect::<Result<_, _>>()?;
+        let bases = classes.classes().par_iter().map(base).collect::<Result<_, _>>()?;
         Ok(Self { classes, bases })
     }
 

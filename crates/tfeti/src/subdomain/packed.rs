@@ -24,21 +24,12 @@ fn group(matrix: &Columns, order: &[u32], unit: usize) -> Vec<Group> {
     let (pointers, rows) = quotient(matrix, unit);
     let neighbours = |pair: &[usize]| rows[pair[0]..pair[1]].iter().map(|&r| r as u32).collect();
     let graph: Vec<Vec<u32>> = pointers.windows(2).map(neighbours).collect();
-    let blocks: Vec<u32> = order
-        .iter()
-        .step_by(unit)
-        .map(|&k| k / unit as u32)
-        .collect();
+    let blocks: Vec<u32> = order.iter().step_by(unit).map(|&k| k / unit as u32).collect();
     let cost = |width: usize, below: usize| {
         let height = width + below;
         GROUP + height / 4 + Supernodes::tiles_of(unit * width, unit * height)
     };
-    grouped(
-        0..blocks.len(),
-        &patterns(&graph, &blocks),
-        |_, _| true,
-        cost,
-    )
+    grouped(0..blocks.len(), &patterns(&graph, &blocks), |_, _| true, cost)
 }
 
 /// Numbers stored for a factor of a matrix with this pattern and order of elimination.
@@ -173,14 +164,7 @@ impl PackedFactor {
 
     /// Rows `nodes` of `A^-1 f` for forces on these nodes, in a matrix of nodes of three unknowns; `memory` as in
     /// [`PackedFactor::solve`]. The rigid part of forces and displacements, taken at all nodes, is removed.
-    pub(crate) fn product(
-        &self,
-        kernel: &Kernel,
-        nodes: &[u32],
-        f: &[f64],
-        u: &mut [f64],
-        memory: &mut [f64],
-    ) {
+    pub(crate) fn product(&self, kernel: &Kernel, nodes: &[u32], f: &[f64], u: &mut [f64], memory: &mut [f64]) {
         let (x, buffer) = memory.split_at_mut(self.order.len());
         let at = |node: usize| 3 * self.place[node] as usize;
         let three = |v: &[f64]| [v[0], v[1], v[2]];
@@ -254,8 +238,7 @@ mod tests {
         let several = [(4, 1, 3), (12, 3, 3), (12, 2, 6), (9, 4, 1)];
         for (nodes, links, block) in single.into_iter().chain(several) {
             let matrix = chains(nodes, links, block);
-            let factor =
-                SparseCholesky::new(&Symbolic::new(&matrix, block).unwrap(), &matrix).unwrap();
+            let factor = SparseCholesky::new(&Symbolic::new(&matrix, block).unwrap(), &matrix).unwrap();
             let unit = if block % 3 == 0 { 3 } else { 1 };
             let packed = PackedFactor::new(&factor, &matrix, unit);
             let mut x: Vec<f64> = (0..2 * matrix.dim).map(|i| (i as f64).sin()).collect();

@@ -34,11 +34,7 @@ pub struct TfetiBuilder<'a> {
 impl<'a> TfetiBuilder<'a> {
     /// A body without supports and contact.
     #[must_use]
-    pub fn new(
-        mesh: &'a TetMesh,
-        decomposition: &'a Decomposition,
-        materials: &'a Materials,
-    ) -> Self {
+    pub fn new(mesh: &'a TetMesh, decomposition: &'a Decomposition, materials: &'a Materials) -> Self {
         Self {
             mesh,
             decomposition,
@@ -88,11 +84,7 @@ impl<'a> TfetiBuilder<'a> {
         self.inverse.validate()?;
         let check = |what, found, expected| match found == expected {
             true => Ok(()),
-            false => Err(TfetiError::DecompositionMismatch {
-                what,
-                found,
-                expected,
-            }),
+            false => Err(TfetiError::DecompositionMismatch { what, found, expected }),
         };
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;

@@ -41,14 +41,8 @@ impl Tfeti {
         let mut dual = vec![0.0; self.dual_dim()];
         self.rows_times(&displaced, &mut dual);
         let wrench = |s: usize| self.kernel(s).transpose_times(&force[self.torn_range(s)]);
-        let coarse = (0..self.subdomains())
-            .flat_map(|s| wrench(s).map(|v| -v))
-            .collect();
-        Ok(LoadResponse {
-            dual,
-            coarse,
-            force,
-        })
+        let coarse = (0..self.subdomains()).flat_map(|s| wrench(s).map(|v| -v)).collect();
+        Ok(LoadResponse { dual, coarse, force })
     }
 
     /// Place of the three components of a node copy in torn vectors.
@@ -118,12 +112,7 @@ impl Tfeti {
     ///
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn recover(
-        &self,
-        force: &[f64],
-        lambda: &[f64],
-        alpha: &[f64],
-    ) -> Result<Vec<f64>, TfetiError> {
+    pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
         self.check("force", force, self.torn_dim())?;
         self.check("multipliers", lambda, self.dual_dim())?;
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
@@ -163,12 +152,7 @@ impl Tfeti {
     ///
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn equilibrium_residual(
-        &self,
-        u: &[f64],
-        force: &[f64],
-        lambda: &[f64],
-    ) -> Result<Vec<f64>, TfetiError> {
+    pub fn equilibrium_residual(&self, u: &[f64], force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
         self.check("displacement", u, self.torn_dim())?;
         self.check("force", force, self.torn_dim())?;
         self.check("multipliers", lambda, self.dual_dim())?;

@@ -48,11 +48,7 @@ pub struct SetupReport {
 impl SetupReport {
     /// Seconds of the whole set-up.
     pub fn seconds(&self) -> f64 {
-        self.classes_seconds
-            + self.gluing_seconds
-            + self.assembly_seconds
-            + self.inverse_seconds
-            + self.coarse_seconds
+        self.classes_seconds + self.gluing_seconds + self.assembly_seconds + self.inverse_seconds + self.coarse_seconds
     }
 }
 
@@ -63,11 +59,7 @@ pub(super) fn count(removed: &[RemovedRow]) -> Vec<(RowKind, RemovalReason, usiz
     alike.map(|all| (all[0].0, all[0].1, all.len())).collect()
 }
 
-pub(super) fn class_reports(
-    classes: &Classes,
-    map: &BoundaryMap,
-    inverses: &[ClassInverse],
-) -> Vec<ClassReport> {
+pub(super) fn class_reports(classes: &Classes, map: &BoundaryMap, inverses: &[ClassInverse]) -> Vec<ClassReport> {
     let report = |k: usize| ClassReport {
         members: classes.classes()[k].members.len(),
         unknowns: 3 * classes.classes()[k].nodes,

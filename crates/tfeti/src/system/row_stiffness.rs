@@ -30,17 +30,15 @@ impl Tfeti {
         for &(subdomain, dof, _) in entries.iter().flatten() {
             nodes[subdomains.class(subdomain)].push(dof / 3);
         }
-        let of_class =
-            |(class, mut nodes): (usize, Vec<usize>)| match &parts.inverses[class].boundary {
-                Some(block) => Compliance::Block(block),
-                None => {
-                    nodes.sort_unstable();
-                    nodes.dedup();
-                    Compliance::Sample(self.sample_compliance(class, &nodes))
-                }
-            };
-        let compliance: Vec<Compliance<'_>> =
-            nodes.into_par_iter().enumerate().map(of_class).collect();
+        let of_class = |(class, mut nodes): (usize, Vec<usize>)| match &parts.inverses[class].boundary {
+            Some(block) => Compliance::Block(block),
+            None => {
+                nodes.sort_unstable();
+                nodes.dedup();
+                Compliance::Sample(self.sample_compliance(class, &nodes))
+            }
+        };
+        let compliance: Vec<Compliance<'_>> = nodes.into_par_iter().enumerate().map(of_class).collect();
         for (entries, target) in entries.iter().zip(out) {
             *target = 0.0;
             for &(subdomain, dof, value) in entries {
@@ -119,11 +117,7 @@ impl Tfeti {
         }
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
             let diagonal = self.parts.subdomains.of(subdomain).stiffness.diagonal(dof);
-            if diagonal > 0.0 {
-                value * value / diagonal
-            } else {
-                0.0
-            }
+            if diagonal > 0.0 { value * value / diagonal } else { 0.0 }
         };
         let weight = |row: usize| {
             let sum: f64 = self.gluing().row(row).into_iter().map(compliance).sum();

@@ -32,9 +32,7 @@ impl Tfeti {
             let mut product = vec![0.0; dim * count];
             for (m, &s) in members.iter().enumerate() {
                 let x = &x[self.torn_range(s as usize)];
-                x.iter()
-                    .enumerate()
-                    .for_each(|(i, v)| panel[i * count + m] = *v);
+                x.iter().enumerate().for_each(|(i, v)| panel[i * count + m] = *v);
             }
             blocks.apply(&panel, &mut product, count);
             for (m, y) in columns.into_iter().enumerate() {
@@ -77,10 +75,7 @@ impl Tfeti {
         let mut list = Vec::new();
         for (class, own) in self.classes().classes().iter().enumerate() {
             for members in own.members.chunks(PANEL) {
-                let columns: Vec<&mut [f64]> = members
-                    .iter()
-                    .filter_map(|&s| targets[s as usize].take())
-                    .collect();
+                let columns: Vec<&mut [f64]> = members.iter().filter_map(|&s| targets[s as usize].take()).collect();
                 list.push((class, members, columns));
             }
         }

@@ -53,10 +53,7 @@ fn active_set(system: &Tfeti, share: f64, seed: u64) -> Vec<f64> {
 
 /// All that a projector does, as one list of vectors.
 fn results(system: &Tfeti, space: &mut Space) -> Vec<Vec<f64>> {
-    let (x, e) = (
-        noise(system.dual_dim(), 5),
-        noise(system.coarse().rows(), 6),
-    );
+    let (x, e) = (noise(system.dual_dim(), 5), noise(system.coarse().rows(), 6));
     let (mut p, mut t, mut r) = (x.clone(), x.clone(), x.clone());
     let mut alpha = e.clone();
     space.project(&mut p);
@@ -87,11 +84,7 @@ fn results(system: &Tfeti, space: &mut Space) -> Vec<Vec<f64>> {
 
 fn compare(system: &Tfeti, a: &mut Space, b: &mut Space) {
     for (x, y) in results(system, a).iter().zip(&results(system, b)) {
-        assert!(
-            distance(x, y) < 1e-12 * norm(y),
-            "{}",
-            distance(x, y) / norm(y)
-        );
+        assert!(distance(x, y) < 1e-12 * norm(y), "{}", distance(x, y) / norm(y));
     }
 }
 
@@ -136,10 +129,7 @@ fn repairs_do_all_but_loose_modes() {
             .unwrap();
         let mut space = space(&system, ActiveSetFactor::Auto, None);
         assert_eq!(space.loose().len(), count);
-        let (x, e) = (
-            noise(system.dual_dim(), 5),
-            noise(system.coarse().rows(), 6),
-        );
+        let (x, e) = (noise(system.dual_dim(), 5), noise(system.coarse().rows(), 6));
         let mut repaired = x.clone();
         space.repair(&mut repaired, &e);
         let rows = system.gluing().ranges().contact().end;
@@ -162,10 +152,7 @@ fn repairs_do_all_but_loose_modes() {
 #[test]
 fn a_metric_of_the_rows_is_kept() {
     let system = system(2, 3);
-    let metric: Vec<f64> = noise(system.dual_dim(), 9)
-        .iter()
-        .map(|v| 0.6 + 0.4 * v)
-        .collect();
+    let metric: Vec<f64> = noise(system.dual_dim(), 9).iter().map(|v| 0.6 + 0.4 * v).collect();
     let mut split = space(&system, ActiveSetFactor::Split, Some(metric.clone()));
     let mut sparse = space(&system, ActiveSetFactor::Sparse, Some(metric));
     for (share, seed) in [(0.5, 1), (0.1, 2)] {
@@ -190,8 +177,7 @@ fn one_subdomain_and_no_or_only_contact() {
         let all = system.gluing().ranges().contact().end;
         for rows in [0, all] {
             let new = |kind| Space::new(system, rows, kind, None);
-            let (mut split, mut sparse) =
-                (new(ActiveSetFactor::Split), new(ActiveSetFactor::Sparse));
+            let (mut split, mut sparse) = (new(ActiveSetFactor::Split), new(ActiveSetFactor::Sparse));
             compare(system, &mut split, &mut sparse);
             let w = match rows {
                 0 => vec![1.0; system.dual_dim()],
@@ -222,10 +208,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     // Large enough that all loops and both halves run in parallel.
     let system = system(5, 3);
     let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut space = space(&system, ActiveSetFactor::Split, None);
             space.set_weights(&active_set(&system, 0.5, 3)).unwrap();
@@ -257,10 +240,7 @@ fn a_body_held_by_contact_only_is_deficient_on_open_sets() {
         for space in [&mut split, &mut sparse] {
             space.set_coarse_rhs(&e);
             assert_eq!(space.set_weights(&closed), Ok(true));
-            assert!(matches!(
-                space.set_weights(&open),
-                Err(QpError::CoarseDeficient { .. })
-            ));
+            assert!(matches!(space.set_weights(&open), Err(QpError::CoarseDeficient { .. })));
             assert_eq!(space.set_weights(&active_set(&system, 0.5, 2)), Ok(true));
         }
         compare(&system, &mut split, &mut sparse);

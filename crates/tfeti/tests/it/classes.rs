@@ -14,11 +14,7 @@ fn two_parities_make_two_classes() {
     let b = Brick::new(2, 5);
     let found = classes(&b, true);
     assert_eq!(
-        found
-            .classes()
-            .iter()
-            .map(|c| c.members.len())
-            .collect::<Vec<_>>(),
+        found.classes().iter().map(|c| c.members.len()).collect::<Vec<_>>(),
         [12, 12]
     );
     assert_eq!(classes(&b, false).classes().len(), 24);
@@ -39,11 +35,7 @@ fn perturbed_subdomains_share_nothing() {
 #[test]
 fn a_far_away_body_shares_as_much_as_a_near_one() {
     let mut b = Brick::new(1, 4);
-    b.mesh = b
-        .mesh
-        .clone()
-        .map_points(|p| [p[0] + 1e4, p[1] - 3e4, p[2]])
-        .unwrap();
+    b.mesh = b.mesh.clone().map_points(|p| [p[0] + 1e4, p[1] - 3e4, p[2]]).unwrap();
     b.decomposition = Decomposition::boxes(&b.mesh, [3, 1, 1]).unwrap();
     assert_eq!(classes(&b, true).classes().len(), 1);
 }
@@ -58,11 +50,7 @@ fn materials_tell_translates_apart() {
     b.materials = Materials::new(vec![(0, law(1e9)), (1, law(2e9)), (2, law(1e9))]).unwrap();
     let found = classes(&b, true);
     assert_eq!(
-        found
-            .classes()
-            .iter()
-            .map(|c| c.members.clone())
-            .collect::<Vec<_>>(),
+        found.classes().iter().map(|c| c.members.clone()).collect::<Vec<_>>(),
         [vec![0, 2], vec![1]]
     );
     b.materials = Materials::new(vec![(0, law(1e9))]).unwrap();
@@ -76,19 +64,11 @@ fn report_tells_what_was_built() {
     let system = b.system();
     let report = system.report();
     assert_eq!(
-        (
-            report.subdomains,
-            report.classes.len(),
-            report.factorisations
-        ),
+        (report.subdomains, report.classes.len(), report.factorisations),
         (3, 2, 3)
     );
     assert_eq!(
-        (
-            report.primal_unknowns,
-            report.rows.total(),
-            report.rows_as_paper
-        ),
+        (report.primal_unknowns, report.rows.total(), report.rows_as_paper),
         (1944, 594, 612)
     );
     let text = report.to_string();
@@ -106,13 +86,8 @@ fn report_tells_what_was_built() {
 fn bodies_without_rows_and_single_supported_bodies_build() {
     let b = Brick::new(1, 2);
     let whole = Decomposition::whole(&b.mesh);
-    let free = TfetiBuilder::new(&b.mesh, &whole, &b.materials)
-        .build()
-        .unwrap();
-    assert_eq!(
-        (free.dual_dim(), free.coarse_factor().free_motions().len()),
-        (0, 6)
-    );
+    let free = TfetiBuilder::new(&b.mesh, &whole, &b.materials).build().unwrap();
+    assert_eq!((free.dual_dim(), free.coarse_factor().free_motions().len()), (0, 6));
     let supports = [NodeSupport::fixed(b.fixed.clone())];
     let held = TfetiBuilder::new(&b.mesh, &whole, &b.materials)
         .with_supports(&supports)

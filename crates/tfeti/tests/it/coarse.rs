@@ -15,11 +15,7 @@ fn coarse_projectors_and_particular_solutions() {
         let mut s = coarse.scratch();
         let ranges = system.gluing().ranges().clone();
         let weights = |row: usize| {
-            if ranges.contact().contains(&row) {
-                0.0
-            } else {
-                1.0
-            }
+            if ranges.contact().contains(&row) { 0.0 } else { 1.0 }
         };
         let weighted = coarse
             .factor_weighted(RowWeights::diagonal((0..dim).map(weights).collect()))
@@ -115,15 +111,9 @@ fn spectrum_on_the_kernel_of_g() {
     values.sort_by(f64::total_cmp);
     let rows = factor.coarse().rows();
     let largest = values[dim - 1];
-    assert!(
-        values[rows - 1].abs() < 1e-12 * largest,
-        "six zeros a subdomain"
-    );
+    assert!(values[rows - 1].abs() < 1e-12 * largest, "six zeros a subdomain");
     let smallest = values[rows] / largest;
-    assert!(
-        (0.015..0.03).contains(&smallest),
-        "smallest / largest = {smallest}"
-    );
+    assert!((0.015..0.03).contains(&smallest), "smallest / largest = {smallest}");
 }
 
 #[test]
@@ -131,8 +121,7 @@ fn free_motions_are_found_and_long_bodies_raise_no_alarm() {
     let b = Brick::new(1, 3);
     let free = |supports: &[NodeSupport], friction: Option<bool>, only_interface: bool| {
         let contact = b.contact(friction.unwrap_or(false));
-        let mut builder =
-            TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).with_supports(supports);
+        let mut builder = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials).with_supports(supports);
         if friction.is_some() {
             builder = builder.with_contact(&contact);
         }
@@ -144,17 +133,10 @@ fn free_motions_are_found_and_long_bodies_raise_no_alarm() {
         let weights = (0..ranges.total())
             .map(|r| f64::from(u8::from(!ranges.contact().contains(&r))))
             .collect();
-        let factor = system
-            .coarse()
-            .factor_weighted(RowWeights::diagonal(weights))
-            .unwrap();
+        let factor = system.coarse().factor_weighted(RowWeights::diagonal(weights)).unwrap();
         // Consistent right-hand sides are solved in spite of the free motions.
         let coarse = factor.coarse();
-        let (mut s, mut x, mut e) = (
-            coarse.scratch(),
-            noise(coarse.dim(), 8),
-            vec![0.0; coarse.rows()],
-        );
+        let (mut s, mut x, mut e) = (coarse.scratch(), noise(coarse.dim(), 8), vec![0.0; coarse.rows()]);
         x[ranges.contact()].fill(0.0);
         coarse.apply(&x, &mut e, &mut s);
         let mut again = e.clone();
@@ -172,9 +154,7 @@ fn free_motions_are_found_and_long_bodies_raise_no_alarm() {
     let line = NodeSupport::partial(vec![b.fixed[0]], Directions::All);
     assert_eq!(free(&[line], Some(true), true), 3);
     // A beam 200 times as long as thick in 200 subdomains.
-    let mesh = brick::Brick::new([200.0, 1.0, 1.0], [400, 2, 2])
-        .build()
-        .unwrap();
+    let mesh = brick::Brick::new([200.0, 1.0, 1.0], [400, 2, 2]).build().unwrap();
     let decomposition = Decomposition::boxes(&mesh, [200, 1, 1]).unwrap();
     let supports = [NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))];
     let system = TfetiBuilder::new(&mesh, &decomposition, &b.materials)

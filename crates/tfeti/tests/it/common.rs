@@ -1,13 +1,9 @@
 //! The brick of the benchmark, for the tests.
 
-use signorini_fem_mesh::{
-    Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick,
-};
+use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick};
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::internal::{CopyStiffness, InverseKind};
-use signorini_tfeti::{
-    ContactConstraints, Gluing, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError,
-};
+use signorini_tfeti::{ContactConstraints, Gluing, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 
 pub(crate) struct Brick {
     pub(crate) mesh: TetMesh,
@@ -104,11 +100,7 @@ pub(crate) fn norm(a: &[f64]) -> f64 {
 }
 
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y) * (x - y))
-        .sum::<f64>()
-        .sqrt()
+    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
 /// The brick with its supports and frictional contact.

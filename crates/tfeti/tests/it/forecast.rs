@@ -12,10 +12,7 @@ fn both(mesh: &TetMesh, decomposition: &Decomposition, share: bool) -> (Forecast
     let touched = |node| held.contains(&node);
     let found = Forecast::new(mesh, decomposition, &materials, share, &settings, touched);
     let builder = TfetiBuilder::new(mesh, decomposition, &materials).with_supports(&supports);
-    (
-        found.unwrap(),
-        builder.with_share_translates(share).build().unwrap(),
-    )
+    (found.unwrap(), builder.with_share_translates(share).build().unwrap())
 }
 
 #[test]
@@ -42,9 +39,7 @@ fn a_forecast_is_what_the_set_up_finds() {
 fn the_coarse_factor_of_very_small_subdomains_is_counted() {
     let mut last = 0.0;
     for n in [2, 3] {
-        let mesh = brick::Brick::new([3.0, 1.0, 1.0], [3 * n, n, n])
-            .build()
-            .unwrap();
+        let mesh = brick::Brick::new([3.0, 1.0, 1.0], [3 * n, n, n]).build().unwrap();
         let parts: Vec<u32> = (0..mesh.tets().len() as u32).collect();
         let decomposition = Decomposition::from_parts(&mesh, &parts).unwrap();
         let (found, system) = both(&mesh, &decomposition, true);

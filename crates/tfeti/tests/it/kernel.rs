@@ -40,9 +40,7 @@ proptest! {
 
 #[test]
 fn nodes_on_a_line_are_refused() {
-    let points: Vec<[f64; 3]> = (0..5)
-        .map(|i| [f64::from(i), 2.0 * f64::from(i), 0.0])
-        .collect();
+    let points: Vec<[f64; 3]> = (0..5).map(|i| [f64::from(i), 2.0 * f64::from(i), 0.0]).collect();
     assert_eq!(
         Kernel::new(&points, 7).unwrap_err(),
         TfetiError::Collinear { subdomain: 7 }

@@ -6,21 +6,12 @@ use signorini_qp::SymmetricOperator;
 use signorini_tfeti::{Motion, NodeSupport, Tfeti, TfetiBuilder};
 
 /// Solves the linear problem (no contact) by projected conjugate gradients and returns the nodal displacement.
-fn solve(
-    decomposition: &Decomposition,
-    system: &Tfeti,
-    loads: &[Vec<f64>],
-    offsets: &[f64],
-) -> (Vec<f64>, usize) {
+fn solve(decomposition: &Decomposition, system: &Tfeti, loads: &[Vec<f64>], offsets: &[f64]) -> (Vec<f64>, usize) {
     let response = system.load_response(loads).unwrap();
     let (f, factor) = (system.dual(), system.coarse_factor());
     let (mut fs, mut cs) = (f.scratch(), factor.scratch());
     let dim = f.dim();
-    let d: Vec<f64> = offsets
-        .iter()
-        .zip(&response.dual)
-        .map(|(c, b)| c - b)
-        .collect();
+    let d: Vec<f64> = offsets.iter().zip(&response.dual).map(|(c, b)| c - b).collect();
     let mut lambda = vec![0.0; dim];
     factor.particular(&response.coarse, &mut lambda, &mut cs);
     let mut fl = vec![0.0; dim];
@@ -76,24 +67,14 @@ fn solve(
             node += 1;
         }
     }
-    let balance = system
-        .equilibrium_residual(&u, &response.force, &lambda)
-        .unwrap();
+    let balance = system.equilibrium_residual(&u, &response.force, &lambda).unwrap();
     let size = norm(&response.force).max(norm(&lambda));
-    assert!(
-        norm(&balance) < 1e-9 * size,
-        "balance {:e}",
-        norm(&balance) / size
-    );
+    assert!(norm(&balance) < 1e-9 * size, "balance {:e}", norm(&balance) / size);
     (system.nodal_mean(&u), iterations)
 }
 
 /// Dense Cholesky-free reference: conjugate gradients on the undivided body with its supports eliminated.
-fn direct(
-    b: &Brick,
-    prescribed: &dyn Fn(u32) -> Option<[f64; 3]>,
-    loads: &LoadDensity,
-) -> Vec<f64> {
+fn direct(b: &Brick, prescribed: &dyn Fn(u32) -> Option<[f64; 3]>, loads: &LoadDensity) -> Vec<f64> {
     let whole = Decomposition::whole(&b.mesh);
     let sub = &whole.subdomains()[0];
     let hooke = b.materials.get(0).unwrap();
@@ -126,8 +107,7 @@ fn direct(
     let diagonal: Vec<f64> = (0..n).map(|i| *k.get(i, i).unwrap()).collect();
     let ku = times(&u);
     let mut r = mask(f.iter().zip(&ku).map(|(f, k)| f - k).collect());
-    let precondition =
-        |r: &[f64]| -> Vec<f64> { r.iter().zip(&diagonal).map(|(r, d)| r / d).collect() };
+    let precondition = |r: &[f64]| -> Vec<f64> { r.iter().zip(&diagonal).map(|(r, d)| r / d).collect() };
     let mut z = precondition(&r);
     let mut p = z.clone();
     let mut rz = dot(&r, &z);
@@ -156,23 +136,14 @@ fn tfeti_equals_a_direct_solve() {
         let b = Brick::new(n, 5);
         let load = LoadDensity::traction(brick::Z_MAX, [1.0e6, -2.0e6, -3.0e7]);
         let loads = assemble_load(&b.mesh, &b.decomposition, &load).unwrap();
-        let reference = direct(
-            &b,
-            &|node| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]),
-            &load,
-        );
+        let reference = direct(&b, &|node| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]), &load);
         {
             let supports = b.supports();
             let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
                 .with_supports(&supports)
                 .build()
                 .unwrap();
-            let (u, iterations) = solve(
-                &b.decomposition,
-                &system,
-                &loads,
-                &vec![0.0; system.dual_dim()],
-            );
+            let (u, iterations) = solve(&b.decomposition, &system, &loads, &vec![0.0; system.dual_dim()]);
             let error = distance(&u, &reference) / norm(&reference);
             assert!(error < 1e-9, "n = {n}: {error:e} after {iterations}");
         }
@@ -206,10 +177,7 @@ fn prescribed_displacement_is_reached() {
     );
     let none = LoadDensity::body([0.0; 3]);
     let value = |node: u32| {
-        let moved = right
-            .binary_search(&node)
-            .ok()
-            .map(|_| pull.map(|v| 2.0 * v));
+        let moved = right.binary_search(&node).ok().map(|_| pull.map(|v| 2.0 * v));
         moved.or_else(|| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]))
     };
     let reference = direct(&b, &value, &none);

@@ -21,19 +21,14 @@ fn generalised_inverse_laws() {
             system.stiffness_times(&inverse, &mut again);
             for s in 0..system.subdomains() {
                 let range = system.torn_range(s);
-                assert!(
-                    norm(&system.kernel(s).transpose_times(&inverse[range]))
-                        < 1e-9 * norm(&inverse)
-                );
+                assert!(norm(&system.kernel(s).transpose_times(&inverse[range])) < 1e-9 * norm(&inverse));
             }
             assert!(distance(&again, &k) < 1e-10 * norm(&k), "{kind:?}");
             let mut rigid = vec![0.0; x.len()];
             for s in 0..system.subdomains() {
-                system.kernel(s).add_motion(
-                    1.0,
-                    &[1.0, -2.0, 0.5, 0.3, 1.0, -0.7],
-                    &mut rigid[system.torn_range(s)],
-                );
+                system
+                    .kernel(s)
+                    .add_motion(1.0, &[1.0, -2.0, 0.5, 0.3, 1.0, -0.7], &mut rigid[system.torn_range(s)]);
             }
             system.stiffness_times(&rigid, &mut again);
             assert!(norm(&again) < 1e-12 * norm(&k));
@@ -67,10 +62,7 @@ fn dual_operator_is_symmetric_and_the_same_for_all_inverses() {
     let b = Brick::new(2, 3);
     let reference = build(&b, InverseKind::Dense, true);
     assert_eq!(reference.classes().classes().len(), 2);
-    let (x, y) = (
-        noise(reference.dual_dim(), 1),
-        noise(reference.dual_dim(), 2),
-    );
+    let (x, y) = (noise(reference.dual_dim(), 1), noise(reference.dual_dim(), 2));
     let fx = product(&reference, &x);
     assert!(dot(&x, &fx) > 0.0);
     for kind in [InverseKind::Dense, InverseKind::Sparse, InverseKind::Auto] {
@@ -84,10 +76,7 @@ fn dual_operator_is_symmetric_and_the_same_for_all_inverses() {
                 "{kind:?} {share}: {:e}",
                 distance(&other, &fx) / norm(&fx)
             );
-            assert!(
-                (dot(&y, &other) - dot(&x, &product(&system, &y))).abs()
-                    < 1e-11 * norm(&fx) * norm(&y)
-            );
+            assert!((dot(&y, &other) - dot(&x, &product(&system, &y))).abs() < 1e-11 * norm(&fx) * norm(&y));
         }
     }
 }
@@ -135,10 +124,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
         (InverseKind::Sparse, false),
     ] {
         let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let system = build(&b, kind, share);
                 // enough node copies on boundaries for two threads, in every loop over them
@@ -148,8 +134,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                 let x = noise(system.dual_dim(), 1);
                 let y = product(&system, &x);
                 let c = system.coarse_factor().orthonormal().unwrap();
-                let (mut s, mut beta, mut q) =
-                    (c.scratch(), vec![0.0; c.rows()], vec![0.0; c.dim()]);
+                let (mut s, mut beta, mut q) = (c.scratch(), vec![0.0; c.rows()], vec![0.0; c.dim()]);
                 c.apply(&x, &mut beta, &mut s);
                 c.apply_transpose(&beta, &mut q, &mut s);
                 let mut u = vec![0.0; system.torn_dim()];
@@ -179,10 +164,7 @@ fn bad_systems_are_refused() {
     let error = TfetiBuilder::new(&b.mesh, &other.decomposition, &b.materials)
         .build()
         .unwrap_err();
-    assert!(matches!(
-        error,
-        TfetiError::DecompositionMismatch { what: "nodes", .. }
-    ));
+    assert!(matches!(error, TfetiError::DecompositionMismatch { what: "nodes", .. }));
     let settings = InverseSettings::default().with_memory_limit(10);
     let builder = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials);
     assert!(matches!(
@@ -198,10 +180,7 @@ fn bad_systems_are_refused() {
         })
     ));
     let system = builder.build().unwrap();
-    assert!(matches!(
-        system.load_response(&[]),
-        Err(TfetiError::Length { .. })
-    ));
+    assert!(matches!(system.load_response(&[]), Err(TfetiError::Length { .. })));
     let mut loads = b.loads();
     loads[1][4] = f64::NAN;
     assert!(matches!(
@@ -216,9 +195,7 @@ fn bad_systems_are_refused() {
     let mut weights = vec![1.0; system.dual_dim()];
     weights[0] = -1.0;
     assert!(matches!(
-        system
-            .coarse()
-            .factor_weighted(RowWeights::diagonal(weights)),
+        system.coarse().factor_weighted(RowWeights::diagonal(weights)),
         Err(TfetiError::Setting { .. })
     ));
 }

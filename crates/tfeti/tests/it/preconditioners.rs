@@ -62,10 +62,7 @@ fn preconditioners_are_symmetric_and_help() {
     };
     for sharing in [true, false] {
         let [none, lumped, dirichlet] = counts(&build(&b, InverseKind::Auto, sharing));
-        assert!(
-            dirichlet < lumped && lumped < none,
-            "{none} {lumped} {dirichlet}"
-        );
+        assert!(dirichlet < lumped && lumped < none, "{none} {lumped} {dirichlet}");
         assert!(dirichlet < 25, "{none} {lumped} {dirichlet}");
     }
 }

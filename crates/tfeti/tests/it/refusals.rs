@@ -12,11 +12,7 @@ fn projectors_check_their_arguments() {
     let system = Brick::new(1, 2).system();
     let (coarse, dim) = (system.coarse(), system.dual_dim());
     let contact = system.gluing().ranges().contact().end;
-    for kind in [
-        ActiveSetFactor::Auto,
-        ActiveSetFactor::Sparse,
-        ActiveSetFactor::Split,
-    ] {
+    for kind in [ActiveSetFactor::Auto, ActiveSetFactor::Sparse, ActiveSetFactor::Split] {
         let new = |rows, metric| ActiveSetProjector::with_factor(coarse, rows, metric, kind);
         for rows in [contact + 1, dim + 1, usize::MAX] {
             let error = new(rows, None).unwrap_err();
@@ -46,10 +42,7 @@ fn projectors_check_their_arguments() {
         for line in [line(dim, [1.0, 0.0]), line(disc, [1.0, 1.0])] {
             assert!(space.set_weights_and_lines(&w, &[line]).is_err());
         }
-        assert_eq!(
-            space.set_weights_and_lines(&w, &[line(disc, [0.6, 0.8])]),
-            Ok(true)
-        );
+        assert_eq!(space.set_weights_and_lines(&w, &[line(disc, [0.6, 0.8])]), Ok(true));
     }
 }
 
@@ -105,12 +98,7 @@ fn gluing_checks_what_belongs_to_the_decomposition() {
     let b = Brick::new(1, 2);
     let stiffness = b.system().all_copy_stiffness();
     let gluing = |decomposition: &Decomposition, stiffness: &CopyStiffness| {
-        Gluing::new(
-            decomposition,
-            &b.supports(),
-            Some(&b.contact(true)),
-            stiffness,
-        )
+        Gluing::new(decomposition, &b.supports(), Some(&b.contact(true)), stiffness)
     };
     assert!(gluing(&b.decomposition, &stiffness).is_ok());
     for other in [

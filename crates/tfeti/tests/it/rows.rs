@@ -4,28 +4,21 @@ use crate::common::{Brick, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
 use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{
-    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, Side,
-    TangentialRows, TfetiBuilder, TfetiError,
+    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, Side, TangentialRows, TfetiBuilder,
+    TfetiError,
 };
 
 #[test]
 fn counts_of_the_papers_table() {
     for (n, rows) in [(1, 612), (2, 5685), (3, 20136), (4, 48879), (5, 96828)] {
         let b = Brick::new(n, 5);
-        assert_eq!(
-            b.decomposition.torn_dofs(),
-            [1944, 15552, 52488, 124416, 243000][n - 1]
-        );
+        assert_eq!(b.decomposition.torn_dofs(), [1944, 15552, 52488, 124416, 243000][n - 1]);
         {
             let g = gluing(&b, &b.supports(), Some(&b.contact(true))).unwrap();
             assert_eq!(g.rows_as_paper(), rows);
             assert_eq!(g.rows_full_rank(), rows - 3 * (5 * n + 1));
             assert_eq!(g.removed().len(), 3 * (5 * n + 1));
-            assert!(
-                g.removed()
-                    .iter()
-                    .all(|r| b.fixed.binary_search(&r.node).is_ok())
-            );
+            assert!(g.removed().iter().all(|r| b.fixed.binary_search(&r.node).is_ok()));
         }
     }
 }
@@ -48,10 +41,7 @@ fn rows_are_orthonormal() {
     assert!(g.is_orthonormal());
     for (i, row) in gram(&g).iter().enumerate() {
         for (j, v) in row.iter().enumerate() {
-            assert!(
-                (v - f64::from(u8::from(i == j))).abs() < 1e-13,
-                "rows {i} {j}: {v}"
-            );
+            assert!((v - f64::from(u8::from(i == j))).abs() < 1e-13, "rows {i} {j}: {v}");
         }
     }
 }
@@ -62,21 +52,14 @@ fn without_friction_there_are_no_tangential_rows() {
     let g = gluing(&b, &b.supports(), Some(&b.contact(false))).unwrap();
     assert!(g.ranges().tangential().is_empty());
     assert_eq!(g.ranges().normal.len(), b.bottom.len() - 3);
-    assert!(
-        g.contact()
-            .iter()
-            .all(|c| c.tangential == TangentialRows::None)
-    );
+    assert!(g.contact().iter().all(|c| c.tangential == TangentialRows::None));
 }
 
 #[test]
 fn pairs_of_nodes_act_on_the_relative_displacement() {
     let b = Brick::new(1, 2);
     // Take two nodes of one body as the pair; the rows do not know the difference.
-    let (a, o) = (
-        b.bottom[b.bottom.len() - 1],
-        b.mesh.nodes_on(brick::Z_MAX)[4],
-    );
+    let (a, o) = (b.bottom[b.bottom.len() - 1], b.mesh.nodes_on(brick::Z_MAX)[4]);
     let point = ContactConstraint::new(a, b.frames[0])
         .with_partner(Some(o))
         .with_friction(true);
@@ -126,9 +109,7 @@ fn nodes_of_pairs_may_have_other_points() {
     let [o, q] = [1, 4].map(|k| b.mesh.nodes_on(brick::Z_MAX)[k]);
     let reversed = SurfaceFrame::from_normal(frame.normal.map(|c| -c)).unwrap();
     let sideways = SurfaceFrame::from_normal([1.0, 0.0, 0.0]).unwrap();
-    let pair = |node: u32, frame, partner: Option<u32>| {
-        ContactConstraint::new(node, frame).with_partner(partner)
-    };
+    let pair = |node: u32, frame, partner: Option<u32>| ContactConstraint::new(node, frame).with_partner(partner);
     let make = |points: Vec<ContactConstraint>| {
         let contact: ContactConstraints = points.into_iter().collect();
         gluing(&b, &[], Some(&contact))
@@ -143,9 +124,7 @@ fn nodes_of_pairs_may_have_other_points() {
     ] {
         let g = make(vec![first(), second.clone()]).unwrap();
         assert_eq!(g.ranges().normal.len(), 2, "{second:?}");
-        assert!(
-            !g.is_orthonormal() && smallest_eigenvalue(&gram(&g)) > 1e-6 || second.side == o.into()
-        );
+        assert!(!g.is_orthonormal() && smallest_eigenvalue(&gram(&g)) > 1e-6 || second.side == o.into());
         let sides = std::iter::once(&second.side).chain(&second.partner);
         for node in sides.flat_map(Side::nodes).map(|n| n.0).chain([a, o]) {
             assert!(g.is_dependent(node), "{second:?}: {node}");
@@ -166,9 +145,8 @@ fn nodes_of_pairs_may_have_other_points() {
 fn bad_input_is_named() {
     let b = Brick::new(1, 2);
     let many = b.mesh.points().len() as u32;
-    let err = |supports: &[NodeSupport], contact: Option<&ContactConstraints>| {
-        gluing(&b, supports, contact).unwrap_err()
-    };
+    let err =
+        |supports: &[NodeSupport], contact: Option<&ContactConstraints>| gluing(&b, supports, contact).unwrap_err();
     assert!(
         matches!(err(&[NodeSupport::fixed(vec![many])], None), TfetiError::UnknownNode { node, .. } if node == many)
     );
@@ -179,10 +157,7 @@ fn bad_input_is_named() {
     let none = NodeSupport::partial(vec![0], Directions::Components([false; 3]));
     assert!(matches!(
         err(&[none], None),
-        TfetiError::EmptySupport {
-            what: "directions",
-            ..
-        }
+        TfetiError::EmptySupport { what: "directions", .. }
     ));
     for direction in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
         let support = NodeSupport::partial(vec![0], Directions::Vectors(vec![direction]));
@@ -198,29 +173,16 @@ fn bad_input_is_named() {
     let support = NodeSupport::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3]; 3]));
     assert!(matches!(
         err(&[support], None),
-        TfetiError::MotionLength {
-            found: 3,
-            nodes: 2,
-            ..
-        }
+        TfetiError::MotionLength { found: 3, nodes: 2, .. }
     ));
     let support = NodeSupport::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3], [f64::NAN; 3]]));
-    assert!(matches!(
-        err(&[support], None),
-        TfetiError::BadMotion { node: 1, .. }
-    ));
+    assert!(matches!(err(&[support], None), TfetiError::BadMotion { node: 1, .. }));
     let mut contact = b.contact(true);
     contact.points[3].side = contact.points[2].side.clone();
-    assert!(matches!(
-        err(&[], Some(&contact)),
-        TfetiError::ContactNodeTwice { .. }
-    ));
+    assert!(matches!(err(&[], Some(&contact)), TfetiError::ContactNodeTwice { .. }));
     let mut contact = b.contact(true);
     contact.points[1].partner = Some(Side::node(many + 5));
-    assert!(matches!(
-        err(&[], Some(&contact)),
-        TfetiError::UnknownNode { .. }
-    ));
+    assert!(matches!(err(&[], Some(&contact)), TfetiError::UnknownNode { .. }));
     let mut contact = b.contact(true);
     contact.points[1].frame.normal = [0.0, 0.1, -1.0];
     assert!(matches!(
@@ -235,17 +197,10 @@ fn a_whole_body_has_no_interface_rows() {
     let whole = Decomposition::whole(&b.mesh);
     let frame: SurfaceFrame = b.frames[0];
     let contact = ContactConstraints::rigid(&b.bottom, &vec![frame; b.bottom.len()], true);
-    let g = Gluing::new(
-        &whole,
-        &b.supports(),
-        Some(&contact),
-        &CopyStiffness::default(),
-    )
-    .unwrap();
+    let g = Gluing::new(&whole, &b.supports(), Some(&contact), &CopyStiffness::default()).unwrap();
     assert!(g.ranges().interface.is_empty());
     assert!(g.contact().iter().all(|c| (c.scale - 1.0).abs() < 1e-15));
-    let down =
-        |row: &[(usize, usize, f64)]| matches!(row, [(0, dof, v)] if dof % 3 == 2 && *v == -1.0);
+    let down = |row: &[(usize, usize, f64)]| matches!(row, [(0, dof, v)] if dof % 3 == 2 && *v == -1.0);
     assert!(g.contact().iter().all(|c| down(&g.row(c.row))));
 }
 
@@ -256,14 +211,7 @@ fn contact_rows_follow_the_stiff_copy() {
     let mut b = Brick::new(1, 2);
     let ratio = 1e4;
     let regions = (0..b.mesh.tets().len())
-        .map(|t| {
-            u32::from(
-                b.mesh
-                    .tet_points(t)
-                    .iter()
-                    .all(|p| p[0] >= 1.0 && p[0] <= 2.0),
-            )
-        })
+        .map(|t| u32::from(b.mesh.tet_points(t).iter().all(|p| p[0] >= 1.0 && p[0] <= 2.0)))
         .collect();
     b.mesh = b.mesh.with_regions(regions).unwrap();
     let hooke = |young| Hooke::isotropic(young, 0.3).unwrap();

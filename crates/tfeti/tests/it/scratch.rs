@@ -59,10 +59,7 @@ fn line_weights_act_like_a_rotated_diagonal() {
         factor.project(&mut x, None, &mut s);
         x
     });
-    assert!(
-        crate::common::distance(&results[0], &results[1])
-            < 1e-11 * crate::common::norm(&results[0])
-    );
+    assert!(crate::common::distance(&results[0], &results[1]) < 1e-11 * crate::common::norm(&results[0]));
     let mut crossed = RowWeights::diagonal(vec![1.0; coarse.dim()]);
     crossed.lines = vec![LineWeight {
         row: ranges.normal.start,

@@ -5,8 +5,8 @@ use signorini_fem_mesh::{SurfaceFrame, brick};
 use signorini_qp::EqualityProjector;
 use signorini_tfeti::internal::{ActiveSetFactor, prescribed_points};
 use signorini_tfeti::{
-    ActiveSetProjector, ContactConstraint, ContactConstraints, Directions, Motion, NodeSupport,
-    Side, TangentialRows, Tfeti, TfetiError,
+    ActiveSetProjector, ContactConstraint, ContactConstraints, Directions, Motion, NodeSupport, Side, TangentialRows,
+    Tfeti, TfetiError,
 };
 
 const WEIGHTS: [f64; 3] = [0.2, 0.3, 0.5];
@@ -35,12 +35,9 @@ fn contact(b: &Brick) -> ContactConstraints {
     let partner = &b.mesh.nodes_on(brick::Z_MAX)[5..9];
     let own = side(&own(b), &WEIGHTS);
     let against = ContactConstraint::new(own.clone(), frame()).with_friction(true);
-    [
-        against.clone().with_partner(Some(side(partner, &DUAL))),
-        against,
-    ]
-    .into_iter()
-    .collect()
+    [against.clone().with_partner(Some(side(partner, &DUAL))), against]
+        .into_iter()
+        .collect()
 }
 
 fn system(b: &Brick, supports: &[NodeSupport]) -> Tfeti {
@@ -55,8 +52,7 @@ fn jump(b: &Brick, system: &Tfeti, point: &ContactConstraint, u: &[f64]) -> [f64
         for &(node, weight) in side.nodes() {
             let copies = b.decomposition.copies(node as usize);
             for copy in copies {
-                let first =
-                    system.torn_range(copy.subdomain as usize).start + 3 * copy.local as usize;
+                let first = system.torn_range(copy.subdomain as usize).start + 3 * copy.local as usize;
                 (0..3).for_each(|c| sum[c] += weight * u[first + c] / copies.len() as f64);
             }
         }
@@ -80,8 +76,7 @@ fn rows_are_the_weighted_mean_of_the_jump() {
         let jump = jump(&b, &system, point, &u);
         let close = |row: usize, scale: f64, direction: &[f64; 3]| {
             let length: f64 = system.gluing().row(row).iter().map(|e| e.2 * e.2).sum();
-            (rows[row] / scale - dot(&jump, direction)).abs() < 1e-14
-                && (length - 1.0).abs() < 1e-14
+            (rows[row] / scale - dot(&jump, direction)).abs() < 1e-14 && (length - 1.0).abs() < 1e-14
         };
         assert!(close(info.row, info.scale, &point.frame.normal));
         let TangentialRows::Disc { row, scale } = info.tangential else {
@@ -96,13 +91,7 @@ fn rows_are_the_weighted_mean_of_the_jump() {
     assert!((dot(&x, &rows) - dot(&f, &u)).abs() < 1e-12 * norm(&x) * norm(&rows));
     // a rigid translation does nothing to two sides, and its part along the normal to one
     let [pair, wall] = [0, 1].map(|k| &system.gluing().contact()[k]);
-    assert!(
-        system
-            .gluing()
-            .direction(pair.row)
-            .iter()
-            .all(|v| v.abs() < 1e-15)
-    );
+    assert!(system.gluing().direction(pair.row).iter().all(|v| v.abs() < 1e-15));
     let direction = system.gluing().direction(wall.row).map(|v| v / wall.scale);
     assert!(distance(&direction, &frame().normal) < 1e-15);
 }
@@ -162,10 +151,7 @@ fn supports_at_some_nodes_leave_the_row() {
     assert_eq!(g.contact().len(), 2);
     let mut u = noise(system.torn_dim(), 3);
     for (nodes, z) in [(&own[..2], 2e-3), (&partner[1..], -1e-3)] {
-        for copy in nodes
-            .iter()
-            .flat_map(|n| b.decomposition.copies(*n as usize))
-        {
+        for copy in nodes.iter().flat_map(|n| b.decomposition.copies(*n as usize)) {
             let start = system.torn_range(copy.subdomain as usize).start;
             u[start + 3 * copy.local as usize + 2] = z;
         }
@@ -214,11 +200,8 @@ fn a_list_of_one_node_is_the_node() {
 #[test]
 fn bad_sides_are_named() {
     let b = Brick::new(1, 2);
-    let make = |points: Vec<ContactConstraint>| {
-        gluing(&b, &[], Some(&points.into_iter().collect())).unwrap_err()
-    };
-    let point =
-        |nodes: &[u32], weights: &[f64]| ContactConstraint::new(side(nodes, weights), frame());
+    let make = |points: Vec<ContactConstraint>| gluing(&b, &[], Some(&points.into_iter().collect())).unwrap_err();
+    let point = |nodes: &[u32], weights: &[f64]| ContactConstraint::new(side(nodes, weights), frame());
     for (nodes, weights) in [
         (&[][..], &[][..]),
         (&[3, 4], &[0.5, 0.6]),
@@ -227,10 +210,7 @@ fn bad_sides_are_named() {
         (&[3, 3], &[0.5, 0.5]),
     ] {
         let error = make(vec![point(&[1], &[1.0]), point(nodes, weights)]);
-        assert!(
-            matches!(error, TfetiError::BadSide { point: 1, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, TfetiError::BadSide { point: 1, .. }), "{error}");
     }
     let error = make(vec![point(&[3, 1 << 20], &[0.5, 0.5])]);
     assert!(matches!(error, TfetiError::UnknownNode { .. }), "{error}");
@@ -240,9 +220,6 @@ fn bad_sides_are_named() {
         vec![twice.with_partner(Some(side(&[4, 5], &[0.5, 0.5])))],
     ] {
         let error = make(points);
-        assert!(
-            matches!(error, TfetiError::ContactNodeTwice { .. }),
-            "{error}"
-        );
+        assert!(matches!(error, TfetiError::ContactNodeTwice { .. }), "{error}");
     }
 }

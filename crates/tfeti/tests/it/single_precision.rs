@@ -85,23 +85,13 @@ fn a_badly_conditioned_factor_is_not_rounded() {
     let space = |least: f64| {
         let weight = |row: usize| if row.is_multiple_of(7) { 1.0 } else { least };
         let metric: Vec<f64> = (0..system.dual_dim()).map(weight).collect();
-        ActiveSetProjector::with_factor(
-            system.coarse(),
-            contact,
-            Some(metric),
-            ActiveSetFactor::Split,
-        )
-        .unwrap()
+        ActiveSetProjector::with_factor(system.coarse(), contact, Some(metric), ActiveSetFactor::Split).unwrap()
     };
     assert!(space(0.5).rounds_steps());
     // supports next to nothing: the body all but floats
     let supports = system.gluing().ranges().dirichlet.clone();
     let metric = (0..system.dual_dim()).map(|row| if supports.contains(&row) { 1e-9 } else { 1.0 });
-    let loose = ActiveSetProjector::with_factor(
-        system.coarse(),
-        contact,
-        Some(metric.collect()),
-        ActiveSetFactor::Split,
-    );
+    let loose =
+        ActiveSetProjector::with_factor(system.coarse(), contact, Some(metric.collect()), ActiveSetFactor::Split);
     assert!(!loose.unwrap().rounds_steps());
 }

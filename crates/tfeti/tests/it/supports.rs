@@ -4,8 +4,7 @@ use crate::common::{Brick, dot, gluing, gram, smallest_eigenvalue};
 use signorini_fem_mesh::{SurfaceFrame, brick};
 use signorini_tfeti::internal::{RemovalReason, RowKind, prescribed_points};
 use signorini_tfeti::{
-    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, TangentialRows,
-    TfetiError,
+    ContactConstraint, ContactConstraints, Directions, Gluing, Motion, NodeSupport, TangentialRows, TfetiError,
 };
 
 #[test]
@@ -18,12 +17,7 @@ fn partial_supports_reduce_the_tangential_space() {
         Directions::Components([false, true, false]),
     )];
     let g = gluing(&b, &supports, Some(&b.contact(true))).unwrap();
-    let edge: Vec<u32> = b
-        .bottom
-        .iter()
-        .copied()
-        .filter(|n| side.contains(n))
-        .collect();
+    let edge: Vec<u32> = b.bottom.iter().copied().filter(|n| side.contains(n)).collect();
     assert_eq!(g.ranges().intervals.len(), edge.len());
     for info in g.contact() {
         let node = g.node(info.row).unwrap();
@@ -35,9 +29,7 @@ fn partial_supports_reduce_the_tangential_space() {
             TangentialRows::Disc { row, scale } => {
                 assert!(!edge.contains(&node) && g.ranges().discs.contains(&row));
                 let copies = b.decomposition.copies(node as usize).len() as f64;
-                assert!(
-                    (scale - copies.sqrt()).abs() < 1e-14 && (info.scale - scale).abs() < 1e-14
-                );
+                assert!((scale - copies.sqrt()).abs() < 1e-14 && (info.scale - scale).abs() < 1e-14);
             }
             _ => panic!("friction everywhere"),
         }
@@ -50,25 +42,13 @@ fn partial_supports_reduce_the_tangential_space() {
     let g = gluing(&b, &supports, Some(&b.contact(true))).unwrap();
     assert!(g.contact().is_empty() && g.ranges().contact().is_empty());
     let normal = g.removed().iter().filter(|r| r.kind == RowKind::Normal);
-    assert!(
-        normal
-            .clone()
-            .all(|r| r.reason == RemovalReason::NormalFixed)
-            && normal.count() == b.bottom.len()
-    );
+    assert!(normal.clone().all(|r| r.reason == RemovalReason::NormalFixed) && normal.count() == b.bottom.len());
     // An inclined support leaves an inclined row of larger scale.
     let s = 0.5_f64.sqrt();
     let node = b.bottom[b.bottom.len() - 1];
-    let supports = [NodeSupport::partial(
-        vec![node],
-        Directions::Vectors(vec![[s, 0.0, s]]),
-    )];
+    let supports = [NodeSupport::partial(vec![node], Directions::Vectors(vec![[s, 0.0, s]]))];
     let g = gluing(&b, &supports, Some(&b.contact(false))).unwrap();
-    let info = g
-        .contact()
-        .iter()
-        .find(|c| g.node(c.row) == Some(node))
-        .unwrap();
+    let info = g.contact().iter().find(|c| g.node(c.row) == Some(node)).unwrap();
     assert!((info.scale - 2.0_f64.sqrt()).abs() < 1e-12);
     let unit = |g: &Gluing| {
         let gram = gram(g);
@@ -77,11 +57,7 @@ fn partial_supports_reduce_the_tangential_space() {
     assert!(unit(&g) && g.is_orthonormal() && g.dependent_nodes().is_empty());
     // With friction all rows of the node are wanted, though one of them depends on those of the support.
     let g = gluing(&b, &supports, Some(&b.contact(true))).unwrap();
-    let info = g
-        .contact()
-        .iter()
-        .find(|c| g.node(c.row) == Some(node))
-        .unwrap();
+    let info = g.contact().iter().find(|c| g.node(c.row) == Some(node)).unwrap();
     assert!((info.scale - 1.0).abs() < 1e-12);
     assert!(matches!(info.tangential, TangentialRows::Disc { .. }));
     assert_eq!(g.dependent_nodes(), [node]);
@@ -109,24 +85,14 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
     ];
     let g = gluing(&b, &supports, None).unwrap();
     assert_eq!(g.removed().len(), 1);
-    assert_eq!(
-        g.removed()[0].reason,
-        RemovalReason::DoubledSupport { support: 1 }
-    );
+    assert_eq!(g.removed()[0].reason, RemovalReason::DoubledSupport { support: 1 });
     assert_eq!(g.ranges().dirichlet.len(), 3 * b.fixed.len());
 
     let mut contradicting = supports.clone();
     contradicting[1].motion = moved(0, [1e-3, 0.0, 0.0]);
     let error = gluing(&b, &contradicting, None).unwrap_err();
     assert!(
-        matches!(
-            error,
-            TfetiError::ContradictorySupports {
-                second: 1,
-                case: 0,
-                ..
-            }
-        ),
+        matches!(error, TfetiError::ContradictorySupports { second: 1, case: 0, .. }),
         "{error}"
     );
 
@@ -146,20 +112,12 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
     ];
     let g = gluing(&b, &agreeing, None).unwrap();
     assert_eq!(
-        (
-            g.prescribed(0).len(),
-            g.removed().len(),
-            g.ranges().dirichlet.len()
-        ),
+        (g.prescribed(0).len(), g.removed().len(), g.ranges().dirichlet.len()),
         (0, 1, 2)
     );
     // B w = offset for the rigid translation w.
     for &(row, value) in g.prescribed(1) {
-        let action: f64 = g
-            .row(row as usize)
-            .iter()
-            .map(|(_, dof, v)| v * w[dof % 3])
-            .sum();
+        let action: f64 = g.row(row as usize).iter().map(|(_, dof, v)| v * w[dof % 3]).sum();
         assert!((action - value).abs() < 1e-15);
     }
 }
@@ -180,21 +138,13 @@ fn prescribed_motion_of_a_support_appears_in_the_contact_offset() {
     }];
     {
         let g = gluing(&b, &supports, Some(&b.contact(true))).unwrap();
-        let info = g
-            .contact()
-            .iter()
-            .find(|c| g.node(c.row) == Some(node))
-            .unwrap();
+        let info = g.contact().iter().find(|c| g.node(c.row) == Some(node)).unwrap();
         // For a displacement that obeys the support, (B u - offset) / scale is the physical normal displacement.
         let d = [0.5_f64.sqrt(), 0.0, 0.5_f64.sqrt()];
         let free = [7e-3, 4e-3, -7e-3];
         let fixed = dot(&d, &w);
         let u: Vec<f64> = (0..3).map(|c| free[c] + fixed * d[c]).collect();
-        let action: f64 = g
-            .row(info.row)
-            .iter()
-            .map(|(_, dof, v)| v * u[dof % 3])
-            .sum();
+        let action: f64 = g.row(info.row).iter().map(|(_, dof, v)| v * u[dof % 3]).sum();
         let offset = g
             .prescribed(0)
             .iter()
@@ -223,10 +173,7 @@ fn dragged_nodes_keep_their_tangential_rows() {
     let held = rows([0.0, 1.0, 1.0], true);
     assert_eq!((discs(&held), held.ranges().intervals.len()), (all - 1, 1));
     let dragged = rows([1e-3, 0.0, 0.0], true);
-    assert_eq!(
-        (discs(&dragged), dragged.ranges().intervals.len()),
-        (all, 0)
-    );
+    assert_eq!((discs(&dragged), dragged.ranges().intervals.len()), (all, 0));
     assert_eq!(dragged.dependent_nodes(), [node]);
     assert!(rows([1e-3, 0.0, 0.0], false).dependent_nodes().is_empty());
 }
@@ -268,17 +215,13 @@ fn a_node_may_have_several_normals() {
 #[test]
 fn the_motion_of_a_partner_counts_against_that_of_the_node() {
     let frame = SurfaceFrame::from_normal([0.0, 0.0, -1.0]).unwrap();
-    let contact: ContactConstraints =
-        std::iter::once(ContactConstraint::new(0, frame).with_partner(Some(5))).collect();
+    let contact: ContactConstraints = std::iter::once(ContactConstraint::new(0, frame).with_partner(Some(5))).collect();
     let (own, other) = (2e-3, 5e-4);
     let moved = |node: u32, case: u32, by: f64| {
         let values = vec![[0.0, 0.0, -by]];
         NodeSupport::fixed(vec![node]).with_motion(Motion { case, values })
     };
-    for (second, expected) in [
-        (0, vec![(0, own - other)]),
-        (1, vec![(0, own), (1, -other)]),
-    ] {
+    for (second, expected) in [(0, vec![(0, own - other)]), (1, vec![(0, own), (1, -other)])] {
         let supports = [moved(0, 0, own), moved(5, second, other)];
         let held = prescribed_points(&contact, &supports, 8).unwrap();
         let [point] = &held[..] else {
@@ -297,10 +240,7 @@ fn what_an_oblique_support_and_a_rough_obstacle_may_exchange() {
     let b = Brick::new(2, 2);
     let direction = [1.0, 0.3, -0.4];
     let ends = b.mesh.nodes_on(brick::X_MIN);
-    let supports = [NodeSupport::partial(
-        ends.clone(),
-        Directions::Vectors(vec![direction]),
-    )];
+    let supports = [NodeSupport::partial(ends.clone(), Directions::Vectors(vec![direction]))];
     let g = gluing(&b, &supports, Some(&b.contact(true))).unwrap();
     let dependencies = g.dependencies();
     let both = b.bottom.iter().filter(|n| ends.contains(n)).count();

@@ -50,12 +50,7 @@ fn keywords() {
     );
     behind("*Tie, name=T\n", "*Tie, name=T", "*Tie", "merge the nodes");
     behind("*PART, NAME=A\n", "*PART, NAME=A", "*PART", "flat one");
-    behind(
-        "*RIGID BODY\n",
-        "*RIGID BODY",
-        "*RIGID BODY",
-        "ELSET is missing",
-    );
+    behind("*RIGID BODY\n", "*RIGID BODY", "*RIGID BODY", "ELSET is missing");
     behind(
         "*RIGID BODY, ANALYTICAL SURFACE=A\n",
         "*RIGID BODY, ANALYTICAL SURFACE=A",
@@ -65,33 +60,18 @@ fn keywords() {
     behind("*RESTART, READ\n", "*RESTART, READ", "*RESTART", "resumed");
     inside("*DYNAMIC\n", "*DYNAMIC", "*DYNAMIC", "only *STATIC");
     inside("*NODE\n1\n", "*NODE", "*NODE", "before the first *STEP");
-    behind(
-        "*CLOAD\n1, 1, 1.\n",
-        "*CLOAD",
-        "*CLOAD",
-        "between *STEP and *END STEP",
-    );
+    behind("*CLOAD\n1, 1, 1.\n", "*CLOAD", "*CLOAD", "between *STEP and *END STEP");
     behind("*STEP\n*STATIC\n", "*STEP", "*STEP", "*END STEP");
     behind("*STEP\n*END STEP\n", "*STEP", "*STEP", "*STATIC");
     inside("*STEP, INC=5\n", "*STEP, INC=5", "*STEP", "not ended");
-    inside(
-        "*STATIC, DIRECT\n",
-        "*STATIC, DIRECT",
-        "*STATIC",
-        "one procedure",
-    );
+    inside("*STATIC, DIRECT\n", "*STATIC, DIRECT", "*STATIC", "one procedure");
     behind(
         "*NSET, NSET=A,\n",
         "*NSET, NSET=A,",
         "*NSET, NSET=A,",
         "no line continues it",
     );
-    refused(
-        "1, 2, 3\n*NODE\n",
-        "1, 2, 3",
-        "1, 2, 3",
-        "begin with a keyword",
-    );
+    refused("1, 2, 3\n*NODE\n", "1, 2, 3", "1, 2, 3", "begin with a keyword");
 }
 
 #[test]
@@ -102,19 +82,9 @@ fn parameters() {
         "UNSORTED",
         "GENERATE",
     );
-    behind(
-        "*NSET, GENERATE\n1, 2\n",
-        "*NSET, GENERATE",
-        "*NSET",
-        "NSET is missing",
-    );
+    behind("*NSET, GENERATE\n1, 2\n", "*NSET, GENERATE", "*NSET", "NSET is missing");
     behind("*NSET, NSET=\n1\n", "*NSET, NSET=", "NSET=", "a value");
-    behind(
-        "*NSET, NSET=A, NSET=B\n1\n",
-        "*NSET, NSET=A, NSET=B",
-        "NSET=B",
-        "twice",
-    );
+    behind("*NSET, NSET=A, NSET=B\n1\n", "*NSET, NSET=A, NSET=B", "NSET=B", "twice");
     behind(
         "*NSET, NSET=A, GENERATE=YES\n1, 2\n",
         "*NSET, NSET=A, GENERATE=YES",
@@ -122,18 +92,8 @@ fn parameters() {
         "without a value",
     );
     behind("*STEP, NLGEOM\n", "*STEP, NLGEOM", "NLGEOM", "small");
-    behind(
-        "*STEP, PERTURBATION\n",
-        "*STEP, PERTURBATION",
-        "PERTURBATION",
-        "linear",
-    );
-    behind(
-        "*STEP, INC=many\n",
-        "*STEP, INC=many",
-        "INC=many",
-        "a number",
-    );
+    behind("*STEP, PERTURBATION\n", "*STEP, PERTURBATION", "PERTURBATION", "linear");
+    behind("*STEP, INC=many\n", "*STEP, INC=many", "INC=many", "a number");
     behind(
         "*ELASTIC, TYPE=ANISOTROPIC\n1.\n",
         "*ELASTIC, TYPE=ANISOTROPIC",
@@ -158,12 +118,7 @@ fn parameters() {
         "AMPLITUDE=A",
         "there is none",
     );
-    inside(
-        "*BOUNDARY, FIXED\n",
-        "*BOUNDARY, FIXED",
-        "FIXED",
-        "OP, AMPLITUDE, TYPE",
-    );
+    inside("*BOUNDARY, FIXED\n", "*BOUNDARY, FIXED", "FIXED", "OP, AMPLITUDE, TYPE");
     behind(
         "*AMPLITUDE, NAME=A, VALUE=ABSOLUTE\n",
         "*AMPLITUDE, NAME=A, VALUE=ABSOLUTE",
@@ -183,16 +138,10 @@ fn included_files() {
     ]);
     let error = Deck::read(path).expect_err("a loop");
     let location = error.location().expect("place");
-    assert!(
-        location.file.ends_with("other.inp") && location.line == 2,
-        "{error}"
-    );
+    assert!(location.file.ends_with("other.inp") && location.line == 2, "{error}");
     assert!(error.to_string().contains("includes itself"), "{error}");
     let error = Deck::read("no/such/deck.inp").expect_err("no file");
-    assert!(
-        error.to_string().contains("cannot read no/such/deck.inp"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("cannot read no/such/deck.inp"), "{error}");
 }
 
 /// What a program asks for.
@@ -200,10 +149,7 @@ fn included_files() {
 fn names_and_scenes() {
     let deck = read(&cube("")).expect("deck");
     let error = deck.surface("top").expect_err("no surface").to_string();
-    assert!(
-        error.contains("no surface named \"top\"; there are: S1, S2"),
-        "{error}"
-    );
+    assert!(error.contains("no surface named \"top\"; there are: S1, S2"), "{error}");
     assert!(deck.node_set("top").is_err() && deck.element_set("top").is_err());
     let mesh = "*NODE\n1\n2, 1.\n3, 0., 1.\n4, 0., 0., 1.\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n";
     let deck = read(mesh).expect("a mesh");

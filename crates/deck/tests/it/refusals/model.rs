@@ -9,36 +9,16 @@ fn mesh() {
         let line = format!("*ELEMENT, TYPE={kind}");
         behind(&format!("{line}\n"), &line, &format!("TYPE={kind}"), "C3D4");
     }
-    behind(
-        "*NODE\n1, 0., 0., 0.\n",
-        "1, 0., 0., 0.",
-        "1",
-        "first in line 2",
-    );
-    behind(
-        "*NODE\n0, 0., 0., 0.\n",
-        "0, 0., 0., 0.",
-        "0",
-        "from 1 to 2147483647",
-    );
+    behind("*NODE\n1, 0., 0., 0.\n", "1, 0., 0., 0.", "1", "first in line 2");
+    behind("*NODE\n0, 0., 0., 0.\n", "0, 0., 0., 0.", "0", "from 1 to 2147483647");
     behind(
         "*NODE\n9999999999, 0.\n",
         "9999999999, 0.",
         "9999999999",
         "from 1 to 2147483647",
     );
-    behind(
-        "*NODE\n99, nan, 0.\n",
-        "99, nan, 0.",
-        "nan",
-        "a finite number",
-    );
-    behind(
-        "*NODE\n99, 1e999, 0.\n",
-        "99, 1e999, 0.",
-        "1e999",
-        "a finite number",
-    );
+    behind("*NODE\n99, nan, 0.\n", "99, nan, 0.", "nan", "a finite number");
+    behind("*NODE\n99, 1e999, 0.\n", "99, 1e999, 0.", "1e999", "a finite number");
     behind(
         "*NODE\n99, 0., 0., 0., 1.\n",
         "99, 0., 0., 0., 1.",
@@ -80,20 +60,12 @@ fn mesh() {
     assert!(error.to_string().contains("TYPE=C3D4"), "{error}");
     let twice = "*NODE\n1\n2, 1.\n3, 0., 1.\n4, 0., 0., 1.\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n2, 1, 2, 3, 4\n";
     let error = read(twice).expect_err("overlap").to_string();
-    assert!(
-        error.contains("part.inp") && error.contains("make no mesh"),
-        "{error}"
-    );
+    assert!(error.contains("part.inp") && error.contains("make no mesh"), "{error}");
 }
 
 #[test]
 fn sets_and_surfaces() {
-    behind(
-        "*NSET, NSET=A\n1, 999\n",
-        "1, 999",
-        "999",
-        "no node with this number",
-    );
+    behind("*NSET, NSET=A\n1, 999\n", "1, 999", "999", "no node with this number");
     behind(
         "*NSET, NSET=A\n1, MISSING\n",
         "1, MISSING",
@@ -101,12 +73,7 @@ fn sets_and_surfaces() {
         "there are: N1, N2",
     );
     behind("*NSET, NSET=A\nA\n", "A", "A", "defined before it");
-    behind(
-        "*NSET, NSET=A, GENERATE\n5, 2\n",
-        "5, 2",
-        "5, 2",
-        "not below the first",
-    );
+    behind("*NSET, NSET=A, GENERATE\n5, 2\n", "5, 2", "5, 2", "not below the first");
     behind(
         "*NSET, NSET=A, GENERATE\n800, 900\n",
         "800, 900",
@@ -132,30 +99,10 @@ fn sets_and_surfaces() {
         "there already",
     );
     behind("*SURFACE, NAME=A\nALL\n", "ALL", "ALL", "S1, S2, S3 or S4");
-    behind(
-        "*SURFACE, NAME=A\nALL, S5\n",
-        "ALL, S5",
-        "S5",
-        "S1, S2, S3 or S4",
-    );
-    behind(
-        "*SURFACE, NAME=A\nPART, S1\n",
-        "PART, S1",
-        "PART",
-        "there are: ALL",
-    );
-    behind(
-        "*SURFACE, NAME=A\nALL, S1\n",
-        "ALL, S1",
-        "ALL",
-        "inside the body",
-    );
-    behind(
-        "*SURFACE, NAME=A\n",
-        "*SURFACE, NAME=A",
-        "*SURFACE",
-        "no faces",
-    );
+    behind("*SURFACE, NAME=A\nALL, S5\n", "ALL, S5", "S5", "S1, S2, S3 or S4");
+    behind("*SURFACE, NAME=A\nPART, S1\n", "PART, S1", "PART", "there are: ALL");
+    behind("*SURFACE, NAME=A\nALL, S1\n", "ALL, S1", "ALL", "inside the body");
+    behind("*SURFACE, NAME=A\n", "*SURFACE, NAME=A", "*SURFACE", "no faces");
 }
 
 #[test]
@@ -165,24 +112,14 @@ fn materials() {
         refused(&format!("{mesh}{rest}"), line, word, part);
     };
     let section = "*SOLID SECTION, ELSET=ALL, MATERIAL=M";
-    try_one(
-        &format!("{section}\n"),
-        section,
-        "MATERIAL=M",
-        "there is none",
-    );
+    try_one(&format!("{section}\n"), section, "MATERIAL=M", "there is none");
     try_one(
         &format!("*MATERIAL, NAME=M\n{section}\n"),
         "*MATERIAL, NAME=M",
         "M",
         "*ELASTIC",
     );
-    try_one(
-        "*ELASTIC\n1., 0.3\n",
-        "*ELASTIC",
-        "*ELASTIC",
-        "*MATERIAL before",
-    );
+    try_one("*ELASTIC\n1., 0.3\n", "*ELASTIC", "*ELASTIC", "*MATERIAL before");
     try_one(
         "*MATERIAL, NAME=M\n*MATERIAL, NAME=M\n",
         "*MATERIAL, NAME=M",
@@ -191,12 +128,7 @@ fn materials() {
     );
     let young = format!("*MATERIAL, NAME=M\n*ELASTIC\n-1., 0.3\n{section}\n");
     try_one(&young, "-1., 0.3", "-1., 0.3", "Young's modulus is -1");
-    try_one(
-        "*MATERIAL, NAME=M\n*ELASTIC\n1.\n",
-        "1.",
-        "1.",
-        "Poisson's ratio",
-    );
+    try_one("*MATERIAL, NAME=M\n*ELASTIC\n1.\n", "1.", "1.", "Poisson's ratio");
     try_one(
         "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3, 0.\n2., 0.3, 100.\n",
         "2., 0.3, 100.",
@@ -209,12 +141,7 @@ fn materials() {
         "*EXPANSION",
         "temperature",
     );
-    try_one(
-        "*MATERIAL, NAME=M\n*PLASTIC\n",
-        "*PLASTIC",
-        "*PLASTIC",
-        "elastic",
-    );
+    try_one("*MATERIAL, NAME=M\n*PLASTIC\n", "*PLASTIC", "*PLASTIC", "elastic");
     let both = "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*SOLID SECTION, MATERIAL=M, ELSET=ALL\n";
     try_one(
         both,
@@ -236,12 +163,7 @@ fn contact() {
         "PRESSURE-OVERCLOSURE=LINEAR",
         "HARD",
     );
-    behind(
-        &format!("{law}*FRICTION\n-0.3\n"),
-        "-0.3",
-        "-0.3",
-        "at least zero",
-    );
+    behind(&format!("{law}*FRICTION\n-0.3\n"), "-0.3", "-0.3", "at least zero");
     behind(
         &format!("{law}*FRICTION, ROUGH\n"),
         "*FRICTION, ROUGH",
@@ -255,18 +177,8 @@ fn contact() {
         "*SURFACE INTERACTION before",
     );
     let pair = "*CONTACT PAIR, INTERACTION=I";
-    behind(
-        &format!("{pair}\nS1, S2\n"),
-        "S1, S2",
-        "INTERACTION=I",
-        "there is none",
-    );
-    behind(
-        &format!("{law}{pair}\nS1, S9\n"),
-        "S1, S9",
-        "S9",
-        "there are: S1, S2",
-    );
+    behind(&format!("{pair}\nS1, S2\n"), "S1, S2", "INTERACTION=I", "there is none");
+    behind(&format!("{law}{pair}\nS1, S9\n"), "S1, S9", "S9", "there are: S1, S2");
     behind(
         &format!("{law}{pair}\nS1, S1\n"),
         "S1, S1",
@@ -274,12 +186,7 @@ fn contact() {
         "does not touch itself",
     );
     behind(&format!("{law}{pair}\nS1\n"), "S1", "S1", "slave");
-    behind(
-        &format!("{law}{pair}\n"),
-        pair,
-        "*CONTACT PAIR",
-        "no surfaces",
-    );
+    behind(&format!("{law}{pair}\n"), pair, "*CONTACT PAIR", "no surfaces");
     let adjust = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.1";
     behind(
         &format!("{law}{adjust}\nS1, S2\n"),
@@ -288,12 +195,7 @@ fn contact() {
         "SMALL SLIDING",
     );
     let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
-    behind(
-        &format!("{law}{odd}\nS1, S2\n"),
-        odd,
-        "TYPE=SIDEWAYS",
-        "MORTAR",
-    );
+    behind(&format!("{law}{odd}\nS1, S2\n"), odd, "TYPE=SIDEWAYS", "MORTAR");
 }
 
 /// A cube on a rigid plane; `floor` are the corners of the plane and what else changes.
@@ -312,13 +214,7 @@ fn rigid_bodies() {
         refused(&on_a_floor(nodes, rest), line, word, part);
     };
     let body = "*RIGID BODY, REF NODE=109, ELSET=FLOOR";
-    try_one(
-        plane,
-        pair,
-        body,
-        "REF NODE=109",
-        "not held along component 1",
-    );
+    try_one(plane, pair, body, "REF NODE=109", "not held along component 1");
     let free = format!("{pair}*BOUNDARY\n109, PINNED\n");
     try_one(plane, &free, body, "REF NODE=109", "component 4");
     let step = |lines: &str| format!("{held}*STEP\n*STATIC\n{lines}*END STEP\n");
@@ -356,23 +252,11 @@ fn rigid_bodies() {
     let bent = plane.replace("103, 2., 2.", "103, 2., 2., 0.1");
     try_one(&bent, &held, "S5, PLANE", "PLANE", "not flat");
     let small = plane.replace("103, 2., 2.", "103, 0.5, 0.5");
-    try_one(
-        &small,
-        &held,
-        "S5, PLANE",
-        "PLANE",
-        "lies beside the rigid surface",
-    );
+    try_one(&small, &held, "S5, PLANE", "PLANE", "lies beside the rigid surface");
     let swapped = held.replace("S5, PLANE", "PLANE, S5");
     try_one(plane, &swapped, "PLANE, S5", "PLANE", "swap them");
     let side = "*SURFACE, NAME=B\n900, S1\n";
-    try_one(
-        plane,
-        &format!("{held}{side}"),
-        "900, S1",
-        "900",
-        "SPOS or SNEG",
-    );
+    try_one(plane, &format!("{held}{side}"), "900, S1", "900", "SPOS or SNEG");
     let mixed = "*SURFACE, NAME=B\n900, SPOS\n1, S1\n";
     try_one(
         plane,
@@ -393,13 +277,7 @@ fn rigid_bodies() {
     );
     let many = "*ELSET, ELSET=MORE\n1\n*RIGID BODY, ELSET=MORE, REF NODE=N5\n";
     let line = "*RIGID BODY, ELSET=MORE, REF NODE=N5";
-    try_one(
-        plane,
-        &format!("{many}{held}"),
-        line,
-        "REF NODE=N5",
-        "one node",
-    );
+    try_one(plane, &format!("{many}{held}"), line, "REF NODE=N5", "one node");
     let bonded = "*ELEMENT, TYPE=R3D3, ELSET=FLOOR\n901, 101, 1, 103\n";
     try_one(
         plane,
@@ -408,7 +286,8 @@ fn rigid_bodies() {
         "901",
         "node 1 is of a rigid body and of elastic elements",
     );
-    let corner = "*ELSET, ELSET=MORE\n901\n*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n*RIGID BODY, ELSET=MORE, REF NODE=2\n";
+    let corner =
+        "*ELSET, ELSET=MORE\n901\n*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n*RIGID BODY, ELSET=MORE, REF NODE=2\n";
     let line = "*RIGID BODY, ELSET=MORE, REF NODE=2";
     try_one(
         plane,

@@ -7,20 +7,10 @@ use crate::write::cube;
 fn supports() {
     behind("*BOUNDARY\nTOP, 1\n", "TOP, 1", "TOP", "there are: N1");
     behind("*BOUNDARY\nN5, 1, 7\n", "N5, 1, 7", "7", "no rotations");
-    behind(
-        "*BOUNDARY\nN5, 3, 1\n",
-        "N5, 3, 1",
-        "1",
-        "not below the first",
-    );
+    behind("*BOUNDARY\nN5, 3, 1\n", "N5, 3, 1", "1", "not below the first");
     behind("*BOUNDARY\nN5\n", "N5", "N5", "a component");
     behind("*BOUNDARY\nN5, XASYMM\n", "N5, XASYMM", "XASYMM", "XSYMM");
-    behind(
-        "*BOUNDARY\nN5, PINNED, 1\n",
-        "N5, PINNED, 1",
-        "1",
-        "nothing after",
-    );
+    behind("*BOUNDARY\nN5, PINNED, 1\n", "N5, PINNED, 1", "1", "nothing after");
     behind(
         "*BOUNDARY\nN5, 1, 1, 0.1\n",
         "N5, 1, 1, 0.1",
@@ -28,12 +18,7 @@ fn supports() {
         "before the first *STEP",
     );
     behind("*BOUNDARY\n99, 1\n", "99, 1", "99", "no node");
-    inside(
-        "*BOUNDARY\nN6, 1, 6, 0.1\n",
-        "N6, 1, 6, 0.1",
-        "6",
-        "no rotations",
-    );
+    inside("*BOUNDARY\nN6, 1, 6, 0.1\n", "N6, 1, 6, 0.1", "6", "no rotations");
     inside(
         "*BOUNDARY\nN6, 1, 1, 0.1\nN6, 1, 1, 0.2\n",
         "N6, 1, 1, 0.2",
@@ -49,62 +34,27 @@ fn supports() {
         "releases component 3 of node",
     );
     let next = "*STEP\n*STATIC\n*BOUNDARY\nN6, 2\n*END STEP\n";
-    refused(
-        &cube(&(in_step("") + next)),
-        "N6, 2",
-        "N6",
-        "free in the steps before",
-    );
+    refused(&cube(&(in_step("") + next)), "N6, 2", "N6", "free in the steps before");
 }
 
 #[test]
 fn loads() {
-    inside(
-        "*CLOAD\nN6, 4, 1.\n",
-        "N6, 4, 1.",
-        "4",
-        "a component 1, 2 or 3",
-    );
+    inside("*CLOAD\nN6, 4, 1.\n", "N6, 4, 1.", "4", "a component 1, 2 or 3");
     inside("*CLOAD\nN6, 1\n", "N6, 1", "N6, 1", "and a force");
     inside("*CLOAD\nN7, 1, 1.\n", "N7, 1, 1.", "N7", "there are: N1");
     inside("*DLOAD\nALL, P5, 1.\n", "ALL, P5, 1.", "P5", "P1 to P4");
-    inside(
-        "*DLOAD\nALL, CENTRIF, 1.\n",
-        "ALL, CENTRIF, 1.",
-        "CENTRIF",
-        "GRAV",
-    );
-    inside(
-        "*DLOAD\nALL, P1, 1.\n",
-        "ALL, P1, 1.",
-        "ALL",
-        "inside the body",
-    );
-    inside(
-        "*DLOAD\nALL, P1, 1., 2.\n",
-        "ALL, P1, 1., 2.",
-        "2.",
-        "a value",
-    );
+    inside("*DLOAD\nALL, CENTRIF, 1.\n", "ALL, CENTRIF, 1.", "CENTRIF", "GRAV");
+    inside("*DLOAD\nALL, P1, 1.\n", "ALL, P1, 1.", "ALL", "inside the body");
+    inside("*DLOAD\nALL, P1, 1., 2.\n", "ALL, P1, 1., 2.", "2.", "a value");
     let nowhere = "ALL, GRAV, 9.8, 0., 0., 0.";
-    inside(
-        &format!("*DLOAD\n{nowhere}\n"),
-        nowhere,
-        nowhere,
-        "not zero",
-    );
+    inside(&format!("*DLOAD\n{nowhere}\n"), nowhere, nowhere, "not zero");
     inside(
         "*DSLOAD\nS6, TRVEC, 1.\n",
         "S6, TRVEC, 1.",
         "TRVEC",
         "P, and a pressure",
     );
-    inside(
-        "*DSLOAD\nTOP, P, 1.\n",
-        "TOP, P, 1.",
-        "TOP",
-        "there are: S1",
-    );
+    inside("*DSLOAD\nTOP, P, 1.\n", "TOP, P, 1.", "TOP", "there are: S1");
     inside(
         "*DSLOAD\nS6, P, 1.\nS6, P, 2.\n",
         "S6, P, 2.",
@@ -113,14 +63,8 @@ fn loads() {
     );
     let alone = "*NODE\n99, 5., 5., 5.\n*NSET, NSET=ALONE\n99\n";
     let deck = cube(&format!("{alone}{}", in_step("*CLOAD\nALONE, 1, 1.\n")));
-    refused(
-        &deck,
-        "ALONE, 1, 1.",
-        "ALONE",
-        "no elastic element uses node 99",
-    );
-    let deck =
-        cube(&in_step("*DLOAD\nALL, GRAV, 9.8, 0., 0., -1.\n")).replace("*DENSITY\n7.8e-9\n", "");
+    refused(&deck, "ALONE, 1, 1.", "ALONE", "no elastic element uses node 99");
+    let deck = cube(&in_step("*DLOAD\nALL, GRAV, 9.8, 0., 0., -1.\n")).replace("*DENSITY\n7.8e-9\n", "");
     refused(&deck, "ALL, GRAV, 9.8, 0., 0., -1.", "ALL", "*DENSITY");
     let two = "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n";
     let deck = cube(&format!(
@@ -158,12 +102,7 @@ fn times() {
         "*AMPLITUDE",
         "not later",
     );
-    behind(
-        "*AMPLITUDE, NAME=A\n",
-        "*AMPLITUDE, NAME=A",
-        "*AMPLITUDE",
-        "no points",
-    );
+    behind("*AMPLITUDE, NAME=A\n", "*AMPLITUDE, NAME=A", "*AMPLITUDE", "no points");
     let far = step("1e17, 1e17") + "*STEP\n*STATIC\n1., 2.\n*END STEP\n";
     behind(&far, "*STATIC", "*STATIC", "by rounding");
 }

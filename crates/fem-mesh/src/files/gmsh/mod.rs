@@ -59,9 +59,7 @@ errors! {
 /// The names that there are, in words.
 fn listed(what: &str, known: &[String]) -> String {
     if known.is_empty() {
-        return format!(
-            "no {what} in it has a name, so name one (Physical Surface, Physical Volume)"
-        );
+        return format!("no {what} in it has a name, so name one (Physical Surface, Physical Volume)");
     }
     let names: Vec<String> = known.iter().map(|name| format!("{name:?}")).collect();
     format!("the {what}s in it are {}", names.join(", "))
@@ -164,21 +162,13 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshErro
 }
 
 /// The facets that lie on the boundary of the mesh.
-fn on_boundary(
-    points: &[[f64; 3]],
-    tets: &[[u32; 4]],
-    facets: Vec<Facet>,
-) -> Result<Vec<Facet>, GmshError> {
+fn on_boundary(points: &[[f64; 3]], tets: &[[u32; 4]], facets: Vec<Facet>) -> Result<Vec<Facet>, GmshError> {
     let sorted = |mut nodes: [u32; 3]| {
         nodes.sort_unstable();
         nodes
     };
     let bare = TetMesh::new(points.to_vec(), tets.to_vec(), Vec::new())?;
-    let boundary: HashSet<_> = bare
-        .boundary_facets()
-        .iter()
-        .map(|f| sorted(f.nodes))
-        .collect();
+    let boundary: HashSet<_> = bare.boundary_facets().iter().map(|f| sorted(f.nodes)).collect();
     Ok(facets
         .into_iter()
         .filter(|f| boundary.contains(&sorted(f.nodes)))
@@ -207,11 +197,7 @@ impl Tags {
                 }
                 _ => {
                     let groups = groups.clone();
-                    return Err(GmshError::SeveralGroups {
-                        what,
-                        entity,
-                        groups,
-                    });
+                    return Err(GmshError::SeveralGroups { what, entity, groups });
                 }
             }
         }

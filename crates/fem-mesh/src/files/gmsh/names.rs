@@ -33,9 +33,7 @@ impl GroupNames {
 
     /// All named surface groups, by name.
     pub fn surfaces(&self) -> impl Iterator<Item = (&str, FacetTag)> {
-        self.surfaces
-            .iter()
-            .map(|(n, &tag)| (&n[..], FacetTag(tag)))
+        self.surfaces.iter().map(|(n, &tag)| (&n[..], FacetTag(tag)))
     }
 
     /// All named volume groups, by name.
@@ -44,12 +42,7 @@ impl GroupNames {
     }
 
     /// Takes names as the file lists them; those of points and curves are of no use here.
-    pub(super) fn insert(
-        &mut self,
-        dimension: i32,
-        group: i32,
-        name: String,
-    ) -> Result<(), GmshError> {
+    pub(super) fn insert(&mut self, dimension: i32, group: i32, name: String) -> Result<(), GmshError> {
         let groups = match dimension {
             2 => &mut self.surfaces,
             3 => &mut self.volumes,
@@ -66,11 +59,7 @@ impl GroupNames {
     }
 }
 
-fn look_up(
-    what: &'static str,
-    groups: &BTreeMap<String, u32>,
-    name: &str,
-) -> Result<u32, GmshError> {
+fn look_up(what: &'static str, groups: &BTreeMap<String, u32>, name: &str) -> Result<u32, GmshError> {
     let unknown = || GmshError::UnknownName {
         what,
         name: name.into(),

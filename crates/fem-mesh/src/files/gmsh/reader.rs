@@ -126,11 +126,7 @@ impl<'a> Reader<'a> {
 
     /// Skips blanks and says whether something is left.
     fn skip_blanks(&mut self) -> bool {
-        let blanks = self
-            .rest()
-            .iter()
-            .take_while(|b| b.is_ascii_whitespace())
-            .count();
+        let blanks = self.rest().iter().take_while(|b| b.is_ascii_whitespace()).count();
         self.at += blanks;
         self.at < self.bytes.len()
     }
@@ -250,9 +246,7 @@ impl<'a> Reader<'a> {
         for _ in 0..self.count(3)? {
             let (dimension, group) = (self.int()?, self.int()?);
             let quoted = self.line().trim_ascii();
-            let inside = quoted
-                .strip_prefix(b"\"")
-                .and_then(|n| n.strip_suffix(b"\""));
+            let inside = quoted.strip_prefix(b"\"").and_then(|n| n.strip_suffix(b"\""));
             let Some(name) = inside else {
                 return self.damaged("a name in quotes is expected");
             };
@@ -264,12 +258,7 @@ impl<'a> Reader<'a> {
 
     /// Surfaces, and volumes.
     fn entities(&mut self) -> Result<[Vec<Entity>; 2], GmshError> {
-        let counts = [
-            self.count(5)?,
-            self.count(9)?,
-            self.count(9)?,
-            self.count(9)?,
-        ];
+        let counts = [self.count(5)?, self.count(9)?, self.count(9)?, self.count(9)?];
         let mut out = [Vec::new(), Vec::new()];
         for (dimension, count) in counts.into_iter().enumerate() {
             for _ in 0..count {

@@ -77,8 +77,7 @@ impl PvdSeries {
     pub fn open(folder: impl AsRef<Path>, name: &str) -> Result<Self, OutputError> {
         let mut series = Self::new(folder.as_ref(), name)?;
         let path = series.path();
-        let list =
-            fs::read_to_string(&path).map_err(|source| OutputError::NoSeries { path, source })?;
+        let list = fs::read_to_string(&path).map_err(|source| OutputError::NoSeries { path, source })?;
         series.read(&list)?;
         Ok(series)
     }
@@ -90,11 +89,7 @@ impl PvdSeries {
     ///
     /// # Errors
     /// [`OutputError`] as [`PvdSeries::open`], and if `time` is not finite.
-    pub fn open_before(
-        folder: impl AsRef<Path>,
-        name: &str,
-        time: f64,
-    ) -> Result<Self, OutputError> {
+    pub fn open_before(folder: impl AsRef<Path>, name: &str, time: f64) -> Result<Self, OutputError> {
         let mut series = Self::open(folder, name)?;
         if !time.is_finite() {
             let before = series.last();
@@ -145,13 +140,7 @@ impl PvdSeries {
         cell_fields: &[Field],
     ) -> Result<(), OutputError> {
         self.check(time)?;
-        write_vtu_pieces(
-            self.next_file(),
-            mesh,
-            decomposition,
-            point_fields,
-            cell_fields,
-        )?;
+        write_vtu_pieces(self.next_file(), mesh, decomposition, point_fields, cell_fields)?;
         self.list(time)
     }
 
@@ -216,8 +205,7 @@ impl PvdSeries {
             let _ = write!(xml, "\n{line}");
         }
         xml.push('\n');
-        replace(&self.path(), xml.as_bytes())
-            .map_err(|(path, source)| OutputError::Io { path, source })?;
+        replace(&self.path(), xml.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })?;
         self.times.push(time);
         Ok(())
     }
@@ -281,7 +269,5 @@ impl PvdSeries {
 
 /// The characters that XML reserves inside an attribute.
 pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('"', "&quot;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }

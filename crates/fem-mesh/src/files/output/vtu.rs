@@ -27,12 +27,7 @@ pub fn write_vtu(
     check(cell_fields, mesh.tets().len(), "cells")?;
     let mut file = File::new();
     let all = (0..mesh.points().len(), 0..mesh.tets().len());
-    file.piece(
-        mesh.points(),
-        mesh.tets(),
-        (point_fields, all.0),
-        (cell_fields, all.1),
-    );
+    file.piece(mesh.points(), mesh.tets(), (point_fields, all.0), (cell_fields, all.1));
     file.write(path.as_ref())
 }
 
@@ -49,17 +44,10 @@ pub fn write_vtu_pieces(
     point_fields: &[Field],
     cell_fields: &[Field],
 ) -> Result<(), OutputError> {
-    if decomposition.nodes() != mesh.points().len()
-        || decomposition.parts().len() != mesh.tets().len()
-    {
-        return Err(OutputError::Foreign {
-            what: "decomposition",
-        });
+    if decomposition.nodes() != mesh.points().len() || decomposition.parts().len() != mesh.tets().len() {
+        return Err(OutputError::Foreign { what: "decomposition" });
     }
-    let part = Field::scalar(
-        "part",
-        decomposition.parts().iter().map(|&p| p.into()).collect(),
-    );
+    let part = Field::scalar("part", decomposition.parts().iter().map(|&p| p.into()).collect());
     let cell_fields = [cell_fields, &[part]].concat();
     check(point_fields, mesh.points().len(), "nodes")?;
     check(&cell_fields, mesh.tets().len(), "cells")?;
@@ -98,12 +86,7 @@ pub fn write_surface_vtu(
     let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
     let mut file = File::new();
     let all = (0..nodes.len(), 0..triangles.len());
-    file.piece(
-        &points,
-        triangles,
-        (point_fields, all.0),
-        (cell_fields, all.1),
-    );
+    file.piece(&points, triangles, (point_fields, all.0), (cell_fields, all.1));
     file.write(path.as_ref())
 }
 
@@ -162,20 +145,13 @@ impl File {
         let counts = [points.len(), cells.len()];
         self.open(
             "Piece",
-            &format!(
-                "NumberOfPoints=\"{}\" NumberOfCells=\"{}\"",
-                counts[0], counts[1]
-            ),
+            &format!("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", counts[0], counts[1]),
         );
         self.open("PointData", "");
-        point_fields
-            .iter()
-            .for_each(|field| self.field(field, nodes.clone()));
+        point_fields.iter().for_each(|field| self.field(field, nodes.clone()));
         self.close("PointData");
         self.open("CellData", "");
-        cell_fields
-            .iter()
-            .for_each(|field| self.field(field, chosen.clone()));
+        cell_fields.iter().for_each(|field| self.field(field, chosen.clone()));
         self.close("CellData");
         self.open("Points", "");
         let coordinates = points.iter().flatten().flat_map(|x| x.to_le_bytes());
@@ -211,9 +187,8 @@ impl File {
 
     /// Blocks of zlib behind a header: numbers of blocks and of bytes in the first and the last, compressed sizes.
     fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
-        let attributes = format!(
-            "type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\""
-        );
+        let attributes =
+            format!("type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\"");
         self.open("DataArray", &attributes);
         let last = bytes.chunks(BLOCK).last().map_or(0, <[u8]>::len);
         let mut header = vec![bytes.len().div_ceil(BLOCK), BLOCK, last];
@@ -223,10 +198,7 @@ impl File {
             data.extend(compressed(block));
             header.push(data.len() - before);
         }
-        let header: Vec<u8> = header
-            .iter()
-            .flat_map(|&n| (n as u64).to_le_bytes())
-            .collect();
+        let header: Vec<u8> = header.iter().flat_map(|&n| (n as u64).to_le_bytes()).collect();
         base64(&header, &mut self.0);
         base64(&data, &mut self.0);
         self.0.push('\n');
@@ -258,11 +230,7 @@ fn base64(bytes: &[u8], out: &mut String) {
         (0..3).for_each(|k| bits = bits << 8 | usize::from(three.get(k).copied().unwrap_or(0)));
         for k in 0..4 {
             let digit = DIGITS[bits >> (18 - 6 * k) & 63];
-            out.push(if k <= three.len() {
-                char::from(digit)
-            } else {
-                '='
-            });
+            out.push(if k <= three.len() { char::from(digit) } else { '=' });
         }
     }
 }

@@ -19,10 +19,7 @@ impl Judge<'_> {
             if let Some(partner) = spot.partner.filter(|p| *p != u32::MAX) {
                 way = sub(way, at(&report.u, partner));
             }
-            let sum = add(
-                scale(a, way),
-                add(scale(b, self.ways[0][k]), scale(c, self.ways[1][k])),
-            );
+            let sum = add(scale(a, way), add(scale(b, self.ways[0][k]), scale(c, self.ways[1][k])));
             Slip {
                 way,
                 gap: spot.gap - dot(spot.normal, way),
@@ -35,10 +32,7 @@ impl Judge<'_> {
     /// The spot of each reported point.
     pub(super) fn assign(&self, points: &[PointState]) -> Vec<Option<usize>> {
         let same = |p: &PointState, s: &Spot| {
-            s.contact == p.surface
-                && s.node == p.node
-                && s.partner == p.partner
-                && dot(s.normal, p.normal) > SAME
+            s.contact == p.surface && s.node == p.node && s.partner == p.partner && dot(s.normal, p.normal) > SAME
         };
         let of = |p: &PointState| self.spots.iter().position(|s| same(p, s));
         points.iter().map(of).collect()
@@ -80,10 +74,7 @@ impl Judge<'_> {
         let tags = |s: &Spot| &self.recipe.touches[s.contact].tags;
         let mut known: Vec<&Spot> = Vec::new();
         for s in all {
-            if !known
-                .iter()
-                .any(|k| tags(k).iter().any(|t| tags(s).contains(t)))
-            {
+            if !known.iter().any(|k| tags(k).iter().any(|t| tags(s).contains(t))) {
                 known.push(s);
             }
         }
@@ -114,11 +105,7 @@ impl Judge<'_> {
             let (force, friction) = (point.normal_force, point.friction_force);
             worst.add("sign", force, f);
             worst.add("complementarity", (force * slip.gap.max(0.0)).abs(), f * u);
-            worst.add(
-                "friction off the surface",
-                dot(friction, spot.normal).abs(),
-                f,
-            );
+            worst.add("friction off the surface", dot(friction, spot.normal).abs(), f);
             let law = &self.recipe.touches[spot.contact].law;
             let area = self.area(report.points, spot);
             let x = self.mechanics.points[spot.node as usize];
@@ -138,21 +125,10 @@ impl Judge<'_> {
     }
 
     /// What is reported of a point is what follows from the displacement.
-    fn reported(
-        &self,
-        point: &PointState,
-        spot: &Spot,
-        slip: &Slip,
-        size: &Size,
-        worst: &mut Worst,
-    ) {
+    fn reported(&self, point: &PointState, spot: &Spot, slip: &Slip, size: &Size, worst: &mut Worst) {
         // where nothing moves, coordinates are the scale
         let u = size.displacement.max(ROUNDED * self.extent);
-        worst.add(
-            "reported gap",
-            (point.gap - slip.gap).abs(),
-            u.max(spot.gap.abs()),
-        );
+        worst.add("reported gap", (point.gap - slip.gap).abs(), u.max(spot.gap.abs()));
         let open = point.state == ContactState::Open;
         let wrong = open != (point.normal_force >= 0.0);
         worst.add("reported state", f64::from(u8::from(wrong)), 1.0);
@@ -163,13 +139,7 @@ impl Judge<'_> {
     }
 
     /// The sums of the frame.
-    pub(super) fn sums(
-        &self,
-        frame: &StepResult,
-        of: &[Option<usize>],
-        sizes: &[Size],
-        worst: &mut Worst,
-    ) {
+    pub(super) fn sums(&self, frame: &StepResult, of: &[Option<usize>], sizes: &[Size], worst: &mut Worst) {
         let said = frame.summary();
         let contact = sizes.iter().map(|s| s.contact).sum::<f64>();
         let (mut active, mut pressed, mut sum, mut work, mut way) = (0, 0.0, [0.0; 3], 0.0, 0.0);

@@ -84,28 +84,15 @@ impl World {
 }
 
 pub(crate) fn world(dice: &mut Dice) -> World {
-    let length = if dice.chance(0.7) {
-        1.0
-    } else {
-        dice.decades(1e-3, 1e2)
-    };
-    let young = if dice.chance(0.5) {
-        1e9
-    } else {
-        dice.decades(1e4, 1e12)
-    };
+    let length = if dice.chance(0.7) { 1.0 } else { dice.decades(1e-3, 1e2) };
+    let young = if dice.chance(0.5) { 1e9 } else { dice.decades(1e4, 1e12) };
     let strain = dice.decades(1e-4, 1e-2);
     let count = match dice.whole(0, 9) {
         0..=4 => 1,
         5..=7 => 2,
         _ => 3,
     };
-    let sizes = [
-        dice.between(0.8, 3.0),
-        dice.between(0.6, 1.5),
-        dice.between(0.4, 1.5),
-    ]
-    .map(|l| l * length);
+    let sizes = [dice.between(0.8, 3.0), dice.between(0.6, 1.5), dice.between(0.4, 1.5)].map(|l| l * length);
     let most = if count == 1 { 5 } else { 4 };
     let cells = [dice.whole(2, most), dice.whole(1, 3), dice.whole(1, 3)];
     let mut words = vec![format!("bodies={count}")];
@@ -218,20 +205,13 @@ fn finish(
 /// Gives the part of the lower side beyond `x` a tag of its own.
 fn split_floor(mesh: TetMesh, x: f64) -> TetMesh {
     let facets = mesh.facets().iter().map(|f| {
-        let centre: f64 = f
-            .nodes
-            .iter()
-            .map(|n| mesh.points()[*n as usize][0] / 3.0)
-            .sum();
+        let centre: f64 = f.nodes.iter().map(|n| mesh.points()[*n as usize][0] / 3.0).sum();
         let tag = if f.tag == brick::Z_MIN && centre > x {
             SPLIT
         } else {
             f.tag
         };
-        Facet {
-            nodes: f.nodes,
-            tag,
-        }
+        Facet { nodes: f.nodes, tag }
     });
     let facets: Vec<Facet> = facets.collect();
     // one side of it may be all

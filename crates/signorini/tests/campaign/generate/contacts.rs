@@ -95,14 +95,7 @@ fn deepest(world: &World, tag: FacetTag, outward: Vec3) -> Vec3 {
 }
 
 /// A rigid obstacle at a side.
-fn obstacle(
-    dice: &mut Dice,
-    world: &World,
-    shaft: &Shaft,
-    tag: FacetTag,
-    name: &str,
-    recipe: &mut Recipe,
-) -> Touch {
+fn obstacle(dice: &mut Dice, world: &World, shaft: &Shaft, tag: FacetTag, name: &str, recipe: &mut Recipe) -> Touch {
     let (n, centre) = (world.normal(tag), world.centre(tag));
     let law = law(dice, world, shaft, centre);
     let mut touch = Touch {
@@ -160,9 +153,7 @@ fn obstacle(
         touch.motion = Some((by, shaft.course(dice)));
         moved = " moved";
     }
-    recipe
-        .words
-        .push(format!("{name}[{kind}{moved} {}]", word(&touch.law)));
+    recipe.words.push(format!("{name}[{kind}{moved} {}]", word(&touch.law)));
     touch
 }
 
@@ -183,16 +174,10 @@ fn between(dice: &mut Dice, world: &World, shaft: &Shaft, body: usize, recipe: &
     let way = world.way();
     let (kind, distance) = match dice.whole(0, 9) {
         0..=6 => ("measured", Distance::Measured),
-        7 => (
-            "constant",
-            Distance::Constant(way * dice.between(-0.2, 0.4)),
-        ),
+        7 => ("constant", Distance::Constant(way * dice.between(-0.2, 0.4))),
         8 => {
             let centre = world.centre(tag);
-            (
-                "field",
-                Distance::Field(field(dice, world, centre, 0.0, 0.3 * way)),
-            )
+            ("field", Distance::Field(field(dice, world, centre, 0.0, 0.3 * way)))
         }
         _ => ("touching", Distance::Touching),
     };

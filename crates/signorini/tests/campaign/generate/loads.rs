@@ -24,34 +24,21 @@ pub(crate) fn loads(dice: &mut Dice, world: &World, shaft: &Shaft, recipe: &mut 
             // down, and less along
             let down = scale(-dice.between(0.1, 1.0), world.normal(top));
             let along = scale(0.3 * dice.unit(), world.along(dice, top));
-            push(
-                "top",
-                Density::Traction(top, scale(stress, add(down, along))),
-                dice,
-            );
+            push("top", Density::Traction(top, scale(stress, add(down, along))), dice);
         }
         if dice.chance(0.3) {
             let tag = side(body, brick::X_MAX);
-            push(
-                "pull",
-                Density::Traction(tag, scale(0.4 * stress, dice.vector())),
-                dice,
-            );
+            push("pull", Density::Traction(tag, scale(0.4 * stress, dice.vector())), dice);
         }
         if dice.chance(0.12) {
             let tag = side(body, brick::Y_MAX);
-            push(
-                "pressure",
-                Density::Pressure(tag, 0.5 * stress * dice.either()),
-                dice,
-            );
+            push("pressure", Density::Pressure(tag, 0.5 * stress * dice.either()), dice);
         }
         if dice.chance(0.12) {
             let tag = side(body, brick::X_MAX);
             let centre = world.centre(tag);
             let part = |dice: &mut Dice| field(dice, world, centre, -0.3 * stress, 0.3 * stress);
-            let density =
-                Density::TractionField(tag, [part(dice), part(dice), part(dice)], part(dice));
+            let density = Density::TractionField(tag, [part(dice), part(dice), part(dice)], part(dice));
             push("traction field", density, dice);
         }
         if dice.chance(0.12) {
@@ -70,11 +57,7 @@ pub(crate) fn loads(dice: &mut Dice, world: &World, shaft: &Shaft, recipe: &mut 
     if dice.chance(0.25) {
         let along = scale(0.2, dice.vector());
         let weight = stress / world.length * dice.between(0.1, 0.8);
-        push(
-            "weight",
-            Density::Body(scale(weight, add(down, along))),
-            dice,
-        );
+        push("weight", Density::Body(scale(weight, add(down, along))), dice);
     }
     if dice.chance(0.1) {
         let centre = world.centre(brick::Z_MAX);

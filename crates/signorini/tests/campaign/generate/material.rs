@@ -16,9 +16,7 @@ pub(crate) fn materials(dice: &mut Dice, world: &World) -> (TetMesh, Vec<Elastic
             // on both sides of a plane
             let centre = |t: usize| {
                 let corners = mesh.tet_points(t);
-                corners
-                    .into_iter()
-                    .fold([0.0; 3], |s: Vec3, p| add(s, scale(0.25, p)))
+                corners.into_iter().fold([0.0; 3], |s: Vec3, p| add(s, scale(0.25, p)))
             };
             let axis = dice.whole(0, 2);
             let all: Vec<f64> = (0..tets).map(|t| centre(t)[axis]).collect();
@@ -30,11 +28,7 @@ pub(crate) fn materials(dice: &mut Dice, world: &World) -> (TetMesh, Vec<Elastic
             Some(regions)
         }
     };
-    let count = regions
-        .iter()
-        .flatten()
-        .max()
-        .map_or(1, |m| *m as usize + 1);
+    let count = regions.iter().flatten().max().map_or(1, |m| *m as usize + 1);
     let contrast = if dice.chance(0.8) { 5.0 } else { 300.0 };
     let mut word = String::from("isotropic");
     let mut elastic = Vec::new();

@@ -49,14 +49,8 @@ fn loose(recipe: &Recipe) -> usize {
     let mesh = &recipe.mesh;
     let body = mesh.components();
     let nodes_of = |b: u32| {
-        let cells = mesh
-            .tets()
-            .iter()
-            .zip(&body)
-            .filter(move |(_, of)| **of == b);
-        cells
-            .flat_map(|(t, _)| *t)
-            .collect::<std::collections::HashSet<u32>>()
+        let cells = mesh.tets().iter().zip(&body).filter(move |(_, of)| **of == b);
+        cells.flat_map(|(t, _)| *t).collect::<std::collections::HashSet<u32>>()
     };
     let count = body.iter().max().map_or(0, |b| b + 1);
     let mut free = 0;
@@ -148,10 +142,7 @@ fn planes(dice: &mut Dice, world: &World, recipe: &mut Recipe, body: usize) {
 
 /// A list of nodes of one side, all held or each moved by itself.
 fn some_nodes(dice: &mut Dice, world: &World, shaft: &Shaft, recipe: &mut Recipe, body: usize) {
-    let tag = side(
-        body,
-        [brick::X_MIN, brick::X_MAX, brick::Z_MAX][dice.whole(0, 2)],
-    );
+    let tag = side(body, [brick::X_MIN, brick::X_MAX, brick::Z_MAX][dice.whole(0, 2)]);
     let mut nodes = world.mesh.nodes_on(tag);
     let least = 3.min(nodes.len());
     let keep = dice.whole(least, nodes.len());
@@ -173,10 +164,7 @@ fn some_nodes(dice: &mut Dice, world: &World, shaft: &Shaft, recipe: &mut Recipe
 
 /// Any one or two directions of a side.
 fn oblique(dice: &mut Dice, world: &World, recipe: &mut Recipe, body: usize) {
-    let tag = side(
-        body,
-        [brick::X_MIN, brick::X_MAX, brick::Y_MAX][dice.whole(0, 2)],
-    );
+    let tag = side(body, [brick::X_MIN, brick::X_MAX, brick::Y_MAX][dice.whole(0, 2)]);
     let mut directions = vec![dice.vector()];
     if dice.chance(0.5) {
         directions.push(dice.vector());
@@ -185,12 +173,7 @@ fn oblique(dice: &mut Dice, world: &World, recipe: &mut Recipe, body: usize) {
     if directions.is_empty() {
         directions.push([1.0, 0.5, 0.2]);
     }
-    put(
-        recipe,
-        "oblique",
-        Where::Tag(tag),
-        Fixed::Vectors(directions),
-    );
+    put(recipe, "oblique", Where::Tag(tag), Fixed::Vectors(directions));
     if dice.chance(0.3) {
         let by = scale(0.5 * world.way(), dice.vector());
         let course = Course::Table(vec![(0.0, 0.0), (1.0, 1.0)]);

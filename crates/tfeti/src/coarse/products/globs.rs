@@ -63,11 +63,7 @@ struct Side {
 }
 
 impl GlobTables {
-    pub(crate) fn new<'k>(
-        gluing: &Gluing,
-        subdomains: usize,
-        kernel: impl Fn(u32) -> (usize, &'k Kernel),
-    ) -> Self {
+    pub(crate) fn new<'k>(gluing: &Gluing, subdomains: usize, kernel: impl Fn(u32) -> (usize, &'k Kernel)) -> Self {
         let mut out = Self::default();
         let mut shapes: HashMap<(usize, Vec<u32>), [u32; 2]> = HashMap::new();
         let mut rules: Vec<Range<usize>> = Vec::new();
@@ -117,10 +113,7 @@ impl GlobTables {
             side: out.globs[globs.start].side as usize,
             globs,
         };
-        out.tasks = shares(&work, GLOB_TASK, PARTS)
-            .into_iter()
-            .map(task)
-            .collect();
+        out.tasks = shares(&work, GLOB_TASK, PARTS).into_iter().map(task).collect();
         (out.side_pointers, out.sides) = buckets(subdomains, &out.subdomains);
         out
     }
@@ -328,8 +321,7 @@ fn run_wrench(x: &[f64], arms: &[NodeArms]) -> Wrench {
     if let (Some(&[a, b, c]), Some(arms)) = (x.last_chunk(), arms.last()) {
         sums[1] = add_node(sums[1], &[a, b, c, 0.0], arms);
     }
-    let [f, a, b]: [[f64; 4]; 3] =
-        std::array::from_fn(|k| std::array::from_fn(|l| sums[0][k][l] + sums[1][k][l]));
+    let [f, a, b]: [[f64; 4]; 3] = std::array::from_fn(|k| std::array::from_fn(|l| sums[0][k][l] + sums[1][k][l]));
     let moment = [a[2] + b[1], a[0] + b[2], a[1] + b[0], 0.0];
     [f, moment]
 }

@@ -33,11 +33,7 @@ const KEPT: usize = 8;
 
 impl PointTables {
     /// For `all` these nodal rows; `copy` gives subdomain and arm from subdomain and local node.
-    pub(crate) fn new(
-        gluing: &Gluing,
-        all: Range<usize>,
-        copy: impl Fn(u32, u32) -> [u32; 2],
-    ) -> Self {
+    pub(crate) fn new(gluing: &Gluing, all: Range<usize>, copy: impl Fn(u32, u32) -> [u32; 2]) -> Self {
         let places = |nodal: usize| {
             let entries = gluing.nodal(nodal).iter();
             entries.map(|e| (e.subdomain, e.local))
@@ -61,8 +57,7 @@ impl PointTables {
             out.copies.extend(copies);
             for nodal in group {
                 out.rows.push((nodal - all.start) as u32);
-                out.vectors
-                    .extend(gluing.nodal(nodal).iter().map(|e| e.vector));
+                out.vectors.extend(gluing.nodal(nodal).iter().map(|e| e.vector));
             }
             out.points.push(Point {
                 copies: out.copies.len(),
@@ -90,11 +85,7 @@ impl PointTables {
                 for (&row, v) in rows.iter().zip(own) {
                     (0..3).for_each(|c| force[c] += v[c] * x[row as usize]);
                 }
-                add_wrench(
-                    &mut wrenches[subdomain as usize],
-                    &arms[arm as usize],
-                    force,
-                );
+                add_wrench(&mut wrenches[subdomain as usize], &arms[arm as usize], force);
             }
         }
     }
@@ -110,9 +101,7 @@ impl PointTables {
         let mut start = Point::default();
         for &end in &self.points {
             let copies = &self.copies[start.copies..end.copies];
-            let at = |&[subdomain, arm]: &[u32; 2]| {
-                displacement(&motions[subdomain as usize], &arms[arm as usize])
-            };
+            let at = |&[subdomain, arm]: &[u32; 2]| displacement(&motions[subdomain as usize], &arms[arm as usize]);
             let rows = &self.rows[start.rows..end.rows];
             let vectors = &self.vectors[start.vectors..end.vectors];
             start = end;

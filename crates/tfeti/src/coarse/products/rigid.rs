@@ -68,9 +68,7 @@ impl RigidTables {
             tasks: vec![],
         };
         let work = |s: usize| 4 * out.nodal_of(s).len() + out.globs.sides_of(s).len() + 4;
-        let work: Vec<u64> = (0..out.subdomains.count())
-            .map(|s| work(s) as u64)
-            .collect();
+        let work: Vec<u64> = (0..out.subdomains.count()).map(|s| work(s) as u64).collect();
         out.tasks = shares(&work, SUBDOMAIN_TASK, PARTS);
         out
     }
@@ -87,11 +85,7 @@ impl RigidTables {
 }
 
 /// Copies with rows that are no interface rows by subdomain, in the order of the map, with their arms.
-fn nodal_copies(
-    map: &BoundaryMap,
-    first: &[usize],
-    subdomains: usize,
-) -> (Vec<u32>, Vec<[u32; 2]>) {
+fn nodal_copies(map: &BoundaryMap, first: &[usize], subdomains: usize) -> (Vec<u32>, Vec<[u32; 2]>) {
     let (mut owners, mut copies) = (Vec::new(), Vec::new());
     for panel in &map.panels {
         let members = &map.classes[panel.class].members[panel.columns.clone()];

@@ -96,9 +96,7 @@ impl SplitBase {
             let node = &out.tree.nodes[k];
             let (width, height) = (node.width(), node.height());
             front.columns.resize(width * height, 0.0);
-            front
-                .update
-                .resize((height - width) * (height - width), 0.0);
+            front.update.resize((height - width) * (height - width), 0.0);
             load_columns(matrix, &out.tree, graph, k, values, &mut front.columns);
         };
         let work = Growth {
@@ -163,8 +161,7 @@ impl SplitBase {
             front.columns.extend_from_slice(&self.base[k]);
             front.update.clear();
             front.update.resize(behind * behind, 0.0);
-            self.contact
-                .add(k, node.height(), weights, &mut front.columns);
+            self.contact.add(k, node.height(), weights, &mut front.columns);
         };
         let work = Growth {
             base: self,
@@ -188,24 +185,15 @@ impl Piece {
             out
         };
         let (steady, changing) = (group(region.steady.clone()), group(region.changing.clone()));
-        let children = || {
-            region
-                .region
-                .children
-                .into_iter()
-                .flatten()
-                .map(|k| &before[k])
-        };
+        let children = || region.region.children.into_iter().flatten().map(|k| &before[k]);
         let slot = 6 * region.behind.len() + steady.buffer().max(changing.buffer());
         let own = tree.nodes[region.changing.clone()].iter();
         Self {
             is_steady: region.changing.is_empty() && children().all(|c| c.is_steady),
             slot,
             work: slot + children().map(|c| c.work).sum::<usize>(),
-            reads: Tile::NUMBERS * (steady.tiles() + changing.tiles())
-                + children().map(|c| c.reads).sum::<usize>(),
-            operations: own.map(|n| n.operations()).sum::<f64>()
-                + children().map(|c| c.operations).sum::<f64>(),
+            reads: Tile::NUMBERS * (steady.tiles() + changing.tiles()) + children().map(|c| c.reads).sum::<usize>(),
+            operations: own.map(|n| n.operations()).sum::<f64>() + children().map(|c| c.operations).sum::<f64>(),
             tiles: Tiles::default(),
             steady,
             changing,

@@ -54,12 +54,7 @@ struct Term {
 }
 
 impl ContactFronts {
-    pub(crate) fn new(
-        tree: &CoarseTree,
-        gluing: &Gluing,
-        modes: &ModeTable<'_>,
-        rows: usize,
-    ) -> Self {
+    pub(crate) fn new(tree: &CoarseTree, gluing: &Gluing, modes: &ModeTable<'_>, rows: usize) -> Self {
         let mut vectors: Vec<[f64; 6]> = Vec::new();
         let mut terms: Vec<(usize, Term)> = Vec::new();
         let (mut row, mut before) = (Vec::new(), Vec::new());
@@ -107,22 +102,14 @@ impl ContactFronts {
     }
 
     /// Adds the terms of one node to its columns of the given height.
-    pub(crate) fn add(
-        &self,
-        node: usize,
-        height: usize,
-        weights: &ContactWeights,
-        columns: &mut [f64],
-    ) {
+    pub(crate) fn add(&self, node: usize, height: usize, weights: &ContactWeights, columns: &mut [f64]) {
         for term in &self.terms[self.pointers[node]..self.pointers[node + 1]] {
             let row = term.row as usize;
             let weight = weights.diagonal[row];
             let [mut a, mut b] = term.vectors.map(|v| self.vectors[v as usize]);
             match weights.lines.get(row) {
                 Some(&[c, d]) if c != 0.0 || d != 0.0 => {
-                    let both = term
-                        .vectors
-                        .map(|v| &self.vectors[(v + term.next) as usize]);
+                    let both = term.vectors.map(|v| &self.vectors[(v + term.next) as usize]);
                     for k in 0..6 {
                         a[k] = c * a[k] + d * both[0][k];
                         b[k] = c * b[k] + d * both[1][k];

@@ -51,12 +51,7 @@ impl Dissection {
     }
 
     /// Orders `blocks` and returns the number of their region.
-    fn region(
-        &mut self,
-        work: &mut Cutter<'_>,
-        blocks: Vec<u32>,
-        cuts: usize,
-    ) -> Result<usize, FactorError> {
+    fn region(&mut self, work: &mut Cutter<'_>, blocks: Vec<u32>, cuts: usize) -> Result<usize, FactorError> {
         let start = self.blocks.len();
         let (mut children, mut inner, mut last) = (None, blocks, Vec::new());
         let mut cut = if cuts > 0 { work.cut(&inner) } else { None };
@@ -129,8 +124,7 @@ impl Cutter<'_> {
         }
         let side = |k: u8| {
             let all = blocks.iter().copied();
-            all.filter(|&b| self.mark[b as usize] == k)
-                .collect::<Vec<u32>>()
+            all.filter(|&b| self.mark[b as usize] == k).collect::<Vec<u32>>()
         };
         let sides = [side(0), side(1), side(2)];
         for &b in blocks {
@@ -236,9 +230,7 @@ pub(crate) mod tests {
 
     #[test]
     fn blocks_at_one_point_are_one_region() {
-        let graph: Vec<Vec<u32>> = (0..50)
-            .map(|a| if a > 0 { vec![a - 1] } else { vec![] })
-            .collect();
+        let graph: Vec<Vec<u32>> = (0..50).map(|a| if a > 0 { vec![a - 1] } else { vec![] }).collect();
         let d = Dissection::new(&graph, &[[1.0; 3]; 50], &[true; 50], 3).unwrap();
         assert_eq!((d.regions.len(), d.blocks.len()), (1, 50));
     }

@@ -13,27 +13,14 @@ use crate::tolerances::SOLVE_READS;
 impl SplitBase {
     /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for
     /// blocks that change, and nothing steady is read on the way up.
-    pub(crate) fn solve(
-        &self,
-        factor: &SplitFactor,
-        y: &mut [f64],
-        work: &mut [f64],
-        changing: bool,
-        digits: Digits,
-    ) {
+    pub(crate) fn solve(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64], changing: bool, digits: Digits) {
         match digits {
             Digits::Double => self.solve_with::<Tile>(factor, y, work, changing),
             Digits::Single => self.solve_with::<ShortTile>(factor, y, work, changing),
         }
     }
 
-    fn solve_with<T: Reads>(
-        &self,
-        factor: &SplitFactor,
-        y: &mut [f64],
-        work: &mut [f64],
-        changing: bool,
-    ) {
+    fn solve_with<T: Reads>(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64], changing: bool) {
         let Some(root) = self.pieces.len().checked_sub(1) else {
             return;
         };
@@ -51,14 +38,7 @@ impl SplitBase {
 
     /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If
     /// only blocks that are `changing` differ from zero, steady ones are left out.
-    fn forward<T: Reads>(
-        &self,
-        r: usize,
-        factor: &SplitFactor,
-        x: &mut [f64],
-        work: &mut [f64],
-        changing: bool,
-    ) {
+    fn forward<T: Reads>(&self, r: usize, factor: &SplitFactor, x: &mut [f64], work: &mut [f64], changing: bool) {
         let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
         let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
         let (work, slot) = work.split_at_mut(piece.work - piece.slot);
@@ -91,13 +71,9 @@ impl SplitBase {
             }
         }
         if !changing {
-            piece
-                .steady
-                .forward(T::of(&piece.tiles), own, behind, buffer);
+            piece.steady.forward(T::of(&piece.tiles), own, behind, buffer);
         }
-        piece
-            .changing
-            .forward(T::of(&factor.tiles[r]), own, behind, buffer);
+        piece.changing.forward(T::of(&factor.tiles[r]), own, behind, buffer);
     }
 
     /// Back substitution in a region and those within; the blocks behind stand first in its slot of the memory.
@@ -106,12 +82,8 @@ impl SplitBase {
         let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
         let (work, slot) = work.split_at_mut(piece.work - piece.slot);
         let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
-        piece
-            .changing
-            .backward(T::of(&factor.tiles[r]), own, behind, buffer);
-        piece
-            .steady
-            .backward(T::of(&piece.tiles), own, behind, buffer);
+        piece.changing.backward(T::of(&factor.tiles[r]), own, behind, buffer);
+        piece.steady.backward(T::of(&piece.tiles), own, behind, buffer);
         if let Some([left, right]) = region.region.children {
             let (x, y) = self.divide(left, x);
             let (a, b) = work.split_at_mut(self.pieces[left].work);

@@ -96,21 +96,13 @@ impl Node {
     /// Seconds of the solves between two changes, and of a change.
     fn cost(&self) -> f64 {
         let (w, h) = (self.width() as f64, self.height() as f64);
-        let change = if self.changing {
-            self.operations()
-        } else {
-            0.0
-        };
+        let change = if self.changing { self.operations() } else { 0.0 };
         SOLVES * READ * (w * (h - 0.5 * w)) + OPERATION * change
     }
 }
 
 /// The cheapest tree for changes of the active set and the solves between them.
-pub(crate) fn cheapest_tree(
-    graph: &[Vec<u32>],
-    centres: &[[f64; 3]],
-    changing: &[bool],
-) -> Option<CoarseTree> {
+pub(crate) fn cheapest_tree(graph: &[Vec<u32>], centres: &[[f64; 3]], changing: &[bool]) -> Option<CoarseTree> {
     let mut best = CoarseTree::new(graph, centres, changing, 0).ok()?;
     for cuts in 1..=CUTS {
         let next = CoarseTree::new(graph, centres, changing, cuts).ok()?;
@@ -196,11 +188,7 @@ impl CoarseTree {
         let first_node = within.map_or(first_own, |r| r.first_node);
         let first_region = within.map_or(self.regions.len(), |r| r.first_region);
         let end = self.nodes.len();
-        let inner = region
-            .children
-            .iter()
-            .flatten()
-            .flat_map(|&k| &self.regions[k].behind);
+        let inner = region.children.iter().flatten().flat_map(|&k| &self.regions[k].behind);
         let borders = self.nodes[first_own..].iter().flat_map(|n| &n.border);
         let later = |p: &u32| *p as usize >= region.own.end;
         let mut behind: Vec<u32> = borders.chain(inner).copied().filter(later).collect();
@@ -250,12 +238,7 @@ impl CoarseTree {
 
 /// Reorders the own blocks of each region such that what leads to a block stands right before it: what stays first,
 /// then the larger last.
-fn postorder(
-    blocks: &[u32],
-    patterns: &[Vec<u32>],
-    regions: &[Region],
-    changing: &[bool],
-) -> Vec<u32> {
+fn postorder(blocks: &[u32], patterns: &[Vec<u32>], regions: &[Region], changing: &[bool]) -> Vec<u32> {
     let mut changes: Vec<bool> = blocks.iter().map(|&b| changing[b as usize]).collect();
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); blocks.len()];
     let mut out = blocks.to_vec();
