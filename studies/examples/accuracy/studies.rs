@@ -6,7 +6,6 @@ use signorini::prelude::*;
 use signorini::qp::ActiveSetSettings;
 use signorini_studies::Failure;
 use signorini_studies::brick::{Block, EULER, Loading, PAPER_FORMULA, weakening};
-use signorini_studies::options::name_in_files;
 
 use super::measure::{Solution, orders, solve};
 use super::{Curve, Sample, Study};
@@ -101,7 +100,7 @@ fn tolerance(short: bool) -> Result<Vec<Curve>, Failure> {
         };
         curves.push(along_tolerances(
             Study::Tolerance,
-            &name_in_files(kind),
+            &kind.to_string(),
             &variant,
             &settings,
             &chosen,
