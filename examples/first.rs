@@ -13,7 +13,6 @@ fn main() -> Result<(), Error> {
         .with_load(Load::pressure(brick::Z_MAX, 3e9).with_history(ramp.clone()))
         .with_load(Load::traction(brick::X_MAX, [9e8, 0.0, -15e8]).with_history(ramp))
         .with_contact(floor.with_friction(Friction::coulomb(0.3)))
-        .with_boxes([3, 1, 1])
         .with_analysis(Analysis::quasistatic(1.0, 10));
 
     let mut simulation = Simulation::new(scene, Settings::default())?;

@@ -6,6 +6,7 @@
 //! | `tresca` | a slip bound that is data, by two methods |
 //! | `two_bodies` | a pad on a rail |
 //! | `own_mesh` | a mesh of Gmsh, files for ParaView |
+//! | `deck` | a deck of CalculiX or Abaqus, from file to ParaView |
 //! | `restart` | a run that is stopped and continued |
 //! | `qp_only` | quadratic programming without mechanics |
 //!
@@ -16,6 +17,7 @@
 #[doc = include_str!("../docs/how-to/loads.md")]
 #[doc = include_str!("../docs/how-to/floors-and-walls.md")]
 #[doc = include_str!("../docs/how-to/subdomains.md")]
+#[doc = include_str!("../docs/how-to/decks.md")]
 #[doc = include_str!("../docs/how-to/convergence.md")]
 #[doc = include_str!("../docs/how-to/accuracy.md")]
 #[doc = include_str!("../docs/how-to/results.md")]

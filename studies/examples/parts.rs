@@ -3,7 +3,7 @@
 //! `studies/meshes/parts.py` makes the meshes; small ones of each part stand beside it. Lengths in mm, forces in N.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -26,7 +26,7 @@ const CONTACT_RADIUS: f64 = 0.8;
 #[command(name = "parts", about = "Real parts on meshes of Gmsh, cut by the library")]
 pub struct PartsOptions {
     /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, sphere, punch, plates, tooth.
-    #[arg(value_name = "MESH", default_value = "studies/meshes")]
+    #[arg(value_name = "MESH", default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes"))]
     pub meshes: Vec<PathBuf>,
     /// Numbers of subdomains; 0 leaves it to the library.
     #[arg(long, value_delimiter = ',', default_value = "0")]
@@ -72,8 +72,11 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
             runs.push(run);
         }
     }
-    for (run, hertz) in runs.iter().filter_map(|r| Some((r, r.hertz.as_ref()?))) {
-        writeln!(out, "\n{}, {} pressed nodes: {hertz}", run.part, hertz.nodes)?;
+    let mut balls: Vec<&Hertz> = runs.iter().filter_map(|run| run.hertz.as_ref()).collect();
+    // the same for all partitions of a mesh, but for the last digits
+    balls.dedup_by_key(|ball| ball.nodes);
+    for ball in balls {
+        writeln!(out, "\nsphere, {} pressed nodes: {ball}", ball.nodes)?;
     }
     Ok(runs)
 }
@@ -272,18 +275,4 @@ impl std::fmt::Display for Hertz {
             100.0 * self.profile
         )
     }
-}
-
-/// The mesh of a part that stands beside the script.
-#[allow(dead_code)]
-pub fn small(part: &str) -> PathBuf {
-    let sizes = [
-        ("bracket", "6"),
-        ("sphere", "0.4"),
-        ("punch", "4"),
-        ("plates", "3.5"),
-        ("tooth", "4"),
-    ];
-    let size = sizes.iter().find(|(name, _)| *name == part).map_or("", |s| s.1);
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("meshes/{part}-{size}.msh"))
 }

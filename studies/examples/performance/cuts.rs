@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::Write;
 use std::path::Path;
 
-use signorini::fem_mesh::{Facet, compact_parts, gmsh, split_disconnected};
+use signorini::fem_mesh::{Facet, PartCount, compact_parts, even_parts, gmsh, split_disconnected};
 use signorini::prelude::*;
 use signorini_studies::Failure;
 use signorini_studies::brick::{Block, CELLS, END, LENGTHS, Loading, TOP, by_nearest, steel};
@@ -181,8 +181,8 @@ pub(crate) fn measure(
 /// A name and the part numbers of the tetrahedra; `None` for boxes.
 pub(crate) type Cut = (String, Option<Vec<u32>>);
 
-/// The cuts of a mesh into about `3n³` parts: boxes, random Voronoi cells and those of a file, as they are and made
-/// compact, and grown parts made compact.
+/// The cuts of a mesh into about `3n³` parts: boxes, the library's, random Voronoi cells and those of a file, as
+/// they are and made compact, and grown parts made compact.
 pub(crate) fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<Cut>, Failure> {
     let count = 3 * n * n * n;
     let mut given = vec![
@@ -198,6 +198,12 @@ pub(crate) fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<
         given.push(("file", numbers.map_while(Result::ok).collect()));
     }
     let mut out = vec![("boxes".to_owned(), None)];
+    let one = vec![0; mesh.tets().len()];
+    // the library's own, into as many parts and into a number that no grid of boxes has
+    for (name, count) in [("library", count), ("library, less", count * 4 / 5 + 1)] {
+        let parts = even_parts(mesh, &one, PartCount::Exactly(count))?;
+        out.push((name.to_owned(), Some(parts)));
+    }
     for (name, parts) in given {
         let connected = split_disconnected(mesh, &parts)?;
         let compact = compact_parts(mesh, &parts)?;

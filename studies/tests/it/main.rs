@@ -11,6 +11,8 @@ mod brick;
 mod effects;
 #[path = "../../examples/frictionless.rs"]
 mod frictionless;
+#[path = "../../examples/parts.rs"]
+mod parts;
 #[path = "../../examples/performance/main.rs"]
 mod performance;
 #[path = "../../examples/stability/main.rs"]

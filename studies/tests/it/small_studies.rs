@@ -5,6 +5,7 @@ use signorini_studies::record::RunRecord;
 
 use crate::bodies::{self, BodiesOptions, COEFFICIENT};
 use crate::frictionless::{self, FrictionlessOptions};
+use crate::parts::{self, PartRun, PartsOptions};
 use crate::{folder, options, read};
 
 #[test]
@@ -61,4 +62,46 @@ fn a_pad_on_a_rail_sticks_then_slides() {
     for file in ["body.pvd", "contact.pvd", "steps.csv"] {
         assert!(folder.join("n1-bodies").join(file).exists());
     }
+}
+
+fn parts(line: &str) -> Vec<PartRun> {
+    let runs = parts::execute(&options::<PartsOptions>(line), &mut Vec::new()).expect("runs");
+    for run in &runs {
+        assert!(
+            run.steps.iter().all(|s| s.converged() && s.certificate < 1e-6),
+            "{}",
+            run.part
+        );
+    }
+    runs
+}
+
+#[test]
+fn real_parts_are_cut_and_solved() {
+    let runs = parts("parts");
+    let names: Vec<&str> = runs.iter().map(|run| run.part.as_str()).collect();
+    assert_eq!(names, ["bracket", "plates", "punch", "sphere", "tooth"]);
+    for run in &runs {
+        let [least, most] = run.tets;
+        assert!(2 * least >= most, "{}: {least} to {most} tetrahedra", run.part);
+    }
+    // 7 nodes on the radius of the contact's disc: the area is right to 12 per cent
+    let ball = runs[3].hertz.as_ref().expect("a ball");
+    assert!(ball.radius.abs() < 0.12, "{}", ball.radius);
+}
+
+#[test]
+fn a_bracket_that_its_friction_holds_costs_the_same_in_any_fine_partition() {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/bracket-6.msh");
+    for run in parts(&format!("parts {mesh} --subdomains 1,8,30,100,500")) {
+        let dearest = run.steps.iter().map(|s| s.n_m).max().expect("steps");
+        assert!(
+            dearest <= 60,
+            "{} to {} tetrahedra: {dearest}",
+            run.tets[0],
+            run.tets[1]
+        );
+    }
+    let none = options::<PartsOptions>("parts nowhere.msh");
+    assert!(parts::execute(&none, &mut Vec::new()).is_err());
 }
