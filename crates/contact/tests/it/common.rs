@@ -2,6 +2,8 @@
 
 pub(crate) use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
+pub(crate) use signorini_contact::report::{AccumulatedError, AlgebraicError, Counters, StepReport};
+pub(crate) use signorini_contact::result::{ContactSummary, Reactions, Resultant};
 pub(crate) use signorini_contact::*;
 pub(crate) use signorini_fem_mesh::{
     Brick, Decomposition, Facet, FacetTag, History, Hooke, LoadDensity, Materials, Surface, TetMesh, assemble_load,

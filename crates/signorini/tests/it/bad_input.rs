@@ -1,8 +1,9 @@
 //! Ways to be wrong: each is a typed error that names the place. Nothing panics.
 
 use signorini::contact::{ContactError, InnerAccuracy};
+use signorini::fem_mesh::brick::BrickError;
 use signorini::fem_mesh::{
-    BrickError, DecompositionError, Facet, HistoryError, HookeError, LoadError, MaterialError, MeshError, SurfaceError,
+    DecompositionError, Facet, HistoryError, HookeError, LoadError, MaterialError, MeshError, SurfaceError,
 };
 use signorini::prelude::*;
 use signorini::qp::{ActiveSetSettings, QpError, SmalseSettings};

@@ -15,7 +15,8 @@ use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
 use rayon::prelude::*;
-use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator};
+use signorini_qp::SymmetricOperator;
+use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView};
 use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,8 @@ use crate::rows::side::{ContactConstraint, ContactConstraints};
 use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::tolerances::SAME;
-use signorini_fem_mesh::{Decomposition, NodeCopy};
+use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::decomposition::NodeCopy;
 
 impl Gluing {
     /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
