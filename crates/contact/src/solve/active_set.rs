@@ -23,7 +23,6 @@ use signorini_tfeti::{ActiveSetProjector, DualOperator};
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
 
-#[derive(Debug)]
 pub(crate) struct ActiveSetSolver {
     space: ActiveSetProjector,
     preconditioner: SelectedPreconditioner,

@@ -34,15 +34,6 @@ pub(crate) struct SmalseSolver {
     left: usize,
 }
 
-impl std::fmt::Debug for SmalseSolver {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("SmalseSolver")
-            .field("norm", &self.norm)
-            .field("one_loop", &self.one_loop)
-            .finish_non_exhaustive()
-    }
-}
-
 impl SmalseSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let (smalse, accuracy, one_loop) = match &settings.method {
