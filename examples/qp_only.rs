@@ -5,6 +5,9 @@
 
 use std::f64::consts::PI;
 
+use signorini_qp::kprgp::{Expansion, KprgpReport, KprgpWorkspace};
+use signorini_qp::problem::BlockState;
+use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::*;
 
 /// Stiffness of a string of 98 nodes between two fixed ends: -1, 2, -1.

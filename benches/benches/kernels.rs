@@ -4,7 +4,8 @@
 #![allow(missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use signorini::fem_mesh::{Hooke, StrainRecovery, assemble_stiffness};
+use signorini::fem_mesh::recovery::StrainRecovery;
+use signorini::fem_mesh::{Hooke, assemble_stiffness};
 use signorini::qp::{Equality, EqualityProjector, SymmetricOperator};
 use signorini::tfeti::ActiveSetProjector;
 use signorini::tfeti::internal::{ActiveSetFactor, InverseKind};

@@ -5,7 +5,8 @@
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use signorini::prelude::*;
-use signorini::qp::{KprgpSettings, KprgpWorkspace, ProductSet, Segment, SymmetricOperator, Tolerance, kprgp};
+use signorini::qp::kprgp::KprgpWorkspace;
+use signorini::qp::{KprgpSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kprgp};
 use signorini_benches::Failure;
 use signorini_studies::brick::{Block, Loading};
 use std::f64::consts::PI;

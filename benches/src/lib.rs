@@ -5,7 +5,7 @@ use faer::{Accum, Mat, Par};
 use rayon::prelude::*;
 use signorini::fem_mesh::{Decomposition, Materials, SurfaceFrame, TetMesh, brick};
 use signorini::tfeti::internal::InverseKind;
-use signorini::tfeti::{ContactConstraints, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
+use signorini::tfeti::{ContactConstraint, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 use signorini_studies::brick::{Block, Loading, steel};
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ pub struct Body {
     /// Steel.
     pub materials: Materials,
     supports: Vec<NodeSupport>,
-    contact: ContactConstraints,
+    contact: Vec<ContactConstraint>,
 }
 
 impl Body {
@@ -37,7 +37,10 @@ impl Body {
         };
         Ok(Self {
             supports: vec![NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))],
-            contact: ContactConstraints::rigid(&bottom, &vec![frame; bottom.len()], true),
+            contact: bottom
+                .iter()
+                .map(|&node| ContactConstraint::new(node, frame).with_friction(true))
+                .collect(),
             materials: steel()?,
             mesh,
             decomposition,

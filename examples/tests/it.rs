@@ -11,7 +11,7 @@ mod tresca;
 mod docs;
 
 use signorini::prelude::*;
-use signorini_qp::Expansion;
+use signorini_qp::kprgp::Expansion;
 
 /// The program in the README is the example `first`, to the letter.
 #[test]

@@ -173,7 +173,7 @@ impl StepRecord {
 }
 
 fn parts(certificate: &Certificate) -> BTreeMap<String, f64> {
-    let entry = |(name, v): (&str, signorini::contact::Violation)| (name.to_owned(), finite(v.relative()));
+    let entry = |(name, v): (&str, signorini::contact::result::Violation)| (name.to_owned(), finite(v.relative()));
     certificate.parts().into_iter().map(entry).collect()
 }
 

@@ -11,11 +11,11 @@
 //! | bodies that touch each other | [`Contact::between`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time steps | [`Analysis`] with a [`DifferenceFormula`]; one state alone: [`Analysis::Static`] |
-//! | to know the cost before any work | [`Plan`], [`Estimate`] |
+//! | to know the cost before any work | [`Plan`], [`plan::Estimate`] |
 //! | the solver | [`Settings`]; [`Method::ActiveSet`] is the default, [`Method::paper`] the paper's |
-//! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`ContactSummary`], [`Reactions`] |
+//! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`result`] |
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
-//! | to know how accurate it is, and to stop there | [`AlgebraicError`], [`AccumulatedError`], [`StepDoubling`], [`Accuracy`] |
+//! | to know how accurate it is, and to stop there | [`Accuracy`], [`report`], [`StepDoubling`] |
 //! | to follow or end a run | [`Observer`], [`Flow`] |
 //! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
 //!
@@ -75,10 +75,10 @@ mod discrete;
 mod error;
 mod estimate;
 mod model;
-mod plan;
-mod report;
-mod result;
-mod scene;
+pub mod plan;
+pub mod report;
+pub mod result;
+pub mod scene;
 mod settings;
 mod simulation;
 mod solve;
@@ -90,17 +90,14 @@ mod vec3;
 
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
-pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
-pub use report::{AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport};
-pub use result::{
-    Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant, SupportReaction, Violation,
-};
+pub use plan::Plan;
+pub use report::RunReport;
+pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
-    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Partition, Place,
-    PlaceField, RateField, Scene, SlipBound, Support,
+    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Partition, Place, Scene,
+    SlipBound, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
-pub use signorini_qp::{FixedPointReport, Verdict};
 pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
 pub use simulation::{Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError};

@@ -20,8 +20,8 @@ pub enum StepStatus {
     NotHeld,
     /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance
     /// (with an [`Accuracy`](crate::Accuracy) by estimates, above
-    /// [`certificate_limit`](crate::AccuracyReport::certificate_limit)): mostly the problem is too badly conditioned
-    /// for it. The parts of the certificate name the violated condition.
+    /// [`certificate_limit`](crate::report::AccuracyReport::certificate_limit)): mostly the problem is too badly
+    /// conditioned for it. The parts of the certificate name the violated condition.
     NotCertified,
 }
 

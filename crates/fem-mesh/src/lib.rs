@@ -12,11 +12,11 @@
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`Element`] |
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
-//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; [`split_disconnected`], [`compact_parts`] |
+//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; parts by [`decomposition`] |
 //! | a contact surface | [`Surface`] with a [`SurfaceFrame`] and an area at each node |
-//! | stresses, energy, errors | [`fields`], [`l2_error`], [`h1_seminorm_error`], [`energy_of_error`] |
-//! | an estimate of the discretisation error | [`discretisation_error`], [`StrainRecovery`] |
-//! | two meshes compared | [`Locator`], [`energy_of_difference`] |
+//! | stresses, energy, errors | [`fields`] |
+//! | an estimate of the discretisation error | [`recovery::discretisation_error`], [`recovery::StrainRecovery`] |
+//! | two meshes compared | [`fields::Locator`], [`fields::energy_of_difference`] |
 //! | pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
 //!
 //! # Example
@@ -61,7 +61,7 @@
 //! # What can go wrong
 //!
 //! Every type checks its input on construction and answers with a typed error that names the place and a remedy:
-//! [`MeshError`], [`BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
+//! [`MeshError`], [`brick::BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
 //! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. They print their sentence with `{:?}`, too,
 //! which is what a `main` that returns one shows. Later steps rely on those checks and do not repeat them. Accessors
 //! that take an index panic if it is out of range, like a slice, and say so.
@@ -82,13 +82,13 @@
 mod errors;
 
 mod assembly;
-mod decomposition;
+pub mod decomposition;
 mod element;
 pub mod fields;
 mod files;
-mod loads;
+pub mod loads;
 mod material;
-mod mesh;
+pub mod mesh;
 pub mod recovery;
 mod tables;
 mod tolerances;
@@ -96,24 +96,18 @@ mod tolerances;
 pub mod vec3;
 
 pub use assembly::{AssemblyError, assemble_stiffness};
-pub use decomposition::{
-    Decomposition, DecompositionError, NodeCopy, PartCount, Subdomain, compact_parts, even_parts, split_disconnected,
-};
+pub use decomposition::{Decomposition, DecompositionError};
 pub use element::Element;
-pub use fields::{FieldError, Locator, energy_of_difference, energy_of_error, h1_seminorm_error, l2_error};
+pub use fields::FieldError;
 #[cfg(feature = "gmsh")]
 pub use files::gmsh;
 #[cfg(feature = "vtu")]
 pub use files::output;
 pub use files::replace_file;
-pub use loads::{History, HistoryError, LoadDensity, LoadError, PointField, SurfaceField, assemble_load};
+pub use loads::{History, HistoryError, LoadDensity, LoadError, assemble_load};
 pub use material::{Hooke, HookeError, MaterialError, Materials};
-pub use mesh::brick::{Brick, BrickError};
-pub use mesh::{
-    BoundaryFacet, Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, TetMesh, brick, drop_unused_nodes,
-    merge_nodes, orient_tets,
-};
-pub use recovery::{DiscretisationError, StrainRecovery, discretisation_error};
+pub use mesh::brick::Brick;
+pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, TetMesh, brick};
 
 /// What the crates of this workspace share beyond the interface.
 #[doc(hidden)]

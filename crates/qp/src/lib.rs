@@ -35,9 +35,11 @@
 //!
 //! ```
 //! use signorini_qp::{
-//!     BlockState, ConvexSet, KprgpSettings, KprgpWorkspace, NormSettings, ProductSet, Segment, SymmetricOperator,
-//!     Tolerance, kkt, kprgp, norm_estimate,
+//!     ConvexSet, KprgpSettings, NormSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kkt, kprgp,
+//!     norm_estimate,
 //! };
+//! use signorini_qp::kprgp::KprgpWorkspace;
+//! use signorini_qp::problem::BlockState;
 //!
 //! /// Stiffness of a string of `n` inner nodes, held at both ends.
 //! struct Stiffness(usize);
@@ -87,34 +89,31 @@
 //! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads changes no
 //! bit of a result. Loops over the set are serial.
 
-mod active_set;
-mod check;
+pub mod active_set;
+pub mod check;
 mod error;
 mod fixed_point;
-mod kprgp;
-mod problem;
+pub mod kprgp;
+pub mod problem;
 mod projected_cg;
 mod report;
 mod settings;
-mod smalse;
+pub mod smalse;
 mod tolerances;
 pub mod vector;
 
-pub use active_set::{
-    ActiveSetPreconditioner, ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetView, ActiveSetWorkspace,
-    Freedom, RadiusSlope, active_set,
-};
-pub use check::{NormEstimate, NormSettings, kkt, laws, norm_estimate};
+pub use active_set::{ActiveSetSettings, active_set};
+pub use check::{NormSettings, kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
 pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
-pub use kprgp::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, kprgp};
+pub use kprgp::{KprgpSettings, kprgp};
 pub use problem::{
-    Block, BlockState, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector,
-    GradientNorms, Identity, ProductSet, Projected, Segment, SymmetricOperator,
+    ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, ProductSet, Projected,
+    Segment, SymmetricOperator,
 };
 pub use projected_cg::{CgReport, CgWorkspace, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};
-pub use smalse::{SmalseReport, SmalseSettings, SmalseWorkspace, smalse};
+pub use smalse::{SmalseSettings, smalse};
 
 /// What the crates of this workspace share beyond the interface.
 #[doc(hidden)]

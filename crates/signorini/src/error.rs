@@ -30,7 +30,7 @@ pub enum Error {
     Mesh(#[from] fem::MeshError),
     /// Brick.
     #[error(transparent)]
-    Brick(#[from] fem::BrickError),
+    Brick(#[from] fem::brick::BrickError),
     /// Hooke's law.
     #[error(transparent)]
     Hooke(#[from] fem::HookeError),

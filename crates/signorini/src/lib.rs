@@ -52,11 +52,12 @@ pub use error::Error;
 /// The names that a program usually needs.
 pub mod prelude {
     pub use crate::Error;
+    pub use signorini_contact::result::ContactSummary;
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,
-        ContactSummary, DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Partition, Place,
-        Plan, PointState, Preconditioner, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
-        StepStatus, Support,
+        DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Partition, Place, Plan, PointState,
+        Preconditioner, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult, StepStatus,
+        Support,
     };
     pub use signorini_fem_mesh::{Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 }

@@ -70,7 +70,7 @@ pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
 pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
 pub use rows::kinds::RowRanges;
-pub use rows::side::{ContactConstraint, ContactConstraints, Side};
+pub use rows::side::{ContactConstraint, Side};
 pub use rows::supports::{Directions, Motion, NodeSupport};
 pub use subdomain::cost::InverseSettings;
 pub use system::builder::TfetiBuilder;

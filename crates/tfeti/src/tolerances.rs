@@ -52,6 +52,8 @@ pub(crate) const SHARED: usize = 4;
 /// Operations a second of dense products, and bytes a second of matrices in cache and in memory.
 pub(crate) const FLOPS: f64 = 8e10;
 pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
+/// Products with `F` that a dense inverse has to pay for itself in.
+pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
 /// Columns solved at once when a dense block is formed, at least six.

@@ -9,9 +9,9 @@ use common::{Brick, build, noise};
 mod common;
 
 use allocation_counter::measure;
+use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, Equality, EqualityProjector, ProductSet, Segment,
-    SymmetricOperator, active_set,
+    ActiveSetSettings, Equality, EqualityProjector, ProductSet, Segment, SymmetricOperator, active_set,
 };
 use signorini_tfeti::ActiveSetProjector;
 use signorini_tfeti::internal::{ActiveSetFactor, InverseKind};

@@ -1,8 +1,9 @@
 //! Runs, their distance to a reference, and the order of a curve.
 
 use serde::Serialize;
-use signorini::contact::AccumulatedError;
-use signorini::fem_mesh::{energy_of_difference, fields};
+use signorini::contact::report::AccumulatedError;
+use signorini::fem_mesh::fields;
+use signorini::fem_mesh::fields::energy_of_difference;
 use signorini::prelude::{Scene, Settings};
 use signorini_studies::{Failure, run};
 

@@ -11,7 +11,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use signorini::contact::{Plan, Resultant};
+use signorini::contact::Plan;
+use signorini::contact::result::Resultant;
 use signorini::prelude::{Scene, Simulation};
 use signorini_studies::brick::{Block, CELLS, Loading, STEPS, sizes};
 use signorini_studies::files::RunFiles;

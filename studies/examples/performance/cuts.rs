@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 use std::io::Write;
 use std::path::Path;
 
-use signorini::fem_mesh::{Facet, PartCount, compact_parts, even_parts, gmsh, split_disconnected};
+use signorini::fem_mesh::decomposition::{PartCount, compact_parts, even_parts, split_disconnected};
+use signorini::fem_mesh::{Facet, gmsh};
 use signorini::prelude::*;
 use signorini_studies::Failure;
 use signorini_studies::brick::{Block, CELLS, END, LENGTHS, Loading, TOP, by_nearest, steel};

@@ -113,7 +113,7 @@ fn scattered(mesh: &TetMesh, count: usize) -> Result<Vec<u32>, Failure> {
         .map(|k| std::array::from_fn(|c| low[c] + (high[c] - low[c]) * (k as f64 * step[c]).fract()))
         .collect();
     let parts = by_nearest(mesh, &seeds);
-    Ok(signorini::fem_mesh::split_disconnected(mesh, &parts)?)
+    Ok(signorini::fem_mesh::decomposition::split_disconnected(mesh, &parts)?)
 }
 
 /// Cubes that slide nearly everywhere.

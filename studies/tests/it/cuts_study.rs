@@ -1,6 +1,7 @@
 //! Ragged cuts cost about as much as boxes once they are made compact, and no step runs in circles as they are.
 
-use signorini::fem_mesh::{Brick, split_disconnected};
+use signorini::fem_mesh::Brick;
+use signorini::fem_mesh::decomposition::split_disconnected;
 
 use crate::options;
 use crate::performance::PerformanceOptions;

@@ -1,5 +1,6 @@
 //! Sides of a surface that meet at creases.
 
+use signorini_fem_mesh::vec3::{self, dot, norm};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
 
@@ -29,7 +30,7 @@ pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
             let mut area = 0.0;
             for &t in members {
                 let v = vectors[t as usize];
-                area += length(v) / 3.0;
+                area += norm(v) / 3.0;
                 (0..3).for_each(|c| sum[c] += v[c]);
             }
             SurfaceFrame::from_normal(sum).map(|frame| (frame, area))
@@ -45,8 +46,7 @@ fn sides(surface: &Surface, vectors: &[[f64; 3]], triangles: &[u32], limit: f64)
         let [v, w] = [a, b].map(|t| vectors[t as usize]);
         let [p, q] = [a, b].map(|t| surface.triangles()[t as usize]);
         let shared = p.iter().filter(|n| q.contains(n)).count();
-        let product: f64 = v.iter().zip(&w).map(|(x, y)| x * y).sum();
-        shared == 2 && product > limit * length(v) * length(w)
+        shared == 2 && dot(v, w) > limit * norm(v) * norm(w)
     };
     let mut left: Vec<u32> = triangles.to_vec();
     let mut out = Vec::new();
@@ -68,15 +68,5 @@ fn sides(surface: &Surface, vectors: &[[f64; 3]], triangles: &[u32], limit: f64)
 
 /// Outward vector of a triangle, of the length of its area.
 pub(super) fn area_vector(mesh: &TetMesh, surface: &Surface, triangle: &[u32; 3]) -> [f64; 3] {
-    let [a, b, c] = triangle.map(|n| mesh.points()[surface.nodes()[n as usize] as usize]);
-    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-    [
-        0.5 * (u[1] * v[2] - u[2] * v[1]),
-        0.5 * (u[2] * v[0] - u[0] * v[2]),
-        0.5 * (u[0] * v[1] - u[1] * v[0]),
-    ]
-}
-
-pub(super) fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+    vec3::area_vector(&triangle.map(|n| mesh.points()[surface.nodes()[n as usize] as usize]))
 }

@@ -8,14 +8,14 @@
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
 
-use super::creases::{area_vector, creases, length};
+use super::creases::{area_vector, creases};
 use super::overflow::largest_factor;
 use super::partners::{Partner, partners};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal, Scene};
 use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
-use signorini_fem_mesh::{Surface, SurfaceFrame};
+use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
 use std::cmp::Ordering;
@@ -224,7 +224,7 @@ fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoin
         let places = nodes.map(|n| scene.mesh.points()[n as usize]);
         let edge = |a: usize| {
             let [from, to] = [1, 2].map(|k| places[(a + k) % 3]);
-            [0, 1, 2].map(|c| to[c] - from[c])
+            vec3::sub(to, from)
         };
         // of a node in a crease the side that the facet belongs to
         let along = |node: u32| {
@@ -239,7 +239,7 @@ fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoin
         for (a, &node) in nodes.iter().enumerate() {
             vector::axpy(along(node), &edge(a), &mut sum);
         }
-        let turn = vector::norm(&sum) / (2.0 * length(flat));
+        let turn = vector::norm(&sum) / (2.0 * vec3::norm(flat));
         if turn > worst.0 {
             worst = (turn, nodes[0]);
         }

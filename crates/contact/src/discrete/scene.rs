@@ -8,8 +8,8 @@ use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Contact, Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
+use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
-use signorini_tfeti::{ContactConstraint, ContactConstraints};
 use std::collections::HashMap;
 
 /// A scene lowered to nodes.
@@ -25,7 +25,7 @@ pub(crate) struct DiscreteScene {
     /// The contact points that stand for them.
     pub(crate) points: Vec<ContactPoint>,
     /// The same as `tfeti` wants them.
-    pub(crate) constraints: ContactConstraints,
+    pub(crate) constraints: Vec<ContactConstraint>,
     /// Nodal forces of each load with factor one, subdomain by subdomain, N; the model takes them.
     pub(crate) loads: Vec<Vec<Vec<f64>>>,
     /// What of a gap may be rounding, m.
@@ -92,7 +92,7 @@ impl DiscreteScene {
 }
 
 /// The contact points as `tfeti` wants them.
-fn constraints(scene: &Scene, points: &[ContactPoint]) -> ContactConstraints {
+fn constraints(scene: &Scene, points: &[ContactPoint]) -> Vec<ContactConstraint> {
     let point = |p: &ContactPoint| {
         let contact = &scene.contacts[p.surface];
         ContactConstraint::new(p.sides.own.clone(), p.frame)

@@ -19,7 +19,7 @@ use crate::step::StepProblem;
 use crate::tolerances::{NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
-use signorini_fem_mesh::StrainRecovery;
+use signorini_fem_mesh::recovery::StrainRecovery;
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
 use std::collections::BTreeMap;

@@ -3,7 +3,8 @@
 //! `admissible` makes a continuous displacement that obeys supports and obstacles from the torn one, node by node;
 //! `duality_gap` is the difference of its energy and the dual one.
 //!
-//! Uses: `result`, `step`, `model`, `report`. In: a solved step. Out: an [`AlgebraicError`](crate::AlgebraicError).
+//! Uses: `result`, `step`, `model`, `report`. In: a solved step. Out: an
+//! [`AlgebraicError`](crate::report::AlgebraicError).
 
 mod admissible;
 mod duality_gap;

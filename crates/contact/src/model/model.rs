@@ -67,14 +67,12 @@ impl Model {
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
         let mut discrete = DiscreteScene::new(&scene)?;
         let plan = Plan::of(&scene, &discrete, settings)?;
-        let mut builder = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
+        let tfeti = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
             .with_supports(&discrete.supports.nodes)
             .with_share_translates(settings.share_translates)
-            .with_inverse(settings.inverse);
-        if !scene.contacts.is_empty() {
-            builder = builder.with_contact(&discrete.constraints);
-        }
-        let tfeti = builder.build()?;
+            .with_inverse(settings.inverse)
+            .with_contact(&discrete.constraints)
+            .build()?;
         let loads = std::mem::take(&mut discrete.loads).into_iter();
         let loads = loads
             .map(|local| tfeti.load_response(&local))

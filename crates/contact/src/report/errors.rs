@@ -65,9 +65,8 @@ pub struct AccuracyReport {
 /// sum.
 ///
 /// ```
-/// use signorini_contact::{
-///     AccumulatedError, Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support,
-/// };
+/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
+/// use signorini_contact::report::AccumulatedError;
 /// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
 ///
 /// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;

@@ -1,7 +1,8 @@
 //! How the body is cut into subdomains.
 
 use crate::error::ContactError;
-use signorini_fem_mesh::{Decomposition, Materials, PartCount, TetMesh, even_parts};
+use signorini_fem_mesh::decomposition::{PartCount, even_parts};
+use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 
 /// Tetrahedra of a subdomain that a scene without a partition asks for. From 400 to 1500 the work is much the same.
 const TETS: usize = 700;

@@ -5,7 +5,7 @@
 //! elastic energy has changed by a factor of four, and at every eighth step. Where steps inherit errors each has an
 //! equal share of the squared error that is left. An error in the energy norm is a mean: a few points may weigh little
 //! in it. So a step also needs a [`Certificate`](crate::Certificate) whose contact conditions are violated by at most
-//! five times the target ([`AccuracyReport::certificate_limit`](crate::AccuracyReport::certificate_limit)), and ends as
+//! five times the target ([`certificate_limit`](crate::report::AccuracyReport::certificate_limit)), and ends as
 //! [`NotCertified`](crate::StepStatus::NotCertified) where no tolerance reaches that.
 
 use crate::error::ContactError;

@@ -138,7 +138,6 @@ impl Settings {
             tolerance,
             "[1e-12, 0.1]",
         )?;
-        self.inverse.validate()?;
         self.accuracy.validate()?;
         check(self.max_fixed_point > 0, "max_fixed_point", 0.0, "at least 1")?;
         check(

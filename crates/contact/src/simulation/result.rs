@@ -8,7 +8,8 @@ use crate::result::{Certificate, ContactSummary, PointState, Reactions, Recovere
 use crate::scene::Scene;
 use crate::status::StepFailure;
 use crate::step::StepProblem;
-use signorini_fem_mesh::{Decomposition, DiscretisationError, StrainRecovery, Surface, fields};
+use signorini_fem_mesh::recovery::{DiscretisationError, StrainRecovery};
+use signorini_fem_mesh::{Decomposition, Surface, fields};
 use std::sync::Arc;
 
 /// What a step ended with. It lives on by itself: the simulation can take further steps beside it.

@@ -30,7 +30,7 @@ pub struct TimeError {
     energy: f64,
     /// Elastic energy of the half steps' displacement, J.
     elastic: f64,
-    /// What energies are compared with, J: that, or more for a [body at rest](crate::AlgebraicError::scale).
+    /// What energies are compared with, J: that, or more for a [body at rest](crate::report::AlgebraicError::scale).
     scale: f64,
     /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of
     /// the sum of the roots of their accumulated algebraic errors.

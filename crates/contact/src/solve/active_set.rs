@@ -16,15 +16,13 @@ use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
 use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
-use signorini_qp::{
-    ActiveSetProblem, ActiveSetSettings, ActiveSetWorkspace, ProductSet, QpError, Status, active_set, vector,
-};
+use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, active_set, vector};
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
 
-#[derive(Debug)]
 pub(crate) struct ActiveSetSolver {
     space: ActiveSetProjector,
     preconditioner: SelectedPreconditioner,

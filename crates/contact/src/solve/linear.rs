@@ -20,12 +20,6 @@ pub(crate) struct LinearSolver {
     work: CgWorkspace<DualOperator, OrthonormalCoarse, SelectedPreconditioner>,
 }
 
-impl std::fmt::Debug for LinearSolver {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("LinearSolver").finish_non_exhaustive()
-    }
-}
-
 impl LinearSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let rows = OrthonormalRows::new(model)?;

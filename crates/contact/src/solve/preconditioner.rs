@@ -3,7 +3,8 @@
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::settings::Preconditioner as Choice;
-use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator, vector};
+use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView};
+use signorini_qp::{SymmetricOperator, vector};
 use signorini_tfeti::DualPreconditioner;
 use signorini_tfeti::internal::DualPreconditionerScratch;
 

@@ -11,10 +11,10 @@ use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
 use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
+use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
-    NormSettings, ProductSet, Projected, Segment, SmalseReport, SmalseSettings, SmalseWorkspace, Status, Tolerance,
-    norm_estimate, smalse, vector,
+    NormSettings, ProductSet, Projected, Segment, SmalseSettings, Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
@@ -32,15 +32,6 @@ pub(crate) struct SmalseSolver {
     one_loop: bool,
     /// Products left.
     left: usize,
-}
-
-impl std::fmt::Debug for SmalseSolver {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("SmalseSolver")
-            .field("norm", &self.norm)
-            .field("one_loop", &self.one_loop)
-            .finish_non_exhaustive()
-    }
 }
 
 impl SmalseSolver {

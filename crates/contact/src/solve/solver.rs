@@ -11,7 +11,6 @@ use crate::report::StepReport;
 use crate::settings::{Method, Settings};
 
 /// The solvers that a scene can need; only what it needs exists.
-#[derive(Debug)]
 pub(crate) enum Solver {
     /// No contact: projected conjugate gradients.
     Linear(Box<LinearSolver>),
@@ -19,6 +18,17 @@ pub(crate) enum Solver {
     ActiveSet(Box<ActiveSetSolver>),
     /// The paper's methods.
     Smalse(Box<SmalseSolver>),
+}
+
+/// Its name: work memory says nothing.
+impl std::fmt::Debug for Solver {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Linear(_) => "Linear",
+            Self::ActiveSet(_) => "ActiveSet",
+            Self::Smalse(_) => "Smalse",
+        })
+    }
 }
 
 impl Solver {

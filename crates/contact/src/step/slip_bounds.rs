@@ -5,7 +5,8 @@ use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, DISCS, INTERVALS, Model};
 use crate::scene::Friction;
 use crate::state::State;
-use signorini_qp::{ProductSet, RadiusSlope};
+use signorini_qp::ProductSet;
+use signorini_qp::active_set::RadiusSlope;
 use signorini_tfeti::TangentialRows;
 
 impl StepProblem {

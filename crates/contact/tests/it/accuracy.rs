@@ -1,7 +1,7 @@
 //! Accuracies that are asked for: reached, kept over many steps, told where they are out of reach.
 
 use crate::common::*;
-use signorini_fem_mesh::energy_of_difference;
+use signorini_fem_mesh::fields::energy_of_difference;
 
 #[test]
 fn nothing_is_estimated_unless_asked_for() {

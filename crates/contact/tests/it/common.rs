@@ -2,11 +2,15 @@
 
 pub(crate) use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
+pub(crate) use signorini_contact::report::{AccumulatedError, AlgebraicError, Counters, StepReport};
+pub(crate) use signorini_contact::result::{ContactSummary, Reactions, Resultant};
 pub(crate) use signorini_contact::*;
 pub(crate) use signorini_fem_mesh::{
     Brick, Decomposition, Facet, FacetTag, History, Hooke, LoadDensity, Materials, Surface, TetMesh, assemble_load,
     brick, fields,
 };
+use signorini_tfeti::Gluing;
+use std::collections::BTreeMap;
 
 /// Solves the next step.
 pub(crate) fn step(simulation: &mut Simulation) -> Solved {
@@ -315,4 +319,23 @@ pub(crate) fn cholesky_solve(mut a: Vec<Vec<f64>>, b: &[f64]) -> Vec<f64> {
         }
     }
     x
+}
+
+/// Whether the rows of `B` are orthonormal.
+pub(crate) fn orthonormal(gluing: &Gluing) -> bool {
+    let mut entries: BTreeMap<(usize, usize), Vec<(usize, f64)>> = BTreeMap::new();
+    for row in 0..gluing.ranges().total() {
+        for (subdomain, dof, value) in gluing.row(row) {
+            entries.entry((subdomain, dof)).or_default().push((row, value));
+        }
+    }
+    let mut gram: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    for rows in entries.values() {
+        for (a, v) in rows {
+            rows.iter()
+                .for_each(|(b, w)| *gram.entry((*a, *b)).or_default() += v * w);
+        }
+    }
+    gram.iter()
+        .all(|((a, b), v)| (v - f64::from(u8::from(a == b))).abs() < 1e-12)
 }

@@ -1,7 +1,7 @@
 //! A manufactured elasticity solution: orders of convergence through the whole library, without contact.
 
 use crate::common::*;
-use signorini_fem_mesh::{h1_seminorm_error, l2_error};
+use signorini_fem_mesh::fields::{h1_seminorm_error, l2_error};
 use std::f64::consts::PI;
 
 const YOUNG: f64 = 1.0;

@@ -13,7 +13,7 @@ fn slanted_parts(mesh: &TetMesh) -> Vec<u32> {
         (s / 1.3 * 3.0).floor().min(2.0) as u32
     };
     let parts: Vec<u32> = (0..mesh.tets().len()).map(part).collect();
-    signorini_fem_mesh::split_disconnected(mesh, &parts).expect("parts")
+    signorini_fem_mesh::decomposition::split_disconnected(mesh, &parts).expect("parts")
 }
 
 fn meshes() -> Vec<(&'static str, TetMesh)> {

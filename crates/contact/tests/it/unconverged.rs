@@ -2,7 +2,7 @@
 //! gets them.
 
 use crate::common::*;
-use signorini_qp::ActiveSetSettings;
+use signorini_qp::{ActiveSetSettings, Verdict};
 
 /// A cantilever pressed on an oblique obstacle, where with this coefficient successive approximations have no limit,
 /// then lifted.

@@ -22,7 +22,7 @@ pub enum PartCount {
 /// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. Each connected group gets
 /// its share of the parts by its number of tetrahedra, at least one. It is cut across the longest edge of its box into slabs, slabs into
 /// columns, columns into blocks; cells of a structured mesh stay whole where the number of parts allows it. What is not compact then is made
-/// so as by [`compact_parts`](crate::compact_parts). The parts are numbered by their first tetrahedra.
+/// so as by [`compact_parts`](crate::decomposition::compact_parts). The parts are numbered by their first tetrahedra.
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`] for no parts.

@@ -11,7 +11,8 @@ use super::strain::{FieldError, strains};
 /// Tetrahedra sorted into a grid of boxes, to find the one at a point.
 ///
 /// ```
-/// use signorini_fem_mesh::{Brick, Locator};
+/// use signorini_fem_mesh::Brick;
+/// use signorini_fem_mesh::fields::Locator;
 ///
 /// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
 /// let locator = Locator::new(&mesh);

@@ -12,4 +12,6 @@ mod history;
 
 pub use assemble::assemble_load;
 pub use density::{LoadDensity, LoadError, PointField, SurfaceField};
-pub use history::{History, HistoryError, interpolate};
+#[doc(hidden)]
+pub use history::interpolate;
+pub use history::{History, HistoryError};

@@ -96,7 +96,8 @@ pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
 /// that are to slide on one another must not be merged.
 ///
 /// ```
-/// use signorini_fem_mesh::{Brick, TetMesh, drop_unused_nodes, merge_nodes};
+/// use signorini_fem_mesh::{Brick, TetMesh};
+/// use signorini_fem_mesh::mesh::{drop_unused_nodes, merge_nodes};
 ///
 /// let lower = Brick::new([1.0; 3], [2, 2, 2]).build()?;
 /// let upper = lower.map_points(|[x, y, z]| [x, y, z + 1.0])?;

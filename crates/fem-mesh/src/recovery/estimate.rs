@@ -66,7 +66,8 @@ impl DiscretisationError {
 /// Estimates the discretisation error of a displacement; see the [module](super) for what it is worth.
 ///
 /// ```
-/// use signorini_fem_mesh::{Brick, Hooke, Materials, discretisation_error};
+/// use signorini_fem_mesh::{Brick, Hooke, Materials};
+/// use signorini_fem_mesh::recovery::discretisation_error;
 ///
 /// let mesh = Brick::new([1.0; 3], [4; 3]).build()?;
 /// let materials = Materials::uniform(Hooke::isotropic(1e3, 0.3)?);

@@ -1,7 +1,9 @@
 //! Parts made compact.
 
-use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, TetMesh, compact_parts};
-use signorini_fem_mesh::{drop_unused_nodes, split_disconnected};
+use signorini_fem_mesh::decomposition::compact_parts;
+use signorini_fem_mesh::decomposition::split_disconnected;
+use signorini_fem_mesh::mesh::drop_unused_nodes;
+use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, TetMesh};
 
 fn brick() -> TetMesh {
     Brick::new([3.0, 1.0, 1.0], [18, 6, 6]).build().unwrap()

@@ -3,7 +3,8 @@
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_fem_mesh::{Brick, Decomposition, TetMesh, split_disconnected};
+use signorini_fem_mesh::decomposition::split_disconnected;
+use signorini_fem_mesh::{Brick, Decomposition, TetMesh};
 
 fn brick(n: usize) -> (TetMesh, Decomposition) {
     let mesh = Brick::new([3.0, 1.0, 1.0], [15 * n, 5 * n, 5 * n]).build().unwrap();

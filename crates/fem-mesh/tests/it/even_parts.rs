@@ -1,6 +1,7 @@
 //! The cut of a mesh that comes without one: connected parts of similar size, boxes where boxes are best.
 
-use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, PartCount, TetMesh, even_parts};
+use signorini_fem_mesh::decomposition::{PartCount, even_parts};
+use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, TetMesh};
 
 fn brick(cells: [usize; 3]) -> TetMesh {
     Brick::new([3.0, 1.0, 1.0], cells).build().expect("a brick")

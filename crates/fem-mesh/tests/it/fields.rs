@@ -1,8 +1,9 @@
 //! Stresses, recovery and error norms.
 
 use approx::assert_abs_diff_eq;
+use signorini_fem_mesh::fields::{h1_seminorm_error, l2_error};
 use signorini_fem_mesh::fields::{nodal_average, strains, von_mises};
-use signorini_fem_mesh::{Brick, TetMesh, h1_seminorm_error, l2_error};
+use signorini_fem_mesh::{Brick, TetMesh};
 
 fn interpolate(mesh: &TetMesh, u: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
     mesh.points().iter().flat_map(|&p| u(p)).collect()

@@ -2,7 +2,8 @@
 
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, Z_MAX};
-use signorini_fem_mesh::{Facet, MeshError, TetMesh, drop_unused_nodes, merge_nodes};
+use signorini_fem_mesh::mesh::{drop_unused_nodes, merge_nodes};
+use signorini_fem_mesh::{Facet, MeshError, TetMesh};
 
 /// A body whose parts were meshed apart, with rounding: cut open, or two bodies, until nodes are merged.
 #[test]

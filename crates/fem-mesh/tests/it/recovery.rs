@@ -1,9 +1,9 @@
 //! Effectivity of the estimated discretisation error: estimated over true error in the energy norm.
 
 use approx::assert_abs_diff_eq;
-use signorini_fem_mesh::{
-    Brick, Hooke, LoadDensity, Materials, TetMesh, discretisation_error, energy_of_difference, energy_of_error,
-};
+use signorini_fem_mesh::fields::{energy_of_difference, energy_of_error};
+use signorini_fem_mesh::recovery::discretisation_error;
+use signorini_fem_mesh::{Brick, Hooke, LoadDensity, Materials, TetMesh};
 
 /// u = s(x) (1, -1, 0.5) with s = sin x sin y sin z, interpolated at the nodes. The energy error of the
 /// interpolant is of the order of the finite element solution's.

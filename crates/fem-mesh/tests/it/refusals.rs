@@ -2,11 +2,14 @@
 
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, BrickError, Z_MIN};
+use signorini_fem_mesh::decomposition::split_disconnected;
 use signorini_fem_mesh::fields::{FieldError, nodal_average, strains, stresses};
+use signorini_fem_mesh::mesh::{drop_unused_nodes, orient_tets};
+use signorini_fem_mesh::recovery::discretisation_error;
 use signorini_fem_mesh::{
     AssemblyError, Decomposition, DecompositionError, Facet, FacetTag, History, HistoryError, Hooke, HookeError,
     LoadDensity, LoadError, MaterialError, Materials, MeshError, Surface, SurfaceError, TetMesh, assemble_load,
-    assemble_stiffness, discretisation_error, drop_unused_nodes, orient_tets, split_disconnected,
+    assemble_stiffness,
 };
 
 const UNIT: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

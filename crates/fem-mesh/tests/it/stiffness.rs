@@ -4,8 +4,9 @@ use approx::assert_abs_diff_eq;
 use nalgebra::SMatrix;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use signorini_fem_mesh::decomposition::Subdomain;
 use signorini_fem_mesh::fields::{strain_energy, stresses};
-use signorini_fem_mesh::{Brick, Decomposition, Hooke, Materials, Subdomain, TetMesh, assemble_stiffness};
+use signorini_fem_mesh::{Brick, Decomposition, Hooke, Materials, TetMesh, assemble_stiffness};
 use sprs::{CsMat, TriMat};
 
 /// A law without any symmetry beyond (2.8).

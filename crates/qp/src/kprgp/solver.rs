@@ -45,7 +45,8 @@ use super::settings::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Vec
 ///
 /// # Example
 /// ```
-/// use signorini_qp::{DenseOperator, KprgpSettings, KprgpWorkspace, ProductSet, Segment, Tolerance, kprgp};
+/// use signorini_qp::{DenseOperator, KprgpSettings, ProductSet, Segment, Tolerance, kprgp};
+/// use signorini_qp::kprgp::KprgpWorkspace;
 ///
 /// let a = DenseOperator::new(2, vec![2.0, -1.0, -1.0, 2.0])?;
 /// let set = ProductSet::new(vec![Segment::lower(vec![0.0, 0.0])])?;

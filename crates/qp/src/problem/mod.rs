@@ -23,7 +23,9 @@ pub use dense_projector::DenseProjector;
 pub use operator::{Equality, SymmetricOperator};
 pub use product::{ProductSet, Segment};
 pub use projected::Projected;
-pub use projector::{EqualityProjector, LineWeight, LooseMode};
+pub use projector::EqualityProjector;
+#[doc(hidden)]
+pub use projector::{LineWeight, LooseMode};
 pub use set::{Block, BlockState, ConvexSet, GradientNorms};
 
 pub(crate) use product::{Constrained, for_bounds, for_constrained, for_discs};

@@ -116,7 +116,8 @@ impl Segment {
 /// An ordered product of [`Segment`]s.
 ///
 /// ```
-/// use signorini_qp::{BlockState, ConvexSet, ProductSet, Segment};
+/// use signorini_qp::{ConvexSet, ProductSet, Segment};
+/// use signorini_qp::problem::BlockState;
 ///
 /// // one component below 0, one disc of radius 2, three free components
 /// let set = ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![2.0]), Segment::Free(3)])?;

@@ -44,7 +44,8 @@ use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
 ///
 /// # Example
 /// ```
-/// use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment, SmalseSettings, SmalseWorkspace, smalse};
+/// use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment, SmalseSettings, smalse};
+/// use signorini_qp::smalse::SmalseWorkspace;
 ///
 /// // nearest point to (2, 0, 0) with x >= 0 and x0 + x1 + x2 = 1
 /// let a = DenseOperator::new(3, vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])?;

@@ -2,8 +2,9 @@
 
 use crate::common::{Random, from_zero, spd};
 use proptest::prelude::*;
+use signorini_qp::active_set::ActiveSetReport;
 use signorini_qp::{
-    ActiveSetReport, ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status,
+    ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status,
     SymmetricOperator, vector,
 };
 

@@ -2,10 +2,9 @@
 
 use crate::common::{self, Random};
 use allocation_counter::measure;
-use signorini_qp::{
-    Expansion, KprgpSettings, KprgpWorkspace, ProductSet, Segment, SmalseSettings, SmalseWorkspace, Tolerance, kprgp,
-    smalse,
-};
+use signorini_qp::kprgp::{Expansion, KprgpWorkspace};
+use signorini_qp::smalse::SmalseWorkspace;
+use signorini_qp::{KprgpSettings, ProductSet, Segment, SmalseSettings, Tolerance, kprgp, smalse};
 
 #[test]
 fn solves_allocate_nothing() {

@@ -1,9 +1,11 @@
 //! Random problems from a fixed sequence.
+use signorini_qp::active_set::{ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace, RadiusSlope};
+use signorini_qp::kprgp::KprgpWorkspace;
+use signorini_qp::problem::Identity;
+use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{
-    ActiveSetProblem, ActiveSetReport, ActiveSetSettings, ActiveSetWorkspace, DenseEquality, DenseOperator,
-    EqualityProjector, Identity, KprgpSettings, KprgpWorkspace, ProductSet, Projected, QpError, RadiusSlope, Segment,
-    SmalseReport, SmalseSettings, SmalseWorkspace, Status, SymmetricOperator, Tolerance, active_set, kprgp,
-    norm_estimate, smalse, vector,
+    ActiveSetSettings, DenseEquality, DenseOperator, EqualityProjector, KprgpSettings, ProductSet, Projected, QpError,
+    Segment, SmalseSettings, Status, SymmetricOperator, Tolerance, active_set, kprgp, norm_estimate, smalse, vector,
 };
 
 /// Reproducible numbers.

@@ -3,9 +3,10 @@
 use crate::common::{self, Quadratic, Random};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, KprgpWorkspace, ProductSet, Segment,
-    SmalseSettings, Tolerance, kprgp, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Tolerance,
+    kprgp, vector,
 };
 
 /// Row-by-row matrix `rows x n` in compressed columns.

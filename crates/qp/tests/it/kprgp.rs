@@ -3,9 +3,9 @@
 use crate::common::{self, Random, pair, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use signorini_qp::kprgp::{Expansion, KprgpWorkspace};
 use signorini_qp::{
-    ConvexSet, DenseOperator, Expansion, KprgpSettings, KprgpWorkspace, ProductSet, QpError, Segment, Status,
-    Tolerance, kkt, kprgp, vector,
+    ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, Tolerance, kkt, kprgp, vector,
 };
 
 const EXPANSIONS: [Expansion; 4] = [

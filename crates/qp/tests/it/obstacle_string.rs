@@ -1,9 +1,8 @@
 //! MPRGP on an obstacle string, with the products of the best known code as a limit.
 
-use signorini_qp::{
-    BlockState, ConvexSet, Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, ProductSet, Segment,
-    SymmetricOperator, Tolerance, kkt, kprgp, vector,
-};
+use signorini_qp::kprgp::{Expansion, KprgpReport, KprgpWorkspace};
+use signorini_qp::problem::BlockState;
+use signorini_qp::{ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kkt, kprgp, vector};
 use std::f64::consts::PI;
 
 const N: usize = 100;

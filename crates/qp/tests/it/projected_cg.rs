@@ -1,8 +1,9 @@
 //! Projected conjugate gradients against the saddle point conditions.
 
 use crate::common::{self, Random};
+use signorini_qp::problem::Identity;
 use signorini_qp::{
-    CgWorkspace, ConvexSet, DenseEquality, DenseOperator, Equality, Identity, ProductSet, QpError, Status, Tolerance,
+    CgWorkspace, ConvexSet, DenseEquality, DenseOperator, Equality, ProductSet, QpError, Status, Tolerance,
     projected_cg, vector,
 };
 

@@ -1,9 +1,8 @@
 //! The active-set method where radii follow other components, inside conjugate gradients or between active sets.
 
 use crate::common::{Random, from_zero};
-use signorini_qp::{
-    ActiveSetReport, ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, RadiusSlope, Segment, Status, vector,
-};
+use signorini_qp::active_set::{ActiveSetReport, RadiusSlope};
+use signorini_qp::{ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, Segment, Status, vector};
 
 /// Normals that press, a disc each whose radius is a coefficient times its normal, and free components; `G` acts on the
 /// latter only. All discs slide.

@@ -1,8 +1,10 @@
 //! Wrong input is refused with an error that names it.
 
+use signorini_qp::kprgp::KprgpWorkspace;
+use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, KprgpWorkspace, ProductSet, QpError, Segment, SetError,
-    SmalseSettings, SmalseWorkspace, Status, Tolerance, kprgp, smalse,
+    DenseEquality, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, SetError, SmalseSettings, Status,
+    Tolerance, kprgp, smalse,
 };
 
 use crate::common::{pair, run};

@@ -1,9 +1,8 @@
 //! A projector that rounds the projections of steps: the equality holds at the end all the same.
 
 use crate::common::{self, Random, Solved, from_zero};
-use signorini_qp::{
-    ActiveSetReport, ActiveSetSettings, DenseProjector, EqualityProjector, ProductSet, QpError, Segment, vector,
-};
+use signorini_qp::active_set::ActiveSetReport;
+use signorini_qp::{ActiveSetSettings, DenseProjector, EqualityProjector, ProductSet, QpError, Segment, vector};
 
 /// Projections of steps are off by a share of their lengths.
 struct Rounding {

@@ -4,7 +4,8 @@ use crate::common::{self, Random};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::laws::{check_equality_laws, check_operator_laws, check_set_laws};
-use signorini_qp::{BlockState, ConvexSet, DenseEquality, ProductSet, Segment, SetError, vector};
+use signorini_qp::problem::BlockState;
+use signorini_qp::{ConvexSet, DenseEquality, ProductSet, Segment, SetError, vector};
 
 fn config() -> ProptestConfig {
     ProptestConfig {

@@ -1,7 +1,8 @@
 //! Step 4 of SMALSE: how often the precision shrinks, against the Lagrangian computed anew.
 
 use crate::common::{self, Quadratic, Random};
-use signorini_qp::{ConvexSet, Equality, KprgpSettings, ProductSet, SmalseReport, SmalseSettings, Tolerance, vector};
+use signorini_qp::smalse::SmalseReport;
+use signorini_qp::{ConvexSet, Equality, KprgpSettings, ProductSet, SmalseSettings, Tolerance, vector};
 
 impl Quadratic {
     fn residual(&self, x: &[f64]) -> Vec<f64> {

@@ -19,7 +19,7 @@ use crate::mechanics::{Mechanics, groups};
 use crate::recipe::{Clock, Recipe};
 use crate::spots::{Spot, spots};
 use crate::vec3::{Vec3, across, add, at, cross, dot, norm, scale, sub, unit};
-use signorini::contact::Reactions;
+use signorini::contact::result::Reactions;
 use signorini::prelude::*;
 
 /// A condition and how much it is violated, relative.

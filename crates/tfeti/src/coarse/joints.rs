@@ -3,9 +3,9 @@
 //! Two subdomains that share three nodes not on one line move as one body. Those that share less are bodies of their
 //! own, held together by the interface rows of the nodes that they share: a hinge or a ball joint.
 
-use crate::linalg::vec3::{cross, norm, sub};
 use crate::rows::gluing::{CopyEntry, Gluing};
 use crate::tolerances::ANGLE;
+use signorini_fem_mesh::vec3::{cross, norm, sub};
 use std::collections::HashMap;
 
 /// Nodes that two subdomains share, as far as it is known.

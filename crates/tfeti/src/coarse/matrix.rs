@@ -106,12 +106,7 @@ impl CoarseMatrix {
         let mut matrix = Self {
             pointers: vec![0],
             neighbours: Vec::new(),
-            interface: Columns {
-                dim: 6 * subdomains,
-                pointers: vec![0],
-                rows: Vec::new(),
-                values: Vec::new(),
-            },
+            interface: Columns::empty(6 * subdomains),
         };
         for (list, values) in columns {
             for _ in 0..6 {

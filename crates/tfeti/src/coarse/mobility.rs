@@ -7,13 +7,13 @@
 
 use crate::coarse::joints::{joint_rows, rigid_pairs};
 use crate::linalg::entry;
-use crate::linalg::vec3::{dot, sub};
 use crate::rows::gluing::{CopyEntry, Gluing};
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{FREE, MOVING};
 use nalgebra::{DMatrix, SymmetricEigen};
 use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::vec3::{dot, sub};
 use std::fmt;
 use std::sync::Arc;
 

@@ -140,12 +140,7 @@ mod tests {
             let (a, b) = (i.min(j) as f64, i.max(j) as f64);
             1.0 / (1.0 + a + 0.3 * b * b)
         };
-        let mut matrix = Columns {
-            dim,
-            pointers: vec![0],
-            rows: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut matrix = Columns::empty(dim);
         for j in 0..dim {
             for i in (0..dim).filter(|i| (i / 3).abs_diff(j / 3) <= 1) {
                 matrix.rows.push(i);

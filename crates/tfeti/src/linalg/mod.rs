@@ -14,7 +14,6 @@ pub(crate) mod elimination;
 pub(crate) mod sparse;
 pub(crate) mod supernodes;
 pub(crate) mod tiles;
-pub(crate) mod vec3;
 
 /// Both, at the same time if that is `worth` it.
 pub(crate) fn both<A: Send, B: Send>(

@@ -24,6 +24,16 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
+    /// A matrix to whose columns entries are to be added one after another.
+    pub(crate) fn empty(dim: usize) -> Self {
+        Self {
+            dim,
+            pointers: vec![0],
+            rows: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
     /// Copies a sparse matrix that is stored by columns (or is symmetric).
     pub(crate) fn from_symmetric(matrix: &sprs::CsMat<f64>) -> Self {
         Self {
@@ -378,12 +388,7 @@ mod tests {
     use super::*;
 
     fn laplacian(n: usize) -> Columns {
-        let mut matrix = Columns {
-            dim: n,
-            pointers: vec![0],
-            rows: vec![],
-            values: vec![],
-        };
+        let mut matrix = Columns::empty(n);
         for j in 0..n {
             for i in j.saturating_sub(1)..(j + 2).min(n) {
                 matrix.rows.push(i);

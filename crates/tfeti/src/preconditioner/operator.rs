@@ -15,7 +15,8 @@ use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
 use rayon::prelude::*;
-use signorini_qp::{ActiveSetPreconditioner, ActiveSetView, SymmetricOperator};
+use signorini_qp::SymmetricOperator;
+use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView};
 use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -275,13 +276,7 @@ impl Split {
             place[i] = *counter;
             *counter += 1;
         }
-        let empty = |dim| Columns {
-            dim,
-            pointers: vec![0],
-            rows: Vec::new(),
-            values: Vec::new(),
-        };
-        let (mut bb, mut ii, mut ib) = (empty(boundary), empty(interior), empty(boundary));
+        let [mut bb, mut ii, mut ib] = [boundary, interior, boundary].map(Columns::empty);
         for j in 0..dim {
             let (rows, values) = stiffness.column(j);
             for (&i, &v) in rows.iter().zip(values) {

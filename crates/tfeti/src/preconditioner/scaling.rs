@@ -4,7 +4,7 @@ use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{DEPENDENT, GROUP_ROWS, SINGULAR};
-use signorini_qp::{ActiveSetView, Freedom};
+use signorini_qp::active_set::{ActiveSetView, Freedom};
 
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or
 /// to a contact pair) are coupled by a small matrix, which is inverted once.

@@ -2,16 +2,17 @@
 
 use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows};
 use crate::error::TfetiError;
-use crate::linalg::vec3::dot;
 use crate::rows::contact::{ContactRow, PointRows, contact_rows};
-use crate::rows::side::{ContactConstraint, ContactConstraints};
+use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::tolerances::SAME;
-use signorini_fem_mesh::{Decomposition, NodeCopy};
+use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::decomposition::NodeCopy;
+use signorini_fem_mesh::vec3::dot;
 
 impl Gluing {
-    /// Builds the rows. `contact` is `None` for a body without obstacle; `stiffness` weighs the copies of a node in
+    /// Builds the rows. `stiffness` weighs the copies of a node in
     /// contact and support rows, its default all alike.
     ///
     /// # Errors
@@ -19,21 +20,18 @@ impl Gluing {
     pub fn new(
         decomposition: &Decomposition,
         supports: &[NodeSupport],
-        contact: Option<&ContactConstraints>,
+        contact: &[ContactConstraint],
         stiffness: &CopyStiffness,
     ) -> Result<Self, TfetiError> {
         let nodes = decomposition.nodes();
         stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
-        let none = ContactConstraints::default();
-        let contact = contact.unwrap_or(&none);
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact, &merged, nodes, squares)?;
         let mut gluing = Self {
             block_pointers: vec![0],
             row_pointers: vec![0],
             prescribed: vec![Vec::new(); merged.cases],
-            orthonormal: stiffness.is_plain(),
             aligned: stiffness.is_plain(),
             removed: [found.removed, merged.removed.clone()].concat(),
             ..Self::default()
@@ -58,7 +56,7 @@ impl Gluing {
             case.sort_by_key(|v| v.0);
         }
         let torn = decomposition.torn_dofs();
-        let of_contact = contact.points.iter().map(|p| if p.friction { 3 } else { 1 });
+        let of_contact = contact.iter().map(|p| if p.friction { 3 } else { 1 });
         gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
         let count = gluing.block_entries.len().max(gluing.row_entries.len());
         if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
@@ -114,8 +112,8 @@ impl Builder<'_> {
     }
 
     /// Normal rows, then pairs of tangential rows, then single ones.
-    fn contact(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
-        let of = |p: &PointRows| &contact.points[p.point];
+    fn contact(&mut self, contact: &[ContactConstraint], points: &[PointRows]) {
+        let of = |p: &PointRows| &contact[p.point];
         for p in points {
             let row = self.contact_row(of(p), &p.normal, &p.prescribed);
             self.gluing.contact.push(ContactRows {
@@ -129,7 +127,7 @@ impl Builder<'_> {
                 (length - 1.0).abs() > SAME
             };
             if skew(&p.normal) || p.tangential.iter().any(skew) {
-                (self.gluing.orthonormal, self.gluing.aligned) = (false, false);
+                self.gluing.aligned = false;
             }
         }
         self.gluing.groups = NodeGroups::new(points.iter().map(of));
@@ -155,22 +153,18 @@ impl Builder<'_> {
     }
 
     /// Notes the nodes whose rows may depend on one another.
-    fn dependent(&mut self, contact: &ContactConstraints, points: &[PointRows]) {
-        let of = |k: &usize| &contact.points[points[*k].point];
+    fn dependent(&mut self, contact: &[ContactConstraint], points: &[PointRows]) {
+        let of = |k: &usize| &contact[points[*k].point];
         let group = |k: &usize| self.gluing.groups.of(of(k).side.first());
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(group);
-        let mut orthonormal = true;
         for same in order.chunk_by(|a, b| group(a) == group(b)) {
             let dragged = same.iter().any(|&k| points[k].dragged);
             if same.len() > 1 || dragged {
                 let nodes = same.iter().flat_map(|k| of(k).nodes());
                 self.gluing.dependent.extend(nodes.map(|n| n.0));
-                let single = same.iter().all(|k| of(k).is_single());
-                orthonormal &= !dragged && single && separate(points, same);
             }
         }
-        self.gluing.orthonormal &= orthonormal;
         self.gluing.dependent.sort_unstable();
         self.gluing.dependent.dedup();
     }
@@ -234,12 +228,4 @@ impl Builder<'_> {
             }
         }
     }
-}
-
-/// Whether the rows of different points of one node are orthogonal.
-fn separate(points: &[PointRows], same: &[usize]) -> bool {
-    let rows = |k: usize| std::iter::once(&points[k].normal).chain(&points[k].tangential);
-    let apart = |x: &ContactRow, y: &ContactRow| dot(x.parts[0], y.parts[0]).abs() <= SAME;
-    let orthogonal = |a: usize, b: usize| rows(a).all(|x| rows(b).all(|y| apart(x, y)));
-    (1..same.len()).all(|i| (0..i).all(|j| orthogonal(same[i], same[j])))
 }

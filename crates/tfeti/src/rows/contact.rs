@@ -2,12 +2,12 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::linalg::vec3::dot;
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
-use crate::rows::side::{ContactConstraint, ContactConstraints};
+use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
 use crate::tolerances::{ANGLE, FIXED};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use signorini_fem_mesh::vec3::dot;
 
 /// A contact point whose normal displacement is fixed by supports, so that it has no normal row.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ pub struct PrescribedPoint {
 /// # Errors
 /// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong supports, unknown nodes, wrong frames.
 pub fn prescribed_points(
-    contact: &ContactConstraints,
+    contact: &[ContactConstraint],
     supports: &[NodeSupport],
     nodes: usize,
 ) -> Result<Vec<PrescribedPoint>, TfetiError> {
@@ -71,14 +71,14 @@ pub(super) struct AllRows {
 /// Rows of all points. `squares(node)` is the sum of the squared shares of the copies of a node in their mean: one over
 /// their number where all count alike.
 pub(super) fn contact_rows(
-    contact: &ContactConstraints,
+    contact: &[ContactConstraint],
     supports: &MergedSupports,
     nodes: usize,
     squares: impl Fn(u32) -> f64,
 ) -> Result<AllRows, TfetiError> {
-    contact.check(nodes)?;
+    check_constraints(contact, nodes)?;
     let mut out = AllRows::default();
-    for (index, point) in contact.points.iter().enumerate() {
+    for (index, point) in contact.iter().enumerate() {
         out.add(index, point, Space::new(point, supports, &squares));
     }
     Ok(out)

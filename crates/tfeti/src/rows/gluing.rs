@@ -97,8 +97,7 @@ pub struct Gluing {
     /// Mesh nodes that contact points join.
     pub(super) groups: NodeGroups,
     pub(super) paper_rows: usize,
-    pub(super) orthonormal: bool,
-    /// The same without rows that depend on others of their node.
+    /// Whether `B B^T` is the identity, but for rows of dependent nodes.
     pub(super) aligned: bool,
     /// Nodes whose rows may depend on one another, ascending.
     pub(super) dependent: Vec<u32>,
@@ -120,11 +119,6 @@ impl Gluing {
     /// and three (without friction one) for each contact point, supported or not.
     pub fn rows_as_paper(&self) -> usize {
         self.paper_rows
-    }
-
-    /// Whether `B B^T = I`.
-    pub fn is_orthonormal(&self) -> bool {
-        self.orthonormal
     }
 
     /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a

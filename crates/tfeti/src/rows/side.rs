@@ -1,10 +1,10 @@
-//! The sides of contact constraints, and the list of constraints.
+//! Contact constraints and their sides.
 
 use crate::error::TfetiError;
-use crate::linalg::vec3::dot;
 use crate::rows::supports::check_node;
 use crate::tolerances::{SAME, UNIT};
 use signorini_fem_mesh::SurfaceFrame;
+use signorini_fem_mesh::vec3::dot;
 
 /// One side of a contact constraint: nodes with weights that sum to one. It moves by the weighted mean of their
 /// displacements.
@@ -62,6 +62,9 @@ impl From<u32> for Side {
 }
 
 /// A side that may touch a rigid obstacle, or a side of another body.
+///
+/// A node in an edge or a corner has several, with other normals or partners; rows of such a node may depend on one
+/// another.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ContactConstraint {
@@ -153,56 +156,30 @@ impl ContactConstraint {
     }
 }
 
-/// The contact constraints of a system.
-#[derive(Debug, Clone, PartialEq, Default)]
-#[non_exhaustive]
-pub struct ContactConstraints {
-    /// A node in an edge or a corner appears several times, with other normals or partners; rows of such a node may
-    /// depend on one another.
-    pub points: Vec<ContactConstraint>,
-}
-
-impl ContactConstraints {
-    /// Points against a rigid obstacle, one frame per node.
-    #[must_use]
-    pub fn rigid(nodes: &[u32], frames: &[SurfaceFrame], friction: bool) -> Self {
-        let point =
-            |(&node, frame): (&u32, &SurfaceFrame)| ContactConstraint::new(node, *frame).with_friction(friction);
-        nodes.iter().zip(frames).map(point).collect()
-    }
-
-    /// Checks each constraint against a mesh with so many nodes, and that none is said twice.
-    pub(super) fn check(&self, nodes: usize) -> Result<(), TfetiError> {
-        // Last point of each smallest node, and the point of the same node before each point; plus one, 0 for none.
-        let (mut last, mut before) = (vec![0; nodes], vec![0; self.points.len()]);
-        for (index, point) in self.points.iter().enumerate() {
-            point.check(index, nodes)?;
-            let twice = TfetiError::ContactNodeTwice {
-                node: point.side.first(),
-            };
-            let other = point.partner.as_ref().map_or(&[][..], Side::nodes);
-            let (mut own, all) = (point.side.nodes().iter(), point.nodes().map(|n| n.0));
-            if own.any(|n| other.iter().any(|o| o.0 == n.0)) {
+/// Checks contact constraints against a mesh with so many nodes, and that none is said twice.
+pub(super) fn check_constraints(points: &[ContactConstraint], nodes: usize) -> Result<(), TfetiError> {
+    // Last point of each smallest node, and the point of the same node before each point; plus one, 0 for none.
+    let (mut last, mut before) = (vec![0; nodes], vec![0; points.len()]);
+    for (index, point) in points.iter().enumerate() {
+        point.check(index, nodes)?;
+        let twice = TfetiError::ContactNodeTwice {
+            node: point.side.first(),
+        };
+        let other = point.partner.as_ref().map_or(&[][..], Side::nodes);
+        let (mut own, all) = (point.side.nodes().iter(), point.nodes().map(|n| n.0));
+        if own.any(|n| other.iter().any(|o| o.0 == n.0)) {
+            return Err(twice);
+        }
+        let last: &mut u32 = &mut last[all.min().unwrap_or(0) as usize];
+        let mut earlier = *last as usize;
+        while earlier > 0 {
+            if points[earlier - 1].is_same(point) {
                 return Err(twice);
             }
-            let last: &mut u32 = &mut last[all.min().unwrap_or(0) as usize];
-            let mut earlier = *last as usize;
-            while earlier > 0 {
-                if self.points[earlier - 1].is_same(point) {
-                    return Err(twice);
-                }
-                earlier = before[earlier - 1] as usize;
-            }
-            before[index] = *last;
-            *last = index as u32 + 1;
+            earlier = before[earlier - 1] as usize;
         }
-        Ok(())
+        before[index] = *last;
+        *last = index as u32 + 1;
     }
-}
-
-impl FromIterator<ContactConstraint> for ContactConstraints {
-    fn from_iter<I: IntoIterator<Item = ContactConstraint>>(points: I) -> Self {
-        let points = points.into_iter().collect();
-        Self { points }
-    }
+    Ok(())
 }

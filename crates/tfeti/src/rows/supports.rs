@@ -2,9 +2,9 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::linalg::vec3::{dot, norm};
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::tolerances::{AGREEING, FIXED};
+use signorini_fem_mesh::vec3::{dot, norm};
 
 /// Directions fixed by a support.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,8 @@
 use crate::error::TfetiError;
 use crate::tolerances::TRANSLATE;
 use rayon::prelude::*;
-use signorini_fem_mesh::{Decomposition, Hooke, Materials, Subdomain, TetMesh};
+use signorini_fem_mesh::decomposition::Subdomain;
+use signorini_fem_mesh::{Decomposition, Hooke, Materials, TetMesh};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 

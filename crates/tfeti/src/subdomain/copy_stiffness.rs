@@ -3,7 +3,8 @@
 use crate::error::TfetiError;
 use crate::subdomain::matrices::{ClassBase, Subdomains};
 use crate::tolerances::ALIKE;
-use signorini_fem_mesh::{Decomposition, NodeCopy};
+use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::decomposition::NodeCopy;
 
 /// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
 ///

@@ -1,7 +1,7 @@
 //! Which generalised inverse is cheaper for a class: a dense one on the boundary or a sparse factor.
 
 use crate::error::TfetiError;
-use crate::tolerances::{BANDWIDTH, CACHE, FLOPS, PANEL};
+use crate::tolerances::{BANDWIDTH, CACHE, FLOPS, PANEL, PRODUCTS};
 
 /// Choice of the generalised inverse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -21,7 +21,6 @@ pub enum InverseKind {
 pub struct InverseSettings {
     kind: InverseKind,
     memory_limit: u64,
-    expected_products: usize,
 }
 
 impl Default for InverseSettings {
@@ -29,7 +28,6 @@ impl Default for InverseSettings {
         Self {
             kind: InverseKind::Auto,
             memory_limit: 8 << 30,
-            expected_products: 2000,
         }
     }
 }
@@ -48,29 +46,6 @@ impl InverseSettings {
     pub fn with_memory_limit(mut self, bytes: u64) -> Self {
         self.memory_limit = bytes;
         self
-    }
-
-    /// Number of products with `F` expected, for the cost model. Default: 2000, at least 1.
-    #[must_use]
-    pub fn with_expected_products(mut self, products: usize) -> Self {
-        self.expected_products = products;
-        self
-    }
-
-    /// Checks the ranges.
-    ///
-    /// # Errors
-    /// [`TfetiError::Setting`] naming the setting and its range.
-    pub fn validate(&self) -> Result<(), TfetiError> {
-        if self.expected_products == 0 {
-            let (name, range) = ("expected_products", "at least 1");
-            return Err(TfetiError::Setting {
-                name,
-                value: 0.0,
-                range,
-            });
-        }
-        Ok(())
     }
 }
 
@@ -172,7 +147,7 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
     let mut dense: Vec<bool> = sizes
         .iter()
         .map(|size| match settings.kind {
-            InverseKind::Auto => size.prefers_dense(settings.expected_products, resident),
+            InverseKind::Auto => size.prefers_dense(PRODUCTS, resident),
             InverseKind::Dense => true,
             InverseKind::Sparse => false,
         })

@@ -8,10 +8,10 @@
 use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
-use crate::linalg::vec3::{cross, dot, norm, sub};
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::packed::PackedFactor;
 use crate::tolerances::COLUMNS;
+use signorini_fem_mesh::vec3::{cross, dot, norm, sub};
 
 /// A generalised inverse of the whole matrix of one subdomain.
 #[derive(Debug)]

@@ -212,12 +212,7 @@ mod tests {
     /// Chains of `links` nodes of `block` unknowns, fully coupled with their neighbours.
     fn chains(nodes: usize, links: usize, block: usize) -> Columns {
         let dim = nodes * block;
-        let mut matrix = Columns {
-            dim,
-            pointers: vec![0],
-            rows: vec![],
-            values: vec![],
-        };
+        let mut matrix = Columns::empty(dim);
         for j in 0..dim {
             let node = j / block;
             let first = node / links * links;

@@ -6,7 +6,7 @@ use crate::dual::inverses::{ClassInverse, invert};
 use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::rows::gluing::Gluing;
-use crate::rows::side::ContactConstraints;
+use crate::rows::side::ContactConstraint;
 use crate::rows::supports::NodeSupport;
 use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
@@ -26,7 +26,7 @@ pub struct TfetiBuilder<'a> {
     decomposition: &'a Decomposition,
     materials: &'a Materials,
     supports: &'a [NodeSupport],
-    contact: Option<&'a ContactConstraints>,
+    contact: &'a [ContactConstraint],
     share_translates: bool,
     inverse: InverseSettings,
 }
@@ -40,7 +40,7 @@ impl<'a> TfetiBuilder<'a> {
             decomposition,
             materials,
             supports: &[],
-            contact: None,
+            contact: &[],
             share_translates: true,
             inverse: InverseSettings::default(),
         }
@@ -55,8 +55,8 @@ impl<'a> TfetiBuilder<'a> {
 
     /// Sets the contact constraints.
     #[must_use]
-    pub fn with_contact(mut self, contact: &'a ContactConstraints) -> Self {
-        self.contact = Some(contact);
+    pub fn with_contact(mut self, contact: &'a [ContactConstraint]) -> Self {
+        self.contact = contact;
         self
     }
 
@@ -81,7 +81,6 @@ impl<'a> TfetiBuilder<'a> {
     /// singular beyond the rigid motions, not enough memory.
     pub fn build(self) -> Result<Tfeti, TfetiError> {
         let (mesh, decomposition) = (self.mesh, self.decomposition);
-        self.inverse.validate()?;
         let check = |what, found, expected| match found == expected {
             true => Ok(()),
             false => Err(TfetiError::DecompositionMismatch { what, found, expected }),

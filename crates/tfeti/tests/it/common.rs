@@ -3,7 +3,7 @@
 use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick};
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::internal::{CopyStiffness, InverseKind};
-use signorini_tfeti::{ContactConstraints, Gluing, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
+use signorini_tfeti::{ContactConstraint, Gluing, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 
 pub(crate) struct Brick {
     pub(crate) mesh: TetMesh,
@@ -62,8 +62,8 @@ impl Brick {
         vec![NodeSupport::fixed(self.fixed.clone())]
     }
 
-    pub(crate) fn contact(&self, friction: bool) -> ContactConstraints {
-        ContactConstraints::rigid(&self.bottom, &self.frames, friction)
+    pub(crate) fn contact(&self, friction: bool) -> Vec<ContactConstraint> {
+        rigid(&self.bottom, &self.frames, friction)
     }
 
     pub(crate) fn loads(&self) -> Vec<Vec<f64>> {
@@ -115,11 +115,7 @@ pub(crate) fn build(b: &Brick, kind: InverseKind, share_translates: bool) -> Tfe
 }
 
 /// `B` alone.
-pub(crate) fn gluing(
-    b: &Brick,
-    supports: &[NodeSupport],
-    contact: Option<&ContactConstraints>,
-) -> Result<Gluing, TfetiError> {
+pub(crate) fn gluing(b: &Brick, supports: &[NodeSupport], contact: &[ContactConstraint]) -> Result<Gluing, TfetiError> {
     let alike = CopyStiffness::default();
     Gluing::new(&b.decomposition, supports, contact, &alike)
 }
@@ -166,4 +162,17 @@ pub(crate) fn smallest_eigenvalue(gram: &[Vec<f64>]) -> f64 {
     let n = gram.len();
     let matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| gram[i][j]);
     nalgebra::SymmetricEigen::new(matrix).eigenvalues.min()
+}
+
+/// Points against a rigid obstacle, one frame a node.
+pub(crate) fn rigid(nodes: &[u32], frames: &[SurfaceFrame], friction: bool) -> Vec<ContactConstraint> {
+    let point = |(&node, frame): (&u32, &SurfaceFrame)| ContactConstraint::new(node, *frame).with_friction(friction);
+    nodes.iter().zip(frames).map(point).collect()
+}
+
+/// Whether `B B^T` is the identity.
+pub(crate) fn is_orthonormal(g: &Gluing) -> bool {
+    let gram = gram(g);
+    let expected = |i, j| f64::from(u8::from(i == j));
+    (0..gram.len()).all(|i| (0..gram.len()).all(|j| (gram[i][j] - expected(i, j)).abs() < 1e-12))
 }

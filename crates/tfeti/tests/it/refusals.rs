@@ -74,7 +74,7 @@ fn cases_beyond_the_supports_are_refused() {
     let of_case = |case| {
         let values = vec![[0.0; 3]];
         let support = NodeSupport::fixed(b.fixed.clone()).with_motion(Motion { case, values });
-        gluing(&b, &[support], None)
+        gluing(&b, &[support], &[])
     };
     assert!(of_case(0).is_ok());
     for case in [1, u32::MAX] {
@@ -98,7 +98,7 @@ fn gluing_checks_what_belongs_to_the_decomposition() {
     let b = Brick::new(1, 2);
     let stiffness = b.system().all_copy_stiffness();
     let gluing = |decomposition: &Decomposition, stiffness: &CopyStiffness| {
-        Gluing::new(decomposition, &b.supports(), Some(&b.contact(true)), stiffness)
+        Gluing::new(decomposition, &b.supports(), &b.contact(true), stiffness)
     };
     assert!(gluing(&b.decomposition, &stiffness).is_ok());
     for other in [
