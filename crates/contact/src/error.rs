@@ -324,7 +324,7 @@ pub enum ContactError {
     /// The file of a checkpoint cannot be read or written.
     #[error("checkpoint: cannot {what} {}: {source}", path.display())]
     CheckpointFile {
-        /// `"read"` or `"write"`.
+        /// `"read"`, `"write"` or `"remove"`.
         what: &'static str,
         path: std::path::PathBuf,
         source: std::io::Error,

@@ -16,8 +16,9 @@
 //! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`ContactSummary`], [`Reactions`] |
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
 //! | to know how accurate it is, and to stop there | [`AlgebraicError`], [`AccumulatedError`], [`StepDoubling`], [`Accuracy`] |
-//! | to follow or end a run | [`Observer`], [`Flow`] |
-//! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
+//! | to be told of absurd results | [`Warning`]: [`Plan::warnings`], [`RunReport::warnings`] |
+//! | to follow or end a run | [`Observer`], [`Flow`], [`Progress`] |
+//! | to stop and continue | [`State`]; with feature `checkpoint` bytes, and `Simulation::run_or_resume` |
 //!
 //! # Example
 //!
@@ -91,7 +92,7 @@ mod vec3;
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
 pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
-pub use report::{AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport};
+pub use report::{AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport, Warning};
 pub use result::{
     Certificate, ContactState, ContactSummary, NodalForce, PointState, Reactions, Resultant, SupportReaction, Violation,
 };
@@ -103,6 +104,6 @@ pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, 
 pub use signorini_qp::{FixedPointReport, Verdict};
 pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
-pub use simulation::{Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError};
+pub use simulation::{Flow, Observer, Progress, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
 pub use status::{StepFailure, StepStatus};

@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod observer;
+mod progress;
 mod result;
 mod resume;
 mod run;
@@ -16,6 +17,7 @@ mod step;
 mod step_doubling;
 
 pub use observer::{Flow, Observer, Silent};
+pub use progress::Progress;
 pub use result::StepResult;
 pub use simulation::Simulation;
 pub use step_doubling::{StepDoubling, TimeError};
