@@ -1,7 +1,7 @@
 //! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
 //!
-//! Prints what the deck asks for and does not get, the plan, and a line a step. With `--out` a ParaView series of displacement,
-//! stress and contact force is written, with the undeformed body at time 0.
+//! Prints what the deck asks for and does not get, the plan, and a line a step; progress and warnings on standard error.
+//! With `--out` a ParaView series of displacement, stress and contact force is written, with the undeformed body at time 0.
 
 use std::path::{Path, PathBuf};
 
@@ -49,8 +49,7 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
         series.write(0.0, deck.mesh(), &[Field::vector("displacement", &rest)], &[])?;
     }
     println!("      time  products    touch    slide  normal force  friction force  largest u  certificate");
-    while !simulation.is_finished() {
-        let step = simulation.step()?;
+    let mut table = |step: &StepResult| -> Result<(), Error> {
         let (sum, u) = (step.summary(), step.displacement());
         let length = |u: &[f64; 3]| u[0].hypot(u[1]).hypot(u[2]);
         let largest = u.iter().map(length).fold(0.0, f64::max);
@@ -78,6 +77,12 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
             series.write(step.time(), deck.mesh(), &nodes, &cells)?;
         }
         step.require_converged()?;
+        Ok(())
+    };
+    let mut observer = |step: &StepResult| Flow::from(table(step));
+    let report = simulation.run(&mut (Progress::new(std::io::stderr()), &mut observer))?;
+    if let Some(error) = report.mesh_error {
+        println!("estimated error of the mesh: {:.0} %", 100.0 * error);
     }
     if let Some(series) = series {
         println!("written: {}", series.path().display());

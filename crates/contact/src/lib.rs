@@ -16,8 +16,9 @@
 //! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`result`] |
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
 //! | to know how accurate it is, and to stop there | [`Accuracy`], [`report`], [`StepDoubling`] |
-//! | to follow or end a run | [`Observer`], [`Flow`] |
-//! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
+//! | to be told of absurd results | [`Warning`]: [`Plan::warnings`], [`RunReport::warnings`] |
+//! | to follow or end a run | [`Observer`], [`Flow`], [`Progress`] |
+//! | to stop and continue | [`State`]; with feature `checkpoint` bytes, and `Simulation::run_or_resume` |
 //!
 //! # Example
 //!
@@ -91,7 +92,7 @@ mod vec3;
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
 pub use plan::Plan;
-pub use report::RunReport;
+pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
     Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Partition, Place, Scene,
@@ -100,6 +101,6 @@ pub use scene::{
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
-pub use simulation::{Flow, Observer, Silent, Simulation, StepDoubling, StepResult, TimeError};
+pub use simulation::{Flow, Observer, Progress, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
 pub use status::{StepFailure, StepStatus};

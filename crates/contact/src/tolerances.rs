@@ -182,3 +182,27 @@ pub(crate) const ON_BOUND: f64 = 1.0 - 1e-5;
 
 /// Smallest share of a step in the square of the error, relative to an equal share.
 pub(crate) const LEAST_SHARE: f64 = 0.25;
+
+// ---- warnings (plan, result) ----
+
+/// Displacement over the longest side of the box around the body from which on it is not small.
+pub(crate) const LARGE_DISPLACEMENT: f64 = 0.1;
+
+/// Strain from which on it is not small: what is left out is its square, 0.25 %, and more where bodies turn.
+pub(crate) const LARGE_STRAIN: f64 = 0.05;
+
+/// Slip of a step over the longest edge of the facets at the node from which on the point is past them.
+pub(crate) const LONG_SLIP: f64 = 1.0;
+
+/// Distance of the nearest point of a contact, over the longest side of the box around the body, above which it is
+/// rather a mistake in units.
+pub(crate) const LARGE_GAP: f64 = 1.0;
+
+/// Coefficient of friction above which it is rather one in per cent. Rubber has up to 2.
+pub(crate) const LARGE_COEFFICIENT: f64 = 3.0;
+
+/// Estimated error of the mesh, relative in the energy norm, above which it is large.
+pub(crate) const COARSE_MESH: f64 = 0.1;
+
+/// Strain over displacement by size below which it may be what the solver left of a rigid motion.
+pub(crate) const RIGID: f64 = 1e-6;

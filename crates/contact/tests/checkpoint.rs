@@ -2,10 +2,11 @@
 //! Stands alone, so that it runs with the feature `checkpoint` and no other.
 
 use signorini_contact::{
-    Accuracy, Analysis, Coefficient, Contact, DifferenceFormula, Friction, Load, Method, Scene, Settings, Silent,
-    Simulation, State, Support,
+    Accuracy, Analysis, Coefficient, Contact, ContactError, DifferenceFormula, Flow, Friction, Load, Method, RunReport,
+    Scene, Settings, Silent, Simulation, State, StepResult, Support, Warning,
 };
 use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+use std::path::{Path, PathBuf};
 
 /// A coarse relative of the benchmark.
 fn simulation(friction: &Friction, settings: &Settings) -> Simulation {
@@ -84,4 +85,193 @@ fn a_step_that_did_not_converge_stays_named() {
     assert!(named.is_some());
     let state = State::from_bytes(&simulation.state().to_bytes().expect("encode")).expect("decode");
     assert_eq!(state.unconverged_history(), named);
+}
+
+/// A folder of a test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("signorini-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        Self(path)
+    }
+
+    /// Names in it, ascending.
+    fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(&self.0).expect("folder");
+        let mut names: Vec<String> = entries
+            .map(|e| e.expect("entry").file_name().into_string().expect("name"))
+            .collect();
+        names.sort();
+        names
+    }
+
+    fn change(&self, name: &str, change: impl FnOnce(&mut Vec<u8>)) {
+        let path = self.0.join(name);
+        let mut bytes = std::fs::read(&path).expect("read");
+        change(&mut bytes);
+        std::fs::write(path, bytes).expect("write");
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn rough() -> Simulation {
+    simulation(&Friction::coulomb(0.3), &Settings::default())
+}
+
+/// Runs in a folder, every step stored, until so many steps are solved in all.
+fn run_until(steps: usize, folder: &Path) -> Result<(Simulation, RunReport), ContactError> {
+    let mut simulation = rough();
+    let mut observer = |result: &StepResult| {
+        if result.step() + 1 == steps {
+            Flow::Stop
+        } else {
+            Flow::Continue
+        }
+    };
+    let report = simulation.run_or_resume(folder, 1, &mut observer)?;
+    Ok((simulation, report))
+}
+
+fn unbroken() -> Simulation {
+    let mut simulation = rough();
+    let _ = simulation.run(&mut Silent).expect("run");
+    simulation
+}
+
+fn assert_same_end(simulation: &Simulation) {
+    let whole = unbroken();
+    assert!(simulation.state() == whole.state());
+    let last = |s: &Simulation| s.result().expect("a step").torn_displacement().to_vec();
+    assert_eq!(last(simulation), last(&whole));
+}
+
+#[test]
+fn a_run_in_a_folder_goes_on_with_the_same_bits() {
+    for broken in 1..4 {
+        let folder = Folder::new(&format!("resume-{broken}"));
+        let (_, report) = run_until(broken, &folder.0).expect("first");
+        assert_eq!(report.steps, broken);
+        let (second, report) = run_until(4, &folder.0).expect("second");
+        assert_eq!(report.steps, 4 - broken);
+        assert_same_end(&second);
+        assert_eq!(folder.names(), ["step-00000003.state", "step-00000004.state"]);
+        // what is complete solves nothing more
+        let (third, report) = run_until(4, &folder.0).expect("third");
+        assert_eq!(report.steps, 0);
+        assert!(third.is_finished() && third.state() == second.state());
+    }
+}
+
+/// Every third step and the last; the last also where the observer stops, and no step that it failed at.
+#[test]
+fn checkpoints_are_stored_every_few_steps_and_at_the_end() {
+    let folder = Folder::new("every");
+    let mut whole = rough();
+    let mut seen = Vec::new();
+    let mut look = |_: &StepResult| {
+        seen.push(if folder.0.exists() { folder.names() } else { Vec::new() });
+        Flow::Continue
+    };
+    let _ = whole.run_or_resume(&folder.0, 3, &mut look).expect("run");
+    assert_eq!(seen[..3], [Vec::<String>::new(), Vec::new(), Vec::new()]);
+    assert_eq!(seen[3], ["step-00000003.state"]);
+    assert_eq!(folder.names(), ["step-00000003.state", "step-00000004.state"]);
+
+    let folder = Folder::new("fails");
+    let mut simulation = rough();
+    let mut fails = |result: &StepResult| match result.step() {
+        2 => Flow::from(Err::<(), _>("full disk")),
+        _ => Flow::Continue,
+    };
+    let error = simulation.run_or_resume(&folder.0, 1, &mut fails).expect_err("full");
+    assert!(error.to_string().contains("full disk"), "{error}");
+    assert_eq!(folder.names(), ["step-00000001.state", "step-00000002.state"]);
+    // the same simulation goes back to what is stored, and the observer is told of the step again
+    let mut steps = Vec::new();
+    let mut look = |result: &StepResult| {
+        steps.push(result.step());
+        Flow::Continue
+    };
+    let _ = simulation.run_or_resume(&folder.0, 1, &mut look).expect("run");
+    assert_eq!(steps, [2, 3]);
+    assert_same_end(&simulation);
+
+    let error = rough().run_or_resume(&folder.0, 0, &mut Silent).expect_err("zero");
+    assert!(error.to_string().contains("every_steps"), "{error}");
+}
+
+#[test]
+fn a_damaged_newest_checkpoint_gives_way_to_the_one_before() {
+    let cut: fn(&mut Vec<u8>) = |bytes| bytes.truncate(bytes.len() / 2);
+    let flipped: fn(&mut Vec<u8>) = |bytes| {
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+    };
+    for (name, damage) in [("cut", cut), ("flipped", flipped), ("empty", Vec::clear)] {
+        let folder = Folder::new(name);
+        let _ = run_until(3, &folder.0).expect("first");
+        // what a kill leaves while a file is written is none
+        std::fs::write(folder.0.join("step-00000004.state.tmp"), [1, 2]).expect("write");
+        folder.change("step-00000003.state", damage);
+        let (second, report) = run_until(4, &folder.0).expect("second");
+        assert_eq!(report.steps, 2, "{name}");
+        let Warning::DamagedCheckpoint { path, reason, taken } = &report.warnings()[0] else {
+            panic!("{name}: {:?}", report.warnings());
+        };
+        assert!(
+            path.ends_with("step-00000003.state.damaged") && path.exists(),
+            "{}",
+            path.display()
+        );
+        assert!(
+            taken.ends_with("step-00000002.state") && reason.contains("damaged"),
+            "{reason}"
+        );
+        assert!(report.warnings()[0].to_string().contains("the one before"));
+        assert_same_end(&second);
+        let (_, report) = run_until(4, &folder.0).expect("third");
+        assert!(
+            !report
+                .warnings()
+                .iter()
+                .any(|w| matches!(w, Warning::DamagedCheckpoint { .. }))
+        );
+    }
+}
+
+#[test]
+fn checkpoints_that_cannot_be_used_are_named_and_left() {
+    let folder = Folder::new("both");
+    let _ = run_until(3, &folder.0).expect("first");
+    folder.change("step-00000003.state", Vec::clear);
+    folder.change("step-00000002.state", |bytes| bytes[20] ^= 4);
+    let error = run_until(4, &folder.0).map(|_| ()).expect_err("damaged").to_string();
+    for word in [
+        "step-00000003.state: ",
+        "step-00000002.state: ",
+        "none of those",
+        "start anew",
+    ] {
+        assert!(error.contains(word), "{error}");
+    }
+    assert_eq!(folder.names(), ["step-00000002.state", "step-00000003.state"]);
+
+    // another scene: twice as many boxes
+    let folder = Folder::new("foreign");
+    let other = rough().scene().clone().with_boxes([6, 1, 1]);
+    let mut other = Simulation::new(other, Settings::default()).expect("set-up");
+    let mut stop = |_: &StepResult| Flow::Stop;
+    let _ = other.run_or_resume(&folder.0, 1, &mut stop).expect("run");
+    let error = run_until(4, &folder.0).map(|_| ()).expect_err("foreign").to_string();
+    for word in ["step-00000001.state", "another scene", "a folder of its own"] {
+        assert!(error.contains(word), "{error}");
+    }
+    assert_eq!(folder.names(), ["step-00000001.state"]);
 }

@@ -56,8 +56,8 @@ pub mod prelude {
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,
         DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Partition, Place, Plan, PointState,
-        Preconditioner, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult, StepStatus,
-        Support,
+        Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
+        StepStatus, Support, Warning,
     };
     pub use signorini_fem_mesh::{Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 }

@@ -7,6 +7,7 @@
 //! Uses: `scene`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
 mod creases;
+mod extents;
 mod overflow;
 mod partners;
 mod penetration;
@@ -16,6 +17,7 @@ mod scene;
 mod side;
 mod supports;
 
+pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;
 pub(crate) use supports::Supports;

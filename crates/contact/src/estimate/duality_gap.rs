@@ -14,7 +14,7 @@
 use super::admissible::{AdmissibleNode, Correction};
 use crate::model::Model;
 use crate::report::AlgebraicError;
-use crate::result::Recovered;
+use crate::result::{Lengths, Recovered};
 use crate::step::StepProblem;
 use crate::tolerances::{NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
@@ -70,6 +70,8 @@ pub(crate) struct Caches {
     weights: OnceLock<Weights>,
     /// Patches of the estimate of the discretisation error.
     pub(crate) recovery: OnceLock<StrainRecovery>,
+    /// Lengths that results are compared with.
+    pub(crate) lengths: OnceLock<Lengths>,
 }
 
 /// What the estimate needs of a solved step.

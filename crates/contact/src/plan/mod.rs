@@ -1,12 +1,13 @@
 //! The plan: which effects a scene has, how large each is, and what a run is likely to cost. Made before any work.
 //!
-//! Uses: `discrete`, `scene`, `settings` (and the forecast of `tfeti`).
+//! Uses: `discrete`, `report`, `scene`, `settings` (and the forecast of `tfeti`).
 //! In: a scene and settings. Out: a [`Plan`], which prints as a table; the effects decide what a model sets up.
 
 mod cost;
 mod effects;
 mod plan;
 mod print;
+mod sanity;
 
 pub use cost::{Estimate, Times};
 pub use effects::{Effects, FrictionKind};

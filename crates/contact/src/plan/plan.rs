@@ -2,8 +2,10 @@
 
 use super::cost::Estimate;
 use super::effects::Effects;
+use super::sanity;
 use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
+use crate::report::Warning;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::Directions;
@@ -48,6 +50,7 @@ pub struct Plan {
     pub vector_bytes: u64,
     /// Memory, and likely products and times.
     pub estimate: Estimate,
+    warnings: Vec<Warning>,
 }
 
 impl Plan {
@@ -65,6 +68,12 @@ impl Plan {
     pub fn with_machine(mut self, rate: Rate) -> Self {
         self.estimate.times = Some(self.estimate.times_on(rate));
         self
+    }
+
+    /// What in the scene is allowed but hardly meant, each kind once. [`Display`](std::fmt::Display) prints them, too.
+    #[must_use]
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 
     /// All rows that are solved for: n_d of full rank, but for nodes with several normals or in the grip of a support.
@@ -112,6 +121,7 @@ impl Plan {
             },
             vector_bytes: 0,
             estimate: Estimate::default(),
+            warnings: sanity::warnings(scene, discrete),
         };
         let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
         let touching: BTreeSet<u32> = points.iter().flat_map(nodes).collect();

@@ -2,6 +2,7 @@
 
 use super::effects::FrictionKind;
 use super::plan::Plan;
+use crate::report::Warning;
 use std::fmt;
 
 /// Unknowns of a subdomain from which on cutting it further pays: about ten cells an edge.
@@ -60,7 +61,8 @@ impl fmt::Display for Plan {
                 ),
             )?;
         }
-        Ok(())
+        let warnings = self.warnings().iter();
+        warnings.map(Warning::to_string).try_for_each(|w| line("warning", w))
     }
 }
 

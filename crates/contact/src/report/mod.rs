@@ -3,12 +3,13 @@
 //! Plain data, filled by solvers and estimates and read by the user.
 //!
 //! Uses: errors, and the status of a step.
-//! In: counts and figures. Out: [`StepReport`], [`RunReport`], [`Counters`], [`AccuracyReport`].
+//! In: counts and figures. Out: [`StepReport`], [`RunReport`], [`Counters`], [`AccuracyReport`], [`Warning`].
 
 mod counters;
 mod errors;
 mod run;
 mod step;
+mod warning;
 
 pub use counters::Counters;
 pub(crate) use errors::relative;
@@ -16,3 +17,4 @@ pub use errors::{AccumulatedError, AccuracyReport, AlgebraicError};
 pub use run::RunReport;
 pub(crate) use run::require;
 pub use step::StepReport;
+pub use warning::Warning;

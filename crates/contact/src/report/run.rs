@@ -2,6 +2,7 @@
 
 use super::counters::Counters;
 use super::step::StepReport;
+use super::warning::Warning;
 use crate::error::ContactError;
 use crate::status::StepFailure;
 
@@ -32,6 +33,11 @@ pub struct RunReport {
     pub counters: Counters,
     /// The largest certificate of all its steps.
     pub largest_certificate: f64,
+    /// Estimated error of the mesh at the last step, relative in the energy norm
+    /// ([`DiscretisationError::relative`](signorini_fem_mesh::DiscretisationError::relative)). `None` where no step was
+    /// solved, and where bodies are at rest or move as rigid ones.
+    pub mesh_error: Option<f64>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 impl RunReport {
@@ -43,6 +49,28 @@ impl RunReport {
             self.largest_certificate = certificate;
         }
         self.failures.extend(failure);
+    }
+
+    /// What an engineer should look at, in scene and results: each kind once, where it was first met.
+    ///
+    /// ```
+    /// use signorini_contact::{Load, Scene, Settings, Silent, Simulation, Support, Warning};
+    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+    ///
+    /// // loads in Pa, Young's modulus in MPa
+    /// let mesh = Brick::new([100.0, 10.0, 10.0], [10, 1, 1]).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(210e3, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_load(Load::pressure(brick::Z_MAX, 5e6));
+    /// let report = Simulation::new(scene, Settings::default())?.run(&mut Silent)?;
+    /// assert!(report.converged());
+    /// let far = |w: &Warning| matches!(w, Warning::LargeDisplacement { node: _, extent, .. } if *extent == 100.0);
+    /// assert!(report.warnings().iter().any(far));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 
     /// Whether all steps converged, and those before on whose displacement they depend.

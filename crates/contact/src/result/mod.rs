@@ -2,7 +2,7 @@
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing is taken from a solver's word.
 //!
-//! Uses: `step`, `model`, `discrete`, `state`.
+//! Uses: `step`, `model`, `discrete`, `state`, `report`.
 //! In: multipliers, displacement, residual. Out: plain data for the user.
 
 mod certificate;
@@ -10,6 +10,7 @@ mod certify;
 mod points;
 mod reactions;
 mod recovered;
+mod sanity;
 mod sizes;
 mod summary;
 
@@ -19,6 +20,7 @@ pub use points::{ContactState, PointState};
 pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
 pub(crate) use reactions::{nodal_reactions, reactions_about};
 pub(crate) use recovered::Recovered;
+pub(crate) use sanity::{Lengths, coarse_mesh, is_strained, warnings};
 pub(crate) use sizes::Sizes;
 pub use summary::ContactSummary;
 pub(crate) use summary::summarise;

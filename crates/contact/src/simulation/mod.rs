@@ -1,13 +1,16 @@
 //! The simulation: steps one after another, each prepared, solved, recovered, judged and remembered.
 //!
 //! `step` is one step, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
-//! `resume` goes on from a stored state, `result` is what the user is shown, `step_doubling` estimates errors in time.
+//! `resume` goes on from a stored state, `checkpoints` (feature `checkpoint`) keeps states in a folder, `result` is what the user is shown, `step_doubling` estimates errors in time.
 //!
 //! Uses: everything below.
 //! In: a scene and settings. Out: a [`StepResult`] a step.
 
 mod accuracy;
+#[cfg(feature = "checkpoint")]
+mod checkpoints;
 mod observer;
+mod progress;
 mod result;
 mod resume;
 mod run;
@@ -16,6 +19,7 @@ mod step;
 mod step_doubling;
 
 pub use observer::{Flow, Observer, Silent};
+pub use progress::Progress;
 pub use result::StepResult;
 pub use simulation::Simulation;
 pub use step_doubling::{StepDoubling, TimeError};

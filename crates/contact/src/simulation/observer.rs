@@ -2,6 +2,7 @@
 
 use super::result::StepResult;
 use crate::plan::Plan;
+use crate::report::Warning;
 use std::error::Error;
 
 /// Whether a run goes on.
@@ -51,6 +52,13 @@ pub trait Observer {
         let _ = (plan, steps);
     }
 
+    /// Something in the scene or in a result is allowed but hardly meant. Told once a run for each kind: of the scene
+    /// after [`started`](Self::started), of a step before [`step`](Self::step), of the mesh before
+    /// [`finished`](Self::finished).
+    fn warning(&mut self, warning: &Warning) {
+        let _ = warning;
+    }
+
     /// A step is solved.
     fn step(&mut self, result: &StepResult) -> Flow {
         let _ = result;
@@ -66,6 +74,32 @@ pub trait Observer {
 impl<F: FnMut(&StepResult) -> Flow> Observer for F {
     fn step(&mut self, result: &StepResult) -> Flow {
         self(result)
+    }
+}
+
+/// Both are told, the first one first. A failure of either ends the run, else a stop of either.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn started(&mut self, plan: &Plan, steps: usize) {
+        self.0.started(plan, steps);
+        self.1.started(plan, steps);
+    }
+
+    fn warning(&mut self, warning: &Warning) {
+        self.0.warning(warning);
+        self.1.warning(warning);
+    }
+
+    fn step(&mut self, result: &StepResult) -> Flow {
+        match (self.0.step(result), self.1.step(result)) {
+            (Flow::Fail(error), _) | (_, Flow::Fail(error)) => Flow::Fail(error),
+            (Flow::Stop, _) | (_, Flow::Stop) => Flow::Stop,
+            _ => Flow::Continue,
+        }
+    }
+
+    fn finished(&mut self, steps: usize) {
+        self.0.finished(steps);
+        self.1.finished(steps);
     }
 }
 

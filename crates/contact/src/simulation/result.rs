@@ -3,8 +3,11 @@
 use crate::error::ContactError;
 use crate::estimate::{Caches, Solved};
 use crate::model::Model;
-use crate::report::{AccumulatedError, AlgebraicError, StepReport, require};
-use crate::result::{Certificate, ContactSummary, PointState, Reactions, Recovered, nodal_reactions, reactions_about};
+use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
+use crate::result::{
+    Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, coarse_mesh, is_strained, nodal_reactions,
+    reactions_about, warnings,
+};
 use crate::scene::Scene;
 use crate::status::StepFailure;
 use crate::step::StepProblem;
@@ -91,6 +94,45 @@ impl StepResult {
     #[must_use]
     pub fn certificate(&self) -> &Certificate {
         &self.recovered.certificate
+    }
+
+    /// What in this result is allowed but hardly meant, each kind at its worst place: large displacements, strains and
+    /// slips. Looked for when asked; a [run](crate::Simulation::run) asks at every step.
+    ///
+    /// ```
+    /// use signorini_contact::{Scene, Settings, Simulation, Support, Warning};
+    /// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
+    ///
+    /// let mesh = Brick::new([3.0, 1.0, 1.0], [3, 1, 1]).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_support(Support::fixed(brick::X_MAX).with_motion([0.2, 0.0, 0.0], History::constant(1.0)));
+    /// let result = Simulation::new(scene, Settings::default())?.step()?;
+    /// assert!(matches!(result.warnings()[..], [Warning::LargeStrain { .. }]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.warnings_but(&[])
+    }
+
+    /// The same without kinds that are known.
+    pub(super) fn warnings_but(&self, known: &[Warning]) -> Vec<Warning> {
+        warnings(&self.model, self.lengths(), &self.recovered, self.step(), known)
+    }
+
+    fn lengths(&self) -> &Lengths {
+        self.caches.lengths.get_or_init(|| Lengths::new(&self.model))
+    }
+
+    /// The estimated error of the mesh, relative, and what is to be said of it; `None` where it would be noise.
+    pub(super) fn mesh_error(&self) -> Option<(f64, Option<Warning>)> {
+        let (model, recovered) = (&self.model, &self.recovered);
+        if !is_strained(model, self.lengths(), &self.problem, recovered) {
+            return None;
+        }
+        let error = self.discretisation_error().ok()?;
+        Some((error.relative(), coarse_mesh(model, &error, self.step())))
     }
 
     /// Sums over the contact surface.

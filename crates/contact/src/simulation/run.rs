@@ -1,38 +1,72 @@
 //! Solving all steps that are left.
 
 use super::observer::{Flow, Observer};
-use super::simulation::Simulation;
+use super::simulation::{Simulation, on_pool};
 use crate::error::ContactError;
-use crate::report::RunReport;
+use crate::report::{RunReport, Warning};
 
 impl Simulation {
     /// Solves all steps that are left, telling the observer; ends early if it says so. Not converging is no error: see
     /// the report, or ask it to [require](RunReport::require_converged) that all converged.
     ///
+    /// Results are looked at for what is hardly meant (see [`Warning`]), the error of the mesh is estimated once at the
+    /// end; neither changes a result.
+    ///
     /// # Errors
     /// As [`step`](Self::step), and [`ContactError::Observer`] if the observer fails; the run can be continued after
     /// it.
     pub fn run(&mut self, observer: &mut (impl Observer + ?Sized)) -> Result<RunReport, ContactError> {
+        self.run_and_keep(observer, None, |_, _| Ok(()))
+    }
+
+    /// The same; `keep` is called after each step that the observer has not failed at, with whether it is the last one.
+    /// `warnings` are told first.
+    pub(super) fn run_and_keep(
+        &mut self,
+        observer: &mut (impl Observer + ?Sized),
+        warnings: impl IntoIterator<Item = Warning>,
+        mut keep: impl FnMut(&Self, bool) -> Result<(), ContactError>,
+    ) -> Result<RunReport, ContactError> {
         observer.started(self.plan(), self.plan().steps - self.state.step());
         let mut report = RunReport {
             unconverged_history: self.state.unconverged_history(),
             ..RunReport::default()
         };
+        warn(&mut report, observer, warnings);
+        warn(&mut report, observer, self.plan().warnings().to_vec());
         let mut failed = None;
         while !self.is_finished() {
             let result = self.step()?;
             report.enter(result.report(), result.failure(), result.certificate().largest());
-            match observer.step(&result) {
-                Flow::Continue => {}
-                Flow::Stop => break,
-                Flow::Fail(source) => {
-                    let step = result.step();
-                    failed = Some(ContactError::Observer { step, source });
-                    break;
-                }
+            let new = on_pool(|| result.warnings_but(&report.warnings));
+            warn(&mut report, observer, new);
+            let flow = observer.step(&result);
+            if let Flow::Fail(source) = flow {
+                let step = result.step();
+                failed = Some(ContactError::Observer { step, source });
+                break;
             }
+            let stop = matches!(flow, Flow::Stop);
+            keep(self, stop || self.is_finished())?;
+            if stop {
+                break;
+            }
+        }
+        if let (None, true, Some(result)) = (&failed, report.steps > 0, self.result())
+            && let Some((error, warning)) = on_pool(|| result.mesh_error())
+        {
+            report.mesh_error = Some(error);
+            warn(&mut report, observer, warning);
         }
         observer.finished(report.steps);
         failed.map_or(Ok(report), Err)
+    }
+}
+
+/// Tells the observer of warnings, and keeps them.
+fn warn(report: &mut RunReport, observer: &mut (impl Observer + ?Sized), warnings: impl IntoIterator<Item = Warning>) {
+    for warning in warnings {
+        observer.warning(&warning);
+        report.warnings.push(warning);
     }
 }

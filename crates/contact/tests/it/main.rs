@@ -24,6 +24,7 @@ mod plan;
 mod reactions;
 mod refusals;
 mod restart;
+mod sanity;
 mod step_doubling;
 mod supports;
 mod tresca;

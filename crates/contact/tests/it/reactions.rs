@@ -395,3 +395,39 @@ fn reactions_at_contact_nodes_have_no_contact_forces() {
         assert_balance(&simulation, 1e-7, "oblique");
     }
 }
+
+/// A force on a coarse hole, of which three facets a quarter are inside the circle: loads and reactions sum to it all
+/// the same, where pressure over the area of the circle loses a part.
+#[test]
+fn a_force_on_a_coarse_hole_arrives_whole() {
+    let bend = |[r, angle, z]: [f64; 3]| {
+        let (sin, cos) = (0.5 * std::f64::consts::PI * angle).sin_cos();
+        [(1.0 + r) * cos, (1.0 + r) * sin, z]
+    };
+    let quarter = block([1.0; 3], [2, 3, 2])
+        .map_points(bend)
+        .expect("a quarter of a hole");
+    let hole = Surface::new(&quarter, &[brick::X_MIN]).expect("hole");
+    let circle = 0.5 * std::f64::consts::PI;
+    assert!(hole.total_area() < 0.99 * circle);
+    let force = [3e4, -1e4, 500.0];
+    let loads = [
+        Load::force(brick::X_MIN, force),
+        Load::traction(brick::X_MIN, force.map(|f| f / circle)),
+    ];
+    for (load, whole) in loads.into_iter().zip([true, false]) {
+        for boxes in [[1, 1, 1], [1, 3, 2]] {
+            let scene = Scene::new(quarter.clone(), steel())
+                .with_support(Support::fixed(brick::X_MAX))
+                .with_load(load.clone())
+                .with_boxes(boxes);
+            let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+            let result = simulation.step().expect("step");
+            let reaction = result.reactions().supports[0].resultant.force;
+            let lost = norm(&[0, 1, 2].map(|c| reaction[c] + force[c])) / norm(&force);
+            assert_eq!(lost < 1e-9, whole, "{boxes:?}: {lost:e}");
+            let lost = norm(&[0, 1, 2].map(|c| result.load_resultant()[c] - force[c])) / norm(&force);
+            assert_eq!(lost < 1e-13, whole, "{boxes:?}: {lost:e}");
+        }
+    }
+}

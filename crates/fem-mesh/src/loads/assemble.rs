@@ -39,8 +39,18 @@ pub fn assemble_load(
         LoadDensity::Pressure { tag, value } => {
             traction(mesh, decomposition, *tag, |n| Density::Constant(scale(-value, n)))
         }
+        LoadDensity::Force { tag, value } => {
+            let share = scale(1.0 / tagged_area(mesh, *tag), *value);
+            traction(mesh, decomposition, *tag, |_| Density::Constant(share))
+        }
         LoadDensity::NodalForces(forces) => nodal(mesh, decomposition, forces),
     }
+}
+
+/// Area of all facets of a tag.
+fn tagged_area(mesh: &TetMesh, tag: FacetTag) -> f64 {
+    let tagged = mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag);
+    tagged.map(|(facet, _)| norm(facet_area_vector(mesh, facet))).sum()
 }
 
 /// A density as a function of point and normal (the latter zero inside the body).

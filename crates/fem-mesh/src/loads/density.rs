@@ -40,6 +40,14 @@ pub enum LoadDensity {
         /// Pressure, positive into the body.
         value: f64,
     },
+    /// A force, spread evenly over all facets of a tag: the same force per area, of which the facets, as they are, have
+    /// this sum. Facets inside a curved surface have less area than it, so that a force per area would lose a part.
+    Force {
+        /// Loaded part of the boundary.
+        tag: FacetTag,
+        /// Sum of the load, N.
+        value: [f64; 3],
+    },
     /// Forces at single nodes (global numbers); forces at the same node add up.
     NodalForces(Vec<(u32, [f64; 3])>),
 }
@@ -81,6 +89,12 @@ impl LoadDensity {
         Self::Pressure { tag, value }
     }
 
+    /// A force, spread evenly over all facets of a tag.
+    #[must_use]
+    pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
+        Self::Force { tag, value }
+    }
+
     /// Forces at single nodes.
     #[must_use]
     pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
@@ -107,6 +121,7 @@ impl std::fmt::Debug for LoadDensity {
                 .field("tag", tag)
                 .field("value", value)
                 .finish(),
+            Self::Force { tag, value } => f.debug_struct("Force").field("tag", tag).field("value", value).finish(),
             Self::NodalForces(forces) => f.debug_tuple("NodalForces").field(forces).finish(),
         }
     }

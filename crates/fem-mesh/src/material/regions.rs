@@ -42,6 +42,15 @@ impl Materials {
         }
     }
 
+    /// The regions that a law is listed for, ascending; none where one law fills all regions.
+    #[must_use]
+    pub fn listed(&self) -> Vec<u32> {
+        match &self.0 {
+            Kind::Uniform(_) => Vec::new(),
+            Kind::Table(table) => table.iter().map(|(region, _)| *region).collect(),
+        }
+    }
+
     /// The law of a region.
     ///
     /// # Errors

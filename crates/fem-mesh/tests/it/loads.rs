@@ -47,6 +47,8 @@ fn constant_loads() {
         check(resultant(&mesh, boxes, &body), [0.0, 0.0, -12.0], [-6.0, 18.0, 0.0]);
         let top = LoadDensity::traction(Z_MAX, [1.0, 0.0, -1.0]);
         check(resultant(&mesh, boxes, &top), [3.0, 0.0, -3.0], [-1.5, 10.5, -1.5]);
+        let sum = LoadDensity::force(Z_MAX, [3.0, 0.0, -3.0]);
+        check(resultant(&mesh, boxes, &sum), [3.0, 0.0, -3.0], [-1.5, 10.5, -1.5]);
         let pressed = LoadDensity::pressure(X_MAX, 4.0);
         check(resultant(&mesh, boxes, &pressed), [-8.0, 0.0, 0.0], [0.0, -8.0, 4.0]);
     }

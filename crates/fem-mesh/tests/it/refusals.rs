@@ -356,11 +356,19 @@ fn loads() {
     ));
     let pole = LoadDensity::body_field(|[x, _, _]| [if x > 1.9 { f64::NAN } else { 0.0 }; 3]);
     assert!(matches!(error(pole), LoadError::NotFinite { place, .. } if place[0] > 1.9));
-    let missing = LoadDensity::traction(FacetTag(77), [1.0; 3]);
     assert!(matches!(
-        error(missing),
-        LoadError::UnknownTag { tag: FacetTag(77), .. }
+        error(LoadDensity::force(Z_MIN, nan)),
+        LoadError::NotFinite { .. }
     ));
+    for missing in [
+        LoadDensity::traction(FacetTag(77), [1.0; 3]),
+        LoadDensity::force(FacetTag(77), [1.0; 3]),
+    ] {
+        assert!(matches!(
+            error(missing),
+            LoadError::UnknownTag { tag: FacetTag(77), .. }
+        ));
+    }
     let bare = TetMesh::new(mesh.points().to_vec(), mesh.tets().to_vec(), vec![]).unwrap();
     for (mesh, tags) in [(&mesh, "the tags 1, 2, 3, 4, 5, 6"), (&bare, "no tags")] {
         let load = LoadDensity::pressure(FacetTag(77), 1.0);

@@ -1,0 +1,75 @@
+//! What a scene alone shows of what is hardly meant.
+
+use crate::discrete::{ContactPoint, DiscreteScene, Extents};
+use crate::report::Warning;
+use crate::scene::{Friction, Scene};
+use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP};
+
+/// Warnings of a scene, each kind once. One pass over the contact points; bodies are measured only where a contact
+/// begins nowhere near its obstacle.
+pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> {
+    let points = &discrete.points;
+    let found = [
+        unused_materials(scene),
+        large_gap(scene, points, discrete.rounding),
+        large_coefficient(scene, points),
+    ];
+    found.into_iter().flatten().collect()
+}
+
+fn unused_materials(scene: &Scene) -> Option<Warning> {
+    let mut regions = scene.materials.listed();
+    if regions.is_empty() {
+        return None;
+    }
+    let mut present = scene.mesh.regions().to_vec();
+    present.sort_unstable();
+    present.dedup();
+    regions.retain(|region| present.binary_search(region).is_err());
+    (!regions.is_empty()).then_some(Warning::UnusedMaterials { regions, present })
+}
+
+/// The first contact whose nearest point is further away than its body is long.
+fn large_gap(scene: &Scene, points: &[ContactPoint], rounding: f64) -> Option<Warning> {
+    let mut nearest: Vec<Option<&ContactPoint>> = vec![None; scene.contacts.len()];
+    for point in points {
+        let best = &mut nearest[point.surface];
+        if best.is_none_or(|known| point.gap.abs() < known.gap.abs()) {
+            *best = Some(point);
+        }
+    }
+    let mut far = nearest
+        .into_iter()
+        .flatten()
+        .filter(|p| p.gap.abs() > rounding)
+        .peekable();
+    far.peek()?;
+    let extents = Extents::new(&scene.mesh);
+    let point = far.find(|p| p.gap.abs() > LARGE_GAP * extents.at(p.node()))?;
+    Some(Warning::LargeGap {
+        contact: point.surface,
+        node: point.node(),
+        place: point.position,
+        gap: point.gap,
+        extent: extents.at(point.node()),
+    })
+}
+
+/// The largest coefficient, if it is too large, at whatever slip rate where that is known and else at rest.
+fn large_coefficient(scene: &Scene, points: &[ContactPoint]) -> Option<Warning> {
+    let coefficient = |point: &ContactPoint| match scene.contacts[point.surface].friction() {
+        Friction::Coulomb(law) => {
+            let at_rest = || law.value(point.node(), point.position, 0.0).ok();
+            law.largest(point.position).or_else(at_rest)
+        }
+        _ => None,
+    };
+    let known = points.iter().filter_map(|p| Some((p, coefficient(p)?)));
+    let (point, coefficient) = known.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    (coefficient > LARGE_COEFFICIENT).then(|| Warning::LargeCoefficient {
+        contact: point.surface,
+        node: point.node(),
+        place: point.position,
+        coefficient,
+    })
+}

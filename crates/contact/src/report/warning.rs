@@ -1,0 +1,225 @@
+//! What is allowed but hardly meant: results and scenes that an engineer should look at.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Something that is allowed and computed, and that is rather a mistake or outside what small strain can tell. Its
+/// sentence has the figure, the place and the remedy.
+///
+/// [`Plan::warnings`](crate::Plan::warnings) has those of the scene alone;
+/// [`RunReport::warnings`](crate::RunReport::warnings) has them and those of the results, each kind once, where it was
+/// first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known.
+///
+/// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, the body
+/// for gaps, 3 for coefficients and 10 % for the error of the mesh. A body is as long as the longest side of the box
+/// around it. By them the brick of the benchmark, pressed down by 0.1 m and 3 m long, does not warn of its displacement,
+/// as it would from a thirtieth on; it does of its strain, 6 % at the free corner, and of its mesh. Strain is
+/// judged tetrahedron by tetrahedron: at clamped edges that of linear theory grows without bound as the mesh is refined.
+///
+/// ```
+/// use signorini_contact::{Contact, Friction, Plan, Scene, Settings, Support, Warning};
+/// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+///
+/// let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(20.0));
+/// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
+/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
+///     .with_support(Support::fixed(brick::X_MIN))
+///     .with_contact(floor);
+/// let plan = Plan::new(&scene, &Settings::default())?;
+/// assert!(matches!(plan.warnings(), [Warning::LargeCoefficient { coefficient: 20.0, .. }]));
+/// assert!(plan.to_string().contains("20 in per cent is 0.2"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Fields: `step` from 0; `node`, `tet` and `contact` are numbers in mesh and scene; `place` in m.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(
+    missing_docs,
+    reason = "fields that the sentence of their variant explains have none"
+)]
+#[non_exhaustive]
+pub enum Warning {
+    /// The displacement is of the size of the body.
+    LargeDisplacement {
+        step: usize,
+        node: u32,
+        place: [f64; 3],
+        /// Its length, m.
+        displacement: f64,
+        /// Longest side of the box around the body, m.
+        extent: f64,
+    },
+    /// The strain is not small.
+    LargeStrain {
+        step: usize,
+        tet: usize,
+        /// Its centroid, m.
+        place: [f64; 3],
+        /// The root of the sum of the squares of all nine strains; at least the largest principal one.
+        strain: f64,
+    },
+    /// A contact point with friction slides past its facets within a step.
+    LongSlip {
+        step: usize,
+        contact: usize,
+        node: u32,
+        place: [f64; 3],
+        /// Way relative to the obstacle or the partner, m.
+        slip: f64,
+        /// The longest edge of the facets at the node, m.
+        edge: f64,
+    },
+    /// All of a contact begins further from its obstacle, or deeper inside it, than the body is long.
+    LargeGap {
+        contact: usize,
+        /// The nearest point.
+        node: u32,
+        place: [f64; 3],
+        /// Of that point, m; negative inside the obstacle.
+        gap: f64,
+        /// Longest side of the box around the body, m.
+        extent: f64,
+    },
+    /// The coefficient of friction is one that no pair of materials has.
+    LargeCoefficient {
+        contact: usize,
+        node: u32,
+        place: [f64; 3],
+        coefficient: f64,
+    },
+    /// Materials are listed for regions that the mesh does not have.
+    UnusedMaterials {
+        regions: Vec<u32>,
+        /// Those that the mesh has.
+        present: Vec<u32>,
+    },
+    /// The estimated error of the mesh is large at the end of a run.
+    CoarseMesh {
+        step: usize,
+        /// Estimated error over the displacement, both in the energy norm.
+        error: f64,
+        /// The tetrahedron with the largest part of it.
+        tet: usize,
+        /// Its centroid, m.
+        place: [f64; 3],
+    },
+    /// A checkpoint is damaged; the run goes on from the one before.
+    DamagedCheckpoint {
+        /// The damaged file, under the name that it now has.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+        /// The one that was taken.
+        taken: PathBuf,
+    },
+}
+
+impl Warning {
+    /// Whether another one is of the same kind, at whatever place.
+    #[must_use]
+    pub fn is_kind_of(&self, other: &Self) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LargeDisplacement {
+                step,
+                node,
+                place,
+                displacement,
+                extent,
+            } => write!(
+                f,
+                "step {step}: the displacement of node {node} at {} is {displacement:.3e} m, the body is {extent:.3e} m \
+                 long; displacements count as small here, so from a tenth of the body on shapes and forces are wrong: \
+                 look at the units of loads, material and gaps, and at the supports",
+                at(place)
+            ),
+            Self::LargeStrain {
+                step,
+                tet,
+                place,
+                strain,
+            } => write!(
+                f,
+                "step {step}: the strain of tetrahedron {tet} at {} is {:.1} %; strains count as small here, up to 5 %: \
+                 look at the units of loads and material; where it is a corner or a clamped edge alone, its neighbourhood \
+                 is not to be trusted",
+                at(place),
+                100.0 * strain
+            ),
+            Self::LongSlip {
+                step,
+                contact,
+                node,
+                place,
+                slip,
+                edge,
+            } => write!(
+                f,
+                "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e} m, its facets are {edge:.3e} m \
+                 long; it keeps the normal and the partner that it began with: take smaller steps, and where the other \
+                 side is not plane a shorter way",
+                at(place)
+            ),
+            Self::LargeGap {
+                contact,
+                node,
+                place,
+                gap,
+                extent,
+            } => write!(
+                f,
+                "contact {contact} begins {:.3e} m {} its obstacle even at the nearest node, {node} at {}, and the body \
+                 is {extent:.3e} m long; look at the unit of the gap and at the places of the bodies",
+                gap.abs(),
+                if *gap < 0.0 { "inside" } else { "from" },
+                at(place)
+            ),
+            Self::LargeCoefficient {
+                contact,
+                node,
+                place,
+                coefficient,
+            } => write!(
+                f,
+                "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; no pair of \
+                 materials has so much: {coefficient} in per cent is {}",
+                at(place),
+                0.01 * coefficient
+            ),
+            Self::UnusedMaterials { regions, present } => write!(
+                f,
+                "materials are given for the regions {regions:?}, which the mesh does not have; it has {present:?}: look \
+                 at the numbers, or leave them out"
+            ),
+            Self::CoarseMesh {
+                step,
+                error,
+                tet,
+                place,
+            } => write!(
+                f,
+                "step {step}: the mesh leaves an estimated error of {:.0} % in the energy norm, most of it at tetrahedron \
+                 {tet}, {}; linear tetrahedra are too stiff, in bending above all: refine there, and compare",
+                100.0 * error,
+                at(place)
+            ),
+            Self::DamagedCheckpoint { path, reason, taken } => write!(
+                f,
+                "the newest checkpoint is damaged ({reason}); the run goes on from the one before, {}, and the damaged \
+                 one is kept as {}: look at the disk",
+                taken.display(),
+                path.display()
+            ),
+        }
+    }
+}
+
+/// A place in words.
+fn at([x, y, z]: &[f64; 3]) -> String {
+    format!("({x:.4e}, {y:.4e}, {z:.4e}) m")
+}

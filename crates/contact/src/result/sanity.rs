@@ -1,0 +1,163 @@
+//! What the result of a step shows of what is hardly meant.
+//!
+//! Looked at when it is asked for, and only for the kinds that have not been met.
+
+use super::points::ContactState;
+use super::recovered::Recovered;
+use crate::discrete::Extents;
+use crate::model::Model;
+use crate::report::Warning;
+use crate::step::StepProblem;
+use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LONG_SLIP, REST, RIGID};
+use crate::vec3::norm;
+use signorini_fem_mesh::{DiscretisationError, Element, TetMesh, fields};
+
+/// Lengths of a mesh that results are compared with.
+#[derive(Debug)]
+pub(crate) struct Lengths {
+    extents: Extents,
+    /// Least height of a tetrahedron, m.
+    thinnest: f64,
+    /// Longest edge at each node of each contact surface, m.
+    edges: Vec<Vec<f64>>,
+}
+
+impl Lengths {
+    pub(crate) fn new(model: &Model) -> Self {
+        let mesh = &model.scene.mesh;
+        let steepest = |tet: usize| {
+            let gradients = Element::new(&mesh.tet_points(tet)).gradients;
+            gradients.iter().map(|g| norm(g)).fold(0.0, f64::max)
+        };
+        let steepest = (0..mesh.tets().len()).map(steepest).fold(0.0, f64::max);
+        let edges = model.discrete.surfaces.iter().map(|surface| {
+            let mut longest = vec![0.0_f64; surface.nodes().len()];
+            for triangle in surface.triangles() {
+                for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                    let ends = [triangle[a] as usize, triangle[b] as usize];
+                    let [x, y] = ends.map(|n| mesh.points()[surface.nodes()[n] as usize]);
+                    let edge = norm(&[0, 1, 2].map(|c| x[c] - y[c]));
+                    ends.iter().for_each(|&n| longest[n] = longest[n].max(edge));
+                }
+            }
+            longest
+        });
+        Self {
+            extents: Extents::new(mesh),
+            thinnest: 1.0 / steepest,
+            edges: edges.collect(),
+        }
+    }
+}
+
+/// What the result of a step is warned of, each kind at its worst place, without those that are `known`. A pass over
+/// the nodes and the contact points; the tetrahedra are looked at only where displacements could make such strains.
+pub(crate) fn warnings(
+    model: &Model,
+    lengths: &Lengths,
+    recovered: &Recovered,
+    step: usize,
+    known: &[Warning],
+) -> Vec<Warning> {
+    let mesh = &model.scene.mesh;
+    let u = model.tfeti.nodal_mean(&recovered.torn);
+    let mut out = Vec::new();
+    if !known.iter().any(|w| matches!(w, Warning::LargeDisplacement { .. })) {
+        out.extend(large_displacement(mesh, lengths, &u, step));
+    }
+    if !known.iter().any(|w| matches!(w, Warning::LargeStrain { .. })) {
+        out.extend(large_strain(mesh, lengths, &u, step));
+    }
+    if !known.iter().any(|w| matches!(w, Warning::LongSlip { .. })) {
+        out.extend(long_slip(model, lengths, recovered, step));
+    }
+    out
+}
+
+/// A place and a figure there; the larger one, the first of equal ones.
+fn worst<P>(values: impl Iterator<Item = (P, f64)>) -> Option<(P, f64)> {
+    values
+        .filter(|v| !v.1.is_nan())
+        .reduce(|a, b| if b.1 > a.1 { b } else { a })
+}
+
+fn large_displacement(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize) -> Option<Warning> {
+    let part = |(node, u): (usize, &[f64])| (node, norm(u) / lengths.extents.at(node as u32));
+    let (node, part) = worst(u.chunks_exact(3).enumerate().map(part))?;
+    (part > LARGE_DISPLACEMENT).then(|| Warning::LargeDisplacement {
+        step,
+        node: node as u32,
+        place: mesh.points()[node],
+        displacement: norm(&u[3 * node..3 * node + 3]),
+        extent: lengths.extents.at(node as u32),
+    })
+}
+
+/// No strain exceeds the sum over four nodes of displacement over height.
+fn large_strain(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize) -> Option<Warning> {
+    let largest = u.chunks_exact(3).map(norm).fold(0.0, f64::max);
+    if 4.0 * largest <= LARGE_STRAIN * lengths.thinnest {
+        return None;
+    }
+    let strains = fields::strains(mesh, u).ok()?;
+    let (tet, strain) = worst(strains.iter().map(size).enumerate())?;
+    (strain > LARGE_STRAIN).then(|| Warning::LargeStrain {
+        step,
+        tet,
+        place: centroid(mesh, tet),
+        strain,
+    })
+}
+
+/// Root of the sum of the squares of all nine strains; shear is given twice as large.
+fn size([xx, yy, zz, yz, xz, xy]: &[f64; 6]) -> f64 {
+    let squares = xx * xx + yy * yy + zz * zz + 0.5 * (yz * yz + xz * xz + xy * xy);
+    squares.sqrt()
+}
+
+fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usize) -> Option<Warning> {
+    let touching = recovered.points.iter().filter(|p| p.state != ContactState::Open);
+    let ways = touching.filter_map(|p| {
+        let edge = lengths.edges[p.surface][model.discrete.surfaces[p.surface].local(p.node)?];
+        let slip = norm(&p.difference);
+        Some(((p, slip, edge), slip / edge))
+    });
+    let ((point, slip, edge), part) = worst(ways)?;
+    (part > LONG_SLIP).then(|| Warning::LongSlip {
+        step,
+        contact: point.surface,
+        node: point.node,
+        place: model.scene.mesh.points()[point.node as usize],
+        slip,
+        edge,
+    })
+}
+
+/// Whether there is strain that is more than what the solver leaves of earlier steps or of a rigid motion. The
+/// estimated error of the mesh is noise over noise elsewhere.
+pub(crate) fn is_strained(model: &Model, lengths: &Lengths, problem: &StepProblem, recovered: &Recovered) -> bool {
+    let u = model.tfeti.nodal_mean(&recovered.torn);
+    let before = problem.peaks.iter().map(|p| p.displacement).fold(0.0, f64::max);
+    let largest = u.chunks_exact(3).map(norm).fold(0.0, f64::max);
+    let part = |(node, u): (usize, &[f64])| norm(u) / lengths.extents.at(node as u32);
+    let part = u.chunks_exact(3).enumerate().map(part).fold(0.0, f64::max);
+    let strained = |strains: Vec<[f64; 6]>| strains.iter().any(|e| size(e) > RIGID * part);
+    largest > REST * before && fields::strains(&model.scene.mesh, &u).is_ok_and(strained)
+}
+
+/// What is to be said of the error of the mesh.
+pub(crate) fn coarse_mesh(model: &Model, error: &DiscretisationError, step: usize) -> Option<Warning> {
+    let relative = error.relative();
+    let (tet, _) = worst(error.energies().iter().copied().enumerate())?;
+    (relative > COARSE_MESH).then(|| Warning::CoarseMesh {
+        step,
+        error: relative,
+        tet,
+        place: centroid(&model.scene.mesh, tet),
+    })
+}
+
+fn centroid(mesh: &TetMesh, tet: usize) -> [f64; 3] {
+    let points = mesh.tet_points(tet);
+    [0, 1, 2].map(|c| points.iter().map(|p| p[c]).sum::<f64>() / 4.0)
+}

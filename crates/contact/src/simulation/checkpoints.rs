@@ -1,0 +1,167 @@
+//! Runs that a kill does not end: states in a folder.
+//!
+//! Names have the number of steps solved, so that the newest is known without a list that could be damaged, too. Each
+//! file is written beside its place, brought to the disk, and renamed.
+
+use super::observer::Observer;
+use super::simulation::Simulation;
+use crate::error::ContactError;
+use crate::report::{RunReport, Warning};
+use crate::state::State;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Checkpoints that are kept: the newest and the one before.
+const KEPT: usize = 2;
+
+impl Simulation {
+    /// [Runs](Self::run) from the newest checkpoint in a folder, or from the start where there is none, and stores a
+    /// checkpoint every `every_steps` steps and after the last one, also where the observer stops (feature
+    /// `checkpoint`). The same program, started again after a kill, goes on: with the same bits as a run that was
+    /// never interrupted.
+    ///
+    /// The folder is made if need be; the newest checkpoint and the one before are kept, as `step-NUMBER.state`. It
+    /// decides where the run goes on, also of a simulation that has solved steps already. A checkpoint is stored after
+    /// the observer was told of its step, and not where it failed: steps since the last one are solved and told again.
+    /// A run whose last step is stored solves nothing more.
+    ///
+    /// A newest checkpoint that is damaged is kept as `step-NUMBER.state.damaged`, the one before is taken, and
+    /// [`Warning::DamagedCheckpoint`] says so.
+    ///
+    /// ```
+    /// use signorini_contact::{Analysis, Flow, Load, Scene, Settings, Silent, Simulation, StepResult, Support};
+    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// fn scene() -> Result<Scene, Box<dyn std::error::Error>> {
+    ///     let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+    ///     Ok(Scene::new(mesh, Hooke::isotropic(1e9, 0.3)?.into())
+    ///         .with_support(Support::fixed(brick::X_MIN))
+    ///         .with_load(Load::pressure(brick::Z_MAX, 1e5))
+    ///         .with_analysis(Analysis::quasistatic(1.0, 8)))
+    /// }
+    /// let folder = std::env::temp_dir().join(format!("signorini-doc-{}", std::process::id()));
+    /// // ends after five steps
+    /// let mut first = Simulation::new(scene()?, Settings::default())?;
+    /// let mut five = |result: &StepResult| if result.step() == 4 { Flow::Stop } else { Flow::Continue };
+    /// assert_eq!(first.run_or_resume(&folder, 2, &mut five)?.steps, 5);
+    /// // the same call in another process
+    /// let mut second = Simulation::new(scene()?, Settings::default())?;
+    /// let report = second.run_or_resume(&folder, 2, &mut Silent)?;
+    /// assert_eq!(report.steps, 3);
+    /// # std::fs::remove_dir_all(&folder)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`run`](Self::run). [`ContactError::Checkpoint`] where the newest checkpoint belongs to another scene, and
+    /// where none that there are can be read; it names the files, which are left as they are.
+    /// [`ContactError::CheckpointFile`] if the file system refuses; what was stored before is then as it was.
+    /// [`ContactError::Setting`] for `every_steps` of zero.
+    pub fn run_or_resume(
+        &mut self,
+        folder: impl AsRef<Path>,
+        every_steps: usize,
+        observer: &mut (impl Observer + ?Sized),
+    ) -> Result<RunReport, ContactError> {
+        let folder = folder.as_ref();
+        if every_steps == 0 {
+            return Err(ContactError::Setting {
+                name: "every_steps",
+                value: 0.0,
+                range: "of at least one step",
+            });
+        }
+        fs::create_dir_all(folder).map_err(failed("write", folder))?;
+        let warnings = self.resume_newest(folder)?;
+        self.run_and_keep(observer, warnings, |simulation, last| {
+            let step = simulation.state.step();
+            if !last && !step.is_multiple_of(every_steps) {
+                return Ok(());
+            }
+            simulation.state.save(folder.join(format!("step-{step:08}.state")))?;
+            for (_, path) in stored(folder)?.into_iter().skip(KEPT) {
+                fs::remove_file(&path).map_err(failed("remove", &path))?;
+            }
+            Ok(())
+        })
+    }
+
+    /// Goes on from the newest checkpoint that is not damaged, if there are any, and says which were.
+    fn resume_newest(&mut self, folder: &Path) -> Result<Option<Warning>, ContactError> {
+        let mut damaged: Vec<(PathBuf, String)> = Vec::new();
+        for (_, path) in stored(folder)? {
+            match State::load(&path) {
+                Ok(state) => {
+                    self.resume(state).map_err(|error| foreign(&path, error))?;
+                    return set_aside(damaged, path);
+                }
+                Err(ContactError::Checkpoint { reason }) => damaged.push((path, reason)),
+                Err(other) => return Err(other),
+            }
+        }
+        if damaged.is_empty() {
+            return Ok(None);
+        }
+        let reasons: Vec<String> = damaged.into_iter().map(|(_, reason)| reason).collect();
+        Err(ContactError::Checkpoint {
+            reason: format!(
+                "none of those in {} can be read ({}); put copies of them back, or remove them to start anew",
+                folder.display(),
+                reasons.join(". ")
+            ),
+        })
+    }
+}
+
+/// Checkpoints of a folder, newest first, with their steps.
+fn stored(folder: &Path) -> Result<Vec<(usize, PathBuf)>, ContactError> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed("read", folder))? {
+        let name = entry.map_err(failed("read", folder))?.file_name();
+        let number = name
+            .to_str()
+            .and_then(|n| n.strip_prefix("step-")?.strip_suffix(".state"));
+        if let Some(step) = number.and_then(|n| n.parse().ok()) {
+            found.push((step, folder.join(&name)));
+        }
+    }
+    found.sort_by(|a, b| b.cmp(a));
+    Ok(found)
+}
+
+/// Renames damaged checkpoints, so that they are neither taken for the newest nor removed.
+fn set_aside(damaged: Vec<(PathBuf, String)>, taken: PathBuf) -> Result<Option<Warning>, ContactError> {
+    let mut warning = None;
+    for (path, reason) in damaged {
+        let mut aside = path.clone().into_os_string();
+        aside.push(".damaged");
+        fs::rename(&path, &aside).map_err(failed("write", Path::new(&aside)))?;
+        warning.get_or_insert(Warning::DamagedCheckpoint {
+            path: aside.into(),
+            reason,
+            taken: taken.clone(),
+        });
+    }
+    Ok(warning)
+}
+
+/// A checkpoint that is none of this scene.
+fn foreign(path: &Path, error: ContactError) -> ContactError {
+    match error {
+        ContactError::Checkpoint { reason } => ContactError::Checkpoint {
+            reason: format!("{}: {reason}; or give this run a folder of its own", path.display()),
+        },
+        other => other,
+    }
+}
+
+fn failed<'a>(what: &'static str, path: &'a Path) -> impl FnOnce(io::Error) -> ContactError + 'a {
+    move |source| ContactError::CheckpointFile {
+        what,
+        path: path.into(),
+        source,
+    }
+}
