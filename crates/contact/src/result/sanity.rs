@@ -10,7 +10,8 @@ use crate::report::Warning;
 use crate::step::StepProblem;
 use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LONG_SLIP, REST, RIGID};
 use crate::vec3::norm;
-use signorini_fem_mesh::{DiscretisationError, Element, TetMesh, fields};
+use signorini_fem_mesh::recovery::DiscretisationError;
+use signorini_fem_mesh::{Element, TetMesh, fields};
 
 /// Lengths of a mesh that results are compared with.
 #[derive(Debug)]
