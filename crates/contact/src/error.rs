@@ -329,6 +329,25 @@ pub enum ContactError {
         path: std::path::PathBuf,
         source: std::io::Error,
     },
+    /// A probe of a result writer is no node.
+    #[error("probe: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0")]
+    Probe { node: u32, nodes: usize },
+    /// The table of a result writer cannot be continued.
+    #[error(
+        "cannot continue {}: line {line} is {found:?}, but {expected} is needed; a run that is resumed goes on with the \
+         table of a writer with the same choices: give it those, or another folder",
+        path.display()
+    )]
+    ResultTable {
+        path: std::path::PathBuf,
+        line: usize,
+        found: String,
+        expected: String,
+    },
+    /// Result files.
+    #[cfg(feature = "vtu")]
+    #[error(transparent)]
+    Output(#[from] fem::output::OutputError),
     /// Mesh.
     #[error(transparent)]
     Mesh(#[from] fem::MeshError),

@@ -16,6 +16,7 @@
 //! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`ContactSummary`], [`Reactions`] |
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
 //! | to know how accurate it is, and to stop there | [`AlgebraicError`], [`AccumulatedError`], [`StepDoubling`], [`Accuracy`] |
+//! | files for ParaView and a table | `ResultWriter` (feature `vtu`) |
 //! | to follow or end a run | [`Observer`], [`Flow`] |
 //! | to stop and continue | [`State`] (bytes with feature `checkpoint`) |
 //!
@@ -75,6 +76,8 @@ mod discrete;
 mod error;
 mod estimate;
 mod model;
+#[cfg(feature = "vtu")]
+mod output;
 mod plan;
 mod report;
 mod result;
@@ -90,6 +93,8 @@ mod vec3;
 
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
+#[cfg(feature = "vtu")]
+pub use output::{ResultField, ResultWriter};
 pub use plan::{Effects, Estimate, FrictionKind, Plan, Times};
 pub use report::{AccumulatedError, AccuracyReport, AlgebraicError, Counters, RunReport, StepReport};
 pub use result::{

@@ -58,5 +58,7 @@ pub mod prelude {
         Plan, PointState, Preconditioner, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
         StepStatus, Support,
     };
+    #[cfg(feature = "vtu")]
+    pub use signorini_contact::{ResultField, ResultWriter};
     pub use signorini_fem_mesh::{Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 }
