@@ -1,13 +1,11 @@
 //! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
 //!
 //! Prints what the deck asks for and does not get, the plan, and a line a step; progress and warnings on standard error.
-//! With `--out` a ParaView series of displacement, stress and contact force is written, with the undeformed body at time 0.
+//! With `--out` series for ParaView and a table are written.
 
 use std::path::{Path, PathBuf};
 
 use signorini::deck::Deck;
-use signorini::fem_mesh::fields;
-use signorini::fem_mesh::output::{Field, PvdSeries};
 use signorini::prelude::*;
 
 const USAGE: &str = "usage: deck PART.inp [--out FOLDER]";
@@ -38,16 +36,10 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
         println!("{ignored}");
     }
     let name = part.file_stem().unwrap_or_default().to_string_lossy();
-    let mut series = match out {
-        Some(folder) => Some(PvdSeries::create(folder, &name)?),
-        None => None,
-    };
+    let writer = |folder| ResultWriter::new(folder, name).with_field(ResultField::Stress);
+    let mut writer = out.map(writer);
     let mut simulation = Simulation::new(deck.scene()?, Settings::default())?;
     println!("{}", simulation.plan());
-    if let Some(series) = &mut series {
-        let rest = vec![[0.0; 3]; deck.mesh().points().len()];
-        series.write(0.0, deck.mesh(), &[Field::vector("displacement", &rest)], &[])?;
-    }
     println!("      time  products    touch    slide  normal force  friction force  largest u  certificate");
     let mut table = |step: &StepResult| -> Result<(), Error> {
         let (sum, u) = (step.summary(), step.displacement());
@@ -63,18 +55,8 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
             length(&sum.friction_force),
             step.certificate().largest()
         );
-        if let Some(series) = &mut series {
-            let stress = step.stress();
-            let mises = stress.iter().map(fields::von_mises).collect();
-            let nodes = [
-                Field::vector("displacement", &u),
-                Field::vector("contact_force", &step.contact_force_field()),
-            ];
-            let cells = [
-                Field::scalar("von Mises", mises),
-                Field::symmetric_tensor("stress", &stress),
-            ];
-            series.write(step.time(), deck.mesh(), &nodes, &cells)?;
+        if let Some(writer) = &mut writer {
+            writer.write(&step)?;
         }
         step.require_converged()?;
         Ok(())
@@ -84,8 +66,8 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
     if let Some(error) = report.mesh_error {
         println!("estimated error of the mesh: {:.0} %", 100.0 * error);
     }
-    if let Some(series) = series {
-        println!("written: {}", series.path().display());
+    if let Some(writer) = writer {
+        println!("written: {}", writer.path().display());
     }
     Ok(())
 }

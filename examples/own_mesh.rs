@@ -4,7 +4,6 @@
 //! stresses in MPa.
 
 use signorini::fem_mesh::gmsh::read_named_gmsh;
-use signorini::fem_mesh::output::{Field, PvdSeries};
 use signorini::prelude::*;
 
 fn main() -> Result<(), Error> {
@@ -35,7 +34,7 @@ pub fn run(folder: &str) -> Result<(), Error> {
         .with_analysis(steps.with_formula(DifferenceFormula::BACKWARD_EULER));
 
     let mut simulation = Simulation::new(scene, Settings::default())?;
-    let mut series = PvdSeries::create(folder, "roller")?;
+    let mut writer = ResultWriter::new(folder, "roller").with_field(ResultField::Stress);
     println!("  t in s  touch  slide  normal in N  friction in N");
     while !simulation.is_finished() {
         let result = simulation.step()?;
@@ -44,13 +43,8 @@ pub fn run(folder: &str) -> Result<(), Error> {
         let (touch, slide, normal) = (sum.active, sum.slip, sum.normal_force);
         let friction = sum.friction_force[0];
         println!("{t:>8.1} {touch:>6} {slide:>6} {normal:>12.4} {friction:>14.4}");
-        let at_nodes = [
-            Field::vector("displacement", &result.displacement()),
-            Field::vector("contact_force", &result.contact_force_field()),
-        ];
-        let in_tets = [Field::symmetric_tensor("stress", &result.stress())];
-        series.write(result.time(), result.scene().mesh(), &at_nodes, &in_tets)?;
+        writer.write(&result)?;
     }
-    println!("written to {}", series.path().display());
+    println!("written to {}", writer.path().display());
     Ok(())
 }

@@ -47,6 +47,8 @@ signorini_fem_mesh::errors! {
         Field(fem::FieldError),
         Tfeti(TfetiError),
         Qp(QpError),
+        #[cfg(feature = "vtu")]
+        Output(fem::output::OutputError),
     } {
         Coefficient { contact: usize, what: &'static str, value: f64 } =
             "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate \
@@ -140,6 +142,11 @@ signorini_fem_mesh::errors! {
         Checkpoint { reason: String } = "checkpoint: {reason}";
         CheckpointFile { what: &'static str, path: std::path::PathBuf, source: std::io::Error } =
             "checkpoint: cannot {what} {}: {source}", path.display();
+        Probe { node: u32, nodes: usize } =
+            "probe: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
+        ResultTable { path: std::path::PathBuf, line: usize, found: String, expected: String } =
+            "cannot continue {}: line {line} is {found:?}, but {expected} is needed; a run that is resumed goes on with \
+            the table of a writer with the same choices: give it those, or another folder", path.display();
         Load { index: usize, source: fem::LoadError } = "load {index}: {source}";
     }
 }

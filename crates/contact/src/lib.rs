@@ -16,6 +16,7 @@
 //! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`result`] |
 //! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
 //! | to know how accurate it is, and to stop there | [`Accuracy`], [`report`], [`StepDoubling`] |
+//! | files for ParaView and a table | `ResultWriter` (feature `vtu`) |
 //! | to be told of absurd results | [`Warning`]: [`Plan::warnings`], [`RunReport::warnings`] |
 //! | to follow or end a run | [`Observer`], [`Flow`], [`Progress`] |
 //! | to stop and continue | [`State`]; with feature `checkpoint` bytes, and `Simulation::run_or_resume` |
@@ -76,6 +77,8 @@ mod discrete;
 mod error;
 mod estimate;
 mod model;
+#[cfg(feature = "vtu")]
+mod output;
 pub mod plan;
 pub mod report;
 pub mod result;
@@ -91,6 +94,8 @@ mod vec3;
 
 pub use error::ContactError;
 pub use model::ConstrainedPoint;
+#[cfg(feature = "vtu")]
+pub use output::{ResultField, ResultWriter};
 pub use plan::Plan;
 pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};

@@ -8,7 +8,7 @@
 macro_rules! errors {
     (
         $(#[$about:meta])*
-        $name:ident $(from { $($other:ident($error:ty)),* $(,)? })? {
+        $name:ident $(from { $($(#[$gate:meta])* $other:ident($error:ty)),* $(,)? })? {
             $(
                 $variant:ident $({ $($field:ident: $type:ty),* })? $(($(#[$from:meta])? $inner:ty))?
                 = $message:literal $(, $argument:expr)*;
@@ -26,6 +26,7 @@ macro_rules! errors {
             )*
             $($(
                 /// An error of another crate, as it is.
+                $(#[$gate])*
                 #[error(transparent)]
                 $other(#[from] $error),
             )*)?

@@ -91,6 +91,8 @@ impl From<ContactError> for Error {
             ContactError::Field(error) => Self::Field(error),
             ContactError::Tfeti(error) => Self::Tfeti(error),
             ContactError::Qp(error) => Self::Qp(error),
+            #[cfg(feature = "vtu")]
+            ContactError::Output(error) => Self::Output(error),
             error => Self::Contact(error),
         }
     }

@@ -59,5 +59,7 @@ pub mod prelude {
         Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
         StepStatus, Support, Warning,
     };
+    #[cfg(feature = "vtu")]
+    pub use signorini_contact::{ResultField, ResultWriter};
     pub use signorini_fem_mesh::{Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
 }

@@ -15,6 +15,7 @@ const CRATES: [(&str, &[&str]); 6] = [
     (
         "contact",
         &[
+            "output",
             "simulation",
             "estimate",
             "solve result",

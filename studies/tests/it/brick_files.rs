@@ -30,11 +30,11 @@ fn files_and_pictures_are_written() {
         assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
     }
     for run in ["n1-b", "n1-c"] {
-        // steps 2, 4 and the last
+        // at rest, steps 2, 4 and the last
         for series in ["body", "contact"] {
             let list = read(out.join(run).join(format!("{series}.pvd")));
-            assert_eq!(list.matches("<DataSet").count(), 3, "{list}");
-            assert!(out.join(run).join(format!("{series}_0002.vtu")).is_file());
+            assert_eq!(list.matches("<DataSet").count(), 4, "{list}");
+            assert!(out.join(run).join(format!("{series}_0003.vtu")).is_file());
         }
         assert_eq!(read(out.join(run).join("steps.csv")).lines().count(), 6);
     }
@@ -56,7 +56,7 @@ fn reactions_are_printed_and_written_when_asked_for() {
             out.display()
         );
         let (_, text) = run(&line);
-        let piece = out.join("n1-b/body_0001.vtu");
+        let piece = out.join("n1-b/body_0002.vtu");
         let written = std::fs::read(&piece).expect("body");
         let field = b"Name=\"reaction\"";
         (text, written.windows(field.len()).any(|w| w == field))

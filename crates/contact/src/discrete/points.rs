@@ -57,7 +57,7 @@ impl ContactPoint {
     }
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
-    pub(super) fn is_same(&self, other: &Self) -> bool {
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.sides.partner == other.sides.partner && self.frame.normal_part(other.frame.normal) > SAME_NORMAL
     }
 }

@@ -1,4 +1,5 @@
-//! What a step ended with: states of contact points, sums over them, reactions, and the certificate of all conditions.
+//! What a step ended with: states of contact points, sums over them, contact stresses, reactions, and the certificate of
+//! all conditions.
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing is taken from a solver's word.
 //!
@@ -13,6 +14,7 @@ mod recovered;
 mod sanity;
 mod sizes;
 mod summary;
+mod surface_stress;
 
 pub(crate) use certificate::contact_violation;
 pub use certificate::{Certificate, Violation};
@@ -24,3 +26,4 @@ pub(crate) use sanity::{Lengths, coarse_mesh, is_strained, warnings};
 pub(crate) use sizes::Sizes;
 pub use summary::ContactSummary;
 pub(crate) use summary::summarise;
+pub(crate) use surface_stress::{SurfaceStress, points_at_nodes};

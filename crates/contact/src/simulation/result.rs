@@ -5,8 +5,8 @@ use crate::estimate::{Caches, Solved};
 use crate::model::Model;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
 use crate::result::{
-    Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, coarse_mesh, is_strained, nodal_reactions,
-    reactions_about, warnings,
+    Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
+    nodal_reactions, points_at_nodes, reactions_about, warnings,
 };
 use crate::scene::Scene;
 use crate::status::StepFailure;
@@ -251,6 +251,64 @@ impl StepResult {
             }
         }
         field
+    }
+
+    /// Contact pressure at each of [`Surface::nodes`] of the contact surface in this position, Pa; `None` if there is
+    /// none. Forces over areas, averaged twice with the mass matrix of the facets: smooth on unequal triangles, where
+    /// the plain quotient scatters by some per cent.
+    ///
+    /// A constant pressure stays. The sum of pressure times area is that of the normal forces, to rounding, but for
+    /// nodes that have no contact point of this surface, which have zero and take no part (a support holds them along
+    /// the normal), and nodes that two surfaces share. The edge of contact is widened by two facets: pressures there,
+    /// and forces of few nodes, are the less to be trusted the fewer facets touch. At a crease it is that of the side
+    /// that is pressed most, and nothing is averaged around it.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
+    ///
+    /// let mesh = Brick::new([1.0; 3], [4; 3]).perturbed(0.15, 1).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
+    ///     .with_support(Support::components(brick::X_MIN, [true, false, false]))
+    ///     .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
+    ///     .with_contact(Contact::rigid(brick::Z_MIN));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let result = simulation.step()?;
+    /// let pressure = result.contact_pressure(0).expect("a contact surface");
+    /// assert!(pressure.iter().all(|p| (p - 1e6).abs() < 10.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn contact_pressure(&self, surface: usize) -> Option<Vec<f64>> {
+        self.surface_stress(surface).map(|stress| stress.pressure)
+    }
+
+    /// Friction stress on the body at each of [`Surface::nodes`] of a contact surface, Pa, in space: averaged as the
+    /// [pressure](Self::contact_pressure), component by component.
+    #[must_use]
+    pub fn friction_stress(&self, surface: usize) -> Option<Vec<[f64; 3]>> {
+        self.surface_stress(surface).map(|stress| stress.friction)
+    }
+
+    pub(crate) fn surface_stress(&self, surface: usize) -> Option<SurfaceStress> {
+        let known = surface < self.surfaces().len();
+        known.then(|| SurfaceStress::new(&self.model, &self.recovered.points, surface))
+    }
+
+    /// The contact point at each of [`Surface::nodes`] of a contact surface; `None` if there is no such surface. At a
+    /// crease it is the point that is pressed most, else the nearest one; nodes that a support holds have none.
+    #[must_use]
+    pub fn points_at_nodes(&self, surface: usize) -> Option<Vec<Option<&PointState>>> {
+        let places = self.places_at_nodes(surface)?;
+        let state = |place: Option<usize>| place.map(|k| &self.recovered.points[k]);
+        Some(places.into_iter().map(state).collect())
+    }
+
+    /// The same as places among all points.
+    pub(crate) fn places_at_nodes(&self, surface: usize) -> Option<Vec<Option<usize>>> {
+        let known = surface < self.surfaces().len();
+        known.then(|| points_at_nodes(&self.model, &self.recovered.points, surface))
     }
 
     /// Sum of all loads at this step, N.

@@ -5,6 +5,7 @@ mod bar;
 mod bodies;
 mod column;
 mod common;
+mod contact_stress;
 mod determinism;
 mod edges;
 mod edges_apart;

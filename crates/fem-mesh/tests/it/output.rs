@@ -1,8 +1,10 @@
 //! Written files, read back by vtkio, which shares no code with the writer.
 
 use approx::assert_abs_diff_eq;
-use signorini_fem_mesh::brick::{Brick, Z_MIN};
-use signorini_fem_mesh::output::{Field, OutputError, PvdSeries, write_surface_vtu, write_vtu, write_vtu_pieces};
+use signorini_fem_mesh::brick::{Brick, X_MAX, Z_MIN};
+use signorini_fem_mesh::output::{
+    Field, OutputError, PvdSeries, write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces,
+};
 use signorini_fem_mesh::{Decomposition, Surface, TetMesh};
 use vtkio::model::{Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, Vtk};
 
@@ -353,4 +355,30 @@ fn arrays_that_fill_their_last_block() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("vtkZLibDataCompressor"));
     assert_eq!(values(&pieces(&path)[0].data.point, "u"), smaller.points().concat());
+}
+
+#[test]
+fn surfaces_are_pieces_with_the_same_fields() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("surfaces.vtu");
+    let mesh = mesh();
+    let [floor, wall] = [Z_MIN, X_MAX].map(|tag| Surface::new(&mesh, &[tag]).unwrap());
+    let heights = |s: &Surface| {
+        let values = s.nodes().iter().map(|&n| mesh.points()[n as usize][2]);
+        [Field::scalar("height", values.collect())]
+    };
+    let (a, b) = (heights(&floor), heights(&wall));
+    write_surfaces_vtu(&path, &mesh, &[(&floor, &a, &[]), (&wall, &b, &[])]).unwrap();
+    let pieces = pieces(&path);
+    assert_eq!(pieces.len(), 2);
+    for (piece, surface) in pieces.iter().zip([&floor, &wall]) {
+        assert_eq!(piece.cells.types.len(), surface.triangles().len());
+        let coordinates = piece.points.cast_into::<f64>().unwrap();
+        let heights: Vec<f64> = coordinates.chunks(3).map(|p| p[2]).collect();
+        assert_eq!(values(&piece.data.point, "height"), heights);
+    }
+    let before = std::fs::read(&path).unwrap();
+    let error = write_surfaces_vtu(&path, &mesh, &[(&floor, &a, &[]), (&wall, &[], &[])]).unwrap_err();
+    assert!(matches!(error, OutputError::PieceFields { number: 1 }) && error.to_string().contains("surface 1"));
+    assert_eq!(std::fs::read(&path).unwrap(), before);
 }

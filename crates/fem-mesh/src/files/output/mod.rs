@@ -9,7 +9,12 @@ mod vtu;
 use std::path::PathBuf;
 
 pub use pvd::PvdSeries;
-pub use vtu::{write_surface_vtu, write_vtu, write_vtu_pieces};
+pub use vtu::{write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces};
+
+use crate::mesh::Surface;
+
+/// A surface, the fields at its nodes, and those on its triangles.
+pub type SurfaceFields<'a> = (&'a Surface, &'a [Field], &'a [Field]);
 
 /// Values at the nodes or in the cells of a mesh, under a name.
 ///
@@ -86,6 +91,8 @@ errors! {
             "a field on the {what} has an empty name; ParaView selects fields by name";
         RepeatedName { name: String, what: &'static str } =
             "two fields on the {what} are named {name:?}; rename one";
+        PieceFields { number: usize } =
+            "surface {number} (from 0) has other fields than the first; give all surfaces of a file the same ones";
         NotFinite { name: String, what: &'static str, index: usize, value: f64 } =
             "field {name:?} is {value} at number {index} of the {what}; values must be finite";
         Foreign { what: &'static str } =

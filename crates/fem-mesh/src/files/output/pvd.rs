@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
 
-use super::{Field, OutputError, write_surface_vtu, write_vtu, write_vtu_pieces};
+use super::{Field, OutputError, SurfaceFields, write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces};
 use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
 use crate::mesh::Surface;
@@ -158,6 +158,21 @@ impl PvdSeries {
     ) -> Result<(), OutputError> {
         self.check(time)?;
         write_surface_vtu(self.next_file(), mesh, surface, point_fields, cell_fields)?;
+        self.list(time)
+    }
+
+    /// Writes surfaces and their fields at a time (see [`write_surfaces_vtu`]), and the list.
+    ///
+    /// # Errors
+    /// [`OutputError`] as [`write_surfaces_vtu`], and if the time does not follow the last one.
+    pub fn write_surfaces(
+        &mut self,
+        time: f64,
+        mesh: &TetMesh,
+        surfaces: &[SurfaceFields<'_>],
+    ) -> Result<(), OutputError> {
+        self.check(time)?;
+        write_surfaces_vtu(self.next_file(), mesh, surfaces)?;
         self.list(time)
     }
 

@@ -11,7 +11,7 @@ use crate::files::replace::replace;
 use crate::mesh::{Surface, TetMesh};
 
 use super::pvd::escape;
-use super::{Field, OutputError};
+use super::{Field, OutputError, SurfaceFields};
 
 /// Writes the mesh as one piece with fields at its nodes and in its tetrahedra.
 ///
@@ -78,15 +78,40 @@ pub fn write_surface_vtu(
     point_fields: &[Field],
     cell_fields: &[Field],
 ) -> Result<(), OutputError> {
-    let (nodes, triangles) = (surface.nodes(), surface.triangles());
-    check(point_fields, nodes.len(), "nodes")?;
-    check(cell_fields, triangles.len(), "cells")?;
-    let point = |&n: &u32| mesh.points().get(n as usize).copied();
-    let points: Option<Vec<_>> = nodes.iter().map(point).collect();
-    let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
+    write_surfaces_vtu(path, mesh, &[(surface, point_fields, cell_fields)])
+}
+
+/// Writes surfaces as triangles, each as a piece: a surface with the fields at its nodes and on its triangles, as for
+/// [`write_surface_vtu`]. All have the same fields.
+///
+/// # Errors
+/// [`OutputError`] if a field or a surface does not fit, the fields of two surfaces differ, or the file cannot be
+/// written.
+pub fn write_surfaces_vtu(
+    path: impl AsRef<Path>,
+    mesh: &TetMesh,
+    surfaces: &[SurfaceFields<'_>],
+) -> Result<(), OutputError> {
     let mut file = File::new();
-    let all = (0..nodes.len(), 0..triangles.len());
-    file.piece(&points, triangles, (point_fields, all.0), (cell_fields, all.1));
+    for (number, &(surface, point_fields, cell_fields)) in surfaces.iter().enumerate() {
+        let (nodes, triangles) = (surface.nodes(), surface.triangles());
+        check(point_fields, nodes.len(), "nodes")?;
+        check(cell_fields, triangles.len(), "cells")?;
+        let kinds = |fields: &[Field]| {
+            fields
+                .iter()
+                .map(|f| (f.name.clone(), f.components))
+                .collect::<Vec<_>>()
+        };
+        if kinds(point_fields) != kinds(surfaces[0].1) || kinds(cell_fields) != kinds(surfaces[0].2) {
+            return Err(OutputError::PieceFields { number });
+        }
+        let point = |&n: &u32| mesh.points().get(n as usize).copied();
+        let points: Option<Vec<_>> = nodes.iter().map(point).collect();
+        let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
+        let all = (0..nodes.len(), 0..triangles.len());
+        file.piece(&points, triangles, (point_fields, all.0), (cell_fields, all.1));
+    }
     file.write(path.as_ref())
 }
 

@@ -1,0 +1,240 @@
+//! The fields of bodies and contact surfaces at the end of a step, and at rest.
+
+use crate::error::ContactError;
+use crate::result::{ContactState, PointState};
+use crate::simulation::StepResult;
+use signorini_fem_mesh::fields::{nodal_average, von_mises};
+use signorini_fem_mesh::output::Field;
+
+/// A field that a [`ResultWriter`](crate::ResultWriter) can write, with its name and unit in the files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ResultField {
+    /// `displacement`, m, at the nodes of bodies and surfaces: warp by it.
+    Displacement,
+    /// `von_mises`, Pa: of each tetrahedron, and at the nodes of the stress averaged there.
+    VonMises,
+    /// `stress`, Pa: of each tetrahedron, and at the nodes averaged over the volumes around.
+    Stress,
+    /// `contact_force` on the bodies, N, at their nodes ([`StepResult::contact_force_field`]).
+    ContactForce,
+    /// `reaction` of all supports, N, at the nodes of the bodies ([`StepResult::reaction_field`]).
+    Reaction,
+    /// `subdomain` of each tetrahedron, from 0.
+    Subdomain,
+    /// `estimated_error` of the mesh in each tetrahedron, as a stress, Pa
+    /// ([`stress_errors`](signorini_fem_mesh::DiscretisationError::stress_errors)).
+    EstimatedError,
+    /// `contact_pressure`, Pa, on the surfaces ([`StepResult::contact_pressure`]).
+    ContactPressure,
+    /// `friction_stress` on the body, Pa, on the surfaces ([`StepResult::friction_stress`]).
+    FrictionStress,
+    /// `gap`, m, on the surfaces: distance to the obstacle or the partner; 0 where there is no contact point.
+    Gap,
+    /// `slip`, m, on the surfaces: way along the obstacle or the partner since the start, touching or not.
+    Slip,
+    /// `slip_rate`, m/s, on the surfaces; 0 where nothing touches.
+    SlipRate,
+    /// `state` on the surfaces: 0 open, 1 stick, 2 slip, -1 where there is no contact point (a support holds the node
+    /// along the normal). The head of the table says so, too.
+    State,
+}
+
+impl ResultField {
+    /// What a writer writes unless told otherwise.
+    pub(super) const USUAL: [Self; 7] = [
+        Self::Displacement,
+        Self::VonMises,
+        Self::ContactPressure,
+        Self::FrictionStress,
+        Self::Gap,
+        Self::Slip,
+        Self::State,
+    ];
+
+    /// Name in the files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::VonMises => "von_mises",
+            Self::Stress => "stress",
+            Self::ContactForce => "contact_force",
+            Self::Reaction => "reaction",
+            Self::Subdomain => "subdomain",
+            Self::EstimatedError => "estimated_error",
+            Self::ContactPressure => "contact_pressure",
+            Self::FrictionStress => "friction_stress",
+            Self::Gap => "gap",
+            Self::Slip => "slip",
+            Self::SlipRate => "slip_rate",
+            Self::State => "state",
+        }
+    }
+}
+
+/// What `state` means, in one line.
+pub(super) const LEGEND: &str = "state: -1 no contact point (held by a support), 0 open, 1 stick, 2 slip";
+
+/// When a picture is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Moment {
+    /// Before the first step, undeformed and without forces.
+    Rest,
+    /// At the end of the step.
+    End,
+}
+
+/// Fields at nodes and of cells.
+type Fields = (Vec<Field>, Vec<Field>);
+
+/// The chosen fields of the bodies.
+pub(super) fn body(result: &StepResult, chosen: &[ResultField], moment: Moment) -> Result<Fields, ContactError> {
+    let mesh = result.scene().mesh();
+    let (nodes, tets) = (mesh.points().len(), mesh.tets().len());
+    let rest = moment == Moment::Rest;
+    let stressed = chosen
+        .iter()
+        .any(|f| matches!(f, ResultField::Stress | ResultField::VonMises));
+    let stress = if rest || !stressed {
+        vec![[0.0; 6]; tets]
+    } else {
+        result.stress()
+    };
+    let nodal = if stressed {
+        nodal_average(mesh, &stress)?
+    } else {
+        Vec::new()
+    };
+    let vectors = |of: fn(&StepResult) -> Vec<[f64; 3]>| if rest { vec![[0.0; 3]; nodes] } else { of(result) };
+    let (mut at_nodes, mut in_tets) = (Vec::new(), Vec::new());
+    for &field in chosen {
+        let name = field.name();
+        match field {
+            ResultField::Displacement => at_nodes.push(Field::vector(name, &vectors(StepResult::displacement))),
+            ResultField::ContactForce => at_nodes.push(Field::vector(name, &vectors(StepResult::contact_force_field))),
+            ResultField::Reaction => at_nodes.push(Field::vector(name, &vectors(StepResult::reaction_field))),
+            ResultField::Stress => {
+                at_nodes.push(Field::symmetric_tensor(name, &nodal));
+                in_tets.push(Field::symmetric_tensor(name, &stress));
+            }
+            ResultField::VonMises => {
+                at_nodes.push(Field::scalar(name, nodal.iter().map(von_mises).collect()));
+                in_tets.push(Field::scalar(name, stress.iter().map(von_mises).collect()));
+            }
+            ResultField::Subdomain => {
+                let parts = result.decomposition().parts().iter();
+                in_tets.push(Field::scalar(name, parts.map(|&p| p.into()).collect()));
+            }
+            ResultField::EstimatedError if rest => in_tets.push(Field::scalar(name, vec![0.0; tets])),
+            ResultField::EstimatedError => {
+                let error = result.discretisation_error()?;
+                let errors = error.stress_errors(mesh, result.scene().materials())?;
+                in_tets.push(Field::scalar(name, errors));
+            }
+            _ => {}
+        }
+    }
+    Ok((at_nodes, in_tets))
+}
+
+/// The chosen fields of each contact surface, and `contact`, its position in the scene, on its triangles.
+pub(super) fn surfaces(result: &StepResult, chosen: &[ResultField], moment: Moment) -> Vec<Fields> {
+    let u = match moment {
+        Moment::Rest => vec![[0.0; 3]; result.scene().mesh().points().len()],
+        Moment::End => result.displacement(),
+    };
+    (0..result.surfaces().len())
+        .map(|surface| {
+            (
+                on_surface(result, chosen, (surface, moment), &u),
+                vec![position(result, surface)],
+            )
+        })
+        .collect()
+}
+
+fn position(result: &StepResult, surface: usize) -> Field {
+    let triangles = result.surfaces()[surface].triangles().len();
+    Field::scalar("contact", vec![surface as f64; triangles])
+}
+
+fn on_surface(
+    result: &StepResult,
+    chosen: &[ResultField],
+    (surface, moment): (usize, Moment),
+    u: &[[f64; 3]],
+) -> Vec<Field> {
+    let nodes = result.surfaces()[surface].nodes();
+    let rest = moment == Moment::Rest;
+    let places = result.places_at_nodes(surface).unwrap_or_default();
+    let states = &result.recovered.points;
+    let scalars = |of: &dyn Fn(usize) -> f64| places.iter().map(|p| p.map_or(0.0, of)).collect::<Vec<f64>>();
+    let stressed = |f: &ResultField| matches!(f, ResultField::ContactPressure | ResultField::FrictionStress);
+    let stress = result
+        .surface_stress(surface)
+        .filter(|_| !rest && chosen.iter().any(stressed));
+    let mut out = Vec::new();
+    for &field in chosen {
+        let name = field.name();
+        let still = || vec![[0.0; 3]; nodes.len()];
+        out.push(match field {
+            ResultField::Displacement => {
+                let own: Vec<[f64; 3]> = nodes.iter().map(|&n| u[n as usize]).collect();
+                Field::vector(name, &own)
+            }
+            ResultField::ContactPressure => {
+                let pressure = stress.as_ref().map(|s| s.pressure.clone());
+                Field::scalar(name, pressure.unwrap_or(vec![0.0; nodes.len()]))
+            }
+            ResultField::FrictionStress => {
+                let friction = stress.as_ref().map(|s| s.friction.clone());
+                Field::vector(name, &friction.unwrap_or_else(still))
+            }
+            ResultField::Gap if rest => Field::scalar(name, scalars(&|k| result.model.points[k].gap())),
+            ResultField::Gap => Field::scalar(name, scalars(&|k| states[k].gap)),
+            ResultField::Slip if rest => Field::vector(name, &still()),
+            ResultField::Slip => {
+                let slips = places.iter().map(|p| p.map_or([0.0; 3], |k| slip(result, k, u)));
+                Field::vector(name, &slips.collect::<Vec<_>>())
+            }
+            ResultField::SlipRate if rest => Field::scalar(name, vec![0.0; nodes.len()]),
+            ResultField::SlipRate => {
+                let touching = |k: usize| states[k].state != ContactState::Open;
+                Field::scalar(name, scalars(&|k| if touching(k) { states[k].slip_rate } else { 0.0 }))
+            }
+            ResultField::State => {
+                let number = |k: &PointState| if rest { 0.0 } else { number(k.state) };
+                Field::scalar(
+                    name,
+                    places.iter().map(|p| p.map_or(-1.0, |k| number(&states[k]))).collect(),
+                )
+            }
+            _ => continue,
+        });
+    }
+    out
+}
+
+fn number(state: ContactState) -> f64 {
+    match state {
+        ContactState::Open => 0.0,
+        ContactState::Stick => 1.0,
+        ContactState::Slip => 2.0,
+    }
+}
+
+/// The way of a contact point along the obstacle or the partner, m.
+fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
+    let state = &result.recovered.points[point];
+    let obstacle = result.problem.obstacles[0]
+        .get(state.surface)
+        .copied()
+        .unwrap_or_default();
+    let mut way = obstacle.map(|w| -w);
+    for (node, weight) in result.model.points[point].contact.sides.nodes() {
+        (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
+    }
+    let out: f64 = (0..3).map(|c| way[c] * state.normal[c]).sum();
+    [0, 1, 2].map(|c| way[c] - out * state.normal[c])
+}

@@ -1,0 +1,129 @@
+//! The table: a row a step, as comma-separated values.
+
+use super::fields::LEGEND;
+use crate::error::ContactError;
+use crate::simulation::StepResult;
+use signorini_fem_mesh::output::OutputError;
+use signorini_fem_mesh::replace_file;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// A table that is written anew after every step.
+#[derive(Debug)]
+pub(super) struct Table {
+    path: PathBuf,
+    probes: Vec<u32>,
+    text: String,
+}
+
+impl Table {
+    /// The head alone.
+    pub(super) fn new(path: PathBuf, probes: &[u32], result: &StepResult) -> Self {
+        Self {
+            path,
+            probes: probes.to_vec(),
+            text: head(probes, result),
+        }
+    }
+
+    /// Goes on with the table that is there, if there is one, without its rows of this step and later ones.
+    pub(super) fn open(path: PathBuf, probes: &[u32], result: &StepResult) -> Result<Self, ContactError> {
+        let mut table = Self::new(path, probes, result);
+        if !table.path.exists() {
+            return Ok(table);
+        }
+        let path = table.path.clone();
+        let read = std::fs::read_to_string(&path);
+        let old = read.map_err(|source| OutputError::NoSeries { path, source })?;
+        let wrong = |line: usize, expected: &str| ContactError::ResultTable {
+            path: table.path.clone(),
+            line: line + 1,
+            found: old.lines().nth(line).unwrap_or_default().to_owned(),
+            expected: expected.to_owned(),
+        };
+        let same = table.text.lines().count();
+        for (line, expected) in table.text.lines().enumerate() {
+            if old.lines().nth(line) != Some(expected) {
+                return Err(wrong(line, &format!("{expected:?}")));
+            }
+        }
+        let mut rows = String::new();
+        for (line, row) in old.lines().enumerate().skip(same) {
+            let step = row.split(',').next().and_then(|s| s.parse::<usize>().ok());
+            let step = step.ok_or_else(|| wrong(line, "a row that begins with the number of its step"))?;
+            if step < result.step() {
+                rows += row;
+                rows.push('\n');
+            }
+        }
+        table.text += &rows;
+        Ok(table)
+    }
+
+    /// Adds a row and writes the table.
+    pub(super) fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
+        let before = self.text.len();
+        self.text += &row(&self.probes, result);
+        replace(&self.path, &self.text).inspect_err(|_| self.text.truncate(before))
+    }
+}
+
+fn replace(path: &Path, text: &str) -> Result<(), ContactError> {
+    let failed = |source| OutputError::Io {
+        path: path.to_path_buf(),
+        source,
+    };
+    Ok(replace_file(path, text.as_bytes()).map_err(failed)?)
+}
+
+fn head(probes: &[u32], result: &StepResult) -> String {
+    let mut text = format!(
+        "# forces on the body, moments about the origin; units as in the scene\n# {LEGEND}\n\
+         step,time,products,status,certificate,touch,stick,slide"
+    );
+    let scene = result.scene();
+    for (what, count) in [("contact", scene.contacts().len()), ("support", scene.supports().len())] {
+        for k in 0..count {
+            for part in ["fx", "fy", "fz", "mx", "my", "mz"] {
+                // writing to a string cannot fail
+                let _ = write!(text, ",{what}_{k}_{part}");
+            }
+        }
+    }
+    for node in probes {
+        let _ = write!(text, ",node_{node}_ux,node_{node}_uy,node_{node}_uz");
+    }
+    text.push('\n');
+    text
+}
+
+fn row(probes: &[u32], result: &StepResult) -> String {
+    let (report, sum, reactions) = (result.report(), result.summary(), result.reactions());
+    let mut text = format!(
+        "{},{:?},{},{},{:?},{},{},{}",
+        result.step(),
+        result.time(),
+        report.counters.products,
+        report.status,
+        result.certificate().largest(),
+        sum.active,
+        sum.stick,
+        sum.slip
+    );
+    let supports = reactions.supports.iter().map(|s| s.resultant);
+    let resultants = reactions.contacts.iter().copied().chain(supports);
+    let u = if probes.is_empty() {
+        Vec::new()
+    } else {
+        result.displacement()
+    };
+    let probed = probes.iter().map(|&node| u[node as usize]);
+    for vector in resultants.flat_map(|r| [r.force, r.moment]).chain(probed) {
+        for value in vector {
+            // the shortest digits that give the same bits again
+            let _ = write!(text, ",{value:?}");
+        }
+    }
+    text.push('\n');
+    text
+}

@@ -1,0 +1,214 @@
+//! The observer that writes what one wants.
+
+use super::fields::{Moment, ResultField, body, surfaces};
+use super::table::Table;
+use crate::error::ContactError;
+use crate::simulation::{Flow, Observer, StepResult};
+use signorini_fem_mesh::output::{PvdSeries, SurfaceFields};
+use std::path::PathBuf;
+
+/// Writes each step into a folder: series of the bodies and of the contact surfaces for ParaView, and a table.
+///
+/// | file | holds |
+/// |---|---|
+/// | `NAME.pvd` | the bodies: displacement and von Mises stress |
+/// | `NAME_contact.pvd` | the contact surfaces, a piece each: displacement, contact pressure, friction stress, gap, slip, state |
+/// | `NAME.csv` | a row a step: time, products, status, certificate, numbers of points, contact forces, reactions, probes |
+///
+/// More or less is chosen with [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields). The series begin
+/// at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error after the
+/// step; what was there stays. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
+/// `contact_0_mz` for each contact surface and support (force on the body and its moment about the origin;
+/// [`Reactions::contacts`](crate::Reactions::contacts)), then `node_7_ux` for probes.
+///
+/// A run that is resumed goes on with its files: of a first step that is not the first of the scene, files and rows of
+/// earlier steps are kept, later ones replaced.
+///
+/// ```
+/// use signorini_contact::{Contact, Load, ResultField, ResultWriter, Scene, Settings, Simulation};
+/// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
+/// use signorini_contact::Support;
+///
+/// # let directory = tempfile::tempdir()?;
+/// # let folder = directory.path();
+/// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
+/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
+///     .with_support(Support::fixed(brick::X_MIN))
+///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
+///     .with_contact(Contact::rigid(brick::Z_MIN));
+/// let mut writer = ResultWriter::new(folder, "block")
+///     .with_field(ResultField::Stress)
+///     .with_probe(26);
+/// Simulation::new(scene, Settings::default())?.run(&mut writer)?;
+/// assert!(folder.join("block.pvd").is_file() && folder.join("block_contact_0001.vtu").is_file());
+/// let table = std::fs::read_to_string(folder.join("block.csv"))?;
+/// assert!(table.contains("node_26_uz") && table.lines().count() == 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct ResultWriter {
+    folder: PathBuf,
+    name: String,
+    contact_name: String,
+    fields: Vec<ResultField>,
+    probes: Vec<u32>,
+    every: usize,
+    files: Option<Files>,
+}
+
+/// The files of a run that has begun.
+#[derive(Debug)]
+struct Files {
+    body: PvdSeries,
+    contact: Option<PvdSeries>,
+    table: Table,
+    /// The last step written.
+    step: usize,
+}
+
+impl ResultWriter {
+    /// Files of this name (no folders in it) in a folder, which is created if it does not exist. Nothing is written
+    /// before the first step.
+    #[must_use]
+    pub fn new(folder: impl Into<PathBuf>, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self {
+            folder: folder.into(),
+            contact_name: format!("{name}_contact"),
+            name,
+            fields: ResultField::USUAL.to_vec(),
+            probes: Vec::new(),
+            every: 1,
+            files: None,
+        }
+    }
+
+    /// Writes this field, too.
+    #[must_use]
+    pub fn with_field(mut self, field: ResultField) -> Self {
+        if !self.fields.contains(&field) {
+            self.fields.push(field);
+        }
+        self
+    }
+
+    /// Writes these fields and no other.
+    #[must_use]
+    pub fn with_fields(mut self, fields: impl IntoIterator<Item = ResultField>) -> Self {
+        self.fields.clear();
+        fields.into_iter().fold(self, Self::with_field)
+    }
+
+    /// A column of the table for each component of the displacement of this mesh node.
+    #[must_use]
+    pub fn with_probe(mut self, node: u32) -> Self {
+        if !self.probes.contains(&node) {
+            self.probes.push(node);
+        }
+        self
+    }
+
+    /// Series with every `steps`-th step and the last one only; 0 for none. The table has a row for each step.
+    #[must_use]
+    pub fn with_every(mut self, steps: usize) -> Self {
+        self.every = steps;
+        self
+    }
+
+    /// Another name for the series of the contact surfaces.
+    #[must_use]
+    pub fn with_contact_name(mut self, name: impl Into<String>) -> Self {
+        self.contact_name = name.into();
+        self
+    }
+
+    /// The series of the bodies, to open in ParaView.
+    #[must_use]
+    pub fn path(&self) -> PathBuf {
+        self.folder.join(format!("{}.pvd", self.name))
+    }
+
+    /// Writes a step, for those who take the steps themselves; as an observer it does so unasked. A step that could not
+    /// be written can be written again.
+    ///
+    /// # Errors
+    /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not
+    /// finite; [`ContactError::Probe`] if a probe is no node; [`ContactError::ResultTable`] if the table of a run that is
+    /// resumed is another one.
+    pub fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
+        let files = self.files.take().filter(|files| files.step < result.step());
+        let mut files = match files {
+            Some(files) => files,
+            None => self.begin(result)?,
+        };
+        let last = result.step() + 1 == result.scene().analysis().steps();
+        let due = (result.step() + 1)
+            .checked_rem(self.every)
+            .is_some_and(|rest| rest == 0 || last);
+        if due {
+            self.picture(&mut files, result, Moment::End)?;
+        }
+        files.table.write(result)?;
+        files.step = result.step();
+        self.files = Some(files);
+        Ok(())
+    }
+
+    /// Starts the files, or goes on with those of the steps before.
+    fn begin(&self, result: &StepResult) -> Result<Files, ContactError> {
+        let nodes = result.scene().mesh().points().len();
+        if let Some(&node) = self.probes.iter().find(|&&node| node as usize >= nodes) {
+            return Err(ContactError::Probe { node, nodes });
+        }
+        let goes_on = |name: &str| result.step() > 0 && self.folder.join(format!("{name}.pvd")).exists();
+        let series = |name: &str| match goes_on(name) {
+            true => PvdSeries::open_before(&self.folder, name, result.time()),
+            false => PvdSeries::create(&self.folder, name),
+        };
+        let body = series(&self.name)?;
+        let contact = match result.surfaces() {
+            [] => None,
+            _ => Some(series(&self.contact_name)?),
+        };
+        let path = self.folder.join(format!("{}.csv", self.name));
+        let table = match result.step() {
+            0 => Table::new(path, &self.probes, result),
+            _ => Table::open(path, &self.probes, result)?,
+        };
+        let step = result.step();
+        let mut files = Files {
+            body,
+            contact,
+            table,
+            step,
+        };
+        if self.every > 0 {
+            self.picture(&mut files, result, Moment::Rest)?;
+        }
+        Ok(files)
+    }
+
+    /// A picture of bodies and surfaces; at rest only where there is none yet.
+    fn picture(&self, files: &mut Files, result: &StepResult, moment: Moment) -> Result<(), ContactError> {
+        let mesh = result.scene().mesh();
+        let rest = moment == Moment::Rest;
+        let time = if rest { 0.0 } else { result.time() };
+        if !rest || files.body.times().is_empty() {
+            let (at_nodes, in_tets) = body(result, &self.fields, moment)?;
+            files.body.write(time, mesh, &at_nodes, &in_tets)?;
+        }
+        if let Some(contact) = files.contact.as_mut().filter(|c| !rest || c.times().is_empty()) {
+            let fields = surfaces(result, &self.fields, moment);
+            let pieces = result.surfaces().iter().zip(&fields);
+            let pieces: Vec<SurfaceFields<'_>> = pieces.map(|(s, (a, b))| (s, &a[..], &b[..])).collect();
+            contact.write_surfaces(time, mesh, &pieces)?;
+        }
+        Ok(())
+    }
+}
+
+impl Observer for ResultWriter {
+    fn step(&mut self, result: &StepResult) -> Flow {
+        Flow::from(self.write(result))
+    }
+}
