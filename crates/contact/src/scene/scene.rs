@@ -9,20 +9,6 @@ use crate::error::ContactError;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 
 /// Everything that says what is to be simulated, and nothing about how.
-///
-/// ```
-/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Support};
-/// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-///
-/// let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
-/// let steel = Hooke::isotropic(211.9e9, 0.277)?;
-/// let scene = Scene::new(mesh, Materials::uniform(steel))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -2.5e8]))
-///     .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(Friction::coulomb(0.3)))
-///     .with_boxes([3, 1, 1]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(crate) mesh: TetMesh,
@@ -147,12 +133,6 @@ impl Scene {
     #[must_use]
     pub fn partition(&self) -> &Partition {
         &self.partition
-    }
-
-    /// The first contact surface, if any.
-    #[must_use]
-    pub fn contact(&self) -> Option<&Contact> {
-        self.contacts.first()
     }
 
     /// The contact surfaces.

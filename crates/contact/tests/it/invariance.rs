@@ -189,7 +189,7 @@ fn supports_may_be_given_in_any_way() {
         let mut scene = small_benchmark(Friction::coulomb(0.3), 3);
         let base = Scene::new(mesh.clone(), steel())
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]))
-            .with_contact(scene.contact().expect("contact").clone())
+            .with_contact(scene.contacts()[0].clone())
             .with_boxes([3, 1, 1]);
         scene = supports.into_iter().fold(base, Scene::with_support);
         run(scene, at(1e-8)).1.remove(0).displacement
