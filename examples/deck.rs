@@ -56,7 +56,7 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
             step.certificate().largest()
         );
         if let Some(writer) = &mut writer {
-            writer.write(&step)?;
+            writer.write(step)?;
         }
         step.require_converged()?;
         Ok(())

@@ -23,7 +23,7 @@ pub enum ResultField {
     /// `subdomain` of each tetrahedron, from 0.
     Subdomain,
     /// `estimated_error` of the mesh in each tetrahedron, as a stress, Pa
-    /// ([`stress_errors`](signorini_fem_mesh::DiscretisationError::stress_errors)).
+    /// ([`stress_errors`](signorini_fem_mesh::recovery::DiscretisationError::stress_errors)).
     EstimatedError,
     /// `contact_pressure`, Pa, on the surfaces ([`StepResult::contact_pressure`]).
     ContactPressure,

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error after the
 /// step; what was there stays. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
 /// `contact_0_mz` for each contact surface and support (force on the body and its moment about the origin;
-/// [`Reactions::contacts`](crate::Reactions::contacts)), then `node_7_ux` for probes.
+/// [`Reactions::contacts`](crate::result::Reactions::contacts)), then `node_7_ux` for probes.
 ///
 /// A run that is resumed goes on with its files: of a first step that is not the first of the scene, files and rows of
 /// earlier steps are kept, later ones replaced.

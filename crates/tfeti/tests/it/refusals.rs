@@ -53,11 +53,7 @@ fn line_directions_are_unit_vectors() {
         let mut weights = RowWeights::diagonal(vec![1.0; system.dual_dim()]);
         let row = system.gluing().ranges().discs.start;
         let weight = 1.0;
-        weights.lines.push(LineWeight {
-            row: row,
-            direction,
-            weight,
-        });
+        weights.lines.push(LineWeight { row, direction, weight });
         system.coarse().factor_weighted(weights)
     };
     assert!(factor([0.6, -0.8]).is_ok());

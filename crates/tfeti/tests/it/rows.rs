@@ -215,7 +215,7 @@ fn contact_rows_follow_the_stiff_copy() {
         .build()
         .unwrap();
     let g = system.gluing();
-    assert!(!is_orthonormal(&g));
+    assert!(!is_orthonormal(g));
     for (i, row) in gram(g).iter().enumerate() {
         assert!((row[i] - 1.0).abs() < 1e-13);
     }

@@ -40,7 +40,7 @@ fn line_weights_act_like_a_rotated_diagonal() {
     let mut lines = RowWeights::diagonal(diagonal.clone());
     lines.lines = vec![
         LineWeight {
-            row: row,
+            row,
             direction: [1.0, 0.0],
             weight: 0.7,
         },
