@@ -27,7 +27,7 @@ const RECENT: usize = 10;
 /// // an observer of one's own beside it
 /// let own = |result: &StepResult| Flow::from(result.require_converged());
 /// simulation.run(&mut (Progress::new(&mut lines), own))?.require_converged()?;
-/// assert!(String::from_utf8(lines)?.starts_with("step 1 of 1, t = 1 s, "));
+/// assert!(String::from_utf8(lines)?.starts_with("1 of 1 steps, t = 1 s, "));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
@@ -91,7 +91,7 @@ impl<W: Write> Observer for Progress<W> {
         let written = failed.and_then(|()| {
             write!(
                 self.out,
-                "step {number} of {}, t = {} s, {products} products",
+                "{number} of {} steps, t = {} s, {products} products",
                 self.steps,
                 result.time()
             )?;
