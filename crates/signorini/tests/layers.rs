@@ -100,6 +100,53 @@ fn arrows_between_crates_go_down() {
 }
 
 #[test]
+fn files_are_in_no_circle() {
+    let mut faults = String::new();
+    for (name, _) in CRATES {
+        let files = sources(name);
+        let modules: Vec<&[String]> = files.iter().map(|file| &*file.module).collect();
+        let arrows: Vec<Vec<usize>> = (files.iter().zip(0..))
+            .map(|(file, own)| {
+                let paths = Paths::of(&file.text, &file.module).into_iter();
+                let mut to: Vec<usize> = paths.filter_map(|(_, path)| file_of(&modules, &path)).collect();
+                to.retain(|other| *other != own);
+                to
+            })
+            .collect();
+        for circle in circle_of(&arrows) {
+            let _ = writeln!(faults, "crate {name}: {} is in a circle", modules[circle].join("::"));
+        }
+    }
+    assert!(faults.is_empty(), "\n{faults}");
+}
+
+/// The file below a folder that a path leads into; what a folder hands out under its own name is not followed.
+fn file_of(modules: &[&[String]], path: &[String]) -> Option<usize> {
+    let longest = (2..=path.len())
+        .rev()
+        .find_map(|n| modules.iter().position(|m| *m == &path[..n]));
+    longest.filter(|&file| {
+        !modules
+            .iter()
+            .any(|m| m.len() > modules[file].len() && m.starts_with(modules[file]))
+    })
+}
+
+/// The places that arrows lead back to.
+fn circle_of(arrows: &[Vec<usize>]) -> Vec<usize> {
+    let leads_back = |start: usize| {
+        let (mut seen, mut open) = (vec![false; arrows.len()], arrows[start].clone());
+        while let Some(place) = open.pop() {
+            if !std::mem::replace(&mut seen[place], true) {
+                open.extend(&arrows[place]);
+            }
+        }
+        seen[start]
+    };
+    (0..arrows.len()).filter(|&start| leads_back(start)).collect()
+}
+
+#[test]
 fn every_folder_says_what_it_is() {
     let mut faults = String::new();
     for file in CRATES.iter().flat_map(|(name, _)| sources(name)) {
@@ -145,6 +192,8 @@ fn this_test_sees_wrong_arrows() {
     let of = |from: &str, to: &str| arrow(&rows, from, to).is_some();
     assert!(!of("a", "c") && !of("a", "a"));
     assert!(of("c", "a") && of("a", "b") && of("a", "unknown"));
+
+    assert_eq!(circle_of(&[vec![1], vec![2], vec![1], vec![0]]), [1, 2]);
 }
 
 struct Source {

@@ -3,9 +3,9 @@
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
-use crate::scene::{Analysis, Scene};
+use crate::scene::Scene;
 use crate::tolerances::LARGEST;
-use signorini_fem_mesh::{Decomposition, History, assemble_load};
+use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_qp::vector;
 use signorini_tfeti::TfetiError;
 use std::collections::BTreeSet;
@@ -53,20 +53,11 @@ fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<
     Ok(())
 }
 
-/// The largest size of a history at the steps, and its time.
-pub(super) fn largest_factor(analysis: &Analysis, history: &History) -> (f64, f64) {
-    let times = analysis.times().iter();
-    times.fold((0.0, 0.0), |worst: (f64, f64), &time| {
-        let value = history.value(time).abs();
-        if value > worst.0 { (value, time) } else { worst }
-    })
-}
-
 /// Refuses motions of supports and obstacles; `spring` is the largest stiffness of a region, N/m.
 pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactError> {
     for (index, support) in scene.supports.iter().enumerate() {
         if let Some((values, history)) = &support.motion {
-            let (factor, time) = largest_factor(&scene.analysis, history);
+            let (factor, time) = scene.analysis.largest_factor(history);
             let size = vector::max_abs(values.as_flattened());
             let place = || format!("support {index} at time {time} s: its displacement");
             expect(factor * size, "m", place)?;
@@ -76,7 +67,7 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
         if let Some((value, history)) = &contact.motion {
-            let (factor, time) = largest_factor(&scene.analysis, history);
+            let (factor, time) = scene.analysis.largest_factor(history);
             let place = || format!("obstacle {index} at time {time} s: its displacement");
             expect(factor * vector::max_abs(value), "m", place)?;
         }
@@ -98,7 +89,7 @@ pub(super) fn nodal_loads(
         // a NaN stays one
         let sizes = local.iter().map(|f| vector::max_abs(f));
         let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
-        let (factor, time) = largest_factor(&scene.analysis, &load.history);
+        let (factor, time) = scene.analysis.largest_factor(&load.history);
         let place = |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
         expect(factor * size, "N", || place(""))?;
         expect(factor * size / spring, "m", || place(" over the stiffness"))?;

@@ -9,7 +9,6 @@
 //! judges the former.
 
 use super::creases::{area_vector, creases};
-use super::overflow::largest_factor;
 use super::partners::{Partner, partners};
 use super::side::Sides;
 use crate::error::ContactError;
@@ -216,7 +215,7 @@ fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoin
     if contact.normal != ContactNormal::Body {
         return Ok(());
     }
-    let factor = largest_factor(&scene.analysis, history).0;
+    let factor = scene.analysis.largest_factor(history).0;
     let mut worst = (0.0, 0);
     for triangle in surface.triangles() {
         let flat = area_vector(&scene.mesh, surface, triangle);

@@ -6,7 +6,6 @@
 //! subdomain) with the digits `d` asked for. `first` and `next` are the means of the benchmark, where `H/h` is 5 and
 //! `d` 6. Slender bodies and loads that jump take several times as many, loads that grow in proportion fewer.
 
-use super::plan::Plan;
 use crate::settings::{Accuracy, MethodKind, Settings};
 use crate::tolerances::LOOSEST;
 use signorini_tfeti::internal::{Forecast, Rate};
@@ -65,16 +64,23 @@ const NUMBERS_OF_SETUP: [f64; 2] = [2e7, 2000.0];
 const NUMBERS_OF_STEP: f64 = 300.0;
 
 impl Estimate {
-    pub(super) fn new(plan: &Plan, settings: &Settings, forecast: &Forecast) -> Self {
+    /// `sizes` are rows, torn unknowns and steps, `tets` the tetrahedra of a subdomain.
+    pub(super) fn new(
+        sizes: [usize; 3],
+        tets: f64,
+        method: MethodKind,
+        settings: &Settings,
+        forecast: &Forecast,
+    ) -> Self {
         Self {
             classes: forecast.classes.len(),
             factorisations: forecast.classes.len() + 1,
             inverse_bytes: forecast.inverse_bytes,
             coarse_bytes: forecast.coarse_bytes,
             table_bytes: forecast.table_bytes,
-            products: likely_products(plan, settings),
+            products: likely_products(tets, sizes[2] as f64, method, settings),
             times: None,
-            sizes: [plan.dual(), plan.primal, plan.steps],
+            sizes,
             product_flops: forecast.product_flops(),
             setup_flops: forecast.setup_flops(),
             coarse_flops: forecast.coarse_flops,
@@ -121,7 +127,7 @@ fn benchmark(method: MethodKind) -> [f64; 2] {
     }
 }
 
-fn likely_products(plan: &Plan, settings: &Settings) -> usize {
+fn likely_products(tets: f64, steps: f64, method: MethodKind, settings: &Settings) -> usize {
     let tolerance = match settings.accuracy {
         Accuracy::Tolerance => settings.tolerance,
         Accuracy::Relative(x) => x.min(LOOSEST),
@@ -129,11 +135,8 @@ fn likely_products(plan: &Plan, settings: &Settings) -> usize {
         Accuracy::Balanced { fraction } => (0.1 * fraction).min(LOOSEST),
     };
     // five tetrahedra fill a cell of a brick
-    let cells = (plan.elements as f64 / (5 * plan.subdomains.max(1)) as f64)
-        .cbrt()
-        .max(1.0);
+    let cells = (tets / 5.0).cbrt().max(1.0);
     let size = (cells / 5.0).sqrt() * -tolerance.log10() / 6.0;
-    let [first, next] = benchmark(plan.method);
-    let steps = plan.steps as f64;
+    let [first, next] = benchmark(method);
     (steps + size * (first + (steps - 1.0).max(0.0) * next)).round() as usize
 }

@@ -138,7 +138,9 @@ impl Plan {
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
         };
         plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
-        plan.estimate = Estimate::new(&plan, settings, &forecast);
+        let sizes = [plan.dual(), primal, plan.steps];
+        let tets = elements as f64 / subdomains.max(1) as f64;
+        plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast);
         Ok(plan)
     }
 }

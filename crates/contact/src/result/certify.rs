@@ -1,25 +1,8 @@
 //! Makes the certificate of a step.
 
 use super::certificate::{Certificate, Violation};
-use super::sizes::Sizes;
-use crate::model::Model;
-use crate::step::StepProblem;
+use super::sizes::{Measured, Sizes};
 use signorini_qp::vector;
-
-/// Multipliers of a step and what is recovered from them.
-pub(super) struct Measured<'a> {
-    pub(super) model: &'a Model,
-    pub(super) problem: &'a StepProblem,
-    pub(super) lambda: &'a [f64],
-    /// `B u` in row units.
-    pub(super) rows: &'a [f64],
-    /// Torn displacement.
-    pub(super) u: &'a [f64],
-    /// Torn load, N.
-    pub(super) force: &'a [f64],
-    /// `K u - f - Bᵀ lambda`, N.
-    pub(super) residual: &'a [f64],
-}
 
 /// How far displacement and multipliers are from all conditions.
 pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
@@ -123,6 +106,8 @@ mod tests {
     use crate::Friction;
     use crate::Settings;
     use crate::State;
+    use crate::model::Model;
+    use crate::step::StepProblem;
     use crate::step::example::{block, first_step};
     use crate::{Analysis, Contact, Scene, Support};
     use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};

@@ -1,9 +1,9 @@
 //! What follows from the multipliers of a step.
 
 use super::certificate::Certificate;
-use super::certify::{Measured, certify};
+use super::certify::certify;
 use super::points::{PointState, point_states};
-use super::sizes::{Sizes, sizes};
+use super::sizes::{Measured, Sizes, sizes};
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::StepProblem;

@@ -1,9 +1,25 @@
 //! What violations are measured against: sizes of each body at the end of a step.
 
-use super::certify::Measured;
+use crate::model::Model;
 use crate::state::Peak;
+use crate::step::StepProblem;
 use crate::tolerances::{REST, ROUNDED, SMALL_PART};
 use signorini_qp::vector;
+
+/// Multipliers of a step and what is recovered from them.
+pub(super) struct Measured<'a> {
+    pub(super) model: &'a Model,
+    pub(super) problem: &'a StepProblem,
+    pub(super) lambda: &'a [f64],
+    /// `B u` in row units.
+    pub(super) rows: &'a [f64],
+    /// Torn displacement.
+    pub(super) u: &'a [f64],
+    /// Torn load, N.
+    pub(super) force: &'a [f64],
+    /// `K u - f - Bᵀ lambda`, N.
+    pub(super) residual: &'a [f64],
+}
 
 /// What the violations of one body are measured against.
 #[derive(Debug, Clone, Copy, Default)]

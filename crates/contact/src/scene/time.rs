@@ -2,6 +2,7 @@
 
 use crate::error::ContactError;
 use crate::tolerances::{ROUNDING, UNEQUAL};
+use signorini_fem_mesh::History;
 
 /// The difference formula (2.9): `du/dt` at the end of step `i+1` is about
 /// `(alpha u[i+1] + beta u[i] + gamma u[i-1]) / dt`.
@@ -129,6 +130,15 @@ impl Analysis {
             Self::Static { time } => std::slice::from_ref(time),
             Self::Quasistatic { times, .. } => times,
         }
+    }
+
+    /// The largest size of a history at the steps, and its time.
+    pub(crate) fn largest_factor(&self, history: &History) -> (f64, f64) {
+        let times = self.times().iter();
+        times.fold((0.0, 0.0), |worst: (f64, f64), &time| {
+            let value = history.value(time).abs();
+            if value > worst.0 { (value, time) } else { worst }
+        })
     }
 
     /// Number of steps.

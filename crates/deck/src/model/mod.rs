@@ -76,6 +76,9 @@ pub(crate) enum Member {
 /// A set of nodes or elements: its members, each with its place and word.
 pub(crate) type Set = Vec<(Member, Location)>;
 
+/// Nodes of the faces 1 to 4 of an element C3D4.
+pub(crate) const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+
 /// A side of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {

@@ -6,16 +6,13 @@
 
 use std::collections::HashMap;
 
-use signorini_fem_mesh::{Facet, FacetTag};
+use signorini_fem_mesh::{Facet, FacetTag, vec3};
 
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::{RigidBodies, RigidFace};
 use crate::error::{DeckError, Fault, Location};
-use crate::model::{Model, Names, Side, Target};
-
-/// Nodes of the faces 1 to 4 of an element C3D4.
-pub(super) const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+use crate::model::{FACES, Model, Names, Side, Target};
 
 #[derive(Debug)]
 pub(super) struct Face {
@@ -208,7 +205,7 @@ impl Face {
     /// Its area along the outward normal.
     pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
         let [a, b, c] = self.nodes.map(|n| raw.points[n as usize]);
-        let area = super::mesh::area_vector(&[a, b, c]);
+        let area = vec3::area_vector(&[a, b, c]);
         let inside = raw.tet_points(self.tet);
         let centre = [0, 1, 2].map(|i| inside.iter().map(|p| p[i]).sum::<f64>() / 4.0);
         let out: f64 = (0..3).map(|i| area[i] * (a[i] - centre[i])).sum();

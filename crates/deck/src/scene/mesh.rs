@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use signorini_fem_mesh::vec3::tet_volume;
 use signorini_fem_mesh::{Facet, TetMesh};
 
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault};
-use crate::model::{Kind, Model};
+use crate::model::{Kind, Model, Names};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -38,7 +39,7 @@ impl Raw {
                 let word = element.label.to_string();
                 return Err(DeckError::at(&element.location, &word, Fault::Empty(why)));
             }
-            let volume = volume(&nodes.map(|n| model.nodes[n as usize].point));
+            let volume = tet_volume(&nodes.map(|n| model.nodes[n as usize].point));
             if !(volume > 0.0 && volume.is_finite()) {
                 let word = element.label.to_string();
                 return Err(DeckError::at(&element.location, &word, Fault::Volume));
@@ -100,6 +101,18 @@ impl Raw {
         &self.element_labels
     }
 
+    /// The sets of nodes and of elements by name, in the numbers of the mesh.
+    pub(super) fn names(&self, model: &Model, sets: Sets) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
+        let [mut nodes, mut elements] = [Names::default(), Names::default()];
+        for (name, set) in model.nsets.names().into_iter().zip(sets.nodes) {
+            nodes.add(name, set.into_iter().filter_map(|n| self.in_mesh(n)).collect());
+        }
+        for (name, set) in model.elsets.names().into_iter().zip(sets.elements) {
+            elements.add(name, set.into_iter().filter_map(|e| self.tet(e)).collect());
+        }
+        (nodes, elements)
+    }
+
     /// Nodes of the mesh by their numbers in the deck.
     pub(super) fn mesh_numbers(&self) -> Numbers {
         Numbers::new(self.node_labels.iter().copied().zip(0..).collect()).unwrap_or_default()
@@ -110,7 +123,7 @@ impl Raw {
     }
 
     pub(super) fn volume(&self, tet: u32) -> f64 {
-        volume(&self.tet_points(tet))
+        tet_volume(&self.tet_points(tet))
     }
 
     pub(super) fn mesh(&self, path: &Path, facets: Vec<Facet>, regions: Vec<u32>) -> Result<TetMesh, DeckError> {
@@ -121,19 +134,4 @@ impl Raw {
             source,
         })
     }
-}
-
-/// Half of the cross product of two sides: the area of a triangle along its normal.
-pub(super) fn area_vector([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
-    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
-    [
-        0.5 * (u[1] * v[2] - u[2] * v[1]),
-        0.5 * (u[2] * v[0] - u[0] * v[2]),
-        0.5 * (u[0] * v[1] - u[1] * v[0]),
-    ]
-}
-
-fn volume([a, b, c, d]: &[[f64; 3]; 4]) -> f64 {
-    let n = area_vector(&[*a, *b, *c]);
-    (0..3).map(|i| n[i] * (d[i] - a[i])).sum::<f64>() / 3.0
 }

@@ -73,7 +73,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         contacts.into_iter().fold(scene, Scene::with_contact)
     });
-    let (node_sets, element_sets) = sets.in_mesh(model, &raw);
+    let (node_sets, element_sets) = raw.names(model, sets);
     Ok(Translated {
         mesh,
         scene,

@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 
-use super::mesh::Raw;
 use crate::error::{DeckError, Fault, Location};
 use crate::model::{Member, Model, Names, Set, Target};
 
@@ -42,8 +41,8 @@ impl Numbers {
 pub(super) struct Sets {
     pub(super) node_numbers: Numbers,
     element_numbers: Numbers,
-    nodes: Vec<Vec<u32>>,
-    elements: Vec<Vec<u32>>,
+    pub(super) nodes: Vec<Vec<u32>>,
+    pub(super) elements: Vec<Vec<u32>>,
 }
 
 impl Sets {
@@ -81,20 +80,6 @@ impl Sets {
     ) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
         find(what, target, &self.element_numbers, &model.elsets, &self.elements, at)
-    }
-
-    /// The sets of nodes and of elements by name, in the numbers of the mesh.
-    pub(super) fn in_mesh(self, model: &Model, raw: &Raw) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
-        let [mut nodes, mut elements] = [Names::default(), Names::default()];
-        for (name, set) in model.nsets.names().into_iter().zip(self.nodes) {
-            let inside = set.into_iter().filter_map(|n| raw.in_mesh(n));
-            nodes.add(name, inside.collect());
-        }
-        for (name, set) in model.elsets.names().into_iter().zip(self.elements) {
-            let inside = set.into_iter().filter_map(|e| raw.tet(e));
-            elements.add(name, inside.collect());
-        }
-        (nodes, elements)
     }
 }
 

@@ -7,14 +7,14 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::Contact;
+use signorini_fem_mesh::vec3::{area_vector, dot, norm, sub};
 use signorini_fem_mesh::{FacetTag, History};
 
 use super::history::{Histories, Track};
-use super::mesh::area_vector;
 use super::numbers::Sets;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Fault, Location};
-use crate::model::{Element, Kind, Model, Side, Target};
+use crate::model::{Element, FACES, Kind, Model, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -137,7 +137,7 @@ impl RigidBodies {
         let p = nodes.map(|n| model.nodes[n as usize].point);
         let mut corners = match (element.kind, side) {
             (Kind::Solid, Side::Face(number)) => {
-                let [a, b, c] = super::faces::FACES[usize::from(number) - 1];
+                let [a, b, c] = FACES[usize::from(number) - 1];
                 // these faces are numbered counter-clockwise seen from inside
                 vec![p[a], p[c], p[b]]
             }
@@ -269,16 +269,4 @@ fn contains(triangle: &[[f64; 3]; 3], normal: [f64; 3], x: [f64; 3]) -> bool {
         let edge = norm(sub(b, a));
         inside >= -ROUNDING * edge * (edge + norm(sub(x, a)))
     })
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }

@@ -4,7 +4,9 @@
 //! error energy of tetrahedron T = 1/2 integral over T of (e* - e_h) : c : (e* - e_h)
 //! ```
 
-use crate::fields::{FieldError, expect_entries};
+use rayon::prelude::*;
+
+use crate::fields::{FieldError, expect_entries, strains};
 use crate::material::Materials;
 use crate::mesh::TetMesh;
 
@@ -13,9 +15,9 @@ use super::patches::StrainRecovery;
 /// Estimated discretisation error, tetrahedron by tetrahedron.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiscretisationError {
-    pub(super) energies: Vec<f64>,
-    pub(super) total: f64,
-    pub(super) elastic: f64,
+    energies: Vec<f64>,
+    total: f64,
+    elastic: f64,
 }
 
 impl DiscretisationError {
@@ -60,6 +62,48 @@ impl DiscretisationError {
         let laws = materials.of_tets(mesh.regions())?;
         let value = |(tet, energy): (usize, &f64)| (2.0 * laws[tet].bound() * energy / mesh.volume(tet)).sqrt();
         Ok(self.energies.iter().enumerate().map(value).collect())
+    }
+}
+
+impl StrainRecovery {
+    /// Estimates the discretisation error of a displacement of the mesh for which this was made.
+    ///
+    /// # Errors
+    /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another
+    /// number of tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
+    pub fn error(&self, mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<DiscretisationError, FieldError> {
+        expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
+        let laws = materials.of_tets(mesh.regions())?;
+        let strains = strains(mesh, u)?;
+        let at = |k: usize| {
+            let mut sum = [0.0; 6];
+            for place in self.pointers[k]..self.pointers[k + 1] {
+                let strain = &strains[self.tets[place] as usize];
+                (0..6).for_each(|i| sum[i] += self.weights[place] * strain[i]);
+            }
+            sum
+        };
+        let patches = self.pointers.len() - 1;
+        let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
+        let energy = |tet: usize| {
+            let corners = self.corners[tet].map(|k| {
+                let recovered = &nodal[k as usize];
+                std::array::from_fn(|i| recovered[i] - strains[tet][i])
+            });
+            // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
+            let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
+            let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
+            self.volumes[tet] * (squares + laws[tet].energy_density(&sum)) / 20.0
+        };
+        let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
+        let elastic = (0..strains.len())
+            .map(|tet| self.volumes[tet] * laws[tet].energy_density(&strains[tet]))
+            .sum();
+        Ok(DiscretisationError {
+            total: energies.iter().sum(),
+            energies,
+            elastic,
+        })
     }
 }
 

@@ -6,27 +6,23 @@
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
-use crate::fields::{FieldError, expect_entries, strains};
-use crate::material::Materials;
 use crate::mesh::TetMesh;
 use crate::tables::buckets;
 use crate::tolerances::{PIVOT, SMALL_PATCH};
 use crate::vec3::{centroid, sub};
-
-use super::estimate::DiscretisationError;
 
 /// The recovery of strains at the nodes of a mesh, to be used for many displacements: the fits
 /// depend on the mesh only, so that each recovered strain is a fixed combination of strains.
 #[derive(Debug, Clone)]
 pub struct StrainRecovery {
     /// Where the patch of each (node, region) starts in `tets` and `weights`.
-    pointers: Vec<usize>,
-    tets: Vec<u32>,
-    weights: Vec<f64>,
+    pub(super) pointers: Vec<usize>,
+    pub(super) tets: Vec<u32>,
+    pub(super) weights: Vec<f64>,
     /// Patches of the corners of each tetrahedron.
-    corners: Vec<[u32; 4]>,
+    pub(super) corners: Vec<[u32; 4]>,
     /// Of each tetrahedron.
-    volumes: Vec<f64>,
+    pub(super) volumes: Vec<f64>,
 }
 
 /// What a fit needs of a tetrahedron.
@@ -137,46 +133,6 @@ impl StrainRecovery {
             corners: mesh.tets().iter().enumerate().map(corner).collect(),
             volumes: cells.iter().map(|c| c.volume).collect(),
         }
-    }
-
-    /// Estimates the discretisation error of a displacement of the mesh for which this was made.
-    ///
-    /// # Errors
-    /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another
-    /// number of tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
-    pub fn error(&self, mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<DiscretisationError, FieldError> {
-        expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
-        let laws = materials.of_tets(mesh.regions())?;
-        let strains = strains(mesh, u)?;
-        let at = |k: usize| {
-            let mut sum = [0.0; 6];
-            for place in self.pointers[k]..self.pointers[k + 1] {
-                let strain = &strains[self.tets[place] as usize];
-                (0..6).for_each(|i| sum[i] += self.weights[place] * strain[i]);
-            }
-            sum
-        };
-        let patches = self.pointers.len() - 1;
-        let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
-        let energy = |tet: usize| {
-            let corners = self.corners[tet].map(|k| {
-                let recovered = &nodal[k as usize];
-                std::array::from_fn(|i| recovered[i] - strains[tet][i])
-            });
-            // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
-            let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
-            let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
-            self.volumes[tet] * (squares + laws[tet].energy_density(&sum)) / 20.0
-        };
-        let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
-        let elastic = (0..strains.len())
-            .map(|tet| self.volumes[tet] * laws[tet].energy_density(&strains[tet]))
-            .sum();
-        Ok(DiscretisationError {
-            total: energies.iter().sum(),
-            energies,
-            elastic,
-        })
     }
 }
 
