@@ -44,7 +44,7 @@ impl Lengths {
             longest
         });
         Self {
-            extents: Extents::new(mesh),
+            extents: Extents::new(mesh, &model.discrete.decomposition),
             thinnest: 1.0 / steepest,
             edges: edges.collect(),
         }
