@@ -58,7 +58,11 @@ impl Extents {
     pub(crate) fn of_part(mesh: &TetMesh, decomposition: &Decomposition, node: u32) -> f64 {
         let mut size = EMPTY;
         if let Some(copy) = decomposition.copies(node as usize).first() {
-            grow(&mut size, mesh, &decomposition.subdomains()[copy.subdomain as usize].nodes);
+            grow(
+                &mut size,
+                mesh,
+                &decomposition.subdomains()[copy.subdomain as usize].nodes,
+            );
         }
         longest(&size)
     }

@@ -8,14 +8,15 @@
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
 
-use super::creases::{area_vector, creases};
+use super::creases::creases;
+use super::normals::{fixed_frame, shape_frames};
 use super::partners::{Partners, partners};
 use super::rounding::rounding;
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
-use crate::scene::{Contact, ContactNormal, Gap, Scene};
-use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
+use crate::scene::{Gap, Pose, Scene};
+use crate::tolerances::SAME_NORMAL;
 use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -45,16 +46,21 @@ impl ContactPoint {
         self.sides.node()
     }
 
-    /// The gap, m, that the obstacle has brought by moving by `way` along the surface, without what it opens.
-    pub(crate) fn gap_brought(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
+    /// The gap, m, that the obstacle has brought by moving along the surface, without what it opens.
+    pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
-        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, way))
+        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, pose))
     }
 
-    /// The gap where the obstacle has moved by `way`, m.
-    pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
-        Ok(self.gap_brought(scene, way)? + vector::dot(way, &self.frame.normal))
+    /// The gap where the obstacle has moved, m.
+    pub(crate) fn gap_after(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
+        Ok(self.gap_brought(scene, pose)? + self.opened(pose))
+    }
+
+    /// What the obstacle opens by moving along the normal, m.
+    pub(crate) fn opened(&self, pose: &Pose) -> f64 {
+        vector::dot(&pose.drag(&self.position), &self.frame.normal)
     }
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
@@ -67,11 +73,11 @@ impl ContactPoint {
 pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
-        let first = out.len();
         let fixed = fixed_frame(index, contact, surface)?;
         let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
+        let shaped = shape_frames(&scene.mesh, index, contact, surface)?;
         let sides = match (&partners, fixed) {
-            (Partners::Obstacle, None) => creases(&scene.mesh, surface, contact.crease),
+            (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
         for (local, &node) in surface.nodes().iter().enumerate() {
@@ -94,9 +100,10 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                     Some(Side::new(seen.partner.clone()))
                 }
             };
-            let gap = contact.gap_at(index, node, position, measured)?;
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
+                let frame = fixed.or(shaped.get(local).copied()).unwrap_or(frame);
+                let gap = contact.gap_at(index, node, position, &frame.normal, measured)?;
                 out.push(ContactPoint {
                     surface: index,
                     sides: Sides {
@@ -104,13 +111,12 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                         partner: partner.clone(),
                     },
                     position,
-                    frame: fixed.unwrap_or(frame),
+                    frame,
                     area,
                     gap,
                 });
             }
         }
-        check_turn(scene, index, surface, &out[first..])?;
     }
     Ok(out)
 }
@@ -178,30 +184,13 @@ pub(super) fn points(
     Ok(out)
 }
 
-/// The one frame of all nodes of a contact with a fixed direction.
-fn fixed_frame(index: usize, contact: &Contact, surface: &Surface) -> Result<Option<SurfaceFrame>, ContactError> {
-    let ContactNormal::Fixed(normal) = contact.normal else {
-        return Ok(None);
-    };
-    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
-    let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
-    if !surface.frames().iter().any(outside) {
-        return Err(ContactError::ObstacleSide {
-            contact: index,
-            direction: normal,
-            nodes: surface.nodes().len(),
-        });
-    }
-    Ok(Some(frame))
-}
-
 /// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are
 /// its own. Where both are as near the law is that of the first one, on the area of both; facets that they share
 /// count once.
 fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
-    if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
+    if x.motion != y.motion || x.rotation != y.rotation || !stays(scene, rounding, point, other, nearer)? {
         return Err(ContactError::SharedNode {
             node: point.node(),
             first: point.surface,
@@ -246,60 +235,11 @@ fn stays(
     if !x.carries_field() && !y.carries_field() {
         return Ok(true);
     }
-    for &time in scene.analysis.times() {
-        let way = x.obstacle_at(time);
-        let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
+    for pose in x.poses(scene.analysis.times()) {
+        let difference = other.gap_after(scene, &pose)? - point.gap_after(scene, &pose)?;
         if order(difference, rounding) != nearer {
             return Ok(false);
         }
     }
     Ok(true)
-}
-
-/// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
-fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoint]) -> Result<(), ContactError> {
-    let contact = &scene.contacts[index];
-    let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
-        return Ok(());
-    };
-    if contact.normal != ContactNormal::Body {
-        return Ok(());
-    }
-    let factor = scene.analysis.largest_factor(history).0;
-    let mut worst = (0.0, 0);
-    for triangle in surface.triangles() {
-        let flat = area_vector(&scene.mesh, surface, triangle);
-        let nodes = triangle.map(|n| surface.nodes()[n as usize]);
-        let places = nodes.map(|n| scene.mesh.points()[n as usize]);
-        let edge = |a: usize| {
-            let [from, to] = [1, 2].map(|k| places[(a + k) % 3]);
-            vec3::sub(to, from)
-        };
-        // of a node in a crease the side that the facet belongs to
-        let along = |node: u32| {
-            let from = own.partition_point(|c| c.node() < node);
-            let sides = own[from..].iter().take_while(|c| c.node() == node);
-            let facing = |c: &&ContactPoint| c.frame.normal_part(flat);
-            let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
-            side.map_or(0.0, |c| factor * c.frame.normal_part(way))
-        };
-        // length of the gradient of `n . way` on the facet
-        let mut sum = [0.0; 3];
-        for (a, &node) in nodes.iter().enumerate() {
-            vector::axpy(along(node), &edge(a), &mut sum);
-        }
-        let turn = vector::norm(&sum) / (2.0 * vec3::norm(flat));
-        if turn > worst.0 {
-            worst = (turn, nodes[0]);
-        }
-    }
-    if worst.0 > TURN {
-        return Err(ContactError::MovedField {
-            contact: index,
-            node: worst.1,
-            turn: worst.0.to_degrees(),
-            most: TURN.to_degrees(),
-        });
-    }
-    Ok(())
 }

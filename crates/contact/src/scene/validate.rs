@@ -2,10 +2,13 @@
 
 use super::contact::{Contact, ContactNormal};
 use super::friction::Friction;
+use super::obstacle::Obstacle;
+use super::pose::Rotation;
 use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
 use signorini_fem_mesh::FacetTag;
+use signorini_fem_mesh::vec3::{is_finite, norm};
 
 impl Scene {
     /// Nodes of the support at a position, checked; as many displacements as nodes, if it has not one for all.
@@ -58,7 +61,8 @@ impl Scene {
         let contacts = self.contacts.iter().enumerate();
         let histories: Vec<_> = (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
-            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
+            .chain((contacts.clone()).filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
+            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.rotation.as_ref()?.angle))))
             .collect();
         for &time in self.analysis.times() {
             for &(what, index, history) in &histories {
@@ -89,7 +93,7 @@ impl Scene {
                 return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
         }
-        if contact.motion.is_some() && !contact.partner.is_empty() {
+        if (contact.moves() || contact.shape().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion
@@ -100,6 +104,20 @@ impl Scene {
                 value: *value,
                 range: "of finite numbers",
             });
+        }
+        if let Some(Rotation { point, axis, .. }) = &contact.rotation {
+            let length = norm(*axis);
+            if !(length.is_finite() && length > 0.0 && is_finite(*point)) {
+                return Err(ContactError::Setting {
+                    name: "length of the axis of rotation of an obstacle",
+                    value: length,
+                    range: "(0, inf), through a finite point",
+                });
+            }
+        }
+        if let Some((name, value)) = contact.shape().and_then(Obstacle::flaw) {
+            let range = "(0, inf)";
+            return Err(ContactError::Setting { name, value, range });
         }
         if !(contact.crease > 0.0 && contact.crease <= 180.0) {
             return Err(ContactError::Setting {

@@ -27,6 +27,7 @@ mod reactions;
 mod refusals;
 mod restart;
 mod sanity;
+mod shapes;
 mod step_doubling;
 mod supports;
 mod tresca;
