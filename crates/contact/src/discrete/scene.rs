@@ -2,11 +2,12 @@
 
 use super::overflow::{check_gaps, check_materials, check_motions, nodal_loads};
 use super::penetration::check_penetration;
+use super::partners::Paired;
 use super::points::{ContactPoint, conditions, points};
 use super::rounding::rounding;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Contact, Scene, check_laws};
+use crate::scene::{Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
@@ -18,7 +19,7 @@ pub(crate) struct DiscreteScene {
     /// How the body is cut.
     pub(crate) decomposition: Decomposition,
     pub(crate) supports: Supports,
-    /// Contact surfaces, in the order of the scene, fixed nodes included.
+    /// The sides that have the contact points, in the order of the contacts, fixed nodes included.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
     pub(crate) conditions: Vec<ContactPoint>,
@@ -39,11 +40,12 @@ impl DiscreteScene {
         scene.validate()?;
         let decomposition = scene.decompose()?;
         let supports = Supports::new(scene)?;
-        let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
-        let surfaces = scene.contacts.iter().map(surface);
-        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
+        let contacts = scene.contacts.iter().enumerate();
+        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
+        let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let rounding = rounding(&scene.mesh);
-        let conditions = conditions(scene, &surfaces)?;
+        let conditions = conditions(scene, &paired)?;
+        let surfaces = paired.into_iter().map(|p| p.surface).collect();
         let points = points(scene, &conditions, rounding)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;

@@ -168,7 +168,7 @@ pub(crate) fn reactions_about(
         for (node, weight) in point.contact.sides.nodes() {
             contact.add(arm(node), state.force().map(|f| weight * f));
         }
-        for &(node, weight) in point.contact.sides.own.nodes() {
+        for (node, weight) in point.contact.sides.first() {
             contacts[state.surface].add(arm(node), state.force().map(|f| weight * f));
         }
     }

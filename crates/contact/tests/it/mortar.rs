@@ -95,3 +95,57 @@ fn uniform_pressure_passes_exactly() {
         }
     }
 }
+
+/// A block that is pressed and pulled on a larger one, with other cells; the contact covers facets in part.
+fn pulled(swap: bool, boxes: [usize; 3]) -> Scene {
+    let below = block([1.5, 1.0, 0.5], [7, 5, 2]);
+    let above = block([0.8, 0.7, 0.6], [3, 3, 2])
+        .map_points(|[x, y, z]| [x + 0.31, y + 0.17, z + 0.5])
+        .expect("lifted");
+    let (upper, lower) = (second(brick::Z_MIN), brick::Z_MAX);
+    let contact = if swap {
+        Contact::between(lower, upper)
+    } else {
+        Contact::between(upper, lower)
+    };
+    Scene::new(with_second(&below, &above), uniform(1e9, 0.3))
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_load(Load::traction(second(brick::Z_MAX), [2e5, 1e5, -1e6]))
+        .with_contact(contact.with_friction(Friction::coulomb(0.28)))
+        .with_boxes(boxes)
+}
+
+/// Forces balance, their moments too, whatever the cut, the order of the sides and the threads; the estimate of the
+/// algebraic error is small, and every method finds the same.
+#[test]
+fn results_do_not_depend_on_the_cut_the_method_nor_on_which_side_comes_first() {
+    let (mut reference, results) = run(pulled(false, [1, 1, 1]), tight());
+    let whole = &results[0];
+    assert!(whole.summary.slip > 0 && whole.summary.stick > 0, "{:?}", whole.summary);
+    let area: f64 = whole.points.iter().map(|p| p.area).sum();
+    assert!((area - 0.56).abs() < 1e-12, "{area}");
+    assert!((whole.summary.normal_force - 0.56e6).abs() < 1.0, "{:?}", whole.summary);
+    for (swap, boxes) in [(true, [1, 1, 1]), (false, [2, 2, 2]), (true, [3, 2, 3])] {
+        for method in methods() {
+            let scene = pulled(swap, boxes);
+            let (_, results) = run(scene.clone(), tight().with_method(method));
+            let distance = relative_distance(&scene, &results[0].displacement, &whole.displacement);
+            assert!(distance < 1e-6, "{swap} {boxes:?}: {distance:e}");
+            // the force on the side that is named first
+            let sign = if swap { -1.0 } else { 1.0 };
+            let resultant = results[0].summary.resultant.map(|f| sign * f);
+            assert_close(&resultant, &whole.summary.resultant, 1e-6, "resultant");
+        }
+    }
+    reference = Simulation::new(reference.scene().clone(), tight()).expect("set-up");
+    let result = reference.step().expect("step");
+    let reactions = result.reactions();
+    let sum = reactions.contact;
+    assert!(sum.force.iter().chain(&sum.moment).all(|f| f.abs() < 1e-3), "{sum:?}");
+    let imbalance = reactions.imbalance();
+    assert!(imbalance.moment.iter().all(|m| m.abs() < 1.0), "{imbalance:?}");
+    let upper = reactions.contacts[0];
+    assert!((upper.force[2] - 0.56e6).abs() < 1.0, "{upper:?}");
+    let error = result.algebraic_error();
+    assert!(error.relative() < 1e-4, "{error:?}");
+}
