@@ -64,7 +64,10 @@ impl Paired {
             return Ok(paired(surface, fixed, Partners::Obstacle, false));
         }
         if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
-            return Err(ContactError::SameSide { contact: index, tag: tag.0 });
+            return Err(ContactError::SameSide {
+                contact: index,
+                tag: tag.0,
+            });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
         if let Some(nodes) = nodes(mesh, index, contact, &surface, fixed.as_ref(), &other)? {
@@ -80,7 +83,10 @@ impl Paired {
         let mortar = mortar_nodes(mesh, own, partner);
         if mortar.iter().all(Option::is_none) {
             let distance = other.distance(&surface);
-            return Err(ContactError::NoPartner { contact: index, distance });
+            return Err(ContactError::NoPartner {
+                contact: index,
+                distance,
+            });
         }
         let partners = Partners::Mortar(mortar);
         if !swapped {
