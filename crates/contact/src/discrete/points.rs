@@ -9,8 +9,8 @@
 //! judges the former.
 
 use super::creases::creases;
-use super::normals::{fixed_frame, shape_frames};
-use super::partners::{Partners, partners};
+use super::normals::shape_frames;
+use super::partners::{Paired, Partners};
 use super::rounding::rounding;
 use super::side::Sides;
 use crate::error::ContactError;
@@ -70,13 +70,12 @@ impl ContactPoint {
 }
 
 /// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
+pub(super) fn conditions(scene: &Scene, paired: &[Paired]) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
-    for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
-        let fixed = fixed_frame(index, contact, surface)?;
-        let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
+    for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
+        let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
         let shaped = shape_frames(&scene.mesh, index, contact, surface)?;
-        let sides = match (&partners, fixed) {
+        let sides = match (partners, fixed) {
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
@@ -84,7 +83,7 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
             let position = scene.mesh.points()[node as usize];
             let mut one = [(surface.frames()[local], surface.areas()[local])];
             let mut measured = 0.0;
-            let partner = match &partners {
+            let partner = match partners {
                 Partners::Obstacle => None,
                 Partners::Nodes(partners) => {
                     measured = partners[local].gap;
@@ -109,6 +108,7 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                     sides: Sides {
                         own: Side::node(node),
                         partner: partner.clone(),
+                        swapped: paired.swapped,
                     },
                     position,
                     frame,
