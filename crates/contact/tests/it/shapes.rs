@@ -41,13 +41,21 @@ fn hertz(cells: usize) -> f64 {
     4.0 * solve(scene, at(1e-8)).summary.normal_force / exact - 1.0
 }
 
-/// Linear tetrahedra are too stiff by a part that falls with the size of cells; without it the force is Hertz's.
+/// Linear tetrahedra are too stiff by a part that falls with the size of cells.
 #[test]
 fn a_rigid_ball_presses_as_hertz_says() {
     let [coarse, fine] = [8, 16].map(hertz);
     println!("force of the ball: errors {coarse} and {fine}");
-    assert!(fine > 0.0 && fine < 0.56 * coarse && fine < 0.17, "{coarse} {fine}");
-    assert!((2.0 * fine - coarse).abs() < 0.02, "{coarse} {fine}");
+    assert!(fine > 0.0 && fine < 0.45 * coarse && fine < 0.14, "{coarse} {fine}");
+}
+
+/// `cargo test --release -p signorini-contact --test it -- --ignored finer_ball --nocapture` shows the errors.
+#[test]
+#[ignore = "half a minute"]
+fn a_finer_ball_presses_as_hertz_says() {
+    let [coarse, middle, fine] = [24, 32, 40].map(hertz);
+    println!("force of the ball: errors {coarse}, {middle} and {fine}");
+    assert!(fine > 0.0 && fine < 0.038 && fine < 0.5 * coarse);
 }
 
 /// A rigid cylinder along a slab in plane strain: a^2 = 4 P R / (pi E*), p0 = 2 P / (pi a) with the force P a length.
