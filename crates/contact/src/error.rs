@@ -106,6 +106,9 @@ signorini_fem_mesh::errors! {
             "contact {contact}: at node {node}, at {position:?}, the gradient of the distance to the obstacle is \
             {gradient:?}, which is no unit vector; give a signed distance in m, positive outside, with its gradient, \
             or leave facets far from the obstacle out of the contact";
+        FrictionAxis { contact: usize, node: u32, axis: [f64; 3] } =
+            "contact {contact}: the axis of friction {axis:?} gives no direction along the surface at node {node}; it \
+            must be finite, not zero and not normal to the surface: give curved sides in several contacts";
         ObstacleFacet { facet: usize, reason: &'static str } =
             "facet {facet} of the surface of an obstacle {reason}; give triangles with area, whose nodes turn \
             counter-clockwise seen from outside";

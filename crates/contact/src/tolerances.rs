@@ -47,6 +47,9 @@ pub(crate) const STEEP: f64 = 0.05;
 /// little, that of another function is not near.
 pub(crate) const GRADIENT: f64 = 1e-3;
 
+/// Part of an axis of friction that must lie along the surface to give a direction there.
+pub(crate) const AXIS: f64 = 1e-3;
+
 /// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a
 /// twentieth of the way.
 pub(crate) const TURN: f64 = 0.1;

@@ -2,8 +2,8 @@
 
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal};
-use crate::tolerances::{ALONG, GRADIENT};
-use signorini_fem_mesh::vec3::norm;
+use crate::tolerances::{ALONG, AXIS, GRADIENT};
+use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
 /// The one frame of all nodes of a contact with a fixed direction.
@@ -18,6 +18,31 @@ pub(super) fn fixed_frame(
     let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
     check_side(index, surface, normal, |_| frame)?;
     Ok(Some(frame))
+}
+
+/// The frame with its first tangent along the axis of friction, if the contact has one.
+pub(super) fn along_axis(
+    index: usize,
+    contact: &Contact,
+    node: u32,
+    frame: SurfaceFrame,
+) -> Result<SurfaceFrame, ContactError> {
+    let Some((axis, _)) = contact.friction_axis else {
+        return Ok(frame);
+    };
+    let normal = frame.normal;
+    let first = sub(axis, scale(dot(axis, normal), normal));
+    let length = norm(first);
+    if length.is_nan() || length <= AXIS * norm(axis) {
+        let contact = index;
+        return Err(ContactError::FrictionAxis { contact, node, axis });
+    }
+    // twice, against rounding where the axis is nearly normal
+    let first = scale(1.0 / length, first);
+    let first = sub(first, scale(dot(first, normal), normal));
+    let first = scale(1.0 / norm(first), first);
+    let tangents = [first, cross(first, normal)];
+    Ok(SurfaceFrame { normal, tangents })
 }
 
 /// Refuses directions that point out of the body nowhere; `normal` is told.

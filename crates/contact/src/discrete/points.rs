@@ -9,7 +9,7 @@
 //! judges the former.
 
 use super::creases::creases;
-use super::normals::shape_frames;
+use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners};
 use super::rounding::rounding;
 use super::side::Sides;
@@ -38,6 +38,8 @@ pub(crate) struct ContactPoint {
     pub(crate) area: f64,
     /// Initial distance to the obstacle, m.
     pub(crate) gap: f64,
+    /// Friction along the second tangent over that along the first.
+    pub(crate) stretch: f64,
 }
 
 impl ContactPoint {
@@ -103,6 +105,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired]) -> Result<Vec<Contact
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
                 let frame = fixed.or(shaped.get(local).copied()).unwrap_or(frame);
                 let gap = contact.gap_at(index, node, position, &frame.normal, measured)?;
+                let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
                     surface: index,
                     sides: Sides {
@@ -114,6 +117,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired]) -> Result<Vec<Contact
                     frame,
                     area,
                     gap,
+                    stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                 });
             }
         }
@@ -208,6 +212,9 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         }
         Ordering::Less => {
             (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+            if x.friction_axis.is_some() || y.friction_axis.is_some() {
+                (point.frame, point.stretch) = (other.frame, other.stretch);
+            }
         }
         Ordering::Greater => {}
     }

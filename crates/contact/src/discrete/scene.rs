@@ -117,6 +117,7 @@ fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) ->
             .with_friction(contact.friction().is_some())
             .with_moving_obstacle(contact.moves())
             .with_tied(contact.tied)
+            .with_stretch(p.stretch)
     };
     points.iter().chain(ties).map(point).collect()
 }

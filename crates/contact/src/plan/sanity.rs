@@ -59,7 +59,8 @@ fn large_coefficient(scene: &Scene, points: &[ContactPoint]) -> Option<Warning> 
     let coefficient = |point: &ContactPoint| match scene.contacts[point.surface].friction() {
         Friction::Coulomb(law) => {
             let at_rest = || law.value(point.node(), point.position, 0.0).ok();
-            law.largest(point.position).or_else(at_rest)
+            let along = law.largest(point.position).or_else(at_rest)?;
+            Some(along * point.stretch.max(1.0))
         }
         _ => None,
     };

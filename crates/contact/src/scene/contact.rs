@@ -59,6 +59,8 @@ pub struct Contact {
     pub(crate) gap: Gap,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
+    /// Axis along which the law of friction holds, and how many times as much there is at right angles to it.
+    pub(crate) friction_axis: Option<([f64; 3], f64)>,
     /// Angle of a crease, degrees.
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
@@ -83,6 +85,7 @@ impl Contact {
             gap: Gap::None,
             normal: ContactNormal::Body,
             friction: Friction::None,
+            friction_axis: None,
             crease: CREASE,
             motion: None,
             rotation: None,
@@ -316,6 +319,33 @@ impl Contact {
     #[must_use]
     pub fn is_tied(&self) -> bool {
         self.tied
+    }
+
+    /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles to
+    /// it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its normal
+    /// (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound) is the
+    /// bound along the axis.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Friction};
+    /// use signorini_fem_mesh::brick;
+    ///
+    /// // ground along x: 0.3 there, 0.6 across
+    /// let floor = Contact::rigid(brick::Z_MIN)
+    ///     .with_friction(Friction::coulomb(0.3))
+    ///     .with_friction_axis([1.0, 0.0, 0.0], 0.6 / 0.3);
+    /// assert_eq!(floor.friction_axis(), Some(([1.0, 0.0, 0.0], 2.0)));
+    /// ```
+    #[must_use]
+    pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
+        self.friction_axis = Some((axis, ratio));
+        self
+    }
+
+    /// The axis of a friction that differs by direction, and the ratio of friction across it to that along it.
+    #[must_use]
+    pub fn friction_axis(&self) -> Option<([f64; 3], f64)> {
+        self.friction_axis
     }
 
     /// The friction law.

@@ -130,6 +130,15 @@ impl Scene {
                 range: "(0, 180]",
             });
         }
+        if let Some((_, value)) = contact.friction_axis
+            && !(value.is_finite() && value > 0.0)
+        {
+            return Err(ContactError::Setting {
+                name: "ratio of friction across its axis",
+                value,
+                range: "(0, inf): an ellipse has two axes",
+            });
+        }
         if let Friction::Coulomb(coefficient) = &contact.friction {
             coefficient.validate(index)?;
         }

@@ -100,8 +100,8 @@ impl StepProblem {
             if effects.gap {
                 self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
             }
-            if let (Some(formula), Some((row, count, scale))) = (formula, point.tangential_rows()) {
-                for k in row..row + count {
+            if let Some(formula) = formula {
+                for (_, k, scale) in point.along() {
                     let (last, before) = state.traces(k - start);
                     self.offset[k] += scale * formula.offset(last, before);
                 }

@@ -18,6 +18,7 @@ mod methods;
 mod mortar;
 mod moving_field;
 mod moving_obstacle;
+mod orthotropic;
 mod pairs;
 mod pairs_supported;
 mod partitions;
