@@ -47,7 +47,7 @@ impl DiscreteScene {
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let rounding = rounding(&scene.mesh);
         let tied = |c: &ContactPoint| scene.contacts[c.surface].tied;
-        let (ties, conditions): (Vec<_>, Vec<_>) = conditions(scene, &paired)?.into_iter().partition(tied);
+        let (ties, conditions): (Vec<_>, Vec<_>) = conditions(scene, &paired, rounding)?.into_iter().partition(tied);
         let surfaces = paired.into_iter().map(|p| p.surface).collect();
         let points = points(scene, &conditions, rounding)?;
         let [softest, stiffest] = check_materials(scene)?;
