@@ -11,7 +11,6 @@
 use super::creases::creases;
 use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners};
-use super::rounding::rounding;
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
@@ -72,7 +71,7 @@ impl ContactPoint {
 }
 
 /// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-pub(super) fn conditions(scene: &Scene, paired: &[Paired]) -> Result<Vec<ContactPoint>, ContactError> {
+pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
@@ -97,7 +96,9 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired]) -> Result<Vec<Contact
                     };
                     one = [(seen.frame, seen.area)];
                     let normal = fixed.unwrap_or(seen.frame).normal;
-                    measured = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
+                    measured = if gap.abs() <= weights * rounding { 0.0 } else { gap };
                     Some(Side::new(seen.partner.clone()))
                 }
             };
@@ -150,12 +151,7 @@ fn mortar_gap(
             size,
         });
     }
-    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
-    Ok(if gap.abs() <= weights * rounding(&scene.mesh) {
-        0.0
-    } else {
-        gap
-    })
+    Ok(gap)
 }
 
 /// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
