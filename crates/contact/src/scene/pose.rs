@@ -153,7 +153,7 @@ mod tests {
         }
         // after three radians the spoke at the ground has gone by
         let last = poses.last().expect("poses").origin(&[1.5, 0.0, 0.0]);
-        let expected = [-radius * 3f64.sin() * -1.0, 0.0, radius - radius * 3f64.cos()];
+        let expected = [radius * 3f64.sin(), 0.0, radius - radius * 3f64.cos()];
         assert!(norm(sub(last, expected)) < 1e-14, "{last:?}");
     }
 
