@@ -206,3 +206,8 @@ pub(crate) const COARSE_MESH: f64 = 0.1;
 
 /// Strain over displacement by size below which it may be what the solver left of a rigid motion.
 pub(crate) const RIGID: f64 = 1e-6;
+
+// ---- steps (settings, simulation) ----
+
+/// Most halvings of a step: a millionth of it is no step any more.
+pub(crate) const MOST_HALVINGS: u32 = 20;

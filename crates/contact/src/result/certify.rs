@@ -118,7 +118,8 @@ mod tests {
         let mut model = Model::new(scene, &Settings::default()).expect("model");
         model.points.clear();
         let mut problem = StepProblem::default();
-        problem.prepare(&model, &State::default(), 0).expect("step");
+        let first = model.scene.analysis.increment(0).expect("a step");
+        problem.prepare(&model, &State::default(), first).expect("step");
         let u = displacement.repeat(model.tfeti.torn_dim() / 3);
         let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
         let measured = Measured {

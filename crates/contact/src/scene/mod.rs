@@ -23,4 +23,5 @@ pub use load::Load;
 pub use partition::Partition;
 pub use scene::Scene;
 pub use support::{Place, Support};
+pub(crate) use time::Increment;
 pub use time::{Analysis, DifferenceFormula};

@@ -53,28 +53,32 @@ impl Scene {
     /// Checks what needs neither nodes nor computation.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         self.analysis.validate()?;
+        let mut times = self.analysis.times().iter();
+        times.try_for_each(|&time| self.check_histories(time))?;
+        let mut contacts = self.contacts.iter().enumerate();
+        contacts.try_for_each(|(index, c)| self.check(index, c))
+    }
+
+    /// Checks that all histories have a value at a time.
+    pub(crate) fn check_histories(&self, time: f64) -> Result<(), ContactError> {
         let loads = self.loads.iter().enumerate();
         let supports = self.supports.iter().enumerate();
         let contacts = self.contacts.iter().enumerate();
-        let histories: Vec<_> = (loads.map(|(k, l)| ("load", k, &l.history)))
+        let histories = (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
-            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
-            .collect();
-        for &time in self.analysis.times() {
-            for &(what, index, history) in &histories {
-                let value = history.value(time);
-                if !value.is_finite() {
-                    return Err(ContactError::HistoryValue {
-                        what,
-                        index,
-                        time,
-                        value,
-                    });
-                }
+            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))));
+        for (what, index, history) in histories {
+            let value = history.value(time);
+            if !value.is_finite() {
+                return Err(ContactError::HistoryValue {
+                    what,
+                    index,
+                    time,
+                    value,
+                });
             }
         }
-        let mut contacts = self.contacts.iter().enumerate();
-        contacts.try_for_each(|(index, c)| self.check(index, c))
+        Ok(())
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {

@@ -12,6 +12,7 @@ mod edges_apart;
 mod effects;
 mod estimates;
 mod free_bodies;
+mod halving;
 mod invariance;
 mod manufactured;
 mod methods;
