@@ -1,6 +1,8 @@
 //! The plain programs: each runs, and finds what it must find.
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
+#[path = "../deck.rs"]
+mod deck;
 #[path = "../own_mesh.rs"]
 mod own_mesh;
 #[path = "../qp_only.rs"]
@@ -9,6 +11,8 @@ mod qp_only;
 mod tresca;
 
 mod docs;
+#[cfg(unix)]
+mod signal;
 
 use signorini::prelude::*;
 use signorini_qp::kprgp::Expansion;

@@ -141,7 +141,8 @@ signorini_fem_mesh::errors! {
             it, with smaller steps or other settings";
         Checkpoint { reason: String } = "checkpoint: {reason}";
         CheckpointFile { what: &'static str, path: std::path::PathBuf, source: std::io::Error } =
-            "checkpoint: cannot {what} {}: {source}", path.display();
+            "checkpoint: cannot {what} {}: {source}; those stored before stay: make room, correct the rights of the \
+            folder or give another one, then go on", path.display();
         Probe { node: u32, nodes: usize } =
             "probe: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ResultTable { path: std::path::PathBuf, line: usize, found: String, expected: String } =

@@ -106,6 +106,8 @@ pub use scene::{
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
+#[cfg(feature = "checkpoint")]
+pub use simulation::Every;
 pub use simulation::{Flow, Observer, Progress, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
 pub use status::{StepFailure, StepStatus};

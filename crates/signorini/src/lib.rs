@@ -52,6 +52,8 @@ pub use error::Error;
 /// The names that a program usually needs.
 pub mod prelude {
     pub use crate::Error;
+    #[cfg(feature = "checkpoint")]
+    pub use signorini_contact::Every;
     pub use signorini_contact::result::ContactSummary;
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,

@@ -98,13 +98,13 @@ pub(super) fn nodal_loads(
     Ok(out)
 }
 
-/// Refuses gaps at the start, and those that obstacles bring with them at the steps.
+/// Refuses gaps as given, and what becomes of them at the steps.
 pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint]) -> Result<(), ContactError> {
     for c in conditions {
         let place = || format!("contact at node {}: the gap", c.node());
         expect(c.gap.abs(), "m", place)?;
         let contact = &scene.contacts[c.surface];
-        if contact.carries_field() {
+        if contact.changes_gap() {
             for &time in scene.analysis.times() {
                 let gap = c.gap_after(scene, &contact.obstacle_at(time))?;
                 expect(gap.abs(), "m", place)?;

@@ -12,7 +12,7 @@ use super::creases::{area_vector, creases};
 use super::partners::{Partner, partners};
 use super::side::Sides;
 use crate::error::ContactError;
-use crate::scene::{Contact, ContactNormal, Scene};
+use crate::scene::{Contact, ContactNormal, Obstacle, Scene};
 use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
 use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
@@ -33,7 +33,7 @@ pub(crate) struct ContactPoint {
     pub(crate) frame: SurfaceFrame,
     /// A third of the areas of the facets of its side, m².
     pub(crate) area: f64,
-    /// Initial distance to the obstacle, m.
+    /// Distance to the obstacle as given, m.
     pub(crate) gap: f64,
 }
 
@@ -43,16 +43,16 @@ impl ContactPoint {
         self.sides.node()
     }
 
-    /// The gap, m, that the obstacle has brought by moving by `way` along the surface, without what it opens.
-    pub(crate) fn gap_brought(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
+    /// The gap, m, that the obstacle has brought by moving along the surface, without what it opens.
+    pub(crate) fn gap_brought(&self, scene: &Scene, obstacle: &Obstacle) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
-        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, way))
+        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, obstacle))
     }
 
-    /// The gap where the obstacle has moved by `way`, m.
-    pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
-        Ok(self.gap_brought(scene, way)? + vector::dot(way, &self.frame.normal))
+    /// The gap to the obstacle where it is, m.
+    pub(crate) fn gap_after(&self, scene: &Scene, obstacle: &Obstacle) -> Result<f64, ContactError> {
+        Ok(self.gap_brought(scene, obstacle)? + vector::dot(&obstacle.way, &self.frame.normal))
     }
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
@@ -151,7 +151,7 @@ fn fixed_frame(index: usize, contact: &Contact, surface: &Surface) -> Result<Opt
 fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
-    if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
+    if x.motion != y.motion || x.gap_history != y.gap_history || !stays(scene, rounding, point, other, nearer)? {
         return Err(ContactError::SharedNode {
             node: point.node(),
             first: point.surface,
@@ -184,7 +184,8 @@ fn order(difference: f64, rounding: f64) -> Ordering {
     }
 }
 
-/// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along may change that.
+/// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along and factors of the
+/// gap may change that.
 fn stays(
     scene: &Scene,
     rounding: f64,
@@ -193,12 +194,12 @@ fn stays(
     nearer: Ordering,
 ) -> Result<bool, ContactError> {
     let [x, y] = [point, other].map(|c| &scene.contacts[c.surface]);
-    if !x.carries_field() && !y.carries_field() {
+    if !x.changes_gap() && !y.changes_gap() {
         return Ok(true);
     }
     for &time in scene.analysis.times() {
-        let way = x.obstacle_at(time);
-        let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
+        let obstacle = x.obstacle_at(time);
+        let difference = other.gap_after(scene, &obstacle)? - point.gap_after(scene, &obstacle)?;
         if order(difference, rounding) != nearer {
             return Ok(false);
         }

@@ -39,6 +39,8 @@ pub struct Effects {
     pub motion: bool,
     /// Obstacles that move.
     pub moving_obstacle: bool,
+    /// Gaps that change in time.
+    pub gap_history: bool,
 }
 
 impl FrictionKind {
@@ -74,6 +76,7 @@ impl Effects {
             supports: !scene.supports.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
             moving_obstacle: contacts.iter().any(|c| c.motion.is_some()),
+            gap_history: (0..contacts.len()).any(|k| has_gap(k) && contacts[k].gap_history.is_some()),
         }
     }
 }

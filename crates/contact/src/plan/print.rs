@@ -91,7 +91,8 @@ impl Plan {
             None => "no gap: zero offset".to_owned(),
             Some([low, high]) => {
                 let inside = if low < 0.0 { ", starts inside" } else { "" };
-                format!("gaps {low:.3e} to {high:.3e} m{inside}")
+                let changing = if e.gap_history { ", with a history" } else { "" };
+                format!("gaps {low:.3e} to {high:.3e} m{inside}{changing}")
             }
         };
         let moving = if e.moving_obstacle { ", moving obstacle" } else { "" };

@@ -40,7 +40,7 @@ pub struct ContactSummary {
     pub dissipation: f64,
     /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the
     /// displacement of the obstacle, and normal forces times the change of a [gap that moves
-    /// along](crate::Contact::with_motion).
+    /// along](crate::Contact::with_motion) or [has a history](crate::Contact::with_gap_history).
     pub obstacle_work: f64,
 }
 
@@ -82,7 +82,7 @@ pub(crate) fn summarise(
             problem.obstacles[1].get(touch.surface()),
         ) {
             for c in 0..3 {
-                s.obstacle_work += force[c] * (now[c] - old[c]);
+                s.obstacle_work += force[c] * (now.way[c] - old.way[c]);
             }
             if active {
                 let [now, old] = [StepProblem::gap, StepProblem::gap_before];

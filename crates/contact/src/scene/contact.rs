@@ -56,6 +56,17 @@ pub struct Contact {
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
+    /// Factor of the gap in time.
+    pub(crate) gap_history: Option<History>,
+}
+
+/// Where an obstacle is at a time, and what has become of the gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Obstacle {
+    /// Displacement, m.
+    pub(crate) way: [f64; 3],
+    /// Factor of the gap.
+    pub(crate) factor: f64,
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
@@ -73,6 +84,7 @@ impl Contact {
             friction: Friction::None,
             crease: CREASE,
             motion: None,
+            gap_history: None,
         }
     }
 
@@ -163,6 +175,27 @@ impl Contact {
         self
     }
 
+    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field or the coordinates
+    /// say. A press fit grows from nothing by a negative gap and a ramp; a factor that changes its sign opens or closes
+    /// again. Before the first step the factor is that at time 0. For obstacles and between bodies. What the growing
+    /// interference does to the bodies is part of
+    /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
+    ///
+    /// ```
+    /// use signorini_contact::Contact;
+    /// use signorini_fem_mesh::{FacetTag, History};
+    ///
+    /// let (hub, shaft) = (FacetTag(1), FacetTag(2));
+    /// // 20 micrometres of interference, within a second
+    /// let fit = Contact::between(hub, shaft).with_gap(-20e-6).with_gap_history(History::ramp(1.0, 1.0)?);
+    /// # Ok::<(), signorini_fem_mesh::HistoryError>(())
+    /// ```
+    #[must_use]
+    pub fn with_gap_history(mut self, history: History) -> Self {
+        self.gap_history = Some(history);
+        self
+    }
+
     /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at
     /// least.
     #[must_use]
@@ -196,14 +229,24 @@ impl Contact {
         self
     }
 
-    /// Displacement of the obstacle at a time, m.
-    pub(crate) fn obstacle_at(&self, time: f64) -> [f64; 3] {
-        match &self.motion {
+    /// Where the obstacle is at a time.
+    pub(crate) fn obstacle_at(&self, time: f64) -> Obstacle {
+        let way = match &self.motion {
             Some((displacement, history)) => {
                 let factor = history.value(time);
                 displacement.map(|c| factor * c)
             }
             None => [0.0; 3],
+        };
+        let factor = self.gap_history.as_ref().map_or(1.0, |h| h.value(time));
+        Obstacle { way, factor }
+    }
+
+    /// Where it is before the first step.
+    pub(crate) fn obstacle_at_rest(&self) -> Obstacle {
+        Obstacle {
+            way: [0.0; 3],
+            ..self.obstacle_at(0.0)
         }
     }
 
@@ -257,6 +300,12 @@ impl Contact {
         Some((*displacement, history))
     }
 
+    /// The factor of the gap in time; `None` if it stays.
+    #[must_use]
+    pub fn gap_history(&self) -> Option<&History> {
+        self.gap_history.as_ref()
+    }
+
     /// The gap at a node, m, checked; `contact` is the position of the surface in the scene, `measured` the distance
     /// to the partner of the node.
     pub(crate) fn gap_at(
@@ -289,21 +338,28 @@ impl Contact {
         self.motion.is_some() && matches!(self.gap, Gap::Field(_))
     }
 
-    /// The gap at a node, m, that is `initial` at first and to which the obstacle has brought that of the place from
-    /// which it comes along the surface. The part of the way along the normal, which opens the gap, is not in it.
+    /// Whether the gap changes otherwise than by what an obstacle opens.
+    pub(crate) fn changes_gap(&self) -> bool {
+        self.carries_field() || self.gap_history.is_some()
+    }
+
+    /// The gap at a node, m, that is `initial` as given and to which the obstacle has brought that of the place from
+    /// which it comes along the surface, times its factor. The part of the way along the normal, which opens the gap, is
+    /// not in it.
     pub(crate) fn gap_brought(
         &self,
         contact: usize,
         node: u32,
         position: [f64; 3],
         normal: &[f64; 3],
-        (initial, way): (f64, &[f64; 3]),
+        (initial, obstacle): (f64, &Obstacle),
     ) -> Result<f64, ContactError> {
+        let (way, factor) = (&obstacle.way, obstacle.factor);
         let out = vector::dot(way, normal);
         let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
         if !matches!(self.gap, Gap::Field(_)) || from == position {
-            return Ok(initial);
+            return Ok(factor * initial);
         }
-        self.gap_at(contact, node, from, initial)
+        Ok(factor * self.gap_at(contact, node, from, initial)?)
     }
 }

@@ -16,6 +16,7 @@ mod support;
 mod time;
 mod validate;
 
+pub(crate) use contact::Obstacle;
 pub use contact::{Contact, ContactNormal, Gap};
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, PlaceField, RateField, SlipBound};

@@ -55,6 +55,11 @@ impl Scene {
         self.analysis.validate()?;
         let mut times = self.analysis.times().iter();
         times.try_for_each(|&time| self.check_histories(time))?;
+        for (index, contact) in self.contacts.iter().enumerate() {
+            // what it is at rest, too
+            let value = contact.gap_history.as_ref().map_or(0.0, |h| h.value(0.0));
+            check_value(("contact", index), 0.0, value)?;
+        }
         let mut contacts = self.contacts.iter().enumerate();
         contacts.try_for_each(|(index, c)| self.check(index, c))
     }
@@ -66,17 +71,12 @@ impl Scene {
         let contacts = self.contacts.iter().enumerate();
         let histories = (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
-            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))));
+            .chain(contacts.flat_map(|(k, c)| {
+                let motion = c.motion.as_ref().map(|(_, history)| history);
+                motion.into_iter().chain(&c.gap_history).map(move |h| ("contact", k, h))
+            }));
         for (what, index, history) in histories {
-            let value = history.value(time);
-            if !value.is_finite() {
-                return Err(ContactError::HistoryValue {
-                    what,
-                    index,
-                    time,
-                    value,
-                });
-            }
+            check_value((what, index), time, history.value(time))?;
         }
         Ok(())
     }
@@ -117,4 +117,18 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// Refuses a value of a history that is none; `place` is what has it, and its position in the scene.
+fn check_value(place: (&'static str, usize), time: f64, value: f64) -> Result<(), ContactError> {
+    let (what, index) = place;
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(ContactError::HistoryValue {
+        what,
+        index,
+        time,
+        value,
+    })
 }

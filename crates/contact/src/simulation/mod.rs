@@ -19,6 +19,8 @@ mod simulation;
 mod step;
 mod step_doubling;
 
+#[cfg(feature = "checkpoint")]
+pub use checkpoints::Every;
 pub use observer::{Flow, Observer, Silent};
 pub use progress::Progress;
 pub use result::StepResult;

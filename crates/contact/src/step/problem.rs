@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
-use crate::scene::{DifferenceFormula, Increment, Scene};
+use crate::scene::{DifferenceFormula, Increment, Obstacle, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
@@ -29,8 +29,8 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
-    /// Displacement of the obstacle of each contact surface, now and an increment before; empty where none moves.
-    pub(crate) obstacles: [Vec<[f64; 3]>; 2],
+    /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
+    pub(crate) obstacles: [Vec<Obstacle>; 2],
     /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not
     /// in `B u`. By contact row, in row units; empty where no support moves such a point.
     pub(crate) prescribed: Vec<f64>,
@@ -116,18 +116,22 @@ impl StepProblem {
         Ok(())
     }
 
-    /// Where the obstacles that move are.
+    /// Where the obstacles that move are, and the gaps that change.
     fn find_obstacles(&mut self, model: &Model, before: Option<f64>) {
-        if !model.plan.effects.moving_obstacle {
+        let effects = &model.plan.effects;
+        if !effects.moving_obstacle && !effects.gap_history {
             return;
         }
         self.obstacles = [Some(self.time), before].map(|time| {
             let contacts = model.scene.contacts.iter();
-            contacts.map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t))).collect()
+            contacts
+                .map(|c| time.map_or_else(|| c.obstacle_at_rest(), |t| c.obstacle_at(t)))
+                .collect()
         });
     }
 
-    /// The gap of a point with what an obstacle that moves along the surface has brought, without what it opens, m.
+    /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time, without
+    /// what the obstacle opens, m.
     pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[0])
     }
@@ -140,7 +144,7 @@ impl StepProblem {
     /// Displacement of the obstacle of a surface along a direction, m.
     pub(crate) fn carried(&self, surface: usize, direction: &[f64; 3]) -> f64 {
         let way = self.obstacles[0].get(surface);
-        way.map_or(0.0, |w| dot(w, direction))
+        way.map_or(0.0, |o| dot(&o.way, direction))
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:
@@ -177,9 +181,9 @@ impl StepProblem {
     }
 }
 
-fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[[f64; 3]]) -> Result<f64, ContactError> {
+fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Obstacle]) -> Result<f64, ContactError> {
     match obstacles.get(point.contact.surface) {
-        Some(way) => point.contact.gap_brought(scene, way),
+        Some(obstacle) => point.contact.gap_brought(scene, obstacle),
         None => Ok(point.contact.gap),
     }
 }

@@ -12,6 +12,7 @@ mod edges_apart;
 mod effects;
 mod estimates;
 mod free_bodies;
+mod gap_history;
 mod halving;
 mod invariance;
 mod manufactured;
