@@ -17,6 +17,7 @@ mod halving;
 mod invariance;
 mod manufactured;
 mod methods;
+mod mortar;
 mod moving_field;
 mod moving_obstacle;
 mod pairs;
