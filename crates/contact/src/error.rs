@@ -65,6 +65,9 @@ signorini_fem_mesh::errors! {
             equal steps, backward Euler does not";
         UnknownTag { what: &'static str, index: usize, tag: u32, known: String } =
             "{what} {index}: no facet has the tag {tag}; the mesh has {known}";
+        SpringStiffness { spring: usize, value: f64 } =
+            "spring {spring}: its stiffness is {value} N/m³; it must be finite and not negative, and some component \
+            positive";
         UnknownNode { support: usize, node: u32, nodes: usize } =
             "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ValueCount { support: usize, values: usize, nodes: usize } =

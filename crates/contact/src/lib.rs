@@ -102,7 +102,7 @@ pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
     Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Partition, Place, Scene,
-    SlipBound, Support,
+    SlipBound, Spring, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::Directions;

@@ -58,7 +58,7 @@ pub mod prelude {
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,
         DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Partition, Place, Plan, PointState,
-        Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
+        Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, Spring, State, StepResult,
         StepStatus, Support, Warning,
     };
     #[cfg(feature = "vtu")]

@@ -12,6 +12,9 @@ signorini_fem_mesh::errors! {
         Collinear { subdomain: usize } =
             "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions";
         Material { element: usize, message: String } = "tetrahedron {element}: {message}";
+        Spring { node: u32, stiffness: f64 } =
+            "spring at node {node}: its stiffness is {stiffness} N/m; it must be positive, and neither so small nor so \
+            large that its inverse overflows or vanishes";
         UnknownNode { place: String, node: u32, nodes: usize } =
             "{place}: node {node} does not exist, the mesh has nodes 0..{nodes}";
         EmptySupport { support: usize, what: &'static str } =

@@ -15,6 +15,7 @@ mod points;
 mod rounding;
 mod scene;
 mod side;
+mod springs;
 mod supports;
 
 pub(crate) use extents::Extents;

@@ -4,6 +4,7 @@ use super::overflow::{check_gaps, check_materials, check_motions, nodal_loads};
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, points};
 use super::rounding::rounding;
+use super::springs::Springs;
 use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Contact, Scene, check_laws};
@@ -18,6 +19,7 @@ pub(crate) struct DiscreteScene {
     /// How the body is cut.
     pub(crate) decomposition: Decomposition,
     pub(crate) supports: Supports,
+    pub(crate) springs: Springs,
     /// Contact surfaces, in the order of the scene, fixed nodes included.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
@@ -39,6 +41,7 @@ impl DiscreteScene {
         scene.validate()?;
         let decomposition = scene.decompose()?;
         let supports = Supports::new(scene)?;
+        let springs = Springs::new(scene, &supports)?;
         let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
         let surfaces = scene.contacts.iter().map(surface);
         let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
@@ -64,6 +67,7 @@ impl DiscreteScene {
         Ok(Self {
             decomposition,
             supports,
+            springs,
             surfaces,
             conditions,
             points,

@@ -69,6 +69,7 @@ impl Model {
         let plan = Plan::of(&scene, &discrete, settings)?;
         let tfeti = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
             .with_supports(&discrete.supports.nodes)
+            .with_springs(&discrete.springs.nodal)
             .with_share_translates(settings.share_translates)
             .with_inverse(settings.inverse)
             .with_contact(&discrete.constraints)

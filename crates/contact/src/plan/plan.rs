@@ -111,7 +111,7 @@ impl Plan {
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
             interface_rows: primal - 3 * nodes,
-            dirichlet_rows: fixed.values().copied().sum(),
+            dirichlet_rows: fixed.values().copied().sum::<usize>() + discrete.springs.nodal.len(),
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
             method: if effects.contact {
@@ -124,7 +124,8 @@ impl Plan {
             warnings: sanity::warnings(scene, discrete),
         };
         let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
-        let touching: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+        let mut touching: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+        touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
         let forecast = Forecast::new(
             &scene.mesh,
             decomposition,

@@ -76,10 +76,13 @@ impl Plan {
 
     fn supports_text(&self) -> String {
         let moving = if self.effects.motion { ", moving" } else { "" };
-        match self.effects.supports {
-            true => format!("{} rows{moving}", self.dirichlet_rows),
-            false => "none (free body)".to_owned(),
-        }
+        let springs = match (self.effects.supports, self.effects.springs) {
+            (false, false) => return "none (free body)".to_owned(),
+            (true, false) => "",
+            (true, true) => ", with springs",
+            (false, true) => ", springs only",
+        };
+        format!("{} rows{moving}{springs}", self.dirichlet_rows)
     }
 
     fn contact_text(&self) -> String {

@@ -27,9 +27,10 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     for own in sizes {
         c.equilibrium.worsen(own.residual, own.forces);
     }
+    let gluing = model.tfeti.gluing();
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
-        let jump = (m.rows[row] - problem.offset[row]).abs();
+        let jump = (m.rows[row] + gluing.gives_way(row, lambda[row]) - problem.offset[row]).abs();
         c.continuity.worsen(jump, own.displacement);
     }
     for (k, point) in model.points.iter().enumerate() {

@@ -60,6 +60,12 @@ impl Scene {
             let value = contact.gap_history.as_ref().map_or(0.0, |h| h.value(0.0));
             check_value(("contact", index), 0.0, value)?;
         }
+        for (index, spring) in self.springs.iter().enumerate() {
+            spring.validate(index)?;
+            if self.mesh.nodes_on(spring.tag).is_empty() {
+                return Err(self.unknown_tag("spring", index, spring.tag));
+            }
+        }
         let mut contacts = self.contacts.iter().enumerate();
         contacts.try_for_each(|(index, c)| self.check(index, c))
     }

@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
-use crate::solve::Task;
+use crate::solve::{Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
@@ -144,7 +144,7 @@ impl Simulation {
             result.report.counters.rate_updates += 1;
         }
         if model.plan.steps > 1 || kept.between {
-            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate.alpha);
+            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate);
             kept.lambda = std::mem::take(&mut self.iterate.lambda);
             kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
         }
@@ -188,11 +188,13 @@ fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     trace
 }
 
-/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`.
-fn product(model: &Model, problem: &StepProblem, rows: &[f64], alpha: &[f64]) -> Vec<f64> {
+/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`, with what springs give way.
+fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &Iterate) -> Vec<f64> {
     let coarse = model.tfeti.coarse();
     let mut rigid = vec![0.0; rows.len()];
-    coarse.apply_transpose(alpha, &mut rigid, &mut coarse.scratch());
+    coarse.apply_transpose(&iterate.alpha, &mut rigid, &mut coarse.scratch());
     let parts = rows.iter().zip(&problem.load).zip(&rigid);
-    parts.map(|((u, load), rigid)| u - (load + rigid)).collect()
+    let mut out: Vec<f64> = parts.map(|((u, load), rigid)| u - (load + rigid)).collect();
+    model.tfeti.gluing().add_compliance(&iterate.lambda, &mut out);
+    out
 }

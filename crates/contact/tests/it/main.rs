@@ -29,6 +29,7 @@ mod reactions;
 mod refusals;
 mod restart;
 mod sanity;
+mod springs;
 mod step_doubling;
 mod supports;
 mod tresca;
