@@ -1,6 +1,7 @@
 //! States as bytes: what was stored and read back is the same state, and continues bit for bit.
 //! Stands alone, so that it runs with the feature `checkpoint` and no other.
 
+use allocation_counter::measure;
 use signorini_contact::{
     Accuracy, Analysis, Coefficient, Contact, ContactError, DifferenceFormula, Every, Flow, Friction, Load, Method,
     RunReport, Scene, Settings, Silent, Simulation, State, StepResult, Support, Warning,
@@ -361,4 +362,56 @@ fn halved_steps_go_on_from_a_folder() {
     let mut again = new();
     let _ = again.run_or_resume(&folder.0, 1, &mut Silent).expect("run");
     assert!(again.state() == whole.state());
+}
+
+/// The bytes with another payload and the checksum that belongs to it.
+fn resealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let sum = bytes[12..].iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    bytes[4..12].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
+/// Bytes made on purpose, which the checksum does not find: lengths beyond all bounds, numbers that are none, cuts. An
+/// answer, no memory for what is not there, and what can be read is refused or can be gone on from.
+#[test]
+fn made_up_bytes_are_refused_or_harmless() {
+    let mut simulation = rough();
+    let _ = simulation.step().expect("step");
+    let whole = simulation.state().to_bytes().expect("encode");
+    let mut good = 0;
+    let mut try_one = |bytes: Vec<u8>, what: &str| {
+        let bytes = resealed(bytes);
+        let mut state = None;
+        let used = measure(|| state = Some(State::from_bytes(&bytes)));
+        // postcard believes a length up to a megabyte before the numbers come
+        let most = 16 * 1024 * 1024 + 16 * bytes.len() as u64;
+        assert!(used.bytes_max < most, "{what}: {} bytes", used.bytes_max);
+        if let Some(Ok(state)) = state {
+            good += 1;
+            if let Err(error) = simulation.resume(state) {
+                assert!(matches!(error, ContactError::Checkpoint { .. }), "{what}: {error}");
+            }
+        }
+    };
+    for at in 12..whole.len() {
+        for new in [0x00, 0x01, 0x7f, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] = new;
+            try_one(bytes, "one byte");
+        }
+        if at % 7 == 0 {
+            // a length of 2^63 in the encoding of postcard, in the place of what is there, and between
+            let long = [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f];
+            let mut bytes = whole.clone();
+            bytes.splice(at..(at + 9).min(whole.len()), long);
+            try_one(bytes, "long");
+            let mut bytes = whole.clone();
+            bytes.splice(at..at, long);
+            try_one(bytes, "longer");
+            try_one(whole[..at].to_vec(), "cut");
+        }
+    }
+    assert!(good > 100, "{good}");
 }
