@@ -5,12 +5,14 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 use signorini::fem_mesh::gmsh::{GroupNames, read_named_gmsh};
 use signorini::fem_mesh::{Surface, TetMesh};
 use signorini::prelude::*;
 use signorini_studies::chart::{Chart, Curve, page};
+use signorini_studies::draw::{self, Shown};
 use signorini_studies::record::StepRecord;
 use signorini_studies::run::{pool, solve};
 use signorini_studies::{Failure, exit, save};
@@ -21,6 +23,9 @@ const STEEL: [f64; 2] = [210e3, 0.3];
 const RADIUS: f64 = 10.0;
 /// Radius of the contact that the force on the ball is chosen for.
 const CONTACT_RADIUS: f64 = 0.8;
+
+/// From where parts are drawn.
+const EYE: [f64; 3] = [1.0, -1.6, 0.9];
 
 /// Options of `parts`.
 #[derive(Debug, Clone, PartialEq, Parser)]
@@ -38,6 +43,9 @@ pub struct PartsOptions {
     /// Draws the pressure under the balls beside the formula into this SVG.
     #[arg(long)]
     pub plot: Option<PathBuf>,
+    /// Draws each part at its end, by von Mises stress, into this folder.
+    #[arg(long)]
+    pub pictures: Option<PathBuf>,
 }
 
 #[allow(dead_code)]
@@ -72,7 +80,11 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
         let part = stem.split('-').next().unwrap_or_default().to_owned();
         let (mesh, names) = read_named_gmsh(&path)?;
         for &count in &options.subdomains {
-            let run = pool.install(|| run(&part, &mesh, &names, count, out))?;
+            let (run, last) = pool.install(|| run(&part, &mesh, &names, count, out))?;
+            if let (Some(folder), Some(last)) = (&options.pictures, last) {
+                let text = draw::result(&last, Shown::VonMises, EYE);
+                save(&folder.join(format!("{stem}.svg")), &text)?;
+            }
             runs.push(run);
         }
     }
@@ -114,7 +126,7 @@ fn run(
     names: &GroupNames,
     count: usize,
     out: &mut (impl Write + Send),
-) -> Result<PartRun, Failure> {
+) -> Result<(PartRun, Option<Arc<StepResult>>), Failure> {
     let mut scene = scene(part, mesh, names)?;
     if count > 0 {
         scene = scene.with_subdomains(count);
@@ -148,12 +160,13 @@ fn run(
         },
     )?;
     let hertz = (part == "sphere").then(|| Hertz::new(&simulation));
-    Ok(PartRun {
+    let run = PartRun {
         part: part.to_owned(),
         tets,
         steps,
         hertz: hertz.flatten(),
-    })
+    };
+    Ok((run, simulation.result().cloned()))
 }
 
 /// What is done to a part.

@@ -40,6 +40,10 @@ pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
     Ok(ends.map(|s| s * extent))
 }
 
+/// What numbers count, in words: scenes have units of their own.
+const LENGTH: &str = "units of length";
+const FORCE: &str = "units of force";
+
 /// Refuses what is too large; what is not a number is left to others.
 fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
     if value > LARGEST {
@@ -60,16 +64,16 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             let (factor, time) = scene.analysis.largest_factor(history);
             let size = vector::max_abs(values.as_flattened());
             let place = || format!("support {index} at time {time} s: its displacement");
-            expect(factor * size, "m", place)?;
+            expect(factor * size, LENGTH, place)?;
             let place = || format!("support {index} at time {time} s: its displacement times the stiffness");
-            expect(factor * size * spring, "N", place)?;
+            expect(factor * size * spring, FORCE, place)?;
         }
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
         if let Some((value, history)) = &contact.motion {
             let (factor, time) = scene.analysis.largest_factor(history);
             let place = || format!("obstacle {index} at time {time} s: its displacement");
-            expect(factor * vector::max_abs(value), "m", place)?;
+            expect(factor * vector::max_abs(value), LENGTH, place)?;
         }
     }
     Ok(())
@@ -91,8 +95,8 @@ pub(super) fn nodal_loads(
         let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
         let (factor, time) = scene.analysis.largest_factor(&load.history);
         let place = |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
-        expect(factor * size, "N", || place(""))?;
-        expect(factor * size / spring, "m", || place(" over the stiffness"))?;
+        expect(factor * size, FORCE, || place(""))?;
+        expect(factor * size / spring, LENGTH, || place(" over the stiffness"))?;
         out.push(local);
     }
     Ok(out)
@@ -102,12 +106,12 @@ pub(super) fn nodal_loads(
 pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint]) -> Result<(), ContactError> {
     for c in conditions {
         let place = || format!("contact at node {}: the gap", c.node());
-        expect(c.gap.abs(), "m", place)?;
+        expect(c.gap.abs(), LENGTH, place)?;
         let contact = &scene.contacts[c.surface];
         if contact.changes_gap() {
             for &time in scene.analysis.times() {
                 let gap = c.gap_after(scene, &contact.obstacle_at(time))?;
-                expect(gap.abs(), "m", place)?;
+                expect(gap.abs(), LENGTH, place)?;
             }
         }
     }

@@ -98,7 +98,7 @@ impl Plan {
             Some([low, high]) => {
                 let inside = if low < 0.0 { ", starts inside" } else { "" };
                 let changing = if e.gap_history { ", with a history" } else { "" };
-                format!("gaps {low:.3e} to {high:.3e} m{inside}{changing}")
+                format!("gaps {low:.3e} to {high:.3e}{inside}{changing}")
             }
         };
         let moving = if e.moving_obstacle { ", moving obstacle" } else { "" };

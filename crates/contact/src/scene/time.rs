@@ -301,7 +301,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_step_end_where_it_ends() {
-        let whole = Analysis::quasistatic(0.3, 3).increment(1).expect("a step");
+        let whole = Analysis::quasistatic(0.5, 5).increment(1).expect("a step");
         assert_eq!((whole.start, whole.end), (Some(0.1), 0.2));
         assert_eq!(whole.part([0.0, 1.0], 1.0), whole);
         let last = whole.part([0.75, 1.0], 1.0);

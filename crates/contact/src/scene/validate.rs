@@ -99,7 +99,7 @@ impl Scene {
                 return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
         }
-        let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None);
+        let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
         if contact.tied && (loose || contact.normal != ContactNormal::Body) {
             return Err(ContactError::Tied { contact: index });
         }

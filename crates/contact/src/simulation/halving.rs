@@ -173,8 +173,8 @@ mod tests {
         // nothing longer than an eighth gets over 0.3
         let hard = |end: f64, length: f64| end > 0.3 && end - length < 0.3 && length > 0.125;
         let (ends, way) = walk(3, None, hard);
-        assert_eq!(ends, [0.25, 0.375, 0.5, 1.0]);
-        assert_eq!((way.last, way.halved), (Some(1), 0));
+        assert_eq!(ends, [0.25, 0.375, 0.5, 0.75, 1.0]);
+        assert_eq!((way.last, way.halved), (Some(2), 1));
         // limits hold
         assert_eq!(walk(2, None, |_, _| true).0, [0.25, 0.5, 0.75, 1.0]);
         // the next step begins twice as long as the last one ended, and goes on growing

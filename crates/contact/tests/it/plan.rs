@@ -24,7 +24,7 @@ fn the_plan_tells_the_range_of_the_gaps() {
     let wedge = plan(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 0.25 * x[0] - 0.125));
     assert_eq!(wedge.gaps, Some([-0.125, 0.375]));
     let text = wedge.to_string();
-    assert!(text.contains("gaps -1.250e-1 to 3.750e-1 m, starts inside"), "{text}");
+    assert!(text.contains("gaps -1.250e-1 to 3.750e-1, starts inside"), "{text}");
     let scene = Scene::new(block([1.0; 3], [2; 3]), steel()).with_support(Support::fixed(brick::X_MIN));
     let none = Plan::new(&scene, &Settings::default()).expect("plan");
     assert_eq!(none.gaps, None);

@@ -280,7 +280,7 @@ fn wrong_springs_are_refused() {
         let text = refused(Spring::normal(brick::Y_MAX, bad));
         assert!(text.contains("spring 2: its stiffness"), "{text}");
     }
-    assert!(refused(Spring::components(brick::Y_MAX, [1.0, -2.0, 1.0])).contains("-2 N/m³"));
+    assert!(refused(Spring::components(brick::Y_MAX, [1.0, -2.0, 1.0])).contains("stiffness is -2;"));
     let text = refused(Spring::normal(FacetTag(99), 1.0));
     assert!(text.contains("spring 2: no facet has the tag 99"), "{text}");
     // along the normal alone it can turn
