@@ -21,6 +21,7 @@ fn main() -> Result<(), Error> {
     command(std::env::args().skip(1))
 }
 
+/// The command with its arguments.
 pub fn command(mut arguments: impl Iterator<Item = String>) -> Result<(), Error> {
     let (mut part, mut out, mut states) = (None, None, None);
     while let Some(argument) = arguments.next() {

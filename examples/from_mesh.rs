@@ -7,6 +7,7 @@ fn main() -> Result<(), Error> {
     run(concat!(env!("CARGO_MANIFEST_DIR"), "/roller.msh"), "out/from_mesh")
 }
 
+/// Solves and writes series for ParaView.
 pub fn run(file: &str, folder: &str) -> Result<(), Error> {
     let (mesh, names) = read_named_gmsh(file)?;
     let rubber = Materials::uniform(Hooke::isotropic(5.0, 0.45)?);

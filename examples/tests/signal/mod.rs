@@ -33,7 +33,7 @@ fn ctrl_c_ends_a_run_after_the_step_and_it_goes_on() {
     let _ = fs::remove_dir_all(folder());
     fs::create_dir_all(folder()).expect("a folder");
     // the pad of the examples in fifty steps
-    let deck_text = include_str!("../decks/pad.inp").replace("0.25, 1.", "0.02, 1.");
+    let deck_text = include_str!("../../decks/pad.inp").replace("0.25, 1.", "0.02, 1.");
     let part = folder().join("pad.inp");
     fs::write(&part, deck_text).expect("a deck");
 
