@@ -237,7 +237,8 @@ fn facets_covered_in_part_pass_uniform_pressure() {
             .with_support(Support::components(brick::X_MIN, axis(0)))
             .with_support(Support::components(second(brick::X_MIN), axis(0)))
             .with_support(
-                Support::components(third(brick::X_MAX), axis(0)).with_motion([2.0 * POISSON * strain, 0.0, 0.0], ramp()),
+                Support::components(third(brick::X_MAX), axis(0))
+                    .with_motion([2.0 * POISSON * strain, 0.0, 0.0], ramp()),
             )
             .with_load(Load::pressure(second(brick::Z_MAX), PRESSURE))
             .with_load(Load::pressure(third(brick::Z_MAX), PRESSURE))

@@ -80,3 +80,25 @@ fn the_plan_knows_what_very_small_subdomains_cost() {
     assert!(fine.to_string().contains("too small ones"), "{fine}");
     assert!(!plan(6, false).to_string().contains("too small ones"));
 }
+
+/// Of 24 equal subdomains that share their matrices a product is dense; if each has its own, memory sets the pace.
+#[test]
+fn matrices_that_are_not_shared_are_read_at_the_pace_of_memory() {
+    let plan = |share: bool| {
+        let scene = Scene::new(block([6.0, 2.0, 2.0], [30, 10, 10]), steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01))
+            .with_boxes([6, 2, 2]);
+        let settings = Settings::default().with_share_translates(share);
+        Plan::new(&scene, &settings)
+            .expect("plan")
+            .with_machine(Rate::default())
+            .estimate
+    };
+    let product = |e: &signorini_contact::plan::Estimate| e.times.expect("a machine").product;
+    let (shared, own) = (plan(true), plan(false));
+    let reading = own.inverse_bytes as f64 / 8.0 / Rate::default().numbers;
+    assert!(product(&own) > 2.0 * reading && product(&own) > product(&shared));
+    assert!(own.products == shared.products);
+}
