@@ -3,7 +3,7 @@
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
-use crate::scene::Scene;
+use crate::scene::{Pose, Scene};
 use crate::tolerances::LARGEST;
 use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_qp::vector;
@@ -75,6 +75,11 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             let place = || format!("obstacle {index} at time {time} s: its displacement");
             expect(factor * vector::max_abs(value), LENGTH, place)?;
         }
+        if let Some(rotation) = &contact.rotation {
+            let (angle, time) = scene.analysis.largest_factor(&rotation.angle);
+            let place = || format!("obstacle {index} at time {time} s: its angle");
+            expect(angle, "radians", place)?;
+        }
     }
     Ok(())
 }
@@ -103,14 +108,13 @@ pub(super) fn nodal_loads(
 }
 
 /// Refuses gaps as given, and what becomes of them at the steps.
-pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint]) -> Result<(), ContactError> {
+pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint], poses: &[Vec<Pose>]) -> Result<(), ContactError> {
     for c in conditions {
         let place = || format!("contact at node {}: the gap", c.node());
         expect(c.gap.abs(), LENGTH, place)?;
-        let contact = &scene.contacts[c.surface];
-        if contact.changes_gap() {
-            for &time in scene.analysis.times() {
-                let gap = c.gap_after(scene, &contact.obstacle_at(time))?;
+        if scene.contacts[c.surface].changes_gap() {
+            for pose in &poses[c.surface] {
+                let gap = c.gap_after(scene, pose)?;
                 expect(gap.abs(), LENGTH, place)?;
             }
         }

@@ -8,13 +8,14 @@
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
 
-use super::creases::{area_vector, creases};
+use super::creases::creases;
+use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
-use crate::scene::{ContactNormal, Gap, Obstacle, Scene};
-use crate::tolerances::{SAME_NORMAL, TURN};
+use crate::scene::{Gap, Pose, Scene};
+use crate::tolerances::SAME_NORMAL;
 use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -36,6 +37,8 @@ pub(crate) struct ContactPoint {
     pub(crate) area: f64,
     /// Distance to the obstacle as given, m.
     pub(crate) gap: f64,
+    /// Friction along the second tangent over that along the first.
+    pub(crate) stretch: f64,
 }
 
 impl ContactPoint {
@@ -45,15 +48,20 @@ impl ContactPoint {
     }
 
     /// The gap, m, that the obstacle has brought by moving along the surface, without what it opens.
-    pub(crate) fn gap_brought(&self, scene: &Scene, obstacle: &Obstacle) -> Result<f64, ContactError> {
+    pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
-        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, obstacle))
+        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, pose))
     }
 
-    /// The gap to the obstacle where it is, m.
-    pub(crate) fn gap_after(&self, scene: &Scene, obstacle: &Obstacle) -> Result<f64, ContactError> {
-        Ok(self.gap_brought(scene, obstacle)? + vector::dot(&obstacle.way, &self.frame.normal))
+    /// The gap where the obstacle has moved, m.
+    pub(crate) fn gap_after(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
+        Ok(self.gap_brought(scene, pose)? + self.opened(pose))
+    }
+
+    /// What the obstacle opens by moving along the normal, m.
+    pub(crate) fn opened(&self, pose: &Pose) -> f64 {
+        vector::dot(&pose.drag(&self.position), &self.frame.normal)
     }
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
@@ -66,10 +74,10 @@ impl ContactPoint {
 pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
-        let first = out.len();
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
+        let shaped = shape_frames(&scene.mesh, index, contact, surface)?;
         let sides = match (partners, fixed) {
-            (Partners::Obstacle, None) => creases(&scene.mesh, surface, contact.crease),
+            (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
         for (local, &node) in surface.nodes().iter().enumerate() {
@@ -94,9 +102,11 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     Some(Side::new(seen.partner.clone()))
                 }
             };
-            let gap = contact.gap_at(index, node, position, measured)?;
             let own = sides.get(&(local as u32));
             for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
+                let frame = fixed.or(shaped.get(local).copied()).unwrap_or(frame);
+                let gap = contact.gap_at(index, node, position, &frame.normal, measured)?;
+                let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
                     surface: index,
                     sides: Sides {
@@ -105,13 +115,13 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                         swapped: paired.swapped,
                     },
                     position,
-                    frame: fixed.unwrap_or(frame),
+                    frame,
                     area,
                     gap,
+                    stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                 });
             }
         }
-        check_turn(scene, index, surface, &out[first..])?;
     }
     Ok(out)
 }
@@ -180,7 +190,11 @@ pub(super) fn points(
 fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
-    if x.motion != y.motion || x.gap_history != y.gap_history || !stays(scene, rounding, point, other, nearer)? {
+    if x.motion != y.motion
+        || x.rotation != y.rotation
+        || x.gap_history != y.gap_history
+        || !stays(scene, rounding, point, other, nearer)?
+    {
         return Err(ContactError::SharedNode {
             node: point.node(),
             first: point.surface,
@@ -198,6 +212,9 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         }
         Ordering::Less => {
             (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+            if x.friction_axis.is_some() || y.friction_axis.is_some() {
+                (point.frame, point.stretch) = (other.frame, other.stretch);
+            }
         }
         Ordering::Greater => {}
     }
@@ -226,60 +243,11 @@ fn stays(
     if !x.changes_gap() && !y.changes_gap() {
         return Ok(true);
     }
-    for &time in scene.analysis.times() {
-        let obstacle = x.obstacle_at(time);
-        let difference = other.gap_after(scene, &obstacle)? - point.gap_after(scene, &obstacle)?;
+    for pose in x.poses(scene.analysis.times()) {
+        let difference = other.gap_after(scene, &pose)? - point.gap_after(scene, &pose)?;
         if order(difference, rounding) != nearer {
             return Ok(false);
         }
     }
     Ok(true)
-}
-
-/// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
-fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoint]) -> Result<(), ContactError> {
-    let contact = &scene.contacts[index];
-    let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
-        return Ok(());
-    };
-    if contact.normal != ContactNormal::Body {
-        return Ok(());
-    }
-    let factor = scene.analysis.largest_factor(history).0;
-    let mut worst = (0.0, 0);
-    for triangle in surface.triangles() {
-        let flat = area_vector(&scene.mesh, surface, triangle);
-        let nodes = triangle.map(|n| surface.nodes()[n as usize]);
-        let places = nodes.map(|n| scene.mesh.points()[n as usize]);
-        let edge = |a: usize| {
-            let [from, to] = [1, 2].map(|k| places[(a + k) % 3]);
-            vec3::sub(to, from)
-        };
-        // of a node in a crease the side that the facet belongs to
-        let along = |node: u32| {
-            let from = own.partition_point(|c| c.node() < node);
-            let sides = own[from..].iter().take_while(|c| c.node() == node);
-            let facing = |c: &&ContactPoint| c.frame.normal_part(flat);
-            let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
-            side.map_or(0.0, |c| factor * c.frame.normal_part(way))
-        };
-        // length of the gradient of `n . way` on the facet
-        let mut sum = [0.0; 3];
-        for (a, &node) in nodes.iter().enumerate() {
-            vector::axpy(along(node), &edge(a), &mut sum);
-        }
-        let turn = vector::norm(&sum) / (2.0 * vec3::norm(flat));
-        if turn > worst.0 {
-            worst = (turn, nodes[0]);
-        }
-    }
-    if worst.0 > TURN {
-        return Err(ContactError::MovedField {
-            contact: index,
-            node: worst.1,
-            turn: worst.0.to_degrees(),
-            most: TURN.to_degrees(),
-        });
-    }
-    Ok(())
 }

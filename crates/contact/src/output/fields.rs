@@ -234,9 +234,9 @@ fn gap_at_rest(result: &StepResult, point: usize) -> f64 {
 /// The way of a contact point along the obstacle or the partner, m.
 fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
     let state = &result.recovered.points[point];
-    let obstacle = result.problem.obstacles[0].get(state.surface);
-    let mut way = obstacle.map_or([0.0; 3], |o| o.way.map(|w| -w));
-    for (node, weight) in result.model.points[point].contact.sides.nodes() {
+    let contact = &result.model.points[point];
+    let mut way = result.problem.pose(contact).drag(&contact.position()).map(|w| -w);
+    for (node, weight) in contact.contact.sides.nodes() {
         (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
     }
     let out: f64 = (0..3).map(|c| way[c] * state.normal[c]).sum();

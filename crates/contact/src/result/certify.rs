@@ -85,10 +85,8 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
     };
     for condition in &model.judged {
         let normal = &condition.frame.normal;
-        let open = match m.problem.obstacles[0].get(condition.surface) {
-            Some(obstacle) => condition.gap_after(scene, obstacle),
-            None => Ok(condition.gap),
-        };
+        let pose = m.problem.obstacles[0].get(condition.surface);
+        let open = condition.gap_after(scene, &pose.copied().unwrap_or_default());
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let sides = condition.sides.nodes();

@@ -1,6 +1,8 @@
 //! The contact surface of a scene: where it is, how far the obstacle or the other body, and with which friction.
 
 use super::friction::{Friction, PlaceField};
+use super::obstacle::Obstacle;
+use super::pose::{Pose, Rotation};
 use crate::error::ContactError;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
@@ -19,6 +21,8 @@ pub enum Gap {
     Field(PlaceField),
     /// The distance between the nodes of two bodies, along the normal: what coordinates say.
     Measured,
+    /// The distance to an [`Obstacle`] along the normal: what its shape says.
+    Obstacle,
 }
 
 impl fmt::Debug for Gap {
@@ -28,6 +32,7 @@ impl fmt::Debug for Gap {
             Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
             Self::Field(_) => f.write_str("Field(..)"),
             Self::Measured => f.write_str("Measured"),
+            Self::Obstacle => f.write_str("Obstacle"),
         }
     }
 }
@@ -41,6 +46,8 @@ pub enum ContactNormal {
     /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
     /// under a curved body.
     Fixed([f64; 3]),
+    /// At each node that of the [`Obstacle`]: into it, against the gradient of its distance.
+    Obstacle,
 }
 
 /// A part of the boundary that may touch a rigid obstacle, or another body.
@@ -52,23 +59,19 @@ pub struct Contact {
     pub(crate) gap: Gap,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
+    /// Axis along which the law of friction holds, and how many times as much there is at right angles to it.
+    pub(crate) friction_axis: Option<([f64; 3], f64)>,
     /// Angle of a crease, degrees.
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
     /// Factor of the gap in time.
     pub(crate) gap_history: Option<History>,
+    pub(crate) rotation: Option<Rotation>,
+    /// Its shape, from which gap and normal follow.
+    pub(crate) shape: Option<Obstacle>,
     /// Whether both sides are bonded.
     pub(crate) tied: bool,
-}
-
-/// Where an obstacle is at a time, and what has become of the gap.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Obstacle {
-    /// Displacement, m.
-    pub(crate) way: [f64; 3],
-    /// Factor of the gap.
-    pub(crate) factor: f64,
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
@@ -84,10 +87,48 @@ impl Contact {
             gap: Gap::None,
             normal: ContactNormal::Body,
             friction: Friction::None,
+            friction_axis: None,
             crease: CREASE,
             motion: None,
             gap_history: None,
+            rotation: None,
+            shape: None,
             tied: false,
+        }
+    }
+
+    /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the gradient
+    /// of its distance, and the gap is the distance.
+    ///
+    /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction, along
+    /// which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body and
+    /// obstacle at the start, as small displacements have it: slips and motions must be small against the radius of
+    /// curvature. Motions that turn the obstacle's normal at a node by more than 0.1 are refused
+    /// ([`TurnedNormal`](ContactError::TurnedNormal)), displacements that do so at a node that touches are
+    /// [warned](crate::Warning::TurnedNormal) of.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Load, Obstacle, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+    ///
+    /// // a ball of radius 10 m pressed 0.02 m into a block from above
+    /// let ball = Obstacle::sphere([0.5, 0.5, 11.0 - 0.02], 10.0);
+    /// let mesh = Brick::new([1.0; 3], [4; 3]).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e6, 0.3)?))
+    ///     .with_support(Support::fixed(brick::Z_MIN))
+    ///     .with_contact(Contact::obstacle(brick::Z_MAX, ball));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let result = simulation.step()?;
+    /// assert!(result.summary().normal_force > 1e3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn obstacle(tag: FacetTag, obstacle: Obstacle) -> Self {
+        Self {
+            gap: Gap::Obstacle,
+            normal: ContactNormal::Obstacle,
+            shape: Some(obstacle),
+            ..Self::rigid(tag)
         }
     }
 
@@ -223,6 +264,13 @@ impl Contact {
         self
     }
 
+    /// The body's own outward normals as directions of contact: what [`rigid`](Self::rigid) has.
+    #[must_use]
+    pub fn with_body_normals(mut self) -> Self {
+        self.normal = ContactNormal::Body;
+        self
+    }
+
     /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
     /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge
     /// between floor and wall meets both; elsewhere one with the mean normal. Flat sides that meet at a smaller angle
@@ -233,7 +281,7 @@ impl Contact {
         self
     }
 
-    /// The obstacle moves, but does not turn: its displacement at time `t` is `history(t) * displacement` (m), and zero
+    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero
     /// before the first step. Along the normal it opens or closes the gap; along the surface it drags the body by
     /// friction.
     ///
@@ -248,25 +296,53 @@ impl Contact {
         self
     }
 
-    /// Where the obstacle is at a time.
-    pub(crate) fn obstacle_at(&self, time: f64) -> Obstacle {
-        let way = match &self.motion {
+    /// The obstacle turns about the axis through `point`: at time `t` by `angle(t)` radians, right-handed about `axis`,
+    /// and by none before the first step. The axis goes along with a [motion](Self::with_motion). Along the surface
+    /// the obstacle drags the body by friction, however far it turns; a shape that is not round about the axis brings
+    /// other gaps.
+    ///
+    /// The gap of an [obstacle](Self::obstacle) is measured at its place at each step. A
+    /// [gap field](Self::with_gap_field) turns with the obstacle. Other obstacles are taken to be of the shape of the
+    /// body's surface, and their normals must not turn by more than 0.1.
+    #[must_use]
+    pub fn with_rotation(mut self, point: [f64; 3], axis: [f64; 3], angle: History) -> Self {
+        self.rotation = Some(Rotation { point, axis, angle });
+        self
+    }
+
+    /// Whether the obstacle moves or turns.
+    pub(crate) fn moves(&self) -> bool {
+        self.motion.is_some() || self.rotation.is_some()
+    }
+
+    /// Where the obstacle is at some times, and what has become of the gap; none if it rests and the gap stays.
+    pub(crate) fn poses(&self, times: &[f64]) -> Vec<Pose> {
+        let shift = |time: f64| match &self.motion {
             Some((displacement, history)) => {
                 let factor = history.value(time);
                 displacement.map(|c| factor * c)
             }
             None => [0.0; 3],
         };
-        let factor = self.gap_history.as_ref().map_or(1.0, |h| h.value(time));
-        Obstacle { way, factor }
+        let all = times.iter().copied();
+        let mut poses: Vec<Pose> = match &self.rotation {
+            Some(rotation) => Pose::turning(rotation, all.map(|t| (shift(t), rotation.angle.value(t)))),
+            None if self.motion.is_some() => all.map(|t| Pose::shifted(shift(t))).collect(),
+            None if self.gap_history.is_some() => vec![Pose::default(); times.len()],
+            None => Vec::new(),
+        };
+        if let Some(history) = &self.gap_history {
+            let with_times = poses.iter_mut().zip(times);
+            with_times.for_each(|(pose, time)| pose.factor = history.value(*time));
+        }
+        poses
     }
 
-    /// Where it is before the first step.
-    pub(crate) fn obstacle_at_rest(&self) -> Obstacle {
-        Obstacle {
-            way: [0.0; 3],
-            ..self.obstacle_at(0.0)
-        }
+    /// The same before the first step.
+    pub(crate) fn pose_at_rest(&self) -> Pose {
+        let mut pose = Pose::default();
+        pose.factor = self.gap_history.as_ref().map_or(1.0, |h| h.value(0.0));
+        pose
     }
 
     /// The friction law. A bound or coefficient that is zero everywhere is no friction.
@@ -280,6 +356,33 @@ impl Contact {
     #[must_use]
     pub fn is_tied(&self) -> bool {
         self.tied
+    }
+
+    /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles to
+    /// it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its normal
+    /// (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound) is the
+    /// bound along the axis.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Friction};
+    /// use signorini_fem_mesh::brick;
+    ///
+    /// // ground along x: 0.3 there, 0.6 across
+    /// let floor = Contact::rigid(brick::Z_MIN)
+    ///     .with_friction(Friction::coulomb(0.3))
+    ///     .with_friction_axis([1.0, 0.0, 0.0], 0.6 / 0.3);
+    /// assert_eq!(floor.friction_axis(), Some(([1.0, 0.0, 0.0], 2.0)));
+    /// ```
+    #[must_use]
+    pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
+        self.friction_axis = Some((axis, ratio));
+        self
+    }
+
+    /// The axis of a friction that differs by direction, and the ratio of friction across it to that along it.
+    #[must_use]
+    pub fn friction_axis(&self) -> Option<([f64; 3], f64)> {
+        self.friction_axis
     }
 
     /// The friction law.
@@ -331,20 +434,35 @@ impl Contact {
         self.gap_history.as_ref()
     }
 
-    /// The gap at a node, m, checked; `contact` is the position of the surface in the scene, `measured` the distance
-    /// to the partner of the node.
+    /// How the obstacle turns.
+    #[must_use]
+    pub fn rotation(&self) -> Option<&Rotation> {
+        self.rotation.as_ref()
+    }
+
+    /// The shape of the obstacle, if it has one.
+    #[must_use]
+    pub fn shape(&self) -> Option<&Obstacle> {
+        self.shape.as_ref()
+    }
+
+    /// The gap at a place, m, checked; `contact` is the position of the surface in the scene, `measured` the distance
+    /// to the partner of the node. The normal is asked only where the gap is measured along it.
     pub(crate) fn gap_at(
         &self,
         contact: usize,
         node: u32,
         position: [f64; 3],
+        normal: &[f64; 3],
         measured: f64,
     ) -> Result<f64, ContactError> {
-        let value = match &self.gap {
-            Gap::None => 0.0,
-            Gap::Constant(value) => *value,
-            Gap::Field(field) => field(position),
-            Gap::Measured => measured,
+        let value = match (&self.gap, &self.shape) {
+            (Gap::Constant(value), _) => *value,
+            (Gap::Field(field), _) => field(position),
+            (Gap::Measured, _) => measured,
+            (Gap::Obstacle, Some(shape)) if self.normal == ContactNormal::Obstacle => shape.distance(position).0,
+            (Gap::Obstacle, Some(shape)) => shape.along(position, *normal),
+            (Gap::None | Gap::Obstacle, _) => 0.0,
         };
         if value.is_finite() {
             Ok(value)
@@ -360,7 +478,7 @@ impl Contact {
 
     /// Whether the obstacle moves and takes a gap with it that depends on the place.
     pub(crate) fn carries_field(&self) -> bool {
-        self.motion.is_some() && matches!(self.gap, Gap::Field(_))
+        self.moves() && matches!(self.gap, Gap::Field(_) | Gap::Obstacle)
     }
 
     /// Whether the gap changes otherwise than by what an obstacle opens.
@@ -368,23 +486,33 @@ impl Contact {
         self.carries_field() || self.gap_history.is_some()
     }
 
-    /// The gap at a node, m, that is `initial` as given and to which the obstacle has brought that of the place from
-    /// which it comes along the surface, times its factor. The part of the way along the normal, which opens the gap, is
-    /// not in it.
+    /// The gap at a node, m, that is `initial` at first, where the obstacle has moved, times its factor. The part of its
+    /// way along the normal, which opens the gap, is not in it.
     pub(crate) fn gap_brought(
         &self,
         contact: usize,
         node: u32,
         position: [f64; 3],
         normal: &[f64; 3],
-        (initial, obstacle): (f64, &Obstacle),
+        (initial, pose): (f64, &Pose),
     ) -> Result<f64, ContactError> {
-        let (way, factor) = (&obstacle.way, obstacle.factor);
-        let out = vector::dot(way, normal);
-        let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
-        if !matches!(self.gap, Gap::Field(_)) || from == position {
-            return Ok(factor * initial);
+        let at = |place: [f64; 3], normal: &[f64; 3]| self.gap_at(contact, node, place, normal, initial);
+        let opened = |way: [f64; 3]| vector::dot(&way, normal) - vector::dot(&pose.drag(&position), normal);
+        match &self.gap {
+            Gap::Obstacle => {
+                let whole = at(pose.origin(&position), &pose.back(normal))?;
+                Ok(pose.factor * whole - vector::dot(&pose.drag(&position), normal))
+            }
+            Gap::Field(_) => {
+                let way = pose.way(&position);
+                let out = vector::dot(&way, normal);
+                let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
+                let brought = if from == position { initial } else { at(from, normal)? };
+                let brought = pose.factor * brought;
+                Ok(if pose.turns() { brought + opened(way) } else { brought })
+            }
+            _ if pose.turns() => Ok(pose.factor * initial + opened(pose.small(&position))),
+            _ => Ok(pose.factor * initial),
         }
-        Ok(factor * self.gap_at(contact, node, from, initial)?)
     }
 }

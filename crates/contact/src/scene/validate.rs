@@ -2,10 +2,13 @@
 
 use super::contact::{Contact, ContactNormal, Gap};
 use super::friction::Friction;
+use super::obstacle::Obstacle;
+use super::pose::Rotation;
 use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
 use signorini_fem_mesh::FacetTag;
+use signorini_fem_mesh::vec3::{is_finite, norm};
 
 impl Scene {
     /// Nodes of the support at a position, checked; as many displacements as nodes, if it has not one for all.
@@ -79,7 +82,8 @@ impl Scene {
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
             .chain(contacts.flat_map(|(k, c)| {
                 let motion = c.motion.as_ref().map(|(_, history)| history);
-                motion.into_iter().chain(&c.gap_history).map(move |h| ("contact", k, h))
+                let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);
+                (motion.into_iter().chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
             }));
         for (what, index, history) in histories {
             check_value((what, index), time, history.value(time))?;
@@ -103,7 +107,7 @@ impl Scene {
         if contact.tied && (loose || contact.normal != ContactNormal::Body) {
             return Err(ContactError::Tied { contact: index });
         }
-        if contact.motion.is_some() && !contact.partner.is_empty() {
+        if (contact.moves() || contact.shape().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion
@@ -115,11 +119,34 @@ impl Scene {
                 range: "of finite numbers",
             });
         }
+        if let Some(Rotation { point, axis, .. }) = &contact.rotation {
+            let length = norm(*axis);
+            if !(length.is_finite() && length > 0.0 && is_finite(*point)) {
+                return Err(ContactError::Setting {
+                    name: "length of the axis of rotation of an obstacle",
+                    value: length,
+                    range: "(0, inf), through a finite point",
+                });
+            }
+        }
+        if let Some((name, value)) = contact.shape().and_then(Obstacle::flaw) {
+            let range = "(0, inf)";
+            return Err(ContactError::Setting { name, value, range });
+        }
         if !(contact.crease > 0.0 && contact.crease <= 180.0) {
             return Err(ContactError::Setting {
                 name: "crease",
                 value: contact.crease,
                 range: "(0, 180]",
+            });
+        }
+        if let Some((_, value)) = contact.friction_axis
+            && !(value.is_finite() && value > 0.0)
+        {
+            return Err(ContactError::Setting {
+                name: "ratio of friction across its axis",
+                value,
+                range: "(0, inf): an ellipse has two axes",
             });
         }
         if let Friction::Coulomb(coefficient) = &contact.friction {

@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
-use crate::scene::{DifferenceFormula, Increment, Obstacle, Scene};
+use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
@@ -30,7 +30,7 @@ pub(crate) struct StepProblem {
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
     /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
-    pub(crate) obstacles: [Vec<Obstacle>; 2],
+    pub(crate) obstacles: [Vec<Pose>; 2],
     /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not
     /// in `B u`. By contact row, in row units; empty where no support moves such a point.
     pub(crate) prescribed: Vec<f64>,
@@ -101,15 +101,15 @@ impl StepProblem {
             if effects.gap {
                 self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
             }
-            if let (Some(formula), Some((row, count, scale))) = (formula, point.tangential_rows()) {
-                for k in row..row + count {
+            if let Some(formula) = formula {
+                for (_, k, scale) in point.along() {
                     let (last, before) = state.traces(k - start);
                     self.offset[k] += scale * formula.offset(last, before);
                 }
             }
             if effects.moving_obstacle {
                 for (direction, row, scale) in point.directions() {
-                    self.offset[row] += scale * self.carried(point.contact.surface, &direction);
+                    self.offset[row] += scale * self.carried(point, &direction);
                 }
             }
         }
@@ -122,11 +122,27 @@ impl StepProblem {
         if !effects.moving_obstacle && !effects.gap_history {
             return;
         }
+        let analysis = &model.scene.analysis;
+        let index = self.index;
+        // where a step is reached its pose is known; between, the obstacle comes from the last step
+        let at = |time: f64, contact: usize| {
+            let poses = &model.discrete.poses[contact];
+            let reached = [Some(index), index.checked_sub(1)].into_iter().flatten();
+            let known = reached
+                .filter(|k| analysis.time(*k) == Some(time))
+                .find_map(|k| poses.get(k));
+            known.copied().or_else(|| {
+                let times = [&analysis.times()[..index], &[time]].concat();
+                model.scene.contacts[contact].poses(&times).pop()
+            })
+        };
         self.obstacles = [Some(self.time), before].map(|time| {
-            let contacts = model.scene.contacts.iter();
-            contacts
-                .map(|c| time.map_or_else(|| c.obstacle_at_rest(), |t| c.obstacle_at(t)))
-                .collect()
+            let contacts = model.scene.contacts.iter().enumerate();
+            let pose = |(k, contact): (usize, &Contact)| {
+                let known = time.and_then(|time| at(time, k));
+                known.unwrap_or_else(|| contact.pose_at_rest())
+            };
+            contacts.map(pose).collect()
         });
     }
 
@@ -141,16 +157,28 @@ impl StepProblem {
         gap_brought(scene, point, &self.obstacles[1])
     }
 
-    /// Displacement of the obstacle of a surface along a direction, m.
-    pub(crate) fn carried(&self, surface: usize, direction: &[f64; 3]) -> f64 {
-        let way = self.obstacles[0].get(surface);
-        way.map_or(0.0, |o| dot(&o.way, direction))
+    /// Where the obstacle of a point is; at rest where none moves.
+    pub(crate) fn pose(&self, point: &ConstrainedPoint) -> Pose {
+        self.obstacles[0]
+            .get(point.contact.surface)
+            .copied()
+            .unwrap_or_default()
+    }
+
+    /// Way of its obstacle past a point along a direction, m.
+    fn carried(&self, point: &ConstrainedPoint, direction: &[f64; 3]) -> f64 {
+        dot(&self.pose(point).drag(&point.contact.position), direction)
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:
     /// `value` is what `B u` has of it.
-    pub(crate) fn relative(&self, surface: usize, (direction, row, scale): ([f64; 3], usize, f64), value: f64) -> f64 {
-        (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(surface, &direction)
+    pub(crate) fn relative(
+        &self,
+        point: &ConstrainedPoint,
+        (direction, row, scale): ([f64; 3], usize, f64),
+        value: f64,
+    ) -> f64 {
+        (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(point, &direction)
     }
 
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its
@@ -181,9 +209,9 @@ impl StepProblem {
     }
 }
 
-fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Obstacle]) -> Result<f64, ContactError> {
+fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Pose]) -> Result<f64, ContactError> {
     match obstacles.get(point.contact.surface) {
-        Some(obstacle) => point.contact.gap_brought(scene, obstacle),
+        Some(pose) => point.contact.gap_brought(scene, pose),
         None => Ok(point.contact.gap),
     }
 }

