@@ -23,7 +23,9 @@ pub enum ContactState {
 pub struct PointState {
     /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
     pub node: u32,
-    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
+    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle. Where meshes do not
+    /// match it is the node with the largest weight of several
+    /// ([`ConstrainedPoint::nodes`](crate::ConstrainedPoint::nodes)).
     pub partner: Option<u32>,
     /// Position of the contact surface in [`Scene::contacts`](crate::Scene::contacts).
     pub surface: usize,
