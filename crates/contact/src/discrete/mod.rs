@@ -16,6 +16,7 @@ mod points;
 mod rounding;
 mod scene;
 mod side;
+mod springs;
 mod supports;
 mod turn;
 

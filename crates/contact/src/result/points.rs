@@ -68,20 +68,19 @@ pub(crate) fn point_states(model: &Model, problem: &StepProblem, lambda: &[f64],
     states
         .map(|(k, point)| {
             let bound = problem.slip_bound(k, point, lambda);
-            point_state(model, problem, point, (lambda, rows), bound)
+            point_state(problem, point, (lambda, rows), bound)
         })
         .collect()
 }
 
 /// Evaluates one point with its slip bound.
 fn point_state(
-    model: &Model,
     problem: &StepProblem,
     point: &ConstrainedPoint,
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
-    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.weights()[0]);
+    let alpha = problem.formula.map_or(1.0, |f| f.weights()[0]);
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),
