@@ -95,6 +95,9 @@ signorini_fem_mesh::errors! {
             "contact {contact}: node {node} has no partner on the other body: {}; meshes of both sides have to match, \
             and the first side must not reach beyond the other one nor be finer (name the smaller or coarser side \
             first)", beside_words(*beside, *limit);
+        NoPartnerEdge { contact: usize, node: u32, edge: [u32; 2] } =
+            "contact {contact}: the mid-node {node} has no partner on the other body, as no facet there has the edge \
+            {edge:?} between the partners of its ends; meshes of both sides have to match, edges too";
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
             "contact {contact}: node {node} lies {depth:.3e} m inside the other body, seen from its partner \
             {partner}, deeper than its facets are large ({size:.3e} m); give sides that face each other across the \

@@ -90,7 +90,8 @@ impl TetNodes for [u32; 4] {}
 impl TetNodes for [u32; 10] {}
 
 mod sealed {
-    use super::*;
+    use super::Block;
+    use crate::material::Hooke;
 
     pub trait Columns {
         /// Hands out the blocks in the column of mesh node `node` that are in the rows of nodes not before it.

@@ -1,13 +1,14 @@
 //! The scene at the nodes of its mesh, made and checked once: contact points with their sides, supports node by node.
 //!
 //! A node of a contact surface becomes a contact point for each direction in which it meets an obstacle (`points`,
-//! `creases`) or a node of another body (`partners`). What cannot be meant is refused here, before any stiffness is
+//! `creases`) or a node of another body (`partners`); in a mesh of order 2 it is a mean around the node (`means`). What cannot be meant is refused here, before any stiffness is
 //! made (`scene`, `overflow`, `penetration`). `side` says which nodes a contact point moves; all above asks it.
 //!
 //! Uses: `scene`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
 mod creases;
 mod extents;
+mod means;
 mod overflow;
 mod partners;
 mod penetration;

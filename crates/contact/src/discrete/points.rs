@@ -8,7 +8,8 @@
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
 
-use super::creases::{area_vector, creases};
+use super::creases::{SurfaceSide, area_vector, creases};
+use super::means::Means;
 use super::partners::{Partner, partners};
 use super::side::Sides;
 use crate::error::ContactError;
@@ -47,6 +48,15 @@ impl ContactPoint {
     pub(crate) fn gap_brought(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
+        let own = self.sides.own.nodes();
+        if own.len() > 1 {
+            let at = |&(node, weight): &(u32, f64)| {
+                let place = scene.mesh.points()[node as usize];
+                let gap = contact.gap_brought(self.surface, node, place, normal, (self.gap, way))?;
+                Ok(weight * gap)
+            };
+            return own.iter().map(at).sum();
+        }
         contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, way))
     }
 
@@ -72,23 +82,35 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
             None if partners.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
+        let means = Means::new(&scene.mesh, index, contact, surface, &partners)?;
         for (local, &node) in surface.nodes().iter().enumerate() {
             let partner = partners.get(local);
             let measured = partner.map_or(0.0, |p: &Partner| p.gap);
             let position = scene.mesh.points()[node as usize];
-            let gap = contact.gap_at(index, node, position, measured)?;
-            let one = [(surface.frames()[local], surface.areas()[local])];
+            let one = [SurfaceSide {
+                frame: surface.frames()[local],
+                area: surface.areas()[local],
+                triangles: Vec::new(),
+            }];
             let own = sides.get(&(local as u32));
-            for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
+            for side in own.map_or(&one[..], Vec::as_slice) {
+                let frame = fixed.unwrap_or(side.frame);
+                let (sides, gap) = match &means {
+                    None => {
+                        let sides = Sides {
+                            own: Side::node(node),
+                            partner: partner.map(|p| Side::node(p.node)),
+                        };
+                        (sides, contact.gap_at(index, node, position, measured)?)
+                    }
+                    Some(means) => means.point(index, contact, (local, &side.triangles), &frame)?,
+                };
                 out.push(ContactPoint {
                     surface: index,
-                    sides: Sides {
-                        own: Side::node(node),
-                        partner: partner.map(|p| Side::node(p.node)),
-                    },
+                    sides,
                     position,
-                    frame: fixed.unwrap_or(frame),
-                    area,
+                    frame,
+                    area: side.area,
                     gap,
                 });
             }
@@ -161,6 +183,9 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
     match nearer {
         Ordering::Equal => {
             let shared = x.tags.iter().any(|t| y.tags.contains(t));
+            if point.sides.own != other.sides.own {
+                point.sides.own = both(point, other);
+            }
             point.area = if shared && point.surface != other.surface {
                 point.area.max(other.area)
             } else {
@@ -169,10 +194,27 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         }
         Ordering::Less => {
             (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+            point.sides = other.sides.clone();
         }
         Ordering::Greater => {}
     }
     Ok(())
+}
+
+/// The mean over the sides of two conditions on one node, by their areas.
+fn both(point: &ContactPoint, other: &ContactPoint) -> Side {
+    let area = point.area + other.area;
+    let mut nodes: Vec<(u32, f64)> = Vec::new();
+    for side in [point, other] {
+        for &(node, weight) in side.sides.own.nodes() {
+            let share = weight * side.area / area;
+            match nodes.iter_mut().find(|n| n.0 == node) {
+                Some(known) => known.1 += share,
+                None => nodes.push((node, share)),
+            }
+        }
+    }
+    Side::new(nodes)
 }
 
 /// The sign of a difference of gaps.

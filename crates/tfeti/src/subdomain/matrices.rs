@@ -44,8 +44,12 @@ impl Subdomains {
             let element = subdomain.elements[0] as usize;
             let material = |message| TfetiError::Material { element, message };
             let hooke = materials.of_tets(&regions).map_err(|e| material(e.to_string()))?;
-            let matrix =
-                assemble_stiffness(&points, &subdomain.tets, |t| hooke[t]).map_err(|e| material(e.to_string()))?;
+            let matrix = if subdomain.mids.is_empty() {
+                assemble_stiffness(&points, &subdomain.tets, |t| hooke[t])
+            } else {
+                assemble_stiffness(&points, &subdomain.quadratic_tets(), |t| hooke[t])
+            };
+            let matrix = matrix.map_err(|e| material(e.to_string()))?;
             Ok(ClassBase {
                 stiffness: Columns::from_symmetric(&matrix),
                 blocks: OnceLock::new(),
