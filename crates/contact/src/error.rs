@@ -4,15 +4,6 @@ use signorini_fem_mesh as fem;
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
 
-/// How far from the normal of a node the nearest node of the other side is, in words.
-fn beside_words(beside: f64, limit: f64) -> String {
-    if beside.is_finite() {
-        format!("the nearest node that faces it lies {beside:.3e} m beside its normal, {limit:.3e} m are allowed")
-    } else {
-        "no node of the other side faces it (their normals have to be opposite)".to_owned()
-    }
-}
-
 /// What does not hold a body.
 fn held_by(friction: Option<f64>) -> &'static str {
     match friction {
@@ -91,21 +82,19 @@ signorini_fem_mesh::errors! {
             "contact {contact}: the direction into the obstacle {direction:?} is not on the outer side of the body at \
             any of its {nodes} contact nodes, so the body would pass through; turn the direction round (a half-space \
             needs the normal that points out of the obstacle, up for a floor)";
-        NoPartner { contact: usize, node: u32, beside: f64, limit: f64 } =
-            "contact {contact}: node {node} has no partner on the other body: {}; meshes of both sides have to match, \
-            and the first side must not reach beyond the other one nor be finer (name the smaller or coarser side \
-            first)", beside_words(*beside, *limit);
-        NoPartnerEdge { contact: usize, node: u32, edge: [u32; 2] } =
-            "contact {contact}: the mid-node {node} has no partner on the other body, as no facet there has the edge \
-            {edge:?} between the partners of its ends; meshes of both sides have to match, edges too";
+        NoPartner { contact: usize, distance: f64 } =
+            "contact {contact}: no facet of the first side faces one of the other side (their nearest nodes are \
+            {distance:.3e} m apart); name sides that look at each other";
+        QuadraticApart { contact: usize, node: u32 } =
+            "contact {contact}: node {node} has no partner on the other body, or its edges have none; in meshes of \
+            order 2 both sides have to match, edges too: mesh them so, or use order 1";
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
             "contact {contact}: node {node} lies {depth:.3e} m inside the other body, seen from its partner \
             {partner}, deeper than its facets are large ({size:.3e} m); give sides that face each other across the \
             gap, or, if they are to be pressed apart, tell how far by with_gap";
-        SharedPartner { contact: usize, partner: u32, first: u32, second: u32 } =
-            "contact {contact}: node {partner} is the partner of both node {first} and node {second}; meshes of both \
-            sides have to match node by node, and no tag may be on both sides (TetMesh::map_tags before append keeps \
-            those of two bodies apart)";
+        SameSide { contact: usize, tag: u32 } =
+            "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
+            append keeps those of two bodies apart)";
         MovedPartner { contact: usize } =
             "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its \
             supports instead";

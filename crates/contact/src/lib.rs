@@ -77,6 +77,7 @@ mod discrete;
 mod error;
 mod estimate;
 mod model;
+mod mortar;
 #[cfg(feature = "vtu")]
 mod output;
 pub mod plan;

@@ -50,6 +50,15 @@ pub(crate) const MOST_TILT: f64 = 0.2;
 /// Cosine between a normal and that of the other side reversed above which they face each other.
 pub(crate) const FACING: f64 = 0.1;
 
+/// Part of the area of a facet or node below which what covers it counts as nothing.
+pub(crate) const COVERED: f64 = 1e-10;
+
+/// Second moment of a covered part below which it has no extent, over that along it.
+pub(crate) const FLAT: f64 = 1e-13;
+
+/// Weight of a node in a side that counts as none, over the largest.
+pub(crate) const NO_WEIGHT: f64 = 1e-13;
+
 /// Depth of a supported node in an obstacle that counts, over its displacement or gap.
 pub(crate) const DEPTH: f64 = 1e-9;
 

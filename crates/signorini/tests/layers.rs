@@ -24,7 +24,7 @@ const CRATES: [(&str, &[&str]); 6] = [
             "model",
             "plan",
             "discrete report",
-            "scene settings",
+            "scene settings mortar",
             "error",
             "status tolerances vec3",
         ],

@@ -57,9 +57,6 @@ signorini_fem_mesh::errors! {
             numbered; use smaller subdomains";
         DependentRows { node: u32 } =
             "node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once";
-        JoinedRows { node: u32, rows: usize, limit: usize } =
-            "node {node}: contact points join {rows} rows by the nodes of their sides, preconditioners scale at most \
-            {limit} together; solve without preconditioner, or cut the sides";
         TooLarge { what: &'static str, count: usize } = "{what} = {count} is more than the 32-bit tables can number";
     }
 }

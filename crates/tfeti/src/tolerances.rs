@@ -40,8 +40,14 @@ pub(crate) const ALIKE: f64 = 4.0;
 pub(crate) const DEPENDENT: f64 = 0.3;
 /// Nodes of a class without dense inverse at which it is asked for its compliance.
 pub(crate) const SAMPLE: usize = 3;
-/// Rows of one group that the scaling of preconditioners inverts as a dense matrix.
-pub(crate) const GROUP_ROWS: usize = 3000;
+/// Pivots of the Gram matrix of rows from which on they are independent, relative to the largest.
+pub(crate) const INDEPENDENT: f64 = 1e-9;
+/// Rows of one group up to which its null space is looked for.
+pub(crate) const EXCHANGED_ROWS: usize = 1000;
+/// Rows of one group up to which its matrix is dense; beyond, where contact points share nodes, it is sparse.
+pub(crate) const GROUP_ROWS: usize = 120;
+/// Weight of the rows that an active set holds in the matrix of such a group, relative to their own entry.
+pub(crate) const HELD_ROWS: f64 = 1e8;
 
 // ---- what is worth a table, a cut or a thread; seconds are those of one core ----
 

@@ -6,7 +6,7 @@
 //! then a pressure that is linear on each facet.
 
 use super::creases::around;
-use super::partners::Partner;
+use super::partners::{Partner, Partners};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::scene::Contact;
@@ -32,7 +32,7 @@ impl<'a> Means<'a> {
         index: usize,
         contact: &Contact,
         surface: &'a Surface,
-        partners: &[Partner],
+        partners: &Partners,
     ) -> Result<Option<Self>, ContactError> {
         if mesh.order() == 1 {
             return Ok(None);
@@ -42,8 +42,12 @@ impl<'a> Means<'a> {
             surface,
             around: around(surface),
             partners: match partners {
-                [] => HashMap::new(),
-                _ => all_partners(mesh, index, contact, surface, partners)?,
+                Partners::Obstacle => HashMap::new(),
+                Partners::Nodes(partners) => all_partners(mesh, index, contact, surface, partners)?,
+                Partners::Mortar(_) => {
+                    let node = surface.nodes()[0];
+                    return Err(ContactError::QuadraticApart { contact: index, node });
+                }
             },
         }))
     }
@@ -113,11 +117,7 @@ fn all_partners(
             let partner = mids.get(&edge).copied();
             out.insert(
                 node,
-                partner.ok_or(ContactError::NoPartnerEdge {
-                    contact: index,
-                    node,
-                    edge,
-                })?,
+                partner.ok_or(ContactError::QuadraticApart { contact: index, node })?,
             );
         }
     }

@@ -1,17 +1,18 @@
-//! Partners: which node of the other body a contact node may touch.
+//! Partners: which nodes of the other body a contact node may touch.
 //!
-//! Meshes match, so that the partner of a node lies on its normal. What is small against the facets is put down to
+//! Where meshes match the partner of a node lies on its normal; elsewhere it is a list of nodes (`mortar`). What is small against the facets is put down to
 //! rounding, and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do
 //! not face each other are no partners: a thin body has nodes of its far side on the same normal.
 
 use super::rounding::rounding;
 use crate::error::ContactError;
+use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{BESIDE, FACING, MOST_TILT, TILT};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
@@ -24,19 +25,58 @@ pub(super) struct Partner {
     pub(super) gap: f64,
 }
 
-/// The partners of the nodes of a surface, node by node; none where the contact is with a rigid obstacle. `fixed` is
-/// the frame of a contact with one direction.
+/// What the nodes of a contact surface may touch.
+#[derive(Debug)]
+pub(super) enum Partners {
+    /// A rigid obstacle.
+    Obstacle,
+    /// A node each.
+    Nodes(Vec<Partner>),
+    /// Several nodes each, or none.
+    Mortar(Vec<Option<MortarNode>>),
+}
+
+/// The partners of the nodes of a surface. `fixed` is the frame of a contact with one direction.
 pub(super) fn partners(
     mesh: &TetMesh,
     index: usize,
     contact: &Contact,
     surface: &Surface,
     fixed: Option<&SurfaceFrame>,
-) -> Result<Vec<Partner>, ContactError> {
+) -> Result<Partners, ContactError> {
     if contact.partner.is_empty() {
-        return Ok(Vec::new());
+        return Ok(Partners::Obstacle);
+    }
+    if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
+        return Err(ContactError::SameSide {
+            contact: index,
+            tag: tag.0,
+        });
     }
     let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
+    if let Some(nodes) = nodes(mesh, index, contact, surface, fixed, &other)? {
+        return Ok(Partners::Nodes(nodes));
+    }
+    let mortar = mortar_nodes(mesh, surface, &other.surface);
+    if mortar.iter().all(Option::is_none) {
+        let distance = other.distance(surface);
+        return Err(ContactError::NoPartner {
+            contact: index,
+            distance,
+        });
+    }
+    Ok(Partners::Mortar(mortar))
+}
+
+/// The partner of each node; `None` where meshes do not match.
+fn nodes(
+    mesh: &TetMesh,
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+    fixed: Option<&SurfaceFrame>,
+    other: &OtherSide<'_>,
+) -> Result<Option<Vec<Partner>>, ContactError> {
     let rounding = rounding(mesh);
     let partner = |(local, &node): (usize, &u32)| {
         let seen_from = Viewer {
@@ -47,13 +87,7 @@ pub(super) fn partners(
         };
         let size = seen_from.size;
         let Some(mut partner) = other.partner(&seen_from) else {
-            let (beside, limit) = (other.beside(&seen_from), BESIDE * size);
-            return Err(ContactError::NoPartner {
-                contact: index,
-                node,
-                beside,
-                limit,
-            });
+            return Ok(None);
         };
         let depth = -partner.gap;
         if matches!(contact.gap, Gap::Measured) && depth > size {
@@ -69,26 +103,37 @@ pub(super) fn partners(
         if depth.abs() <= rounding {
             partner.gap = 0.0;
         }
-        Ok(partner)
+        Ok(Some(partner))
     };
     let found: Vec<_> = surface.nodes().par_iter().enumerate().map(partner).collect();
     // of several errors the first, whichever thread has found one
-    let found: Vec<Partner> = found.into_iter().collect::<Result<_, _>>()?;
+    let found: Option<Vec<Partner>> = found.into_iter().collect::<Result<_, _>>()?;
+    Ok(found.filter(|found| match_facets(mesh, surface, found, &other.surface, rounding)))
+}
+
+/// Whether facets match where nodes have partners: those of other nodes differ, and of each facet two edges at least
+/// are edges of the other side. There may be other diagonals, but no nodes between.
+fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Surface, rounding: f64) -> bool {
+    let place = |node: u32| &mesh.points()[node as usize];
     let mut owners = HashMap::new();
-    for (&Partner { node: partner, .. }, &second) in found.iter().zip(surface.nodes()) {
-        let place = |node: u32| &mesh.points()[node as usize];
-        if let Some(first) = owners.insert(partner, second)
+    for (partner, &second) in found.iter().zip(surface.nodes()) {
+        if let Some(first) = owners.insert(partner.node, second)
             && vector::distance(place(first), place(second)) > rounding
         {
-            return Err(ContactError::SharedPartner {
-                contact: index,
-                partner,
-                first,
-                second,
-            });
+            return false;
         }
     }
-    Ok(found)
+    let edges = |t: [u32; 3]| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]);
+    let mut there: HashSet<[u32; 2]> = HashSet::new();
+    for triangle in other.triangles() {
+        for [a, b] in edges(triangle.map(|n| other.nodes()[n as usize])) {
+            there.extend([[a, b], [b, a]]);
+        }
+    }
+    surface.triangles().iter().all(|triangle| {
+        let seen = edges(triangle.map(|n| found[n as usize].node));
+        seen.iter().filter(|e| there.contains(*e)).count() > 1
+    })
 }
 
 /// A contact node that looks for its partner.
@@ -155,10 +200,15 @@ impl<'a> OtherSide<'a> {
         found
     }
 
-    /// How far from the normal of a node the next of all nodes that face it is, m; infinite if none does.
-    fn beside(&self, from: &Viewer) -> f64 {
-        let seen = (0..self.surface.nodes().len()).filter_map(|local| self.seen(from, local));
-        seen.fold(f64::INFINITY, |least, (_, beside)| least.min(beside))
+    /// Distance to the nearest node of another surface, m, whichever way it looks.
+    fn distance(&self, surface: &Surface) -> f64 {
+        let place = |node: &u32| self.mesh.points()[*node as usize];
+        let nearest = |node: &u32| {
+            let others = self.surface.nodes().iter().map(place);
+            let distances = others.map(|p| vector::distance(&p, &place(node)));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        surface.nodes().iter().map(nearest).fold(f64::INFINITY, f64::min)
     }
 
     /// A node of this side as it is seen from a node: along its normal, and beside it. `None` if it does not face it.
@@ -211,6 +261,9 @@ mod tests {
             let surface = Surface::new(&mesh, &[brick::Z_MIN]).expect("surface");
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
             let found = partners(&mesh, 0, &contact, &surface, None).expect("partners");
+            let Partners::Nodes(found) = found else {
+                panic!("{found:?}");
+            };
             assert_eq!(found.len(), surface.nodes().len());
             let all = Surface::new(&mesh, &contact.partner).expect("surface");
             for (partner, &node) in found.iter().zip(surface.nodes()) {

@@ -10,10 +10,12 @@
 
 use super::creases::{SurfaceSide, area_vector, creases};
 use super::means::Means;
-use super::partners::{Partner, partners};
+use super::partners::{Partners, partners};
+use super::rounding::rounding;
 use super::side::Sides;
 use crate::error::ContactError;
-use crate::scene::{Contact, ContactNormal, Scene};
+use crate::mortar::MortarNode;
+use crate::scene::{Contact, ContactNormal, Gap, Scene};
 use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
 use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
@@ -78,20 +80,35 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
         let first = out.len();
         let fixed = fixed_frame(index, contact, surface)?;
         let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
-        let sides = match fixed {
-            None if partners.is_empty() => creases(&scene.mesh, surface, contact.crease),
+        let sides = match (&partners, fixed) {
+            (Partners::Obstacle, None) => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
         let means = Means::new(&scene.mesh, index, contact, surface, &partners)?;
         for (local, &node) in surface.nodes().iter().enumerate() {
-            let partner = partners.get(local);
-            let measured = partner.map_or(0.0, |p: &Partner| p.gap);
             let position = scene.mesh.points()[node as usize];
-            let one = [SurfaceSide {
+            let mut one = [SurfaceSide {
                 frame: surface.frames()[local],
                 area: surface.areas()[local],
                 triangles: Vec::new(),
             }];
+            let mut measured = 0.0;
+            let partner = match &partners {
+                Partners::Obstacle => None,
+                Partners::Nodes(partners) => {
+                    measured = partners[local].gap;
+                    Some(Side::node(partners[local].node))
+                }
+                Partners::Mortar(nodes) => {
+                    let Some(seen) = &nodes[local] else {
+                        continue;
+                    };
+                    (one[0].frame, one[0].area) = (seen.frame, seen.area);
+                    let normal = fixed.unwrap_or(seen.frame).normal;
+                    measured = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    Some(Side::new(seen.partner.clone()))
+                }
+            };
             let own = sides.get(&(local as u32));
             for side in own.map_or(&one[..], Vec::as_slice) {
                 let frame = fixed.unwrap_or(side.frame);
@@ -99,7 +116,7 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                     None => {
                         let sides = Sides {
                             own: Side::node(node),
-                            partner: partner.map(|p| Side::node(p.node)),
+                            partner: partner.clone(),
                         };
                         (sides, contact.gap_at(index, node, position, measured)?)
                     }
@@ -118,6 +135,39 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
         check_turn(scene, index, surface, &out[first..])?;
     }
     Ok(out)
+}
+
+/// The weighted gap of a node of a surface along a normal, m: from the node to the weighted mean of what it sees.
+fn mortar_gap(
+    scene: &Scene,
+    contact: usize,
+    surface: &Surface,
+    (local, normal): (usize, &[f64; 3]),
+    seen: &MortarNode,
+) -> Result<f64, ContactError> {
+    let node = surface.nodes()[local];
+    let from = scene.mesh.points()[node as usize];
+    let along = |&(other, weight): &(u32, f64)| {
+        let way = vec3::sub(scene.mesh.points()[other as usize], from);
+        weight * vector::dot(&way, normal)
+    };
+    let gap: f64 = seen.partner.iter().map(along).sum();
+    let size = surface.areas()[local].sqrt();
+    if matches!(scene.contacts[contact].gap, Gap::Measured) && -gap > size {
+        return Err(ContactError::Overlap {
+            contact,
+            node,
+            partner: seen.partner[0].0,
+            depth: -gap,
+            size,
+        });
+    }
+    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
+    Ok(if gap.abs() <= weights * rounding(&scene.mesh) {
+        0.0
+    } else {
+        gap
+    })
 }
 
 /// The contact points: of the conditions of a node those with one normal are one, in the place of the first.

@@ -1,7 +1,8 @@
 //! The best admissible position of one contact node, and its share of the duality gap.
 //!
 //! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more
-//! freedom. Where it is not free either, both move, each where it can.
+//! freedom. Where it is not free either, both move, each where it can. Where the other side is of several nodes, which
+//! other points have too, they stay.
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
@@ -22,7 +23,7 @@ fn freedom(part: &RowPart) -> f64 {
 /// For each row how both nodes move so that the row grows by one, and the others do not.
 type Shifts = [[[f64; 3]; 2]; 3];
 
-/// The node of a contact point that moves, and its partner, which stays.
+/// The node of a contact point that moves, and those of the other side, which stay.
 #[derive(Debug, Clone)]
 pub(crate) struct AdmissibleNode {
     /// Mesh node.
@@ -30,7 +31,7 @@ pub(crate) struct AdmissibleNode {
     /// Directions of the rows in space, with row and scale: the normal one, then the tangential ones.
     rows: Vec<([f64; 3], usize, f64)>,
     own: RowPart,
-    still: Option<(u32, RowPart)>,
+    still: Vec<(u32, RowPart)>,
     /// Where supports hold both nodes in part.
     both: Option<Box<Shifts>>,
 }
@@ -39,37 +40,45 @@ impl AdmissibleNode {
     pub(crate) fn new(model: &Model, point: &ConstrainedPoint) -> Self {
         let subdomains = model.discrete.decomposition.subdomains();
         let rows: Vec<_> = point.directions().collect();
-        let mut parts = [RowPart::default(); 2];
+        let mut parts: Vec<(u32, RowPart)> = Vec::with_capacity(2);
+        parts.push((point.node(), RowPart::default()));
+        let others = point.contact.sides.partner.iter().flat_map(|side| side.nodes());
+        parts.extend(others.map(|other| (other.0, RowPart::default())));
+        let last = parts.len() - 1;
         for (k, &(_, row, scale)) in rows.iter().enumerate() {
             for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
-                let first = subdomains[subdomain].nodes[dof / 3] == point.node();
-                parts[usize::from(!first)][k][dof % 3] += coefficient / scale;
+                let node = subdomains[subdomain].nodes[dof / 3];
+                let place = parts[..last].iter().position(|p| p.0 == node).unwrap_or(last);
+                parts[place].1[k][dof % 3] += coefficient / scale;
             }
         }
         // where supports fix nothing, without rounding
         let normal = rows[0].0;
-        for (part, sign) in parts.iter_mut().zip([1.0, -1.0]) {
+        for ((_, part), sign) in parts.iter_mut().zip([1.0, -1.0]) {
             if (0..3).all(|c| (sign * part[0][c] - normal[c]).abs() <= ROUNDING) {
                 part[0] = normal.map(|c| sign * c);
             }
         }
-        let [mut first, second] = parts;
-        let (node, own, still) = match point.partner() {
-            None => {
-                for (part, (direction, ..)) in first.iter_mut().zip(&rows).skip(1) {
-                    *part = *direction;
-                }
-                (point.node(), first, None)
+        if last == 0 {
+            for (part, (direction, ..)) in parts[0].1.iter_mut().zip(&rows).skip(1) {
+                *part = *direction;
             }
-            Some(partner) if freedom(&second) > freedom(&first) + ROUNDING => {
-                (partner, second, Some((point.node(), first)))
-            }
-            Some(partner) => (point.node(), first, Some((partner, second))),
+        }
+        // a node that can move: of several partners, which have other points, only where the node itself cannot
+        let free = |k: usize| freedom(&parts[k].1);
+        let moving = match last {
+            0 => 0,
+            1 => usize::from(free(1) > free(0) + ROUNDING),
+            _ if free(0) > FREEDOM_TAKEN => 0,
+            _ => (1..=last).fold(0, |best, k| if free(k) > free(best) { k } else { best }),
         };
+        let (node, own) = parts.remove(moving);
+        let still = parts;
         let taken = freedom(&own) < rows.len() as f64 - FREEDOM_TAKEN;
-        let both = still
-            .filter(|_| taken)
-            .and_then(|(_, still)| shifts(&own, &still, rows.len()));
+        let both = match &still[..] {
+            [(_, still)] if taken => shifts(&own, still, rows.len()),
+            _ => None,
+        };
         Self {
             node,
             rows,
@@ -81,7 +90,7 @@ impl AdmissibleNode {
 
     /// Moves the node such that row `k`, the normal one or those along the surface, grows by so many metres.
     fn shift(&self, v: &mut [f64], k: usize, by: f64) {
-        if let (Some(shifts), Some((still, _))) = (&self.both, &self.still) {
+        if let (Some(shifts), Some((still, _))) = (&self.both, self.still.first()) {
             for (node, direction) in [self.node, *still].into_iter().zip(&shifts[k]) {
                 shift(&mut v[3 * node as usize..][..3], direction, by);
             }
@@ -110,7 +119,7 @@ impl AdmissibleNode {
         for (k, &(_, row, scale)) in self.rows.iter().enumerate() {
             // the offset of a row has the motion that supports prescribe along it already
             let mut offset = problem.offset[row] / scale;
-            if let Some((node, part)) = &self.still {
+            for (node, part) in &self.still {
                 offset -= dot(&part[k], &v[3 * *node as usize..][..3]);
             }
             planes[k] = (self.own[k], offset);

@@ -15,6 +15,7 @@ mod free_bodies;
 mod invariance;
 mod manufactured;
 mod methods;
+mod mortar;
 mod moving_field;
 mod moving_obstacle;
 mod pairs;

@@ -38,7 +38,19 @@ fn trial() {
     let start = std::time::Instant::now();
     let result = step(&mut simulation);
     let [n, t] = floor_forces(&result);
-    println!("nodes {} products {} normal {:.4e} {:+.3} % friction {:.4e} {:+.2} % {:?}", result.displacement.len() / 3,
-        result.report.counters.products, n, 100.0 * (n / 2.6228e9 - 1.0), t, 100.0 * (t / -8.38e7 - 1.0), start.elapsed());
-    println!("{:?} {:?}", result.report.status, result.certificate.parts().map(|(n, v)| (n, v.relative())));
+    println!(
+        "nodes {} products {} normal {:.4e} {:+.3} % friction {:.4e} {:+.2} % {:?}",
+        result.displacement.len() / 3,
+        result.report.counters.products,
+        n,
+        100.0 * (n / 2.6228e9 - 1.0),
+        t,
+        100.0 * (t / -8.38e7 - 1.0),
+        start.elapsed()
+    );
+    println!(
+        "{:?} {:?}",
+        result.report.status,
+        result.certificate.parts().map(|(n, v)| (n, v.relative()))
+    );
 }

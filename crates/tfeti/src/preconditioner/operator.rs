@@ -10,7 +10,7 @@ use crate::error::TfetiError;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
-use crate::preconditioner::scaling::Scaling;
+use crate::preconditioner::scaling::{Scaling, ScalingScratch};
 use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
@@ -57,15 +57,14 @@ struct Coupling {
 pub struct DualPreconditionerScratch {
     panels: PanelScratch,
     dual: Vec<f64>,
-    /// The matrices of [`Scaling`] for the active set; empty for all rows.
-    groups: Vec<f64>,
+    scaling: Option<ScalingScratch>,
 }
 
 impl Tfeti {
     /// The lumped preconditioner `B_D K_bb B_D^T`: cheap, no further factorisation.
     ///
     /// # Errors
-    /// [`TfetiError::DependentRows`] and [`TfetiError::JoinedRows`] for rows of nodes that cannot be scaled.
+    /// [`TfetiError::DependentRows`] for rows of nodes that cannot be scaled.
     pub fn lumped(&self) -> Result<DualPreconditioner, TfetiError> {
         DualPreconditioner::new(self, Kind::Lumped)
     }
@@ -130,25 +129,25 @@ impl SymmetricOperator for DualPreconditioner {
         DualPreconditionerScratch {
             panels,
             dual: vec![0.0; dual],
-            groups: Vec::new(),
+            scaling: self.scaling.as_ref().map(Scaling::scratch),
         }
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
-        let Some(scaling) = &self.scaling else {
+        let (Some(scaling), Some(scratch)) = (&self.scaling, &mut s.scaling) else {
             self.stiffness_product(x, y, &mut s.panels);
             return;
         };
-        scaling.solve(&s.groups, x, y);
+        scaling.solve(x, y, scratch);
         self.stiffness_product(y, &mut s.dual, &mut s.panels);
-        scaling.solve(&s.groups, &s.dual, y);
+        scaling.solve(&s.dual, y, scratch);
     }
 }
 
 impl ActiveSetPreconditioner for DualPreconditioner {
     fn enter(&self, view: &ActiveSetView<'_>, s: &mut DualPreconditionerScratch) {
-        if let Some(scaling) = &self.scaling {
-            scaling.on_active_set(view, &mut s.groups);
+        if let (Some(scaling), Some(scratch)) = (&self.scaling, &mut s.scaling) {
+            scaling.on_active_set(view, scratch);
         }
     }
 }

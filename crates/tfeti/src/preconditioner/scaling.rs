@@ -1,5 +1,6 @@
 //! Scaling of the preconditioners where copies of a node differ in stiffness or the rows of `B` are not orthonormal.
 
+use super::joined::{JoinedGroups, JoinedScratch, torn_entries};
 use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
@@ -17,8 +18,18 @@ pub(crate) struct Scaling {
     /// Groups of interface rows only: their components do not couple, and have the same matrix. First rows of the
     /// triples.
     triples: Groups,
-    /// Group of each contact row, and its place there.
-    contact: Vec<(u32, u32)>,
+    /// Groups of many rows.
+    joined: Option<JoinedGroups>,
+    /// Group of each contact row, and its place there; none for rows of `joined`.
+    contact: Vec<Option<(u32, u32)>>,
+}
+
+/// What [`Scaling`] keeps for an active set, and work memory.
+#[derive(Debug)]
+pub(crate) struct ScalingScratch {
+    /// Inverses of the small groups; empty for those of all rows.
+    groups: Vec<f64>,
+    joined: Option<JoinedScratch>,
 }
 
 /// Groups of rows, and the inverse of the matrix of each.
@@ -79,25 +90,22 @@ impl Scaling {
             weights: Vec::new(),
             groups: Groups::default(),
             triples: Groups::default(),
-            contact: vec![(0, 0); gluing.ranges().contact().end],
+            joined: None,
+            contact: vec![None; gluing.ranges().contact().end],
         };
+        let mut joined = Vec::new();
         let interface = &gluing.ranges().interface;
         for group in members.chunk_by(|a, b| a.0 == b.0) {
             let plain = group.iter().all(|r| interface.contains(&(r.1 as usize)));
             let step = if plain { 3 } else { 1 };
             let rows: Vec<(u32, u32)> = group.iter().copied().step_by(step).collect();
             let count = rows.len();
-            let entry = |(s, dof, v): (usize, usize, f64)| (system.torn_range(s).start + dof, v);
-            let row = |row: u32| gluing.row(row as usize).into_iter().map(entry).collect();
-            let entries: Vec<Vec<(usize, f64)>> = rows.iter().map(|r| row(r.1)).collect();
             if count > GROUP_ROWS {
-                let node = rows[0].0;
-                return Err(TfetiError::JoinedRows {
-                    node,
-                    rows: count,
-                    limit: GROUP_ROWS,
-                });
+                joined.extend(rows.iter().map(|r| r.1));
+                continue;
             }
+            let row = |row: u32| torn_entries(system, row as usize);
+            let entries: Vec<Vec<(usize, f64)>> = rows.iter().map(|r| row(r.1)).collect();
             let mut matrix = vec![0.0; count * count];
             for i in 0..count {
                 for j in 0..count {
@@ -117,11 +125,14 @@ impl Scaling {
             let inverse = inverse.map_err(|_| TfetiError::DependentRows { node })?;
             for (place, &(_, row)) in rows.iter().enumerate() {
                 if let Some(contact) = out.contact.get_mut(row as usize) {
-                    *contact = (out.groups.count() as u32, place as u32);
+                    *contact = Some((out.groups.count() as u32, place as u32));
                 }
             }
             let target = if plain { &mut out.triples } else { &mut out.groups };
             target.push(rows.iter().map(|r| r.1), inverse);
+        }
+        if !joined.is_empty() {
+            out.joined = Some(JoinedGroups::new(system, joined, &compliance)?);
         }
         out.weights = system
             .parts
@@ -139,7 +150,11 @@ impl Scaling {
     /// `N - N H (H^T N H)^-1 H^T N` is the inverse of what `N^-1` is on the others. An interface row between a
     /// stiff and a soft subdomain follows the soft one, but the stiff one where contact holds the mean of the
     /// copies.
-    pub(crate) fn on_active_set(&self, view: &ActiveSetView<'_>, groups: &mut Vec<f64>) {
+    pub(crate) fn on_active_set(&self, view: &ActiveSetView<'_>, s: &mut ScalingScratch) {
+        if let (Some(joined), Some(s)) = (&self.joined, &mut s.joined) {
+            joined.on_active_set(view, s);
+        }
+        let groups = &mut s.groups;
         groups.clear();
         groups.extend_from_slice(&self.groups.inverses);
         let mut image = Vec::new();
@@ -156,7 +171,7 @@ impl Scaling {
 
     /// Takes the direction with `values` on the rows from `row` on out of the matrix of its group.
     fn drop_direction(&self, groups: &mut [f64], row: usize, values: &[f64], image: &mut Vec<f64>) {
-        let Some(&(group, _)) = self.contact.get(row) else {
+        let Some(&Some((group, _))) = self.contact.get(row) else {
             return;
         };
         let group = group as usize;
@@ -167,10 +182,8 @@ impl Scaling {
         image.clear();
         image.resize(count, 0.0);
         let places = || {
-            values
-                .iter()
-                .enumerate()
-                .map(|(k, v)| (self.contact[row + k].1 as usize, v))
+            let rows = values.iter().zip(&self.contact[row..]);
+            rows.filter_map(|(v, place)| Some((place.as_ref()?.1 as usize, v)))
         };
         for (place, value) in places() {
             for (out, entry) in image.iter_mut().zip(&matrix[place * count..]) {
@@ -189,12 +202,22 @@ impl Scaling {
         }
     }
 
-    /// `y = N x` with `N = (B D^-1 B^T)^-1`, or with the matrices in `groups` unless empty.
-    pub(crate) fn solve(&self, groups: &[f64], x: &[f64], y: &mut [f64]) {
-        let inverses = if groups.is_empty() {
+    pub(crate) fn scratch(&self) -> ScalingScratch {
+        ScalingScratch {
+            groups: Vec::new(),
+            joined: self.joined.as_ref().map(JoinedGroups::scratch),
+        }
+    }
+
+    /// `y = N x` with `N = (B D^-1 B^T)^-1`, on the last active set if there was one.
+    pub(crate) fn solve(&self, x: &[f64], y: &mut [f64], s: &mut ScalingScratch) {
+        if let (Some(joined), Some(s)) = (&self.joined, &mut s.joined) {
+            joined.solve(x, y, s);
+        }
+        let inverses = if s.groups.is_empty() {
             &self.groups.inverses
         } else {
-            groups
+            &s.groups
         };
         self.groups.for_each(inverses, |rows, inverse| {
             for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {

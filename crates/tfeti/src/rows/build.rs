@@ -3,6 +3,7 @@
 use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows};
 use crate::error::TfetiError;
 use crate::rows::contact::{ContactRow, PointRows, contact_rows};
+use crate::rows::dependencies::{are_independent, not_alone};
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{MergedSupports, NodeSupport};
 use crate::subdomain::copy_stiffness::CopyStiffness;
@@ -42,7 +43,7 @@ impl Gluing {
             shares: Vec::new(),
             gluing: &mut gluing,
         };
-        builder.contact(contact, &found.rows);
+        builder.contact(contact, &found.rows, &merged);
         builder.interface(nodes);
         builder.dirichlet(&merged);
         let supported = gluing.nodal_rows() - gluing.ranges.contact().len();
@@ -112,7 +113,7 @@ impl Builder<'_> {
     }
 
     /// Normal rows, then pairs of tangential rows, then single ones.
-    fn contact(&mut self, contact: &[ContactConstraint], points: &[PointRows]) {
+    fn contact(&mut self, contact: &[ContactConstraint], points: &[PointRows], supports: &MergedSupports) {
         let of = |p: &PointRows| &contact[p.point];
         for p in points {
             let row = self.contact_row(of(p), &p.normal, &p.prescribed);
@@ -131,7 +132,7 @@ impl Builder<'_> {
             }
         }
         self.gluing.groups = NodeGroups::new(points.iter().map(of));
-        self.dependent(contact, points);
+        self.dependent(contact, points, supports);
         let normal = self.gluing.nodal_rows();
         let mut ends = [normal; 2];
         for (end, count) in ends.iter_mut().zip([2, 1]) {
@@ -153,20 +154,24 @@ impl Builder<'_> {
     }
 
     /// Notes the nodes whose rows may depend on one another.
-    fn dependent(&mut self, contact: &[ContactConstraint], points: &[PointRows]) {
+    fn dependent(&mut self, contact: &[ContactConstraint], points: &[PointRows], supports: &MergedSupports) {
         let of = |k: &usize| &contact[points[*k].point];
-        let group = |k: &usize| self.gluing.groups.of(of(k).side.first());
-        let mut order: Vec<usize> = (0..points.len()).collect();
+        let left = not_alone(contact, points, supports);
+        let groups = NodeGroups::new(left.iter().map(of));
+        let group = |k: &usize| groups.of(of(k).side.first());
+        let mut order = left;
         order.sort_by_key(group);
         for same in order.chunk_by(|a, b| group(a) == group(b)) {
             let dragged = same.iter().any(|&k| points[k].dragged);
-            if same.len() > 1 || dragged {
+            let long = same.iter().any(|k| of(k).is_long());
+            if dragged || same.len() > 1 && !(long && are_independent(same.iter().map(|k| (of(k), &points[*k])))) {
                 let nodes = same.iter().flat_map(|k| of(k).nodes());
                 self.gluing.dependent.extend(nodes.map(|n| n.0));
             }
         }
         self.gluing.dependent.sort_unstable();
         self.gluing.dependent.dedup();
+        self.gluing.exchanging = groups;
     }
 
     fn interface(&mut self, nodes: usize) {

@@ -1,9 +1,14 @@
 //! Rows of `B` that depend on one another: forces at a node that may replace one another.
 
+use crate::linalg::sparse::{Columns, SparseCholesky, Symbolic};
+use crate::rows::contact::{ContactRow, PointRows};
 use crate::rows::gluing::Gluing;
-use crate::tolerances::PIVOT;
+use crate::rows::side::ContactConstraint;
+use crate::rows::supports::MergedSupports;
+use crate::tolerances::{EXCHANGED_ROWS, INDEPENDENT, PIVOT};
 use nalgebra::{DMatrix, SymmetricEigen};
-use std::collections::BTreeMap;
+use signorini_fem_mesh::vec3::dot;
+use std::collections::{BTreeMap, HashMap};
 
 /// The contact and support rows of a node, or of nodes that contact points join, with the null space of their `Bᵀ`.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,9 +23,10 @@ pub struct Dependency {
 
 impl Gluing {
     /// What depends on what at the [dependent nodes](Self::dependent_nodes), group by group; groups whose rows turn out
-    /// to be independent are left out.
+    /// to be independent are left out, and so are groups of more than a thousand rows, whose null space would cost too
+    /// much.
     pub fn dependencies(&self) -> Vec<Dependency> {
-        let groups = self.node_groups();
+        let groups = &self.exchanging;
         let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         let ranges = self.ranges();
         for row in ranges.contact().chain(ranges.dirichlet.clone()) {
@@ -28,7 +34,8 @@ impl Gluing {
                 members.entry(groups.of(node)).or_default().push(row);
             }
         }
-        members.into_values().filter_map(|rows| self.dependency(rows)).collect()
+        let members = members.into_values().filter(|rows| rows.len() <= EXCHANGED_ROWS);
+        members.filter_map(|rows| self.dependency(rows)).collect()
     }
 
     fn dependency(&self, rows: Vec<usize>) -> Option<Dependency> {
@@ -49,4 +56,69 @@ impl Gluing {
             .collect();
         (!vectors.is_empty()).then_some(Dependency { rows, vectors })
     }
+}
+
+/// Places of the points whose rows may depend on others. Left out are points of long sides with a node that no support
+/// holds and no other point has, or only such that are left out before: their rows are independent of all others.
+pub(super) fn not_alone(contact: &[ContactConstraint], points: &[PointRows], supports: &MergedSupports) -> Vec<usize> {
+    let of = |k: usize| &contact[points[k].point];
+    let mut users: HashMap<u32, u32> = HashMap::new();
+    let mut left: Vec<usize> = (0..points.len()).collect();
+    if left.iter().all(|&k| !of(k).is_long()) {
+        return left;
+    }
+    for &k in &left {
+        of(k).nodes().for_each(|(n, _)| *users.entry(n).or_insert(0) += 1);
+    }
+    loop {
+        let before = left.len();
+        left.retain(|&k| {
+            let own = |&(node, _): &(u32, f64)| users[&node] == 1 && supports.at(node).is_none();
+            let alone = of(k).is_long() && !points[k].dragged && of(k).side.nodes().iter().any(own);
+            if alone {
+                for (node, _) in of(k).nodes() {
+                    users.entry(node).and_modify(|count| *count -= 1);
+                }
+            }
+            !alone
+        });
+        if left.len() == before {
+            return left;
+        }
+    }
+}
+
+/// Whether the rows of points are linearly independent for certain: from their Gram matrix. What supports fix is in
+/// none of them, unless it is dragged.
+pub(super) fn are_independent<'a>(points: impl Iterator<Item = (&'a ContactConstraint, &'a PointRows)>) -> bool {
+    let mut rows: Vec<Vec<(u32, [f64; 3])>> = Vec::new();
+    for (constraint, point) in points {
+        let row = |r: &ContactRow| constraint.nodes().map(|n| n.0).zip(r.parts.iter().copied()).collect();
+        rows.push(row(&point.normal));
+        rows.extend(point.tangential.iter().map(row));
+    }
+    let mut users: HashMap<u32, Vec<(usize, [f64; 3])>> = HashMap::new();
+    for (k, row) in rows.iter().enumerate() {
+        row.iter()
+            .for_each(|&(node, v)| users.entry(node).or_default().push((k, v)));
+    }
+    let mut gram = Columns::empty(rows.len());
+    for row in &rows {
+        let mut column: BTreeMap<usize, f64> = BTreeMap::new();
+        for &(node, v) in row {
+            for &(other, w) in &users[&node] {
+                *column.entry(other).or_insert(0.0) += dot(v, w);
+            }
+        }
+        for (other, value) in column {
+            gram.rows.push(other);
+            gram.values.push(value);
+        }
+        gram.pointers.push(gram.rows.len());
+    }
+    let factor = Symbolic::new(&gram, 1).and_then(|symbolic| SparseCholesky::new(&symbolic, &gram));
+    factor.is_ok_and(|factor| {
+        let (smallest, _, largest) = factor.pivots();
+        smallest > INDEPENDENT * largest
+    })
 }

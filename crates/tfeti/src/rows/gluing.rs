@@ -101,6 +101,8 @@ pub struct Gluing {
     pub(super) aligned: bool,
     /// Nodes whose rows may depend on one another, ascending.
     pub(super) dependent: Vec<u32>,
+    /// Those of them whose rows may depend on one another.
+    pub(super) exchanging: NodeGroups,
 }
 
 impl Gluing {

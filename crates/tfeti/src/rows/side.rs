@@ -130,6 +130,11 @@ impl ContactConstraint {
         self.partner.is_none() && self.side.nodes().len() == 1
     }
 
+    /// Whether it has more nodes than a pair of nodes.
+    pub(crate) fn is_long(&self) -> bool {
+        self.nodes().count() > 2
+    }
+
     /// Whether it says the same as another one, seen from either side.
     fn is_same(&self, other: &Self) -> bool {
         let cosine = dot(self.frame.normal, other.frame.normal);

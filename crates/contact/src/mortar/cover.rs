@@ -1,0 +1,244 @@
+//! The part of a facet that facets of the other side cover, and the means of their shape functions that dual shape
+//! functions take there.
+//!
+//! On the covered part `C` of a facet with corners `x_j` and linear shape functions `l_j` the dual shape functions are
+//! those combinations `psi_j` of them with `int_C psi_j l_k = delta_jk d_j`, `d_j = int_C l_j` (consistent dual basis:
+//! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). With `P` the L2 projection on linear
+//! functions on `C` then `int_C psi_j f = d_j (P f)(x_j)`: that is what is computed, in coordinates about the centroid
+//! of `C`, so that nothing cancels where `C` is small.
+
+use crate::tolerances::{COVERED, FLAT};
+
+type Point = [f64; 2];
+
+/// A triangle of the other side, laid into the plane of the facet: corners, counter-clockwise, and their node numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Laid {
+    pub(super) corners: [Point; 3],
+    pub(super) nodes: [u32; 3],
+}
+
+/// The covered part of a facet.
+#[derive(Debug, Clone)]
+pub(super) struct Cover {
+    /// Area of the part, m².
+    pub(super) area: f64,
+    /// `d_j`, m², of the three corners.
+    pub(super) areas: [f64; 3],
+    /// Of each node of the other side the integrals of its shape function times the three dual ones, m².
+    pub(super) weights: Vec<(u32, [f64; 3])>,
+}
+
+/// What is left of a triangle inside a facet.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    polygon: Vec<Point>,
+    pub(super) area: f64,
+    laid: Laid,
+}
+
+impl Piece {
+    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap.
+    pub(super) fn new(facet: &[Point; 3], laid: Laid) -> Option<Self> {
+        let mut polygon = laid.corners.to_vec();
+        let whole = area(facet);
+        for k in 0..3 {
+            let [from, to] = [facet[k], facet[(k + 1) % 3]];
+            polygon = cut(&polygon, |p| cross(sub(to, from), sub(p, from)));
+            if polygon.len() < 3 {
+                return None;
+            }
+        }
+        let area = area(&polygon);
+        (area > COVERED * whole).then_some(Self { polygon, area, laid })
+    }
+
+    /// Mean of the points.
+    pub(super) fn middle(&self) -> Point {
+        let count = self.polygon.len() as f64;
+        [0, 1].map(|c| self.polygon.iter().map(|p| p[c]).sum::<f64>() / count)
+    }
+
+    /// Calls `f` at the points of a rule that is exact for squares, with their weights, m².
+    fn integrate(&self, mut f: impl FnMut(Point, f64)) {
+        let first = self.polygon[0];
+        for pair in self.polygon[1..].windows(2) {
+            let triangle = [first, pair[0], pair[1]];
+            let weight = area(&triangle) / 3.0;
+            for k in 0..3 {
+                f(mean(triangle[k], triangle[(k + 1) % 3]), weight);
+            }
+        }
+    }
+}
+
+impl Cover {
+    /// The cover of a facet by pieces that do not overlap; `None` without pieces.
+    pub(super) fn new(facet: &[Point; 3], pieces: &[Piece]) -> Option<Self> {
+        let (mut area, mut first) = (0.0, [0.0; 2]);
+        for piece in pieces {
+            piece.integrate(|p, w| {
+                area += w;
+                (0..2).for_each(|c| first[c] += w * p[c]);
+            });
+        }
+        if area <= 0.0 {
+            return None;
+        }
+        let centre = first.map(|f| f / area);
+        let mut second = [0.0; 3];
+        for piece in pieces {
+            piece.integrate(|p, w| {
+                let [x, y] = sub(p, centre);
+                second[0] += w * x * x;
+                second[1] += w * x * y;
+                second[2] += w * y * y;
+            });
+        }
+        let inverse = pseudo_inverse(second);
+        // projected onto linear functions and evaluated at a corner: these times the moments of a function
+        let kernel = facet.map(|corner| {
+            let [x, y] = sub(corner, centre);
+            [
+                area.recip(),
+                inverse[0] * x + inverse[1] * y,
+                inverse[1] * x + inverse[2] * y,
+            ]
+        });
+        let areas = barycentric(facet, centre).map(|l| area * l);
+        let mut weights: Vec<(u32, [f64; 3])> = Vec::new();
+        for piece in pieces {
+            let mut moments = [[0.0; 3]; 3];
+            piece.integrate(|p, w| {
+                let shape = barycentric(&piece.laid.corners, p);
+                let [x, y] = sub(p, centre);
+                for (moments, shape) in moments.iter_mut().zip(shape) {
+                    let value = w * shape;
+                    moments[0] += value;
+                    moments[1] += value * x;
+                    moments[2] += value * y;
+                }
+            });
+            for (&node, moments) in piece.laid.nodes.iter().zip(&moments) {
+                let at = weights.iter().position(|w| w.0 == node).unwrap_or_else(|| {
+                    weights.push((node, [0.0; 3]));
+                    weights.len() - 1
+                });
+                for (j, kernel) in kernel.iter().enumerate() {
+                    let projected: f64 = kernel.iter().zip(moments).map(|(k, m)| k * m).sum();
+                    weights[at].1[j] += areas[j] * projected;
+                }
+            }
+        }
+        Some(Self { area, areas, weights })
+    }
+}
+
+/// The part of a polygon where a linear function is not negative.
+fn cut(polygon: &[Point], side: impl Fn(Point) -> f64) -> Vec<Point> {
+    let mut out = Vec::with_capacity(polygon.len() + 1);
+    for (k, &p) in polygon.iter().enumerate() {
+        let q = polygon[(k + 1) % polygon.len()];
+        let [a, b] = [side(p), side(q)];
+        if a >= 0.0 {
+            out.push(p);
+        }
+        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+            let t = a / (a - b);
+            out.push([0, 1].map(|c| p[c] + t * (q[c] - p[c])));
+        }
+    }
+    out
+}
+
+/// Shape functions of a triangle at a point.
+pub(super) fn barycentric(corners: &[Point; 3], p: Point) -> [f64; 3] {
+    let [a, b, c] = *corners;
+    let whole = cross(sub(b, a), sub(c, a));
+    let [second, third] = [cross(sub(p, a), sub(c, a)), cross(sub(b, a), sub(p, a))].map(|v| v / whole);
+    [1.0 - second - third, second, third]
+}
+
+/// Inverse of a symmetric matrix `[xx, xy, yy]` of second moments, without directions in which there is no extent.
+fn pseudo_inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+    let (mean, half) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+    let (large, small) = (mean + half, (xx * yy - xy * xy) / (mean + half));
+    if small > FLAT * large {
+        let det = large * small;
+        return [yy / det, -xy / det, xx / det];
+    }
+    // the direction of the larger one: a column of the matrix minus the smaller one
+    let [x, y] = if xx > yy { [xx, xy] } else { [xy, yy] };
+    let scale = large * (x * x + y * y);
+    [x * x / scale, x * y / scale, y * y / scale]
+}
+
+/// Area of a polygon, counter-clockwise positive.
+fn area(polygon: &[Point]) -> f64 {
+    let first = polygon[0];
+    let pairs = polygon[1..].windows(2);
+    pairs.map(|p| 0.5 * cross(sub(p[0], first), sub(p[1], first))).sum()
+}
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn mean(a: Point, b: Point) -> Point {
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+}
+
+fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two large triangles in their own rows and one small one: parts of the plane beside a facet.
+    fn laid(corners: [Point; 3], first: u32) -> Laid {
+        Laid {
+            corners,
+            nodes: [first, first + 1, first + 2],
+        }
+    }
+
+    /// On any covered part the weights take linear functions to their values at the corners, and sum to the areas.
+    #[test]
+    fn linear_functions_are_taken_to_the_corners() {
+        let facet = [[0.0, 0.0], [1.0, 0.1], [0.2, 0.9]];
+        let covers = [
+            vec![laid([[-3.0, -3.0], [5.0, -3.0], [-3.0, 5.0]], 0)],
+            vec![laid([[0.3, 0.2], [0.4, 0.2], [0.3, 0.31]], 0)],
+            vec![laid([[-3.0, 0.05], [5.0, 0.05], [5.0, 0.0500001]], 0)],
+            vec![
+                laid([[0.5, -1.0], [2.0, 0.0], [0.5, 1.0]], 0),
+                laid([[0.3, 0.0], [0.5, 0.2], [0.3, 2.0]], 3),
+            ],
+        ];
+        let linear = |p: Point| 2.0 - 3.0 * p[0] + 0.7 * p[1];
+        for laid in covers {
+            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l)).collect();
+            assert_eq!(pieces.len(), laid.len());
+            let cover = Cover::new(&facet, &pieces).expect("covered");
+            let sum: f64 = pieces.iter().map(|p| p.area).sum();
+            assert!((cover.area - sum).abs() < 1e-15 && (cover.areas.iter().sum::<f64>() - sum).abs() < 1e-15);
+            for (j, &corner) in facet.iter().enumerate() {
+                let place = |node: u32| laid[node as usize / 3].corners[node as usize % 3];
+                let of = |f: &dyn Fn(Point) -> f64| -> f64 {
+                    cover.weights.iter().map(|(node, w)| w[j] * f(place(*node))).sum()
+                };
+                let size = cover.areas[j].abs();
+                assert!((of(&|_| 1.0) - cover.areas[j]).abs() < 1e-10 * size);
+                // of a part without extent the constant along it only
+                if sum > 1e-4 {
+                    assert!(
+                        (of(&linear) - cover.areas[j] * linear(corner)).abs() < 1e-10 * size,
+                        "{j}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The other side of each node of a surface.
+
+use super::search::covers;
+use crate::tolerances::{COVERED, NO_WEIGHT};
+use rayon::prelude::*;
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use std::collections::BTreeMap;
+
+/// What a node of the first side sees of the other one.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MortarNode {
+    /// Nodes of the other side with weights that sum to one, the largest first.
+    pub(crate) partner: Vec<(u32, f64)>,
+    /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
+    pub(crate) area: f64,
+    /// Normal of the covered facets, out of the first side, and tangents.
+    pub(crate) frame: SurfaceFrame,
+}
+
+/// For each node of a surface what it sees of the other one; `None` where that is nothing.
+///
+/// The row of node `j` is `u_j - sum_k (M_jk / D_jj) u_k` with `M_jk = int psi_j phi_k`: it vanishes where both sides
+/// move alike by a linear function, and forces of constant pressure are in balance.
+pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<MortarNode>> {
+    let covers = covers(mesh, surface, other);
+    let mut around: Vec<Vec<(u32, u8)>> = vec![Vec::new(); surface.nodes().len()];
+    for (k, triangle) in surface.triangles().iter().enumerate() {
+        for (corner, &node) in triangle.iter().enumerate() {
+            around[node as usize].push((k as u32, corner as u8));
+        }
+    }
+    let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
+        let own = surface.nodes()[local];
+        let (mut area, mut normal) = (0.0, [0.0; 3]);
+        let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
+        for &(facet, corner) in facets {
+            let Some((cover, direction)) = &covers[facet as usize] else {
+                continue;
+            };
+            area += cover.areas[corner as usize];
+            (0..3).for_each(|c| normal[c] += cover.area * direction[c]);
+            for (node, weight) in &cover.weights {
+                *weights.entry(*node).or_insert(0.0) += weight[corner as usize];
+            }
+        }
+        // a node that is on both sides, as at the tip of a crack, does not move against itself
+        area -= weights.remove(&own).unwrap_or(0.0);
+        if area <= COVERED * surface.areas()[local] {
+            return None;
+        }
+        let most = weights.values().fold(0.0, |m: f64, w| m.max(w.abs()));
+        weights.retain(|_, w| w.abs() > NO_WEIGHT * most);
+        let sum: f64 = weights.values().sum();
+        let mut partner: Vec<(u32, f64)> = weights.into_iter().map(|(node, w)| (node, w / sum)).collect();
+        partner.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
+        let frame = SurfaceFrame::from_normal(normal)?;
+        Some(MortarNode { partner, area, frame })
+    };
+    around.par_iter().enumerate().map(node).collect()
+}

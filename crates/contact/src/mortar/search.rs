@@ -1,0 +1,198 @@
+//! Which facets of the other side cover a facet.
+
+use super::cover::{Cover, Laid, Piece, barycentric};
+use crate::tolerances::FACING;
+use rayon::prelude::*;
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub};
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+
+/// Distance over the size of a facet up to which others are looked for first: gaps are mostly small.
+const NEAR: f64 = 2.0;
+/// Factor by which that grows.
+const FARTHER: f64 = 4.0;
+
+type Corners = [[f64; 3]; 3];
+
+/// The facets of the other side in a tree of their boxes.
+struct OtherSide<'a> {
+    surface: &'a Surface,
+    tree: RTree<GeomWithData<Rectangle<[f64; 3]>, u32>>,
+    corners: Vec<Corners>,
+    normals: Vec<[f64; 3]>,
+}
+
+/// A facet in its own plane: origin in the middle.
+struct Plane {
+    origin: [f64; 3],
+    frame: SurfaceFrame,
+    corners: [[f64; 2]; 3],
+    /// Root of its area, m.
+    size: f64,
+}
+
+/// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
+///
+/// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
+pub(super) fn covers(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<(Cover, [f64; 3])>> {
+    let other = OtherSide::new(mesh, other);
+    let planes: Vec<Option<Plane>> = surface
+        .triangles()
+        .iter()
+        .map(|t| Plane::new(&corners(mesh, surface, t)))
+        .collect();
+    let size = planes.iter().flatten().map(|p| p.size).fold(0.0, f64::max);
+    let most = other.farthest(planes.iter().flatten());
+    let mut out: Vec<Option<(Cover, [f64; 3])>> = vec![None; planes.len()];
+    let mut reach = NEAR * size;
+    loop {
+        let found: Vec<(usize, Option<Cover>, f64)> = (0..planes.len())
+            .into_par_iter()
+            .filter(|&k| out[k].is_none())
+            .filter_map(|k| {
+                let plane = planes[k].as_ref()?;
+                let pieces = other.pieces(plane, reach);
+                let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
+                let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
+                Some((k, Cover::new(&plane.corners, &pieces), farthest))
+            })
+            .collect();
+        let mut farthest = None::<f64>;
+        for (k, cover, distance) in found {
+            if let (Some(cover), Some(plane)) = (cover, &planes[k]) {
+                out[k] = Some((cover, plane.frame.normal));
+                farthest = Some(farthest.map_or(distance, |f| f.max(distance)));
+            }
+        }
+        let any = out.iter().any(Option::is_some);
+        let next = match farthest {
+            // the next facets may be a little farther away
+            Some(farthest) => FARTHER * farthest.max(size),
+            None if !any => FARTHER * reach,
+            None => return out,
+        };
+        if reach >= most {
+            return out;
+        }
+        reach = next.max(reach * NEAR).min(most);
+    }
+}
+
+fn corners(mesh: &TetMesh, surface: &Surface, triangle: &[u32; 3]) -> Corners {
+    triangle.map(|n| mesh.points()[surface.nodes()[n as usize] as usize])
+}
+
+impl Plane {
+    fn new(corners: &Corners) -> Option<Self> {
+        let vector = area_vector(corners);
+        let frame = SurfaceFrame::from_normal(vector)?;
+        let mut plane = Self {
+            origin: centroid(corners),
+            frame,
+            corners: [[0.0; 2]; 3],
+            size: norm(vector).sqrt(),
+        };
+        plane.corners = corners.map(|c| plane.lay(c).0);
+        Some(plane)
+    }
+
+    /// A point in the plane, and its distance from it along the normal.
+    fn lay(&self, point: [f64; 3]) -> ([f64; 2], f64) {
+        let way = sub(point, self.origin);
+        // (T2, T1, nu) is right-handed
+        let [first, second] = self.frame.tangential_part(way);
+        ([second, first], dot(way, self.frame.normal))
+    }
+
+    fn space(&self, [second, first]: [f64; 2]) -> [f64; 3] {
+        add(self.origin, self.frame.vector(0.0, [first, second]))
+    }
+}
+
+impl<'a> OtherSide<'a> {
+    fn new(mesh: &TetMesh, surface: &'a Surface) -> Self {
+        let corners: Vec<Corners> = surface.triangles().iter().map(|t| corners(mesh, surface, t)).collect();
+        let boxes = corners.iter().enumerate().map(|(k, c)| {
+            let [low, high] = extent(c);
+            GeomWithData::new(Rectangle::from_corners(low, high), k as u32)
+        });
+        Self {
+            tree: RTree::bulk_load(boxes.collect()),
+            normals: corners
+                .iter()
+                .map(|c| {
+                    let vector = area_vector(c);
+                    scale(norm(vector).recip(), vector)
+                })
+                .collect(),
+            corners,
+            surface,
+        }
+    }
+
+    /// A distance beyond which no facet can be.
+    fn farthest<'p>(&self, planes: impl Iterator<Item = &'p Plane>) -> f64 {
+        let envelope = self.tree.root().envelope();
+        let (mut low, mut high) = (envelope.lower(), envelope.upper());
+        for plane in planes {
+            for c in 0..3 {
+                low[c] = low[c].min(plane.origin[c] - plane.size);
+                high[c] = high[c].max(plane.origin[c] + plane.size);
+            }
+        }
+        norm(sub(high, low))
+    }
+
+    /// The parts of facets that lie over a facet within a distance, with their signed distance: the nearest first, each
+    /// place once.
+    fn pieces(&self, plane: &Plane, reach: f64) -> Vec<(Piece, f64)> {
+        let own = plane.corners.map(|c| plane.space(c));
+        let ways = [reach, -reach].map(|by| scale(by, plane.frame.normal));
+        let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| own.map(|c| add(c, way))).collect();
+        let [low, high] = extent(&swept);
+        let near = self
+            .tree
+            .locate_in_envelope_intersecting(&AABB::from_corners(low, high));
+        let mut numbers: Vec<u32> = near.map(|found| found.data).collect();
+        numbers.sort_unstable();
+        let mut found: Vec<(Piece, f64)> = numbers.iter().filter_map(|&k| self.piece(plane, k, reach)).collect();
+        found.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        // of several layers the nearest
+        let whole = plane.size * plane.size;
+        let mut covered = 0.0;
+        found.retain(|(piece, _)| {
+            let fits = covered + piece.area <= whole * (1.0 + OVERLAP);
+            covered += if fits { piece.area } else { 0.0 };
+            fits
+        });
+        found
+    }
+
+    fn piece(&self, plane: &Plane, facet: u32, reach: f64) -> Option<(Piece, f64)> {
+        let facet = facet as usize;
+        if -dot(self.normals[facet], plane.frame.normal) < FACING {
+            return None;
+        }
+        // seen from the other side it turns the other way round
+        let [a, b, c] = self.corners[facet];
+        let seen = [a, c, b].map(|corner| plane.lay(corner));
+        let [i, j, k] = self.surface.triangles()[facet].map(|n| self.surface.nodes()[n as usize]);
+        let laid = Laid {
+            corners: seen.map(|s| s.0),
+            nodes: [i, k, j],
+        };
+        let piece = Piece::new(&plane.corners, laid)?;
+        let shape = barycentric(&laid.corners, piece.middle());
+        let distance: f64 = shape.iter().zip(&seen).map(|(l, s)| l * s.1).sum();
+        (distance.abs() <= reach).then_some((piece, distance))
+    }
+}
+
+/// How much pieces may overlap, over the area of a facet: those of a curved surface do a little.
+const OVERLAP: f64 = 0.05;
+
+fn extent(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let of = |f: fn(f64, f64) -> f64, start: f64| [0, 1, 2].map(|c| points.iter().map(|p| p[c]).fold(start, f));
+    [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
+}

@@ -1,0 +1,142 @@
+//! Groups of many rows in the scaling of preconditioners: contact points whose sides share nodes, as where meshes do
+//! not match, join all rows of a surface.
+//!
+//! Their matrix `B D^-1 B^T` is like a mass matrix of the surface: sparse, and cheap to factor anew for each active set.
+//! Rows that the set holds leave it by a large weight on their diagonal, so that its pattern stays.
+
+use crate::error::TfetiError;
+use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
+use crate::rows::gluing::TangentialRows;
+use crate::system::tfeti::Tfeti;
+use crate::tolerances::{DEPENDENT, HELD_ROWS};
+use signorini_qp::active_set::{ActiveSetView, Freedom};
+use std::collections::{BTreeMap, HashMap};
+
+/// The rows of all such groups and their matrix.
+#[derive(Debug)]
+pub(super) struct JoinedGroups {
+    rows: Vec<u32>,
+    /// Place of each contact row.
+    places: HashMap<u32, usize>,
+    matrix: Columns,
+    factor: SparseCholesky,
+    symbolic: Symbolic,
+}
+
+/// The factor for an active set, and work memory.
+#[derive(Debug)]
+pub(super) struct JoinedScratch {
+    /// `None` for the factor of all rows.
+    factor: Option<SparseCholesky>,
+    memory: SolveMemory,
+    column: Vec<f64>,
+}
+
+/// A row of `B` by places in the torn displacement.
+pub(super) fn torn_entries(system: &Tfeti, row: usize) -> Vec<(usize, f64)> {
+    let entries = system.gluing().row(row).into_iter();
+    entries
+        .map(|(s, dof, v)| (system.torn_range(s).start + dof, v))
+        .collect()
+}
+
+impl JoinedGroups {
+    /// The matrix of these rows with `compliance` of each torn node.
+    pub(super) fn new(system: &Tfeti, rows: Vec<u32>, compliance: &[f64]) -> Result<Self, TfetiError> {
+        let gluing = system.gluing();
+        let places: HashMap<u32, usize> = rows.iter().enumerate().map(|(k, &row)| (row, k)).collect();
+        let entries: Vec<_> = rows.iter().map(|&row| torn_entries(system, row as usize)).collect();
+        let mut users: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
+        for (k, row) in entries.iter().enumerate() {
+            row.iter()
+                .for_each(|&(dof, v)| users.entry(dof).or_default().push((k, v)));
+        }
+        let mut pairs = HashMap::new();
+        for contact in gluing.contact() {
+            if let TangentialRows::Disc { row, .. } = contact.tangential {
+                if let [Some(&a), Some(&b)] = [row, row + 1].map(|r| places.get(&(r as u32))) {
+                    pairs.extend([(a, b), (b, a)]);
+                }
+            }
+        }
+        let mut matrix = Columns::empty(rows.len());
+        for (k, row) in entries.iter().enumerate() {
+            // the other row of a disc, even where they do not meet: an active set couples them
+            let mut column: BTreeMap<usize, f64> = pairs.get(&k).map(|&other| (other, 0.0)).into_iter().collect();
+            for &(dof, v) in row {
+                for &(other, w) in &users[&dof] {
+                    *column.entry(other).or_insert(0.0) += v * compliance[dof / 3] * w;
+                }
+            }
+            if gluing.node(rows[k] as usize).is_some_and(|n| gluing.is_dependent(n)) {
+                column.entry(k).and_modify(|v| *v *= 1.0 + DEPENDENT);
+            }
+            for (other, value) in column {
+                matrix.rows.push(other);
+                matrix.values.push(value);
+            }
+            matrix.pointers.push(matrix.rows.len());
+        }
+        let node = |k: usize| gluing.node(rows[k.min(rows.len() - 1)] as usize).unwrap_or_default();
+        let dependent = |error| match error {
+            FactorError::Pivot(k) => TfetiError::DependentRows { node: node(k) },
+            FactorError::Pattern => TfetiError::pattern(FactorError::Pattern, 0),
+        };
+        let symbolic = Symbolic::new(&matrix, 1).map_err(dependent)?;
+        let factor = SparseCholesky::new(&symbolic, &matrix).map_err(dependent)?;
+        Ok(Self {
+            rows,
+            places,
+            matrix,
+            factor,
+            symbolic,
+        })
+    }
+
+    pub(super) fn scratch(&self) -> JoinedScratch {
+        JoinedScratch {
+            factor: None,
+            memory: SolveMemory::new(self.factor.need(1)),
+            column: vec![0.0; self.rows.len()],
+        }
+    }
+
+    /// Factors the matrix without the directions that an active set holds.
+    pub(super) fn on_active_set(&self, view: &ActiveSetView<'_>, s: &mut JoinedScratch) {
+        let mut matrix = self.matrix.clone();
+        let place = |row: usize| self.places.get(&(row as u32)).copied();
+        let mut hold = |direction: &[(usize, f64)]| {
+            let size = direction.iter().map(|d| self.matrix.diagonal(d.0)).fold(0.0, f64::max);
+            for &(i, a) in direction {
+                for &(j, b) in direction {
+                    if let Some(k) = matrix.find(i, j) {
+                        matrix.values[k] += HELD_ROWS * size * a * b;
+                    }
+                }
+            }
+        };
+        view.for_each(|row, count, freedom| match freedom {
+            Freedom::Free => {}
+            Freedom::Held => (row..row + count).filter_map(place).for_each(|k| hold(&[(k, 1.0)])),
+            Freedom::Along(tau) => {
+                if let [Some(i), Some(j)] = [place(row), place(row + 1)] {
+                    hold(&[(i, -tau[1]), (j, tau[0])]);
+                }
+            }
+        });
+        // adding to the diagonal cannot make the matrix singular
+        s.factor = SparseCholesky::new(&self.symbolic, &matrix).ok();
+    }
+
+    /// Writes the rows of `y = N x`.
+    pub(super) fn solve(&self, x: &[f64], y: &mut [f64], s: &mut JoinedScratch) {
+        for (value, &row) in s.column.iter_mut().zip(&self.rows) {
+            *value = x[row as usize];
+        }
+        let factor = s.factor.as_ref().unwrap_or(&self.factor);
+        factor.solve(&mut s.column, 1, &mut s.memory);
+        for (value, &row) in s.column.iter().zip(&self.rows) {
+            y[row as usize] = *value;
+        }
+    }
+}
