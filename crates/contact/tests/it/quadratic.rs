@@ -30,10 +30,16 @@ fn trial() {
     let b: usize = std::env::var("B").unwrap().parse().unwrap();
     let order: usize = std::env::var("ORDER").unwrap().parse().unwrap();
     let mut mesh = block([3.0, 1.0, 1.0], [3 * k, k, k]);
+    let parts = Decomposition::boxes(&mesh, [3 * b, b, b]).unwrap().parts().to_vec();
+    let g: f64 = std::env::var("G").map_or(1.0, |g| g.parse().unwrap());
+    if g != 1.0 {
+        let f = |s: f64| if s < 0.5 { 0.5 * (2.0 * s).powf(g) } else { 1.0 - 0.5 * (2.0 * (1.0 - s)).powf(g) };
+        mesh = mesh.map_points(|[x, y, z]| [3.0 * f(x / 3.0), f(y), f(z)]).unwrap();
+    }
     if order == 2 {
         mesh = mesh.raise_order().unwrap();
     }
-    let scene = half_loaded(mesh).with_boxes([3 * b, b, b]);
+    let scene = half_loaded(mesh).with_parts(parts);
     let mut simulation = Simulation::new(scene, tight()).expect("set-up");
     let start = std::time::Instant::now();
     let result = step(&mut simulation);
@@ -53,4 +59,32 @@ fn trial() {
         result.report.status,
         result.certificate.parts().map(|(n, v)| (n, v.relative()))
     );
+}
+
+#[test]
+fn trial_linear() {
+    let k: usize = std::env::var("K").unwrap().parse().unwrap();
+    let b: usize = std::env::var("B").unwrap().parse().unwrap();
+    let order: usize = std::env::var("ORDER").unwrap().parse().unwrap();
+    let mut mesh = block([3.0, 1.0, 1.0], [3 * k, k, k]);
+    let parts = Decomposition::boxes(&mesh, [3 * b, b, b]).unwrap().parts().to_vec();
+    let g: f64 = std::env::var("G").map_or(1.0, |g| g.parse().unwrap());
+    if g != 1.0 {
+        let f = |s: f64| if s < 0.5 { 0.5 * (2.0 * s).powf(g) } else { 1.0 - 0.5 * (2.0 * (1.0 - s)).powf(g) };
+        mesh = mesh.map_points(|[x, y, z]| [3.0 * f(x / 3.0), f(y), f(z)]).unwrap();
+    }
+    if order == 2 {
+        mesh = mesh.raise_order().unwrap();
+    }
+    let q = 1e8;
+    let scene = Scene::new(mesh, steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]))
+        .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]))
+        .with_parts(parts);
+    for scene in [scene.clone(), scene.with_contact(foundation(Friction::None)) ] {
+    let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+    let result = step(&mut simulation);
+    println!("products {} {:?}", result.report.counters.products, result.report.counters);
+    }
 }
