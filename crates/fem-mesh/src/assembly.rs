@@ -4,7 +4,7 @@
 //! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
 //! no sum depends on their number, so the result is the same bit for bit for any thread count.
 
-use crate::element::{Element, QuadraticElement, nodal_stress, stiffness_block};
+use crate::element::{Block, Columns};
 use crate::material::Hooke;
 use crate::tables::{buckets, range};
 use rayon::prelude::*;
@@ -81,49 +81,11 @@ where
     Ok(CsMat::new_csc((3 * nodes, 3 * nodes), indptr, indices, data))
 }
 
-type Block = [[f64; 3]; 3];
-
 /// Node numbers of a tetrahedron: four of a linear one, ten of a quadratic one.
-pub trait TetNodes: Copy + Sync + sealed::Columns {}
+pub trait TetNodes: Copy + Sync + Columns {}
 
 impl TetNodes for [u32; 4] {}
 impl TetNodes for [u32; 10] {}
-
-mod sealed {
-    use super::Block;
-    use crate::material::Hooke;
-
-    pub trait Columns {
-        /// Hands out the blocks in the column of mesh node `node` that are in the rows of nodes not before it.
-        fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, add: impl FnMut(usize, &Block));
-    }
-}
-
-impl sealed::Columns for [u32; 4] {
-    fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, mut add: impl FnMut(usize, &Block)) {
-        let tet = self.map(|n| n as usize);
-        let element = Element::new(&tet.map(|n| points[n]));
-        for b in (0..4).filter(|&b| tet[b] == node) {
-            let stress = nodal_stress(law.voigt(), element.gradients[b], element.volume);
-            for a in (0..4).filter(|&a| tet[a] >= node) {
-                add(tet[a], &stiffness_block(element.gradients[a], &stress));
-            }
-        }
-    }
-}
-
-impl sealed::Columns for [u32; 10] {
-    fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, mut add: impl FnMut(usize, &Block)) {
-        let tet = self.map(|n| n as usize);
-        let element = QuadraticElement::new(&tet.map(|n| points[n]));
-        for b in (0..10).filter(|&b| tet[b] == node) {
-            let blocks = element.column(law.voigt(), b, |a| tet[a] >= node);
-            for a in (0..10).filter(|&a| tet[a] >= node) {
-                add(tet[a], &blocks[a]);
-            }
-        }
-    }
-}
 
 /// Which nodes share a tetrahedron, and which tetrahedra surround each node.
 struct Pattern {

@@ -33,7 +33,13 @@ fn trial() {
     let parts = Decomposition::boxes(&mesh, [3 * b, b, b]).unwrap().parts().to_vec();
     let g: f64 = std::env::var("G").map_or(1.0, |g| g.parse().unwrap());
     if g != 1.0 {
-        let f = |s: f64| if s < 0.5 { 0.5 * (2.0 * s).powf(g) } else { 1.0 - 0.5 * (2.0 * (1.0 - s)).powf(g) };
+        let f = |s: f64| {
+            if s < 0.5 {
+                0.5 * (2.0 * s).powf(g)
+            } else {
+                1.0 - 0.5 * (2.0 * (1.0 - s)).powf(g)
+            }
+        };
         mesh = mesh.map_points(|[x, y, z]| [3.0 * f(x / 3.0), f(y), f(z)]).unwrap();
     }
     if order == 2 {
@@ -70,7 +76,13 @@ fn trial_linear() {
     let parts = Decomposition::boxes(&mesh, [3 * b, b, b]).unwrap().parts().to_vec();
     let g: f64 = std::env::var("G").map_or(1.0, |g| g.parse().unwrap());
     if g != 1.0 {
-        let f = |s: f64| if s < 0.5 { 0.5 * (2.0 * s).powf(g) } else { 1.0 - 0.5 * (2.0 * (1.0 - s)).powf(g) };
+        let f = |s: f64| {
+            if s < 0.5 {
+                0.5 * (2.0 * s).powf(g)
+            } else {
+                1.0 - 0.5 * (2.0 * (1.0 - s)).powf(g)
+            }
+        };
         mesh = mesh.map_points(|[x, y, z]| [3.0 * f(x / 3.0), f(y), f(z)]).unwrap();
     }
     if order == 2 {
@@ -82,9 +94,12 @@ fn trial_linear() {
         .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]))
         .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]))
         .with_parts(parts);
-    for scene in [scene.clone(), scene.with_contact(foundation(Friction::None)) ] {
-    let mut simulation = Simulation::new(scene, tight()).expect("set-up");
-    let result = step(&mut simulation);
-    println!("products {} {:?}", result.report.counters.products, result.report.counters);
+    for scene in [scene.clone(), scene.with_contact(foundation(Friction::None))] {
+        let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+        let result = step(&mut simulation);
+        println!(
+            "products {} {:?}",
+            result.report.counters.products, result.report.counters
+        );
     }
 }

@@ -1,11 +1,10 @@
 //! The quadratic tetrahedron, with straight or curved edges.
 
-use crate::mesh::tangents;
+use crate::mesh::{EDGES, tangents};
 use crate::quadrature::FOUR_POINTS;
 use crate::vec3::{Vec3, add, scale};
 
 use super::p1::{Element, nodal_stress, stiffness_block};
-use crate::mesh::EDGES;
 
 /// Volume of the tangent tetrahedron at barycentric coordinates, and the gradients of the ten shape functions there.
 pub(crate) fn gradients(points: &[Vec3; 10], l: &[f64; 4]) -> (f64, [Vec3; 10]) {

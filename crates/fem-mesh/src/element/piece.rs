@@ -10,6 +10,7 @@ use super::p1::{Element, strain_of};
 use super::p2;
 
 /// A displacement in a tetrahedron, as a function of barycentric coordinates.
+#[expect(clippy::large_enum_variant, reason = "short-lived, and no allocation a tetrahedron")]
 pub(crate) enum Piece {
     Linear {
         points: [Vec3; 4],

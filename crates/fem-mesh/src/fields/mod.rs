@@ -15,4 +15,4 @@ pub use difference::{Locator, energy_of_difference};
 pub use norms::{energy_of_error, h1_seminorm_error, l2_error};
 pub use strain::{FieldError, nodal_average, nodal_stresses, strain_energy, strains, stresses, von_mises};
 
-pub(crate) use strain::expect_entries;
+pub(crate) use strain::{expect_entries, nodal_vectors};

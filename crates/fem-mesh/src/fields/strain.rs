@@ -27,7 +27,7 @@ pub(crate) fn expect_entries(what: &'static str, given: usize, expected: usize) 
 }
 
 /// The displacement of each node as a vector.
-pub(super) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, FieldError> {
+pub(crate) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, FieldError> {
     expect_entries("displacement", u.len(), 3 * mesh.points().len())?;
     let vectors: Vec<_> = u.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect();
     match vectors.iter().position(|v| v.iter().any(|x| !x.is_finite())) {

@@ -331,10 +331,13 @@ fn meshes_are_joined_moved_and_repaired_with_their_mid_nodes() {
     ));
 }
 
+/// A change of points and tetrahedra.
+type Change<'a> = &'a dyn Fn(&mut Vec<[f64; 3]>, &mut Vec<[u32; 10]>);
+
 #[test]
 fn faults_of_mid_nodes_name_the_element() {
     let mesh = Brick::new([1.0; 3], [1; 3]).build().unwrap().raise_order().unwrap();
-    let build = |change: &dyn Fn(&mut Vec<[f64; 3]>, &mut Vec<[u32; 10]>)| {
+    let build = |change: Change<'_>| {
         let (mut points, mut tets) = (mesh.points().to_vec(), mesh.quadratic_tets());
         change(&mut points, &mut tets);
         TetMesh::quadratic(points, tets, Vec::new()).unwrap_err()
