@@ -95,6 +95,9 @@ signorini_fem_mesh::errors! {
         SameSide { contact: usize, tag: u32 } =
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart)";
+        Tied { contact: usize } =
+            "contact {contact} is tied: its sides move alike, and friction, gap and direction mean nothing; leave them \
+            out, or use Contact::between";
         MovedPartner { contact: usize } =
             "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its \
             supports instead";

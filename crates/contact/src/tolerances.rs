@@ -50,6 +50,9 @@ pub(crate) const MOST_TILT: f64 = 0.2;
 /// Cosine between a normal and that of the other side reversed above which they face each other.
 pub(crate) const FACING: f64 = 0.1;
 
+/// Mean area of the facets of a side over that of the other from which on it is the coarser one.
+pub(crate) const COARSER: f64 = 1.1;
+
 /// Part of the area of a facet or node below which what covers it counts as nothing.
 pub(crate) const COVERED: f64 = 1e-10;
 

@@ -68,7 +68,7 @@ pub use preconditioner::operator::DualPreconditioner;
 pub use projector::active_set::ActiveSetProjector;
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
-pub use rows::gluing::{ContactRows, Gluing, TangentialRows};
+pub use rows::gluing::{ContactRows, Gluing, TangentialRows, TiedRows};
 pub use rows::kinds::RowRanges;
 pub use rows::side::{ContactConstraint, Side};
 pub use rows::supports::{Directions, Motion, NodeSupport};

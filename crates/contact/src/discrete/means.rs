@@ -18,7 +18,10 @@ use std::collections::HashMap;
 /// What means over the sides of a contact need.
 pub(super) struct Means<'a> {
     mesh: &'a TetMesh,
+    contact: (usize, &'a Contact),
     surface: &'a Surface,
+    /// What of a gap may be rounding, m.
+    rounding: f64,
     /// Triangles around each node.
     around: Vec<Vec<u32>>,
     /// Partner of each node of the surface, corners and mid-nodes; empty against a rigid obstacle.
@@ -29,17 +32,19 @@ impl<'a> Means<'a> {
     /// `None` for a mesh of order 1.
     pub(super) fn new(
         mesh: &'a TetMesh,
-        index: usize,
-        contact: &Contact,
+        (index, contact): (usize, &'a Contact),
         surface: &'a Surface,
         partners: &Partners,
+        rounding: f64,
     ) -> Result<Option<Self>, ContactError> {
         if mesh.order() == 1 {
             return Ok(None);
         }
         Ok(Some(Self {
             mesh,
+            contact: (index, contact),
             surface,
+            rounding,
             around: around(surface),
             partners: match partners {
                 Partners::Obstacle => HashMap::new(),
@@ -55,11 +60,10 @@ impl<'a> Means<'a> {
     /// Sides and gap of the point of a node on the triangles of its side, all around it if there are none.
     pub(super) fn point(
         &self,
-        index: usize,
-        contact: &Contact,
         (local, triangles): (usize, &[u32]),
         frame: &SurfaceFrame,
     ) -> Result<(Sides, f64), ContactError> {
+        let (index, contact) = self.contact;
         let triangles = if triangles.is_empty() {
             &self.around[local]
         } else {
@@ -73,13 +77,15 @@ impl<'a> Means<'a> {
             let place = self.mesh.points()[node as usize];
             let measured = self.partners.get(&node).map_or(0.0, |&to| {
                 let way = vector_between(place, self.mesh.points()[to as usize]);
-                vector::dot(&way, &frame.normal)
+                let gap = vector::dot(&way, &frame.normal);
+                if gap.abs() <= self.rounding { 0.0 } else { gap }
             });
             gap += weight * contact.gap_at(index, node, place, measured)?;
         }
         let sides = Sides {
             own: Side::new(own),
             partner: partner.map(Side::new),
+            swapped: false,
         };
         Ok((sides, gap))
     }

@@ -7,8 +7,8 @@
 use super::rounding::rounding;
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
-use crate::scene::{Contact, Gap};
-use crate::tolerances::{BESIDE, FACING, MOST_TILT, TILT};
+use crate::scene::{Contact, ContactNormal, Gap};
+use crate::tolerances::{ALONG, BESIDE, COARSER, FACING, MOST_TILT, TILT};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
@@ -25,6 +25,18 @@ pub(super) struct Partner {
     pub(super) gap: f64,
 }
 
+/// A contact surface and what its nodes may touch.
+#[derive(Debug)]
+pub(super) struct Paired {
+    /// The side that has the contact points.
+    pub(super) surface: Surface,
+    /// The one frame of all its nodes, of a contact with a fixed direction.
+    pub(super) fixed: Option<SurfaceFrame>,
+    pub(super) partners: Partners,
+    /// Whether the scene names the other side first.
+    pub(super) swapped: bool,
+}
+
 /// What the nodes of a contact surface may touch.
 #[derive(Debug)]
 pub(super) enum Partners {
@@ -36,36 +48,70 @@ pub(super) enum Partners {
     Mortar(Vec<Option<MortarNode>>),
 }
 
-/// The partners of the nodes of a surface. `fixed` is the frame of a contact with one direction.
-pub(super) fn partners(
-    mesh: &TetMesh,
-    index: usize,
-    contact: &Contact,
-    surface: &Surface,
-    fixed: Option<&SurfaceFrame>,
-) -> Result<Partners, ContactError> {
-    if contact.partner.is_empty() {
-        return Ok(Partners::Obstacle);
+impl Paired {
+    /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one: there they
+    /// are fewer, their rows farther from depending on one another, and their pressures smoother.
+    pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact) -> Result<Self, ContactError> {
+        let surface = Surface::new(mesh, &contact.tags)?;
+        let fixed = fixed_frame(index, contact, &surface)?;
+        let paired = |surface, fixed, partners, swapped| Self {
+            surface,
+            fixed,
+            partners,
+            swapped,
+        };
+        if contact.partner.is_empty() {
+            return Ok(paired(surface, fixed, Partners::Obstacle, false));
+        }
+        if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
+            return Err(ContactError::SameSide {
+                contact: index,
+                tag: tag.0,
+            });
+        }
+        let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
+        if let Some(nodes) = nodes(mesh, index, contact, &surface, fixed.as_ref(), &other)? {
+            return Ok(paired(surface, fixed, Partners::Nodes(nodes), false));
+        }
+        let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
+        let swapped = facet(&other.surface) > COARSER * facet(&surface);
+        let [own, partner] = if swapped {
+            [&other.surface, &surface]
+        } else {
+            [&surface, &other.surface]
+        };
+        let mortar = mortar_nodes(mesh, own, partner);
+        if mortar.iter().all(Option::is_none) {
+            let distance = other.distance(&surface);
+            return Err(ContactError::NoPartner {
+                contact: index,
+                distance,
+            });
+        }
+        let partners = Partners::Mortar(mortar);
+        if !swapped {
+            return Ok(paired(surface, fixed, partners, false));
+        }
+        let turned = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
+        Ok(paired(other.surface, turned, partners, true))
     }
-    if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
-        return Err(ContactError::SameSide {
+}
+
+/// The one frame of all nodes of a contact with a fixed direction.
+fn fixed_frame(index: usize, contact: &Contact, surface: &Surface) -> Result<Option<SurfaceFrame>, ContactError> {
+    let ContactNormal::Fixed(normal) = contact.normal else {
+        return Ok(None);
+    };
+    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
+    let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
+    if !surface.frames().iter().any(outside) {
+        return Err(ContactError::ObstacleSide {
             contact: index,
-            tag: tag.0,
+            direction: normal,
+            nodes: surface.nodes().len(),
         });
     }
-    let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-    if let Some(nodes) = nodes(mesh, index, contact, surface, fixed, &other)? {
-        return Ok(Partners::Nodes(nodes));
-    }
-    let mortar = mortar_nodes(mesh, surface, &other.surface);
-    if mortar.iter().all(Option::is_none) {
-        let distance = other.distance(surface);
-        return Err(ContactError::NoPartner {
-            contact: index,
-            distance,
-        });
-    }
-    Ok(Partners::Mortar(mortar))
+    Ok(Some(frame))
 }
 
 /// The partner of each node; `None` where meshes do not match.
@@ -258,11 +304,10 @@ mod tests {
     fn partners_lie_on_the_normals_of_curved_surfaces() {
         for gap in [0.0, 1e-3, 0.02, 0.3] {
             let mesh = bent(gap);
-            let surface = Surface::new(&mesh, &[brick::Z_MIN]).expect("surface");
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
-            let found = partners(&mesh, 0, &contact, &surface, None).expect("partners");
-            let Partners::Nodes(found) = found else {
-                panic!("{found:?}");
+            let paired = Paired::new(&mesh, 0, &contact).expect("partners");
+            let (Partners::Nodes(found), surface) = (paired.partners, paired.surface) else {
+                panic!("meshes match");
             };
             assert_eq!(found.len(), surface.nodes().len());
             let all = Surface::new(&mesh, &contact.partner).expect("surface");

@@ -10,13 +10,12 @@
 
 use super::creases::{SurfaceSide, area_vector, creases};
 use super::means::Means;
-use super::partners::{Partners, partners};
-use super::rounding::rounding;
+use super::partners::{Paired, Partners};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
-use crate::scene::{Contact, ContactNormal, Gap, Scene};
-use crate::tolerances::{ALONG, SAME_NORMAL, TURN};
+use crate::scene::{ContactNormal, Gap, Scene};
+use crate::tolerances::{SAME_NORMAL, TURN};
 use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -74,17 +73,16 @@ impl ContactPoint {
 }
 
 /// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<ContactPoint>, ContactError> {
+pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
-    for (index, (contact, surface)) in scene.contacts.iter().zip(surfaces).enumerate() {
+    for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
         let first = out.len();
-        let fixed = fixed_frame(index, contact, surface)?;
-        let partners = partners(&scene.mesh, index, contact, surface, fixed.as_ref())?;
-        let sides = match (&partners, fixed) {
+        let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
+        let sides = match (partners, fixed) {
             (Partners::Obstacle, None) => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
-        let means = Means::new(&scene.mesh, index, contact, surface, &partners)?;
+        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding)?;
         for (local, &node) in surface.nodes().iter().enumerate() {
             let position = scene.mesh.points()[node as usize];
             let mut one = [SurfaceSide {
@@ -93,7 +91,7 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                 triangles: Vec::new(),
             }];
             let mut measured = 0.0;
-            let partner = match &partners {
+            let partner = match partners {
                 Partners::Obstacle => None,
                 Partners::Nodes(partners) => {
                     measured = partners[local].gap;
@@ -105,7 +103,9 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                     };
                     (one[0].frame, one[0].area) = (seen.frame, seen.area);
                     let normal = fixed.unwrap_or(seen.frame).normal;
-                    measured = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
+                    measured = if gap.abs() <= weights * rounding { 0.0 } else { gap };
                     Some(Side::new(seen.partner.clone()))
                 }
             };
@@ -117,10 +117,11 @@ pub(super) fn conditions(scene: &Scene, surfaces: &[Surface]) -> Result<Vec<Cont
                         let sides = Sides {
                             own: Side::node(node),
                             partner: partner.clone(),
+                            swapped: paired.swapped,
                         };
                         (sides, contact.gap_at(index, node, position, measured)?)
                     }
-                    Some(means) => means.point(index, contact, (local, &side.triangles), &frame)?,
+                    Some(means) => means.point((local, &side.triangles), &frame)?,
                 };
                 out.push(ContactPoint {
                     surface: index,
@@ -162,12 +163,7 @@ fn mortar_gap(
             size,
         });
     }
-    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
-    Ok(if gap.abs() <= weights * rounding(&scene.mesh) {
-        0.0
-    } else {
-        gap
-    })
+    Ok(gap)
 }
 
 /// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
@@ -198,23 +194,6 @@ pub(super) fn points(
         }
     }
     Ok(out)
-}
-
-/// The one frame of all nodes of a contact with a fixed direction.
-fn fixed_frame(index: usize, contact: &Contact, surface: &Surface) -> Result<Option<SurfaceFrame>, ContactError> {
-    let ContactNormal::Fixed(normal) = contact.normal else {
-        return Ok(None);
-    };
-    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
-    let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
-    if !surface.frames().iter().any(outside) {
-        return Err(ContactError::ObstacleSide {
-            contact: index,
-            direction: normal,
-            nodes: surface.nodes().len(),
-        });
-    }
-    Ok(Some(frame))
 }
 
 /// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are

@@ -1,12 +1,13 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
 use super::overflow::{check_gaps, check_materials, check_motions, nodal_loads};
+use super::partners::Paired;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, points};
 use super::rounding::rounding;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Contact, Scene, check_laws};
+use crate::scene::{Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
@@ -18,13 +19,15 @@ pub(crate) struct DiscreteScene {
     /// How the body is cut.
     pub(crate) decomposition: Decomposition,
     pub(crate) supports: Supports,
-    /// Contact surfaces, in the order of the scene, fixed nodes included.
+    /// The sides that have the contact points, in the order of the contacts, fixed nodes included.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
     pub(crate) conditions: Vec<ContactPoint>,
     /// The contact points that stand for them.
     pub(crate) points: Vec<ContactPoint>,
-    /// The same as `tfeti` wants them.
+    /// The nodes of tied contacts.
+    pub(crate) ties: Vec<ContactPoint>,
+    /// Both as `tfeti` wants them.
     pub(crate) constraints: Vec<ContactConstraint>,
     /// Nodal forces of each load with factor one, subdomain by subdomain, N; the model takes them.
     pub(crate) loads: Vec<Vec<Vec<f64>>>,
@@ -39,16 +42,18 @@ impl DiscreteScene {
         scene.validate()?;
         let decomposition = scene.decompose()?;
         let supports = Supports::new(scene)?;
-        let surface = |contact: &Contact| Surface::new(&scene.mesh, &contact.tags);
-        let surfaces = scene.contacts.iter().map(surface);
-        let surfaces = surfaces.collect::<Result<Vec<_>, _>>()?;
+        let contacts = scene.contacts.iter().enumerate();
+        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
+        let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let rounding = rounding(&scene.mesh);
-        let conditions = conditions(scene, &surfaces)?;
+        let tied = |c: &ContactPoint| scene.contacts[c.surface].tied;
+        let (ties, conditions): (Vec<_>, Vec<_>) = conditions(scene, &paired, rounding)?.into_iter().partition(tied);
+        let surfaces = paired.into_iter().map(|p| p.surface).collect();
         let points = points(scene, &conditions, rounding)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions)?;
-        let constraints = constraints(scene, &points);
+        let constraints = constraints(scene, &points, &ties);
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
         check_penetration(scene, &points, &prescribed, &supports.motions, rounding)?;
@@ -67,6 +72,7 @@ impl DiscreteScene {
             surfaces,
             conditions,
             points,
+            ties,
             constraints,
             loads,
             rounding,
@@ -91,14 +97,15 @@ impl DiscreteScene {
     }
 }
 
-/// The contact points as `tfeti` wants them.
-fn constraints(scene: &Scene, points: &[ContactPoint]) -> Vec<ContactConstraint> {
+/// The contact points as `tfeti` wants them, and behind them the tied ones.
+fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) -> Vec<ContactConstraint> {
     let point = |p: &ContactPoint| {
         let contact = &scene.contacts[p.surface];
         ContactConstraint::new(p.sides.own.clone(), p.frame)
             .with_partner(p.sides.partner.clone())
             .with_friction(contact.friction().is_some())
             .with_moving_obstacle(contact.motion.is_some())
+            .with_tied(contact.tied)
     };
-    points.iter().map(point).collect()
+    points.iter().chain(ties).map(point).collect()
 }

@@ -9,6 +9,8 @@ pub(crate) struct Sides {
     pub(crate) own: Side,
     /// That of the other body; `None` for a rigid obstacle.
     pub(crate) partner: Option<Side>,
+    /// Whether the scene names the other body first.
+    pub(crate) swapped: bool,
 }
 
 impl Sides {
@@ -20,6 +22,16 @@ impl Sides {
     /// The node that names the other side.
     pub(crate) fn partner(&self) -> Option<u32> {
         self.partner.as_ref().map(|side| side.nodes()[0].0)
+    }
+
+    /// Nodes of the body that the scene names first, with weights, negative where forces on it are opposite to those of
+    /// the point.
+    pub(crate) fn first(&self) -> impl Iterator<Item = (u32, f64)> {
+        let (side, sign) = match &self.partner {
+            Some(partner) if self.swapped => (partner, -1.0),
+            _ => (&self.own, 1.0),
+        };
+        side.nodes().iter().map(move |&(node, weight)| (node, sign * weight))
     }
 
     /// The displacement of one side relative to the other as a sum: nodes with weights, those of the partner negative.

@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::report::AlgebraicError;
 use crate::result::{Lengths, Recovered};
 use crate::step::StepProblem;
-use crate::tolerances::{NO_STRAIN, PARALLEL, REST, ROUNDING};
+use crate::tolerances::{FREEDOM_TAKEN, NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::recovery::StrainRecovery;
@@ -95,6 +95,7 @@ impl Solved<'_> {
             .collect();
         self.support(&mut v);
         self.agree(&moved, &weights.nodes, &mut v);
+        self.tie(&mut v);
         let (mut terms, mut change) = (0.0, 0.0);
         for ((state, node), moved) in points().zip(&moved) {
             let conditions = node.conditions(self.problem, &v);
@@ -236,6 +237,30 @@ impl Solved<'_> {
             dependent.iter().for_each(|(node, _)| node.push_out(self.problem, v));
         }
         on_planes(v);
+    }
+
+    /// Moves the nodes of tied contacts to where their partners want them.
+    fn tie(&self, v: &mut [f64]) {
+        let gluing = self.model.tfeti.gluing();
+        let subdomains = self.model.discrete.decomposition.subdomains();
+        for row in gluing.ranges().tied.clone() {
+            let Some(own) = gluing.node(row) else {
+                continue;
+            };
+            let (mut part, mut value) = ([0.0; 3], 0.0);
+            for (subdomain, dof, coefficient) in gluing.row(row) {
+                let node = subdomains[subdomain].nodes[dof / 3];
+                value += coefficient * v[3 * node as usize + dof % 3];
+                if node == own {
+                    part[dof % 3] += coefficient;
+                }
+            }
+            let square = dot(&part, &part);
+            if square > FREEDOM_TAKEN {
+                let by = (self.problem.offset[row] - value) / square;
+                (0..3).for_each(|c| v[3 * own as usize + c] += by * part[c]);
+            }
+        }
     }
 
     /// Sets supported directions to their prescribed values.

@@ -79,7 +79,8 @@ fn joined(tfeti: &Tfeti, discrete: &DiscreteScene) -> Vec<u32> {
         let copy = discrete.decomposition.copies(node as usize)[0];
         coarse.body_of()[copy.subdomain as usize] as usize
     };
-    for point in discrete.points.iter().filter(|p| p.sides.partner.is_some()) {
+    let pairs = discrete.points.iter().filter(|p| p.sides.partner.is_some());
+    for point in pairs.chain(&discrete.ties) {
         let mut bodies = point.sides.nodes().map(body);
         if let Some(first) = bodies.next() {
             bodies.for_each(|other| sets.join(first, other));

@@ -84,7 +84,7 @@ impl Model {
             Segment::upper(zeros(ranges.normal.len())),
             Segment::discs(zeros(ranges.discs.len() / 2)),
             Segment::bounds(zeros(ranges.intervals.len()), zeros(ranges.intervals.len())),
-            Segment::Free(ranges.interface.len() + ranges.dirichlet.len()),
+            Segment::Free(ranges.total() - ranges.interface.start),
         ])
         .map_err(signorini_qp::QpError::from)?;
         Ok(Self {

@@ -27,6 +27,8 @@ pub struct Effects {
     pub gap: bool,
     /// Contact between elastic bodies.
     pub partners: bool,
+    /// Bonded sides.
+    pub ties: bool,
     /// Friction.
     pub friction: FrictionKind,
     /// History: old tangential displacements.
@@ -65,9 +67,10 @@ impl Effects {
         };
         let quasistatic = matches!(scene.analysis, Analysis::Quasistatic { .. });
         Self {
-            contact: !contacts.is_empty(),
+            contact: contacts.iter().any(|c| !c.tied),
             gap: (0..contacts.len()).any(has_gap),
             partners: points.iter().any(|p| p.sides.partner.is_some()),
+            ties: contacts.iter().any(|c| c.tied),
             friction,
             history: friction != FrictionKind::None && quasistatic,
             gluing: discrete.decomposition.subdomains().len() > 1,

@@ -40,6 +40,8 @@ pub struct Plan {
     pub interface_rows: usize,
     /// Rows of `B_Dir`.
     pub dirichlet_rows: usize,
+    /// Rows of tied contacts.
+    pub tied_rows: usize,
     /// Unknowns of the coarse problem.
     pub coarse: usize,
     /// Time steps.
@@ -79,7 +81,7 @@ impl Plan {
     /// All rows that are solved for: n_d of full rank, but for nodes with several normals or in the grip of a support.
     #[must_use]
     pub fn dual(&self) -> usize {
-        self.normal_rows + self.tangential_rows + self.interface_rows + self.dirichlet_rows
+        self.normal_rows + self.tangential_rows + self.interface_rows + self.tied_rows + self.dirichlet_rows
     }
 
     /// The plan of a discrete scene.
@@ -112,6 +114,7 @@ impl Plan {
             // each copy of a node but one is glued
             interface_rows: primal - 3 * nodes,
             dirichlet_rows: fixed.values().copied().sum(),
+            tied_rows: discrete.ties.iter().map(free).sum(),
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
             method: if effects.contact {
@@ -124,7 +127,8 @@ impl Plan {
             warnings: sanity::warnings(scene, discrete),
         };
         let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
-        let touching: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+        let touching = points.iter().copied().chain(&discrete.ties);
+        let touching: BTreeSet<u32> = touching.flat_map(|p| nodes(&p)).collect();
         let forecast = Forecast::new(
             &scene.mesh,
             decomposition,

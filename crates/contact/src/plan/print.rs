@@ -36,6 +36,9 @@ impl fmt::Display for Plan {
         }
         line("gluing", self.gluing_text())?;
         line("supports", self.supports_text())?;
+        if self.effects.ties {
+            line("ties", format!("{} rows", self.tied_rows))?;
+        }
         line("contact", self.contact_text())?;
         line("friction", self.friction_text())?;
         line("history", self.history_text())?;

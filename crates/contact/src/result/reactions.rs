@@ -5,13 +5,13 @@
 //! them.
 
 use super::recovered::Recovered;
-use crate::discrete::Supports;
+use crate::discrete::{ContactPoint, Supports};
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
 use crate::tolerances::ROUNDING;
 use crate::vec3::dot;
-use signorini_tfeti::NodeSupport;
 use signorini_tfeti::internal::PrescribedDirection;
+use signorini_tfeti::{NodeSupport, TiedRows};
 use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
@@ -78,7 +78,8 @@ pub struct Reactions {
     /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
     /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the
-    /// body with the first tag ([`Contact::between`](crate::Contact::between)), which has the opposite on the partner.
+    /// body with the first tag ([`Contact::between`](crate::Contact::between), [`Contact::tied`](crate::Contact::tied)),
+    /// which has the opposite on the partner.
     pub contacts: Vec<Resultant>,
     /// What the loads do.
     pub loads: Resultant,
@@ -134,7 +135,43 @@ pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<
             }
         }
     }
+    for (tie, whole) in tied_forces(model, recovered) {
+        for (node, weight) in tie.sides.nodes() {
+            if let Some(force) = forces.get_mut(&node) {
+                let held = model.discrete.supports.directions.get(&node);
+                for PrescribedDirection { direction, .. } in held.into_iter().flatten() {
+                    let along = weight * dot(&whole, direction);
+                    (0..3).for_each(|c| force[c] -= along * direction[c]);
+                }
+            }
+        }
+    }
     forces
+}
+
+/// The force on each point of tied contacts, N: what its rows do to a node that no support holds, over the weight of
+/// the node.
+fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&'a ContactPoint, [f64; 3])> {
+    let gluing = model.tfeti.gluing();
+    let subdomains = model.discrete.decomposition.subdomains();
+    let supported = |node: u32| model.discrete.supports.directions.contains_key(&node);
+    let points = model.discrete.points.len();
+    let force = |tied: &TiedRows| {
+        let tie = model.discrete.ties.get(tied.point.checked_sub(points)?)?;
+        let free = tie.sides.nodes().filter(|n| !supported(n.0));
+        let (node, weight) = free.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
+        let mut force = [0.0; 3];
+        for row in tied.rows.clone() {
+            let lambda = recovered.tied_multipliers[row - gluing.ranges().tied.start];
+            for (subdomain, dof, coefficient) in gluing.row(row) {
+                if subdomains[subdomain].nodes[dof / 3] == node {
+                    force[dof % 3] += lambda * coefficient / weight;
+                }
+            }
+        }
+        Some((tie, force))
+    };
+    gluing.tied().iter().filter_map(force).collect()
 }
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
@@ -168,8 +205,13 @@ pub(crate) fn reactions_about(
         for (node, weight) in point.contact.sides.nodes() {
             contact.add(arm(node), state.force().map(|f| weight * f));
         }
-        for &(node, weight) in point.contact.sides.own.nodes() {
+        for (node, weight) in point.contact.sides.first() {
             contacts[state.surface].add(arm(node), state.force().map(|f| weight * f));
+        }
+    }
+    for (tie, force) in tied_forces(model, recovered) {
+        for (node, weight) in tie.sides.first() {
+            contacts[tie.surface].add(arm(node), force.map(|f| weight * f));
         }
     }
     let mut loads = Resultant::default();

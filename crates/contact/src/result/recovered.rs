@@ -23,6 +23,8 @@ pub(crate) struct Recovered {
     pub(crate) points: Vec<PointState>,
     /// Multipliers of the support rows.
     pub(crate) support_multipliers: Vec<f64>,
+    /// Multipliers of the rows of tied contacts.
+    pub(crate) tied_multipliers: Vec<f64>,
 }
 
 impl Recovered {
@@ -53,6 +55,7 @@ impl Recovered {
             certificate: certify(&measured, &sizes),
             points: point_states(model, problem, lambda, &rows),
             support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
+            tied_multipliers: lambda[tfeti.gluing().ranges().tied.clone()].to_vec(),
             sizes,
             torn,
             rows,

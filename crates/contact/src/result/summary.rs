@@ -61,9 +61,10 @@ pub(crate) fn summarise(
         s.normal_force -= point.normal_force;
         s.normal_norm += point.normal_force.powi(2);
         let force = point.force();
+        let sign = if touch.contact.sides.swapped { -1.0 } else { 1.0 };
         for c in 0..3 {
-            s.friction_force[c] += point.friction_force[c];
-            s.resultant[c] += force[c];
+            s.friction_force[c] += sign * point.friction_force[c];
+            s.resultant[c] += sign * force[c];
             s.friction_norm += point.friction_force[c].powi(2);
             s.dissipation -= point.friction_force[c] * point.difference[c];
         }

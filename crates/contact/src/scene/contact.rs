@@ -56,6 +56,8 @@ pub struct Contact {
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
+    /// Whether both sides are bonded.
+    pub(crate) tied: bool,
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
@@ -73,18 +75,24 @@ impl Contact {
             friction: Friction::None,
             crease: CREASE,
             motion: None,
+            tied: false,
         }
     }
 
-    /// Contact of two elastic bodies whose meshes match: facets with `tag`, and facets of the other body with the tag
-    /// `partner`.
+    /// Contact of two elastic bodies: facets with `tag`, and facets of the other body with the tag `partner`.
     ///
-    /// Every node of the facets with `tag` needs a partner: a node of the other side on its normal, to within a
-    /// fiftieth of the size of its facets, and a little more across a gap. The other side may have more nodes. Flat
-    /// sides that meet at an edge are a contact each. All quantities of a contact point are those of the body with
-    /// `tag`: its outward normal, the force on it, its displacement *relative* to the partner. The gap is measured
-    /// between the partners, unless [`with_gap`](Self::with_gap) or [`with_gap_field`](Self::with_gap_field) tell
-    /// another; partners may coincide. Displacements are small: a node keeps its partner, however far it slides.
+    /// Where the meshes match, a node of the first side is a contact point, and its partner is the node of the other
+    /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they do
+    /// not, the side with the larger facets has the points, whichever is named first, and the partner of each is a
+    /// weighted mean of nodes (mortar method with dual multipliers): uniform pressure passes exactly, for any ratio of
+    /// the meshes and where sides cover each other in part. Nodes that nothing faces have no point. Flat sides that
+    /// meet at an edge are a contact each.
+    ///
+    /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
+    /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of
+    /// the body with `tag`. The gap is measured between the sides, unless [`with_gap`](Self::with_gap) or
+    /// [`with_gap_field`](Self::with_gap_field) tell another; sides may coincide. Displacements are small: a node keeps
+    /// its partner, however far it slides.
     ///
     /// ```
     /// use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
@@ -117,10 +125,21 @@ impl Contact {
         }
     }
 
+    /// Bonds two bodies, or parts of one that are meshed apart: both sides move alike where they face each other, as
+    /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is.
+    #[must_use]
+    pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
+        Self {
+            partner: vec![partner],
+            tied: true,
+            ..Self::rigid(tag)
+        }
+    }
+
     /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
     #[must_use]
     pub fn with_partner(mut self, tag: FacetTag) -> Self {
-        if self.partner.is_empty() && matches!(self.gap, Gap::None) {
+        if self.partner.is_empty() && matches!(self.gap, Gap::None) && !self.tied {
             self.gap = Gap::Measured;
         }
         self.partner.push(tag);
@@ -212,6 +231,12 @@ impl Contact {
     pub fn with_friction(mut self, friction: Friction) -> Self {
         self.friction = if friction.is_zero() { Friction::None } else { friction };
         self
+    }
+
+    /// Whether both sides are [bonded](Self::tied).
+    #[must_use]
+    pub fn is_tied(&self) -> bool {
+        self.tied
     }
 
     /// The friction law.

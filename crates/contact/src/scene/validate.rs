@@ -1,6 +1,6 @@
 //! What can be said against a scene without nodes and rows.
 
-use super::contact::{Contact, ContactNormal};
+use super::contact::{Contact, ContactNormal, Gap};
 use super::friction::Friction;
 use super::scene::Scene;
 use super::support::Place;
@@ -88,6 +88,10 @@ impl Scene {
             if !(length.is_finite() && length > 0.0) {
                 return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
+        }
+        let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None);
+        if contact.tied && (loose || contact.normal != ContactNormal::Body) {
+            return Err(ContactError::Tied { contact: index });
         }
         if contact.motion.is_some() && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });

@@ -127,7 +127,7 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
         let law = model.scene.materials.get(region).ok();
         law.into_iter().flat_map(|law| law.voigt()).flatten()
     });
-    let rows = gluing.ranges().dirichlet.clone();
+    let rows = gluing.ranges().interface.end..gluing.ranges().total();
     let entries = rows.flat_map(|row| gluing.row(row));
     let entries = entries.flat_map(|(subdomain, dof, coefficient)| [subdomain as u64, dof as u64, number(coefficient)]);
     let scales = model.points.iter().flat_map(|point| {

@@ -95,3 +95,119 @@ fn uniform_pressure_passes_exactly() {
         }
     }
 }
+
+/// A block that is pressed and pulled on a larger one, with other cells; the contact covers facets in part.
+fn pulled(swap: bool, boxes: [usize; 3]) -> Scene {
+    let below = block([1.5, 1.0, 0.5], [7, 5, 2]);
+    let above = block([0.8, 0.7, 0.6], [3, 3, 2])
+        .map_points(|[x, y, z]| [x + 0.31, y + 0.17, z + 0.5])
+        .expect("lifted");
+    let (upper, lower) = (second(brick::Z_MIN), brick::Z_MAX);
+    let contact = if swap {
+        Contact::between(lower, upper)
+    } else {
+        Contact::between(upper, lower)
+    };
+    Scene::new(with_second(&below, &above), uniform(1e9, 0.3))
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_load(Load::traction(second(brick::Z_MAX), [2e5, 1e5, -1e6]))
+        .with_contact(contact.with_friction(Friction::coulomb(0.28)))
+        .with_boxes(boxes)
+}
+
+/// Forces balance, their moments too, whatever the cut, the order of the sides and the threads; the estimate of the
+/// algebraic error is small, and every method finds the same.
+#[test]
+fn results_do_not_depend_on_the_cut_the_method_nor_on_which_side_comes_first() {
+    let (mut reference, results) = run(pulled(false, [1, 1, 1]), tight());
+    let whole = &results[0];
+    assert!(whole.summary.slip > 0 && whole.summary.stick > 0, "{:?}", whole.summary);
+    let area: f64 = whole.points.iter().map(|p| p.area).sum();
+    assert!((area - 0.56).abs() < 1e-12, "{area}");
+    assert!((whole.summary.normal_force - 0.56e6).abs() < 1.0, "{:?}", whole.summary);
+    for (swap, boxes) in [(true, [1, 1, 1]), (false, [2, 2, 2]), (true, [3, 2, 3])] {
+        for method in methods() {
+            let scene = pulled(swap, boxes);
+            let (_, results) = run(scene.clone(), tight().with_method(method));
+            let distance = relative_distance(&scene, &results[0].displacement, &whole.displacement);
+            assert!(distance < 1e-6, "{swap} {boxes:?}: {distance:e}");
+            // the force on the side that is named first
+            let sign = if swap { -1.0 } else { 1.0 };
+            let resultant = results[0].summary.resultant.map(|f| sign * f);
+            assert_close(&resultant, &whole.summary.resultant, 1e-6, "resultant");
+        }
+    }
+    reference = Simulation::new(reference.scene().clone(), tight()).expect("set-up");
+    let result = reference.step().expect("step");
+    let reactions = result.reactions();
+    let sum = reactions.contact;
+    assert!(sum.force.iter().chain(&sum.moment).all(|f| f.abs() < 1e-3), "{sum:?}");
+    let imbalance = reactions.imbalance();
+    assert!(imbalance.moment.iter().all(|m| m.abs() < 1.0), "{imbalance:?}");
+    let upper = reactions.contacts[0];
+    assert!((upper.force[2] - 0.56e6).abs() < 1.0, "{upper:?}");
+    let error = result.algebraic_error();
+    assert!(error.relative() < 1e-4, "{error:?}");
+}
+
+/// Tied blocks move as one, pulled as well as pressed and sheared, for any ratio of meshes, either order, any cut; without
+/// contact the solver is the linear one. Reactions balance though supports hold nodes of the tie.
+#[test]
+fn tied_blocks_are_one() {
+    for (lower, upper, boxes) in [
+        ([2, 2, 2], [6, 6, 2], [1, 1, 2]),
+        ([5, 5, 2], [2, 3, 2], [2, 1, 2]),
+        ([3, 3, 2], [3, 3, 2], [1, 2, 2]),
+    ] {
+        for (a, b) in [
+            (second(brick::Z_MIN), brick::Z_MAX),
+            (brick::Z_MAX, second(brick::Z_MIN)),
+        ] {
+            let mesh = blocks(lower, upper, 1.0);
+            let pulled = pressed_blocks(mesh.clone(), 1.0)
+                .with_load(Load::pressure(second(brick::Z_MAX), -2.0 * PRESSURE))
+                .with_contact(Contact::tied(a, b))
+                .with_boxes(boxes);
+            let (simulation, results) = run(pulled, tight());
+            let what = format!("{lower:?} {upper:?} {a}");
+            let effects = simulation.plan().effects;
+            assert!(effects.ties && !effects.contact && !effects.partners, "{what}");
+            assert_eq!(simulation.plan().method, MethodKind::Linear, "{what}");
+            assert!(results[0].points.is_empty(), "{what}");
+            let rows = &simulation.tfeti().report().rows;
+            assert!(!rows.tied.is_empty() && rows.contact().is_empty(), "{what}");
+            assert_eq!(simulation.plan().dual(), rows.total(), "{what}");
+            let pulled: Vec<f64> = results[0].displacement.iter().map(|u| -u).collect();
+            let error = patch_error(&mesh, &pulled, 1.0);
+            assert!(error < 1e-9, "{what}: {error:e}");
+        }
+    }
+    // sheared: the same reactions as those of one block, and the force through the tie
+    let mesh = blocks([3, 3, 3], [4, 5, 4], 1.0);
+    let load = [1e5, 3e4, 2e5];
+    let scene = Scene::new(mesh, uniform(YOUNG, POISSON))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(Support::components(second(brick::X_MIN), [true, false, true]))
+        .with_load(Load::traction(second(brick::Z_MAX), load))
+        .with_contact(Contact::tied(second(brick::Z_MIN), brick::Z_MAX))
+        .with_boxes([1, 2, 2]);
+    let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+    let result = simulation.step().expect("step");
+    let reactions = result.reactions();
+    let imbalance = reactions.imbalance();
+    let parts = imbalance.force.iter().chain(&imbalance.moment);
+    assert!(parts.clone().all(|f| f.abs() < 1e-3), "{imbalance:?}");
+    let upper = [0, 1, 2]
+        .map(|c| reactions.contacts[0].force[c] + reactions.supports[1].resultant.force[c] + reactions.loads.force[c]);
+    assert!(upper.iter().all(|f| f.abs() < 1e-3), "{upper:?}");
+    let error = result.algebraic_error();
+    assert!(error.relative() < 1e-5, "{error:?}");
+}
+
+#[test]
+fn a_tied_contact_has_no_friction() {
+    let scene = pressed_blocks(blocks([2; 3], [3; 3], 1.0), 1.0);
+    let contact = Contact::tied(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.1));
+    let error = refused(&scene.with_contact(contact));
+    assert!(matches!(error, ContactError::Tied { contact: 0 }), "{error}");
+}

@@ -1,8 +1,8 @@
 //! Building the rows: contact rows, interface blocks glob by glob, support rows.
 
-use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows};
+use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows, TiedRows};
 use crate::error::TfetiError;
-use crate::rows::contact::{ContactRow, PointRows, contact_rows};
+use crate::rows::contact::{AllRows, ContactRow, PointRows, contact_rows};
 use crate::rows::dependencies::{are_independent, not_alone};
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{MergedSupports, NodeSupport};
@@ -34,7 +34,7 @@ impl Gluing {
             row_pointers: vec![0],
             prescribed: vec![Vec::new(); merged.cases],
             aligned: stiffness.is_plain(),
-            removed: [found.removed, merged.removed.clone()].concat(),
+            removed: [found.removed.clone(), merged.removed.clone()].concat(),
             ..Self::default()
         };
         let mut builder = Builder {
@@ -43,21 +43,29 @@ impl Gluing {
             shares: Vec::new(),
             gluing: &mut gluing,
         };
-        builder.contact(contact, &found.rows, &merged);
+        builder.contact(contact, &found.rows);
+        builder.dependent(contact, &found, &merged);
         builder.interface(nodes);
+        builder.tied(contact, &found.tied);
+        let tied = builder.gluing.nodal_rows() - builder.gluing.ranges.contact().len();
         builder.dirichlet(&merged);
-        let supported = gluing.nodal_rows() - gluing.ranges.contact().len();
+        let behind = gluing.nodal_rows() - gluing.ranges.contact().len();
         let interface = gluing.ranges.interface.start;
         let supports = interface + 3 * gluing.blocks();
         gluing.ranges.interface.end = supports;
-        gluing.ranges.dirichlet = supports..supports + supported;
+        gluing.ranges.tied = supports..supports + tied;
+        gluing.ranges.dirichlet = supports + tied..supports + behind;
+        for tied in &mut gluing.tied {
+            tied.rows.start += supports - interface;
+            tied.rows.end += supports - interface;
+        }
         for case in &mut gluing.prescribed {
             let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
             later.for_each(|v| v.0 += (supports - interface) as u32);
             case.sort_by_key(|v| v.0);
         }
         let torn = decomposition.torn_dofs();
-        let of_contact = contact.iter().map(|p| if p.friction { 3 } else { 1 });
+        let of_contact = contact.iter().map(|p| if p.friction || p.tied { 3 } else { 1 });
         gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
         let count = gluing.block_entries.len().max(gluing.row_entries.len());
         if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
@@ -66,6 +74,15 @@ impl Gluing {
         }
         Ok(gluing)
     }
+}
+
+/// Whether the rows of a point are of unit length, and its sides of nodes that no other point needs to have.
+fn is_aligned(constraint: &ContactConstraint, point: &PointRows) -> bool {
+    let unit = |r: &ContactRow| {
+        let length: f64 = r.parts.iter().map(|&v| dot(v, v)).sum();
+        (length - 1.0).abs() <= SAME
+    };
+    !constraint.is_long() && unit(&point.normal) && point.tangential.iter().all(unit)
 }
 
 struct Builder<'a> {
@@ -113,7 +130,7 @@ impl Builder<'_> {
     }
 
     /// Normal rows, then pairs of tangential rows, then single ones.
-    fn contact(&mut self, contact: &[ContactConstraint], points: &[PointRows], supports: &MergedSupports) {
+    fn contact(&mut self, contact: &[ContactConstraint], points: &[PointRows]) {
         let of = |p: &PointRows| &contact[p.point];
         for p in points {
             let row = self.contact_row(of(p), &p.normal, &p.prescribed);
@@ -123,16 +140,8 @@ impl Builder<'_> {
                 scale: p.normal.scale,
                 tangential: TangentialRows::None,
             });
-            let skew = |r: &ContactRow| {
-                let length: f64 = r.parts.iter().map(|&v| dot(v, v)).sum();
-                (length - 1.0).abs() > SAME
-            };
-            if skew(&p.normal) || p.tangential.iter().any(skew) {
-                self.gluing.aligned = false;
-            }
+            self.gluing.aligned &= is_aligned(of(p), p);
         }
-        self.gluing.groups = NodeGroups::new(points.iter().map(of));
-        self.dependent(contact, points, supports);
         let normal = self.gluing.nodal_rows();
         let mut ends = [normal; 2];
         for (end, count) in ends.iter_mut().zip([2, 1]) {
@@ -153,10 +162,26 @@ impl Builder<'_> {
         ranges.interface = end..end;
     }
 
-    /// Notes the nodes whose rows may depend on one another.
-    fn dependent(&mut self, contact: &[ContactConstraint], points: &[PointRows], supports: &MergedSupports) {
+    /// Rows of tied constraints.
+    fn tied(&mut self, contact: &[ContactConstraint], tied: &[PointRows]) {
+        for p in tied {
+            let of = &contact[p.point];
+            let first = self.gluing.nodal_rows();
+            for row in std::iter::once(&p.normal).chain(&p.tangential) {
+                self.contact_row(of, row, &p.prescribed);
+            }
+            let (point, rows) = (p.point, first..first + 1 + p.tangential.len());
+            self.gluing.tied.push(TiedRows { point, rows });
+            self.gluing.aligned &= is_aligned(of, p);
+        }
+    }
+
+    /// Notes which nodes belong together, and those whose rows may depend on one another.
+    fn dependent(&mut self, contact: &[ContactConstraint], found: &AllRows, supports: &MergedSupports) {
+        let points: Vec<&PointRows> = found.rows.iter().chain(&found.tied).collect();
         let of = |k: &usize| &contact[points[*k].point];
-        let left = not_alone(contact, points, supports);
+        self.gluing.groups = NodeGroups::new(points.iter().map(|p| &contact[p.point]));
+        let left = not_alone(contact, &points, supports);
         let groups = NodeGroups::new(left.iter().map(of));
         let group = |k: &usize| groups.of(of(k).side.first());
         let mut order = left;
@@ -164,7 +189,7 @@ impl Builder<'_> {
         for same in order.chunk_by(|a, b| group(a) == group(b)) {
             let dragged = same.iter().any(|&k| points[k].dragged);
             let long = same.iter().any(|k| of(k).is_long());
-            if dragged || same.len() > 1 && !(long && are_independent(same.iter().map(|k| (of(k), &points[*k])))) {
+            if dragged || same.len() > 1 && !(long && are_independent(same.iter().map(|k| (of(k), points[*k])))) {
                 let nodes = same.iter().flat_map(|k| of(k).nodes());
                 self.gluing.dependent.extend(nodes.map(|n| n.0));
             }

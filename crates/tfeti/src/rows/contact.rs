@@ -64,6 +64,8 @@ pub(super) struct PointRows {
 #[derive(Debug, Default)]
 pub(super) struct AllRows {
     pub(super) rows: Vec<PointRows>,
+    /// Rows of tied constraints: the first as the normal one.
+    pub(super) tied: Vec<PointRows>,
     pub(super) removed: Vec<RemovedRow>,
     prescribed: Vec<PrescribedPoint>,
 }
@@ -172,13 +174,43 @@ impl Space {
     }
 }
 
+/// Unit vectors at right angles to orthonormal ones and to one another.
+fn complement(fixed: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let projector: Matrix3<f64> = fixed.iter().fold(Matrix3::identity(), |p, d| p - d * d.transpose());
+    let eigen = SymmetricEigen::new(projector);
+    let free = (0..3).filter(|&k| eigen.eigenvalues[k] > 0.5);
+    free.map(|k| eigen.eigenvectors.column(k).into()).collect()
+}
+
 impl AllRows {
     fn remove(&mut self, point: &ContactConstraint, kind: RowKind, reason: RemovalReason) {
         let node = point.side.first();
         self.removed.push(RemovedRow { node, kind, reason });
     }
 
+    /// The rows of a tied constraint: the axes, or all directions that are left.
+    fn tie(&mut self, index: usize, space: Space) {
+        let fixed = space.fixed();
+        let mut rows: Vec<ContactRow> = match fixed.len() {
+            0 => (0..3).map(|c| space.row(Vector3::ith(c, 1.0), 1.0)).collect(),
+            _ => complement(&fixed).into_iter().map(|d| space.unit_row(d)).collect(),
+        };
+        if rows.is_empty() {
+            return;
+        }
+        self.tied.push(PointRows {
+            point: index,
+            normal: rows.remove(0),
+            tangential: rows,
+            dragged: false,
+            prescribed: space.prescribed,
+        });
+    }
+
     fn add(&mut self, index: usize, point: &ContactConstraint, space: Space) {
+        if point.tied {
+            return self.tie(index, space);
+        }
         let normal = Vector3::from(point.frame.normal);
         let tangents = point.frame.tangents.map(Vector3::from);
         let fixed = space.fixed();

@@ -29,7 +29,7 @@ impl Gluing {
         let groups = &self.exchanging;
         let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         let ranges = self.ranges();
-        for row in ranges.contact().chain(ranges.dirichlet.clone()) {
+        for row in ranges.contact().chain(ranges.interface.end..ranges.total()) {
             if let Some(node) = self.node(row).filter(|n| self.is_dependent(*n)) {
                 members.entry(groups.of(node)).or_default().push(row);
             }
@@ -60,7 +60,7 @@ impl Gluing {
 
 /// Places of the points whose rows may depend on others. Left out are points of long sides with a node that no support
 /// holds and no other point has, or only such that are left out before: their rows are independent of all others.
-pub(super) fn not_alone(contact: &[ContactConstraint], points: &[PointRows], supports: &MergedSupports) -> Vec<usize> {
+pub(super) fn not_alone(contact: &[ContactConstraint], points: &[&PointRows], supports: &MergedSupports) -> Vec<usize> {
     let of = |k: usize| &contact[points[k].point];
     let mut users: HashMap<u32, u32> = HashMap::new();
     let mut left: Vec<usize> = (0..points.len()).collect();

@@ -47,6 +47,15 @@ pub struct ContactRows {
     pub tangential: TangentialRows,
 }
 
+/// The rows of a tied constraint.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TiedRows {
+    /// Position in the list of contact points given.
+    pub point: usize,
+    /// Its rows: one for each direction that supports leave free.
+    pub rows: std::ops::Range<usize>,
+}
+
 /// An entry of a row that is no interface row: a copy and the vector that multiplies its displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CopyEntry {
@@ -92,6 +101,7 @@ pub struct Gluing {
     pub(super) row_entries: Vec<CopyEntry>,
     pub(super) row_nodes: Vec<u32>,
     pub(super) contact: Vec<ContactRows>,
+    pub(super) tied: Vec<TiedRows>,
     pub(super) removed: Vec<RemovedRow>,
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
     /// Mesh nodes that contact points join.
@@ -121,6 +131,11 @@ impl Gluing {
     /// and three (without friction one) for each contact point, supported or not.
     pub fn rows_as_paper(&self) -> usize {
         self.paper_rows
+    }
+
+    /// The tied constraints that have rows, in the order given.
+    pub fn tied(&self) -> &[TiedRows] {
+        &self.tied
     }
 
     /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-/// The four groups of rows, in the order in which they stand in `B`.
+/// The groups of rows, in the order in which they stand in `B`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RowKind {
     /// Non-penetration, one row per contact point: `N`.
@@ -12,6 +12,8 @@ pub enum RowKind {
     Tangential,
     /// Gluing of the copies of a node: `B_int`.
     Interface,
+    /// Tied constraints, one to three rows each: sides that move alike.
+    Tied,
     /// Supports: `B_Dir`.
     Dirichlet,
 }
@@ -68,6 +70,8 @@ pub struct RowRanges {
     pub intervals: Range<usize>,
     /// Interface rows: triples (x, y, z) of one node.
     pub interface: Range<usize>,
+    /// Rows of tied constraints.
+    pub tied: Range<usize>,
     /// Support rows.
     pub dirichlet: Range<usize>,
 }

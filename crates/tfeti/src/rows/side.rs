@@ -78,6 +78,8 @@ pub struct ContactConstraint {
     pub friction: bool,
     /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
     pub moving: bool,
+    /// Whether both sides move alike: equalities in place of contact and friction.
+    pub tied: bool,
 }
 
 impl ContactConstraint {
@@ -91,6 +93,7 @@ impl ContactConstraint {
             frame,
             friction: false,
             moving: false,
+            tied: false,
         }
     }
 
@@ -112,6 +115,13 @@ impl ContactConstraint {
     #[must_use]
     pub fn with_moving_obstacle(mut self, moving: bool) -> Self {
         self.moving = moving;
+        self
+    }
+
+    /// Both sides move alike, in all directions that supports leave free.
+    #[must_use]
+    pub fn with_tied(mut self, tied: bool) -> Self {
+        self.tied = tied;
         self
     }
 

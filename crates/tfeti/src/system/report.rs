@@ -87,9 +87,13 @@ impl fmt::Display for SetupReport {
             rows.interface.len(),
             rows.dirichlet.len(),
         ];
+        let tied = match rows.tied.len() {
+            0 => String::new(),
+            count => format!(", tied {count}"),
+        };
         writeln!(
             f,
-            "n_d = {} (normal {n}, tangential {t}, interface {i}, supports {d}); as the paper counts {}",
+            "n_d = {} (normal {n}, tangential {t}, interface {i}{tied}, supports {d}); as the paper counts {}",
             rows.total(),
             self.rows_as_paper
         )?;
