@@ -218,3 +218,11 @@ pub(crate) const COARSE_MESH: f64 = 0.1;
 
 /// Strain over displacement by size below which it may be what the solver left of a rigid motion.
 pub(crate) const RIGID: f64 = 1e-6;
+
+// Estimates where contact points share nodes
+
+/// Most rounds of conjugate gradients, and iterations of each, by which points are moved together.
+pub(crate) const SHARED_ROUNDS: usize = 3;
+pub(crate) const SHARED_MOVES: usize = 300;
+/// Distance from its place, over the displacement, from which on a point is there.
+pub(crate) const SHARED_STOP: f64 = 1e-14;
