@@ -27,6 +27,10 @@ pub(crate) const ASYMMETRY: f64 = 1e-9;
 /// Smallest over largest eigenvalue below which a tensor is not elliptic.
 pub(crate) const ELLIPTICITY: f64 = 1e-12;
 
+/// Poisson's ratio above which quadratic elements take the mean of the volume strain: at 0.45 plain ones begin to lock
+/// and need more products.
+pub(crate) const INCOMPRESSIBLE: f64 = 0.4;
+
 // Parts made compact
 
 /// Most sweeps, and the share of tetrahedra that a sweep has to move for another one. What moves last is at plane

@@ -200,3 +200,39 @@ fn plate_with_a_coefficient_of_one() {
         assert!((found / expected - 1.0).abs() < 5e-3, "{x}: {found:e}");
     }
 }
+
+/// A clamped bar that bends under its end load: it neither locks nor needs many products as it becomes incompressible.
+#[test]
+fn a_bar_of_rubber_bends_as_it_should() {
+    let mut deflections = Vec::new();
+    for poisson in [0.3, 0.499, 0.4999] {
+        let mesh = quadratic([4.0, 1.0, 1.0], [8, 2, 2]);
+        let tip = mesh
+            .points()
+            .iter()
+            .position(|p| *p == [4.0, 1.0, 1.0])
+            .expect("a corner");
+        let scene = Scene::new(mesh, uniform(1e9, poisson))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::X_MAX, [0.0, 0.0, -1e5]))
+            .with_boxes([4, 1, 1]);
+        let result = solve(scene, at(1e-6));
+        deflections.push((
+            poisson,
+            -result.displacement[3 * tip + 2],
+            result.report.counters.products,
+        ));
+    }
+    println!("{deflections:?}");
+    let [(_, soft, few), rubber @ ..] = &deflections[..] else {
+        panic!()
+    };
+    for (poisson, deflection, products) in rubber {
+        // bending does not depend on Poisson's ratio, clamping and shear by some per cent
+        assert!(
+            (deflection / soft - 1.0).abs() < 0.05,
+            "{poisson}: {deflection:e} {soft:e}"
+        );
+        assert!(*products as f64 <= 2.5 * *few as f64, "{poisson}: {products} {few}");
+    }
+}

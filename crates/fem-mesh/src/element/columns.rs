@@ -2,11 +2,8 @@
 
 use crate::material::Hooke;
 
-use super::p1::{Element, nodal_stress, stiffness_block};
+use super::p1::{Block, Element, nodal_stress, stiffness_block};
 use super::p2::QuadraticElement;
-
-/// What unit displacements of one node do to another one, by rows.
-pub(crate) type Block = [[f64; 3]; 3];
 
 /// An element given by the numbers of its nodes.
 pub trait Columns {
@@ -30,9 +27,9 @@ impl Columns for [u32; 4] {
 impl Columns for [u32; 10] {
     fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, mut add: impl FnMut(usize, &Block)) {
         let tet = self.map(|n| n as usize);
-        let element = QuadraticElement::new(&tet.map(|n| points[n]));
+        let element = QuadraticElement::new(&tet.map(|n| points[n]), law);
         for b in (0..10).filter(|&b| tet[b] == node) {
-            let blocks = element.column(law.voigt(), b, |a| tet[a] >= node);
+            let blocks = element.column(law, b, |a| tet[a] >= node);
             for a in (0..10).filter(|&a| tet[a] >= node) {
                 add(tet[a], &blocks[a]);
             }

@@ -12,6 +12,6 @@ mod piece;
 
 pub use p1::Element;
 
-pub(crate) use columns::{Block, Columns};
-pub(crate) use p1::strain_of;
+pub(crate) use columns::Columns;
+pub(crate) use p1::{Block, strain_of};
 pub(crate) use piece::{Piece, integral, over_quadratic};

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::material::Hooke;
 use crate::mesh::{TetMesh, shape, tangents};
-use crate::quadrature;
+use crate::quadrature::{self, FOUR_POINTS};
 use crate::vec3::{Vec3, tet_volume};
 
 use super::p1::{Element, strain_of};
@@ -21,6 +22,8 @@ pub(crate) enum Piece {
     Quadratic {
         points: [Vec3; 10],
         values: [Vec3; 10],
+        /// The mean of the volume strain, where it counts for itself.
+        volume_strain: Option<f64>,
     },
 }
 
@@ -39,8 +42,30 @@ impl Piece {
         };
         Self::Quadratic {
             points: mesh.quadratic_points(tet),
+            volume_strain: None,
             values: std::array::from_fn(|k| if k < 4 { corners[k] } else { u[mids[k - 4] as usize] }),
         }
+    }
+
+    /// The same with the strains that the stiffness of a quadratic element of this law is made of.
+    pub(crate) fn with_law(mut self, law: &Hooke) -> Self {
+        if let Self::Quadratic {
+            points,
+            values,
+            volume_strain,
+        } = &mut self
+            && law.is_nearly_incompressible()
+        {
+            let (mut sum, mut total) = (0.0, 0.0);
+            for l in FOUR_POINTS {
+                let (volume, gradients) = p2::gradients(points, &l);
+                let gradient = p2::displacement_gradient(&gradients, values);
+                sum += volume * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
+                total += volume;
+            }
+            *volume_strain = Some(sum / total);
+        }
+        self
     }
 
     pub(crate) fn place(&self, l: &[f64; 4]) -> Vec3 {
@@ -61,12 +86,21 @@ impl Piece {
     pub(crate) fn gradient(&self, l: &[f64; 4]) -> [[f64; 3]; 3] {
         match self {
             Self::Linear { gradient, .. } => *gradient,
-            Self::Quadratic { points, values } => p2::displacement_gradient(&p2::gradients(points, l).1, values),
+            Self::Quadratic { points, values, .. } => p2::displacement_gradient(&p2::gradients(points, l).1, values),
         }
     }
 
     pub(crate) fn strain(&self, l: &[f64; 4]) -> [f64; 6] {
-        strain_of(&self.gradient(l))
+        let mut strain = strain_of(&self.gradient(l));
+        if let Self::Quadratic {
+            volume_strain: Some(mean),
+            ..
+        } = self
+        {
+            let more = (mean - strain[0] - strain[1] - strain[2]) / 3.0;
+            strain[..3].iter_mut().for_each(|e| *e += more);
+        }
+        strain
     }
 }
 

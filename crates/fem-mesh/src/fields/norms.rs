@@ -62,7 +62,7 @@ pub fn energy_of_error(
     let u = nodal_vectors(mesh, u)?;
     let exact = &exact_gradient;
     Ok(integral(mesh, |tet| {
-        let (piece, law) = (Piece::new(mesh, tet, &u), laws[tet]);
+        let (piece, law) = (Piece::new(mesh, tet, &u).with_law(laws[tet]), laws[tet]);
         move |l: &[f64; 4]| {
             let (exact, own) = (strain_of(&exact(piece.place(l))), piece.strain(l));
             law.energy_density(&std::array::from_fn(|i| exact[i] - own[i]))

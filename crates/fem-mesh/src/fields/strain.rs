@@ -1,7 +1,7 @@
 //! Strain, stress and energy of a displacement of the mesh.
 
 use crate::element::{Element, Piece, over_quadratic};
-use crate::material::{MaterialError, Materials};
+use crate::material::{Hooke, MaterialError, Materials};
 use crate::mesh::{EDGES, TetMesh};
 use crate::quadrature::FOUR_POINTS;
 use rayon::prelude::*;
@@ -61,6 +61,14 @@ pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
 /// [`FieldError`] as [`strains`], and if a region has no material.
 pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
+    if mesh.order() == 2 {
+        let u = nodal_vectors(mesh, u)?;
+        let stress = |(tet, law): (usize, &&Hooke)| {
+            let piece = Piece::new(mesh, tet, &u).with_law(law);
+            law.stress(&piece.strain(&[0.25; 4]))
+        };
+        return Ok(laws.par_iter().enumerate().map(stress).collect());
+    }
     let strains = strains(mesh, u)?;
     Ok(strains
         .par_iter()
@@ -79,7 +87,7 @@ pub fn strain_energy(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result
         let u = nodal_vectors(mesh, u)?;
         let rule = FOUR_POINTS.map(|l| (l, 0.25));
         let energy = |tet: usize| {
-            let piece = Piece::new(mesh, tet, &u);
+            let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
             over_quadratic(mesh, tet, &rule, |l| laws[tet].energy_density(&piece.strain(l)))
         };
         let energies: Vec<f64> = (0..mesh.tets().len()).into_par_iter().map(energy).collect();
@@ -110,7 +118,7 @@ pub fn nodal_stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Resul
     }
     let u = nodal_vectors(mesh, u)?;
     let at_nodes = |tet: usize| {
-        let piece = Piece::new(mesh, tet, &u);
+        let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
         NODES.map(|l| laws[tet].stress(&piece.strain(&l)))
     };
     let values: Vec<[[f64; 6]; 10]> = (0..mesh.tets().len()).into_par_iter().map(at_nodes).collect();

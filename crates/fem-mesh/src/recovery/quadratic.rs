@@ -109,7 +109,9 @@ pub(super) fn energies(
     fits: &[Fit],
     corners: &[[u32; 4]],
 ) -> Vec<[f64; 2]> {
-    let pieces: Vec<Piece> = (0..mesh.tets().len()).map(|tet| Piece::new(mesh, tet, u)).collect();
+    let pieces: Vec<Piece> = (0..mesh.tets().len())
+        .map(|tet| Piece::new(mesh, tet, u).with_law(laws[tet]))
+        .collect();
     let strains: Vec<[[f64; 6]; 4]> = pieces.par_iter().map(|p| FOUR_POINTS.map(|l| p.strain(&l))).collect();
     let polynomials: Vec<_> = fits.par_iter().map(|fit| fit.coefficients(mesh, &strains)).collect();
     let (rule, four) = (quadrature::tetrahedron(), FOUR_POINTS.map(|l| (l, 0.25)));

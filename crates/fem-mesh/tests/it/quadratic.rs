@@ -166,6 +166,49 @@ fn curved_elements_know_rigid_and_linear_displacements() {
     close(found, energy * volume, found, 1e-4);
 }
 
+/// Nearly incompressible: energy and stiffness agree, uniform strains are exact, and a bending that keeps the volume
+/// only in the mean costs no volume energy.
+#[test]
+fn volume_strains_are_means_near_incompressibility() {
+    let law = Hooke::isotropic(10.0, 0.4999).unwrap();
+    assert!(law.is_nearly_incompressible() && (law.poisson().unwrap() - 0.4999).abs() < 1e-12);
+    assert_eq!(
+        law.compressible()
+            .and_then(|l| l.poisson())
+            .map(|p| (p - 0.4).abs() < 1e-12),
+        Some(true)
+    );
+    assert!(!Hooke::isotropic(10.0, 0.4).unwrap().is_nearly_incompressible());
+    let mut skew = *law.voigt();
+    skew[3][3] *= 1.1;
+    assert_eq!(Hooke::from_voigt(&skew).unwrap().poisson(), None);
+    let materials = Materials::uniform(law);
+    for mesh in [block(), bent()] {
+        let u = nodal(&mesh, |[x, y, z]| [x * x - y, 0.3 * z * z + x, y * z + x * z]);
+        let k = assemble_stiffness(mesh.points(), &mesh.quadratic_tets(), |_| &law).unwrap();
+        let product = |(value, (row, column)): (&f64, (usize, usize))| u[row] * value * u[column];
+        let energy = strain_energy(&mesh, &materials, &u).unwrap();
+        close(energy, 0.5 * k.iter().map(product).sum::<f64>(), energy, 1e-12);
+        let linear = nodal(&mesh, |[x, y, z]| [x + y, y - z, z]);
+        for stress in stresses(&mesh, &materials, &linear).unwrap() {
+            let exact = law.stress(&[1.0, 1.0, 1.0, -1.0, 0.0, 1.0]);
+            (0..6).for_each(|i| close(stress[i], exact[i], exact[0], 1e-10));
+        }
+    }
+    // div u = 2 (x - centre) in each tetrahedron alone
+    let mesh = TetMesh::new(
+        vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        vec![[0, 1, 2, 3]],
+        Vec::new(),
+    );
+    let mesh = mesh.unwrap().raise_order().unwrap();
+    let u = nodal(&mesh, |[x, _, _]| [x * x - 0.5 * x, 0.0, 0.0]);
+    let shear = 2.0 * 10.0 / (2.0 * 1.4999);
+    let energy = strain_energy(&mesh, &materials, &u).unwrap();
+    // 1/2 2 mu (2/3) e_xx^2, and (2 x - 1/2)^2 has the integral 1/40
+    close(energy, 0.5 * shear * 2.0 / 3.0 / 40.0, energy, 1e-10);
+}
+
 #[test]
 fn loads_do_the_work_of_quadratic_displacements() {
     let mesh = block();
