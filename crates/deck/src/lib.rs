@@ -71,7 +71,8 @@
 //! | `*SURFACE INTERACTION` | `NAME` | |
 //! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD` | contact is hard and exact; other laws are refused |
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient; stick slope and both parameters are ignored: friction is exact |
-//! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | nodes of the first (dependent) surface touch those of the second, and each needs one: meshes match, sliding is small |
+//! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small |
+//! | `*TIE` | `NAME`, `ADJUST=NO`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, the tolerance is ignored |
 //! | `*RIGID BODY` | `ELSET`, `REF NODE`, `ROT NODE` | an obstacle, see below |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM`; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |

@@ -7,6 +7,8 @@ mod accuracy;
 mod bodies;
 #[path = "../../examples/brick/main.rs"]
 mod brick;
+#[path = "../../examples/cases/main.rs"]
+mod cases;
 #[path = "../../examples/effects/main.rs"]
 mod effects;
 #[path = "../../examples/frictionless.rs"]
@@ -21,6 +23,7 @@ mod stability;
 mod accuracy_study;
 mod brick_files;
 mod brick_study;
+mod cases_study;
 mod cuts_study;
 mod effects_study;
 mod small_studies;

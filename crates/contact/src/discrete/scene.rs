@@ -11,7 +11,7 @@ use crate::scene::{Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A scene lowered to nodes.
 #[derive(Debug)]
@@ -47,7 +47,11 @@ impl DiscreteScene {
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let rounding = rounding(&scene.mesh);
         let tied = |c: &ContactPoint| scene.contacts[c.surface].tied;
-        let (ties, conditions): (Vec<_>, Vec<_>) = conditions(scene, &paired, rounding)?.into_iter().partition(tied);
+        let (ties, mut conditions): (Vec<_>, Vec<_>) =
+            conditions(scene, &paired, rounding)?.into_iter().partition(tied);
+        // a bonded node does not move against the other body
+        let bonded: HashSet<u32> = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0).collect();
+        conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
         let surfaces = paired.into_iter().map(|p| p.surface).collect();
         let points = points(scene, &conditions, rounding)?;
         let [softest, stiffest] = check_materials(scene)?;

@@ -1,6 +1,6 @@
 //! The other side of each node of a surface.
 
-use super::search::covers;
+use super::search::{covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
@@ -22,9 +22,10 @@ pub(crate) struct MortarNode {
 /// The row of node `j` is `u_j - sum_k (M_jk / D_jj) u_k` with `M_jk = int psi_j phi_k`: it vanishes where both sides
 /// move alike by a linear function, and forces of constant pressure are in balance.
 pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<MortarNode>> {
-    let covers = covers(mesh, surface, other);
+    let triangles = in_order(surface);
+    let covers = covers(mesh, (surface, &triangles), other);
     let mut around: Vec<Vec<(u32, u8)>> = vec![Vec::new(); surface.nodes().len()];
-    for (k, triangle) in surface.triangles().iter().enumerate() {
+    for (k, triangle) in triangles.iter().enumerate() {
         for (corner, &node) in triangle.iter().enumerate() {
             around[node as usize].push((k as u32, corner as u8));
         }

@@ -15,9 +15,22 @@ const FARTHER: f64 = 4.0;
 
 type Corners = [[f64; 3]; 3];
 
+/// The triangles of a surface by places of its nodes, each from its smallest node on, ascending: whatever the order of
+/// the facets in a file, sums have the same bits.
+pub(super) fn in_order(surface: &Surface) -> Vec<[u32; 3]> {
+    let turned = surface.triangles().iter().map(|t| {
+        let first = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+        [0, 1, 2].map(|k| t[(first + k) % 3])
+    });
+    let mut triangles: Vec<[u32; 3]> = turned.collect();
+    triangles.sort_unstable();
+    triangles
+}
+
 /// The facets of the other side in a tree of their boxes.
 struct OtherSide<'a> {
     surface: &'a Surface,
+    triangles: Vec<[u32; 3]>,
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, u32>>,
     corners: Vec<Corners>,
     normals: Vec<[f64; 3]>,
@@ -35,10 +48,13 @@ struct Plane {
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-pub(super) fn covers(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<(Cover, [f64; 3])>> {
+pub(super) fn covers(
+    mesh: &TetMesh,
+    (surface, triangles): (&Surface, &[[u32; 3]]),
+    other: &Surface,
+) -> Vec<Option<(Cover, [f64; 3])>> {
     let other = OtherSide::new(mesh, other);
-    let planes: Vec<Option<Plane>> = surface
-        .triangles()
+    let planes: Vec<Option<Plane>> = triangles
         .iter()
         .map(|t| Plane::new(&corners(mesh, surface, t)))
         .collect();
@@ -112,7 +128,8 @@ impl Plane {
 
 impl<'a> OtherSide<'a> {
     fn new(mesh: &TetMesh, surface: &'a Surface) -> Self {
-        let corners: Vec<Corners> = surface.triangles().iter().map(|t| corners(mesh, surface, t)).collect();
+        let triangles = in_order(surface);
+        let corners: Vec<Corners> = triangles.iter().map(|t| corners(mesh, surface, t)).collect();
         let boxes = corners.iter().enumerate().map(|(k, c)| {
             let [low, high] = extent(c);
             GeomWithData::new(Rectangle::from_corners(low, high), k as u32)
@@ -127,6 +144,7 @@ impl<'a> OtherSide<'a> {
                 })
                 .collect(),
             corners,
+            triangles,
             surface,
         }
     }
@@ -144,8 +162,7 @@ impl<'a> OtherSide<'a> {
         norm(sub(high, low))
     }
 
-    /// The parts of facets that lie over a facet within a distance, with their signed distance: the nearest first, each
-    /// place once.
+    /// The parts of facets that lie over a facet within a distance, with their signed distance, each place once.
     fn pieces(&self, plane: &Plane, reach: f64) -> Vec<(Piece, f64)> {
         let own = plane.corners.map(|c| plane.space(c));
         let ways = [reach, -reach].map(|by| scale(by, plane.frame.normal));
@@ -157,9 +174,12 @@ impl<'a> OtherSide<'a> {
         let mut numbers: Vec<u32> = near.map(|found| found.data).collect();
         numbers.sort_unstable();
         let mut found: Vec<(Piece, f64)> = numbers.iter().filter_map(|&k| self.piece(plane, k, reach)).collect();
-        found.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         // of several layers the nearest
         let whole = plane.size * plane.size;
+        if found.iter().map(|(piece, _)| piece.area).sum::<f64>() <= whole * (1.0 + OVERLAP) {
+            return found;
+        }
+        found.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let mut covered = 0.0;
         found.retain(|(piece, _)| {
             let fits = covered + piece.area <= whole * (1.0 + OVERLAP);
@@ -177,7 +197,7 @@ impl<'a> OtherSide<'a> {
         // seen from the other side it turns the other way round
         let [a, b, c] = self.corners[facet];
         let seen = [a, c, b].map(|corner| plane.lay(corner));
-        let [i, j, k] = self.surface.triangles()[facet].map(|n| self.surface.nodes()[n as usize]);
+        let [i, j, k] = self.triangles[facet].map(|n| self.surface.nodes()[n as usize]);
         let laid = Laid {
             corners: seen.map(|s| s.0),
             nodes: [i, k, j],

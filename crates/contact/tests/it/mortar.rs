@@ -211,3 +211,51 @@ fn a_tied_contact_has_no_friction() {
     let error = refused(&scene.with_contact(contact));
     assert!(matches!(error, ContactError::Tied { contact: 0 }), "{error}");
 }
+
+/// Two blocks side by side on one, the joint between them inside its facets: facets covered in part, and nodes with a
+/// point for either block, in one contact or in two, pass uniform pressure exactly.
+#[test]
+fn facets_covered_in_part_pass_uniform_pressure() {
+    let third = |tag: FacetTag| FacetTag(tag.0 + 200);
+    let strain = PRESSURE / YOUNG;
+    let below = block([2.0, 1.0, 1.0], [5, 3, 2]);
+    let left = lifted(&block([0.87, 1.0, 1.0], [2, 2, 2]), 1.0);
+    let right = block([1.13, 1.0, 1.0], [7, 5, 2]).map_points(|[x, y, z]| [x + 0.87, y, z + 1.0]);
+    let right = right.expect("right").map_tags(third);
+    let mesh = with_second(&below, &left).append(&right).expect("three");
+    let top = brick::Z_MAX;
+    let [a, b] = [second(brick::Z_MIN), third(brick::Z_MIN)];
+    let ways: [Vec<Contact>; 3] = [
+        vec![Contact::between(top, a), Contact::between(top, b)],
+        vec![Contact::between(a, top), Contact::between(b, top)],
+        vec![Contact::between(top, a).with_partner(b)],
+    ];
+    for (k, contacts) in ways.into_iter().enumerate() {
+        let axis = |c: usize| [c == 0, c == 1, c == 2];
+        let mut scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
+            .with_support(Support::components(brick::Z_MIN, axis(2)))
+            .with_support(Support::components(brick::X_MIN, axis(0)))
+            .with_support(Support::components(second(brick::X_MIN), axis(0)))
+            .with_support(
+                Support::components(third(brick::X_MAX), axis(0))
+                    .with_motion([2.0 * POISSON * strain, 0.0, 0.0], ramp()),
+            )
+            .with_load(Load::pressure(second(brick::Z_MAX), PRESSURE))
+            .with_load(Load::pressure(third(brick::Z_MAX), PRESSURE))
+            .with_boxes([2, 1, 2]);
+        for tag in [brick::Y_MIN, second(brick::Y_MIN), third(brick::Y_MIN)] {
+            scene = scene.with_support(Support::components(tag, axis(1)));
+        }
+        let scene = contacts.into_iter().fold(scene, Scene::with_contact);
+        let scene = scene.with_analysis(Analysis::quasistatic(1.0, 1));
+        let result = solve(scene, tight());
+        let error = patch_error(&mesh, &result.displacement, 1.0);
+        assert!(error < 1e-9, "way {k}: {error:e}");
+        let area: f64 = result.points.iter().map(|p| p.area).sum();
+        assert!((area - 2.0).abs() < 1e-12, "way {k}: {area}");
+        for point in &result.points {
+            let pressure = -point.normal_force / point.area;
+            assert!((pressure - PRESSURE).abs() < 1e-6 * PRESSURE, "way {k}: {pressure:e}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ use crate::lexer::Card;
 
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, \
-*SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *RIGID BODY, *SURFACE \
+*SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *TIE, *RIGID BODY, *SURFACE \
 INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -36,11 +36,10 @@ const OUTPUT: [&str; 20] = [
 ];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 37] = [
+const REFUSED: [(&str, &str); 36] = [
     ("ASSEMBLY", FLAT),
     ("PART", FLAT),
     ("INSTANCE", FLAT),
-    ("TIE", "merge the nodes of parts that are one body"),
     ("EQUATION", "couplings of nodes are not here"),
     ("MPC", "couplings of nodes are not here"),
     (
@@ -141,6 +140,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "SURFACEBEHAVIOR" => Some(property::behavior),
         "FRICTION" => Some(property::friction),
         "CONTACTPAIR" => Some(property::pair),
+        "TIE" => Some(property::tie),
         "RIGIDBODY" => Some(property::rigid),
         _ => None,
     };

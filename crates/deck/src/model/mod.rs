@@ -141,7 +141,8 @@ pub(crate) struct RigidBody {
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
     pub(crate) location: Location,
-    pub(crate) interaction: Param,
+    /// `None` for bonded surfaces.
+    pub(crate) interaction: Option<Param>,
     pub(crate) slave: String,
     pub(crate) master: String,
 }

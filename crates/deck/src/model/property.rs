@@ -198,16 +198,42 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         model.ignored.push(Ignored {
             location: card.location.clone(),
             word: word(card.param("TYPE")),
-            why: "the nodes of matching meshes touch each other; there is one kind of contact here",
+            why: "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here",
         });
     }
+    surfaces(model, card, Some(interaction))
+}
+
+/// `*TIE`.
+pub(super) fn tie(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&["NAME", "POSITION TOLERANCE", "ADJUST"])?;
+    card.value("NAME")?;
+    if let (Some(0), Some(param)) = (
+        card.choice("ADJUST", &["YES", "NO"], "YES or NO")?,
+        card.param("ADJUST"),
+    ) {
+        let why = "nodes are not moved: a distance between tied surfaces stays as it is; write ADJUST=NO";
+        return Err(card.param_fault(param, Fault::Cannot(why.to_owned())));
+    }
+    if card.value("POSITIONTOLERANCE")?.is_some() {
+        model.ignored.push(Ignored {
+            location: card.location.clone(),
+            word: word(card.param("POSITIONTOLERANCE")),
+            why: "what faces the other surface is tied, at any distance; tie surfaces that lie on one another",
+        });
+    }
+    surfaces(model, card, None)
+}
+
+/// The lines of pairs of surfaces.
+fn surfaces(model: &mut Model, card: &Card, interaction: Option<&Param>) -> Result<(), DeckError> {
     for line in &card.lines {
         let wanted = "the dependent (slave) and the independent (master) surface";
         let fields = line.at_most(2, wanted)?;
         match fields[..] {
             [slave, master] if !slave.is_empty() && !master.is_empty() => model.pairs.push(Pair {
                 location: line.location.clone(),
-                interaction: interaction.clone(),
+                interaction: interaction.cloned(),
                 slave: slave.to_owned(),
                 master: master.to_owned(),
             }),

@@ -1,4 +1,4 @@
-//! Contact pairs.
+//! Contact pairs and ties.
 
 use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
@@ -6,7 +6,7 @@ use signorini_fem_mesh::FacetTag;
 use super::faces::{FaceTable, Known};
 use super::rigid::{Motion, half_space};
 use crate::error::{DeckError, Fault};
-use crate::lexer::name;
+use crate::lexer::{Param, name};
 use crate::model::{Names, named};
 
 /// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or a rigid plane.
@@ -20,9 +20,11 @@ pub(super) fn contacts(
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
         let fault = |word: &str, text: String| DeckError::at(&pair.location, word, Fault::Cannot(text));
-        let interaction = named(&pair.interaction);
-        let at = (&pair.location, pair.interaction.word.as_str());
-        let found = model.interactions.find("interaction", &interaction, at)?;
+        let interaction = |param: &Param| {
+            let at = (&pair.location, param.word.as_str());
+            model.interactions.find("interaction", &named(param), at)
+        };
+        let interaction = pair.interaction.as_ref().map(interaction).transpose()?;
         let surface = |word: &str| surfaces.find("surface", &name(word), (&pair.location, word));
         let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
         let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
@@ -37,18 +39,24 @@ pub(super) fn contacts(
             );
             return Err(fault(&pair.master, text));
         }
-        let mut contact = if master.is_empty() {
+        let mut contact = if let (true, None) = (master.is_empty(), interaction) {
+            let text = "a rigid surface cannot be tied; hold the nodes with *BOUNDARY, or use *CONTACT PAIR";
+            return Err(fault(&pair.master, text.into()));
+        } else if master.is_empty() {
             let nodes = faces.nodes_of(known.raw, dependent as u32);
             let plane = half_space(&faces.rigid[other], motions, slave[0], &nodes);
             plane.map_err(|text| fault(&pair.master, text))?
         } else {
-            let between = Contact::between(slave[0], master[0]);
+            let between = match interaction {
+                Some(_) => Contact::between(slave[0], master[0]),
+                None => Contact::tied(slave[0], master[0]),
+            };
             master[1..].iter().fold(between, |c, tag| c.with_partner(*tag))
         };
         for &tag in &slave[1..] {
             contact = contact.with_tag(tag);
         }
-        if let Some(coefficient) = model.interactions.at(found).friction {
+        if let Some(coefficient) = interaction.and_then(|found| model.interactions.at(found).friction) {
             contact = contact.with_friction(Friction::coulomb(coefficient));
         }
         out.push(contact);

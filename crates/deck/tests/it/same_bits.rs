@@ -178,3 +178,25 @@ fn the_pad_on_a_rail() {
         assert!((push + 1800.0 * (step.time() - 1.0)).abs() < 0.1, "{push}");
     }
 }
+
+/// A block that is tied on a coarser one.
+#[test]
+fn tied_blocks_of_unequal_meshes() {
+    let below = signorini_fem_mesh::Brick::new([1.0; 3], [2, 2, 2])
+        .build()
+        .expect("brick");
+    let above = signorini_fem_mesh::Brick::new([1.0; 3], [3, 3, 3])
+        .build()
+        .expect("brick");
+    let above = above.map_points(|[x, y, z]| [x, y, z + 1.0]).expect("lifted");
+    let mesh = below.append(&above.map_tags(upper)).expect("two");
+    let deck = write::mesh(&mesh)
+        + write::STEEL
+        + "*TIE, NAME=GLUE, ADJUST=NO\nS15, S6\n*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n*DSLOAD\nS16, P, -3.\n*END STEP\n";
+    let program = Scene::new(mesh, steel())
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_load(Load::pressure(upper(brick::Z_MAX), -3.0).with_history(History::ramp(1.0, 1.0).expect("ramp")))
+        .with_contact(Contact::tied(upper(brick::Z_MIN), brick::Z_MAX))
+        .with_analysis(Analysis::statics());
+    compare(&deck, program);
+}

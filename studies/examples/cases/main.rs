@@ -1,0 +1,201 @@
+//! Published problems with known answers, on meshes that do not match; `--help` lists the options.
+//!
+//! Each case is a file: it makes the scene, solves it and compares with the target. `--out FILE` writes the page
+//! `docs/reports/cases.md`.
+
+pub mod blocks;
+pub mod crack;
+pub mod press_fit;
+pub mod spheres;
+pub mod wedge;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+use signorini::prelude::*;
+use signorini_studies::{Failure, aligned, exit, save};
+
+/// Options of `cases`.
+#[derive(Debug, Clone, PartialEq, Eq, Parser)]
+#[command(
+    name = "cases",
+    about = "Published problems with known answers, on meshes that do not match"
+)]
+pub struct CasesOptions {
+    /// Only these: blocks, press-fit, wedge, crack, spheres.
+    #[arg(long, value_delimiter = ',')]
+    pub case: Vec<String>,
+    /// Coarse meshes: seconds in place of minutes, and larger errors.
+    #[arg(long)]
+    pub short: bool,
+    /// Write the page of the cases to this file.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// A number that a case compares with its target.
+#[derive(Debug, Clone)]
+pub struct Finding {
+    /// Which case and which of its variants.
+    pub case: String,
+    /// What is compared, with its unit.
+    pub quantity: &'static str,
+    /// What was found.
+    pub value: f64,
+    /// What it should be; 0 where the value is an error itself.
+    pub target: f64,
+    /// Largest relative error (or value) that is asked for on the full mesh.
+    pub asked: f64,
+    /// The run.
+    pub run: RunFacts,
+}
+
+impl Finding {
+    /// Relative error, or the value where the target is 0.
+    pub fn error(&self) -> f64 {
+        match self.target {
+            0.0 => self.value.abs(),
+            target => (self.value / target - 1.0).abs(),
+        }
+    }
+}
+
+/// What a run took.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RunFacts {
+    /// Tetrahedra.
+    pub tets: usize,
+    /// Subdomains.
+    pub subdomains: usize,
+    /// Products with F in the dearest step.
+    pub products: usize,
+    /// Seconds from the scene to the last step.
+    pub seconds: f64,
+    /// The worst certificate.
+    pub certificate: f64,
+}
+
+/// Solves all steps of a scene and hands each to `see`.
+pub fn solve(scene: Scene, settings: Settings, mut see: impl FnMut(&StepResult)) -> Result<RunFacts, Failure> {
+    let started = Instant::now();
+    let mut facts = RunFacts {
+        tets: scene.mesh().tets().len(),
+        ..RunFacts::default()
+    };
+    let mut simulation = Simulation::new(scene, settings)?;
+    facts.subdomains = simulation.tfeti().subdomains();
+    while !simulation.is_finished() {
+        let result = simulation.step()?;
+        let report = result.report();
+        if !report.status.converged() {
+            return Err(format!("a step did not converge: {}", report.status).into());
+        }
+        facts.products = facts.products.max(report.counters.products);
+        facts.certificate = facts.certificate.max(result.certificate().largest());
+        see(&result);
+    }
+    facts.seconds = started.elapsed().as_secs_f64();
+    Ok(facts)
+}
+
+/// Tags of the second body.
+pub fn second(tag: FacetTag) -> FacetTag {
+    FacetTag(tag.0 + 10)
+}
+
+#[allow(dead_code)]
+fn main() -> ExitCode {
+    exit(execute(&CasesOptions::parse(), &mut std::io::stdout()))
+}
+
+type Case = fn(bool) -> Result<Vec<Finding>, Failure>;
+const CASES: [(&str, Case); 5] = [
+    ("blocks", blocks::findings),
+    ("press-fit", press_fit::findings),
+    ("wedge", wedge::findings),
+    ("crack", crack::findings),
+    ("spheres", spheres::findings),
+];
+
+/// Runs the cases and prints their table.
+pub fn execute(options: &CasesOptions, out: &mut impl Write) -> Result<Vec<Finding>, Failure> {
+    let chosen = |name: &str| options.case.is_empty() || options.case.iter().any(|c| c == name);
+    if let Some(unknown) = options.case.iter().find(|c| CASES.iter().all(|(name, _)| name != c)) {
+        let known = CASES.map(|(name, _)| name).join(", ");
+        return Err(format!("there is no case {unknown:?}; there are {known}").into());
+    }
+    let mut all = Vec::new();
+    for (name, case) in CASES.iter().filter(|(name, _)| chosen(name)) {
+        let findings = case(options.short).map_err(|e| format!("{name}: {e}"))?;
+        writeln!(
+            out,
+            "{name}\n{}",
+            aligned(&HEADS, &findings.iter().map(row).collect::<Vec<_>>())
+        )?;
+        all.extend(findings);
+    }
+    if let Some(path) = &options.out {
+        save(path, &page(&all, options))?;
+    }
+    Ok(all)
+}
+
+const HEADS: [[&str; 2]; 10] = [
+    ["", "case"],
+    ["", "quantity"],
+    ["", "found"],
+    ["", "target"],
+    ["", "error"],
+    ["", "asked"],
+    ["tetra-", "hedra"],
+    ["products,", "dearest step"],
+    ["", "seconds"],
+    ["certi-", "ficate"],
+];
+
+fn row(f: &Finding) -> Vec<String> {
+    vec![
+        f.case.clone(),
+        f.quantity.to_owned(),
+        format!("{:.6e}", f.value),
+        if f.target == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{:.6e}", f.target)
+        },
+        format!("{:.1e}", f.error()),
+        if f.asked == 0.0 {
+            "-".to_owned()
+        } else {
+            format!("{:.0e}", f.asked)
+        },
+        f.run.tets.to_string(),
+        f.run.products.to_string(),
+        format!("{:.2}", f.run.seconds),
+        format!("{:.0e}", f.run.certificate),
+    ]
+}
+
+fn page(findings: &[Finding], options: &CasesOptions) -> String {
+    let command = format!(
+        "cargo run --release --example cases -- --out docs/reports/cases.md{}",
+        match options.short {
+            true => " --short",
+            false => "",
+        }
+    );
+    let mut text = format!(
+        "# Cases with known answers\n\nBodies meshed apart, touching, sliding or tied, against closed forms and published numbers. \
+         Sources: [cases](../../studies/examples/cases), each with its formulas. Made by\n\n```sh\n{command}\n```\n\n\
+         The error is relative to the target, or the value itself where the target is 0. Meshes of both sides do not match.\n\n"
+    );
+    let heads = HEADS.map(|[a, b]| format!("{a} {b}").trim().replace("- ", ""));
+    text += &format!("| {} |\n|{}\n", heads.join(" | "), "---|".repeat(heads.len()));
+    for finding in findings {
+        text += &format!("| {} |\n", row(finding).join(" | "));
+    }
+    text
+}

@@ -1,0 +1,49 @@
+//! The cases with known answers, on their coarse meshes.
+
+use super::cases::{CasesOptions, Finding, execute};
+use super::folder;
+use clap::Parser;
+
+/// Errors stay below what these meshes give, and products below what pairs of matching meshes take, or little more.
+#[test]
+fn short_cases_come_near_their_targets() {
+    let path = folder("cases").join("cases.md");
+    let arguments = ["cases", "--short", "--out", path.to_str().expect("a path")];
+    let mut text = Vec::new();
+    let findings = execute(&CasesOptions::parse_from(arguments), &mut text).expect("cases");
+    assert!(findings.len() > 15);
+    for Finding { case, quantity, .. } in &findings {
+        assert!(
+            std::fs::read_to_string(&path).expect("page").contains(case.as_str()),
+            "{case}: {quantity}"
+        );
+    }
+    for finding in &findings {
+        let most = match finding.case.split([',', ' ']).next() {
+            Some("patch") => 1e-9,
+            Some("pulled" | "wedge") => 1e-9,
+            Some("press") => 0.1,
+            Some("crack") => 0.1,
+            _ => 0.25,
+        };
+        assert!(finding.error() < most, "{finding:?}");
+        assert!(finding.run.certificate < 1e-6, "{finding:?}");
+        if finding.case.starts_with("pulled") {
+            assert!(finding.run.products <= 19, "{finding:?}");
+        }
+    }
+    let mean = findings
+        .iter()
+        .find(|f| f.quantity == "pressure, mean, MPa")
+        .expect("press fit");
+    assert!(mean.error() < 0.02, "{mean:?}");
+}
+
+#[test]
+fn an_unknown_case_is_named_with_those_that_there_are() {
+    let options = CasesOptions::parse_from(["cases", "--case", "nothing"]);
+    let error = execute(&options, &mut Vec::new())
+        .expect_err("no such case")
+        .to_string();
+    assert!(error.contains("nothing") && error.contains("press-fit"), "{error}");
+}
