@@ -99,12 +99,27 @@ signorini_fem_mesh::errors! {
             "contact {contact} is tied: its sides move alike, and friction, gap and direction mean nothing; leave them \
             out, or use Contact::between";
         MovedPartner { contact: usize } =
-            "contact {contact} is between two bodies, and has no obstacle that could move; move a body by its \
-            supports instead";
+            "contact {contact} is between two bodies, and has no obstacle that could move or have a shape; move a body by \
+            its supports instead, and give the obstacle a contact of its own";
         MovedField { contact: usize, node: u32, turn: f64, most: f64 } =
             "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by \
             {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less \
             than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way";
+        ObstacleGradient { contact: usize, node: u32, position: [f64; 3], gradient: [f64; 3] } =
+            "contact {contact}: at node {node}, at {position:?}, the gradient of the distance to the obstacle is \
+            {gradient:?}, which is no unit vector; give a signed distance in m, positive outside, with its gradient, \
+            or leave facets far from the obstacle out of the contact";
+        FrictionAxis { contact: usize, node: u32, axis: [f64; 3] } =
+            "contact {contact}: the axis of friction {axis:?} gives no direction along the surface at node {node}; it \
+            must be finite, not zero and not normal to the surface: give curved sides in several contacts";
+        ObstacleFacet { facet: usize, reason: &'static str } =
+            "facet {facet} of the surface of an obstacle {reason}; give triangles with area, whose nodes turn \
+            counter-clockwise seen from outside";
+        TurnedNormal { contact: usize, node: u32, time: f64, turn: f64, most: f64 } =
+            "contact {contact}: at time {time} s the obstacle has moved so far that its normal at node {node} has \
+            turned by {turn:.1} degrees; normals stay those of the start, which is good for less than {most:.1} \
+            degrees: move it less, start from where it is, or give the direction of contact (with_normal or \
+            with_body_normals), along which any gap is measured";
         SharedNode { node: u32, first: usize, second: usize } =
             "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move \
             differently or bring other gaps, so that either may become the nearer one; leave the facets around it \

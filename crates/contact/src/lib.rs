@@ -101,8 +101,8 @@ pub use plan::Plan;
 pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
-    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Partition, Place, Scene,
-    SlipBound, Support,
+    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Obstacle, Partition, Place,
+    Rotation, Scene, SlipBound, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::Directions;

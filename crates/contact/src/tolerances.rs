@@ -34,6 +34,22 @@ pub(crate) const ALONG: f64 = 1e-9;
 /// the way along the surface, which the certificate sees.
 pub(crate) const SAME_NORMAL: f64 = 1.0 - 1e-12;
 
+/// Steps of Newton's method from a node to an obstacle along the normal: those of a smooth shape take ten.
+pub(crate) const NEWTON: usize = 50;
+
+/// Rounding of a distance to an obstacle, over the distances and lengths that it is made of.
+pub(crate) const RAY: f64 = 1e-13;
+
+/// Part of the way along a normal that must lead towards an obstacle to reach it.
+pub(crate) const STEEP: f64 = 0.05;
+
+/// How far the gradient of a signed distance may be from a unit vector: that of a distance which is interpolated is a
+/// little, that of another function is not near.
+pub(crate) const GRADIENT: f64 = 1e-3;
+
+/// Part of an axis of friction that must lie along the surface to give a direction there.
+pub(crate) const AXIS: f64 = 1e-3;
+
 /// Angle by which normals may turn over the way of a gap field along a surface, radians: the gap is then known to a
 /// twentieth of the way.
 pub(crate) const TURN: f64 = 0.1;

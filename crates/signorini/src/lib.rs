@@ -55,9 +55,9 @@ pub mod prelude {
     pub use signorini_contact::result::ContactSummary;
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,
-        DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Partition, Place, Plan, PointState,
-        Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State, StepResult,
-        StepStatus, Support, Warning,
+        DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Obstacle, Partition, Place, Plan,
+        PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State,
+        StepResult, StepStatus, Support, Warning,
     };
     #[cfg(feature = "vtu")]
     pub use signorini_contact::{ResultField, ResultWriter};

@@ -36,6 +36,9 @@ signorini_fem_mesh::errors! {
             finite weights that sum to one";
         BadFrame { point: usize, node: u32 } =
             "contact point {point} (node {node}): normal and tangents are not orthonormal";
+        BadStretch { point: usize, node: u32, stretch: f64 } =
+            "contact point {point} (node {node}): friction along the second tangent is {stretch} times that along the \
+            first; this must be finite and positive";
         DecompositionMismatch { what: &'static str, found: usize, expected: usize } =
             "the decomposition has {found} {what}, the mesh has {expected}; decompose this mesh";
         ForeignStiffness { subdomain: usize, found: usize, expected: usize } =

@@ -1,6 +1,7 @@
 //! How large the bodies are.
 
-use signorini_fem_mesh::TetMesh;
+use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::{Decomposition, TetMesh};
 
 /// The size of each body of a mesh.
 #[derive(Debug)]
@@ -11,31 +12,87 @@ pub(crate) struct Extents {
     extents: Vec<f64>,
 }
 
-impl Extents {
-    pub(crate) fn new(mesh: &TetMesh) -> Self {
-        let of_tet = mesh.components();
-        let bodies = of_tet.iter().max().map_or(0, |last| *last as usize + 1);
-        let mut body = vec![0; mesh.points().len()];
-        let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; bodies];
-        for (tet, &number) in mesh.tets().iter().zip(&of_tet) {
-            let [low, high] = &mut boxes[number as usize];
-            for &node in tet {
-                body[node as usize] = number;
-                for (c, x) in mesh.points()[node as usize].iter().enumerate() {
-                    low[c] = low[c].min(*x);
-                    high[c] = high[c].max(*x);
-                }
-            }
+/// Lower and upper corner.
+type Corners = [[f64; 3]; 2];
+
+const EMPTY: Corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+fn grow([low, high]: &mut Corners, mesh: &TetMesh, nodes: &[u32]) {
+    for &node in nodes {
+        for (c, x) in mesh.points()[node as usize].iter().enumerate() {
+            low[c] = low[c].min(*x);
+            high[c] = high[c].max(*x);
         }
-        let longest = |[low, high]: &[[f64; 3]; 2]| (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max);
+    }
+}
+
+fn longest([low, high]: &Corners) -> f64 {
+    (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max)
+}
+
+impl Extents {
+    /// Bodies are sets of subdomains that share faces: each of these is connected.
+    pub(crate) fn new(mesh: &TetMesh, decomposition: &Decomposition) -> Self {
+        let subdomains = decomposition.subdomains();
+        let mut sets = DisjointSets::new(subdomains.len());
+        for (tet, &own) in decomposition.parts().iter().enumerate() {
+            let others = mesh.neighbours(tet).into_iter().flatten();
+            let others = others.map(|t| decomposition.part_of(t)).filter(|other| *other > own);
+            others.for_each(|other| sets.join(own as usize, other as usize));
+        }
+        let numbers = sets.numbers();
+        let bodies = numbers.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut body = vec![0; mesh.points().len()];
+        let mut boxes = vec![EMPTY; bodies];
+        for (subdomain, number) in subdomains.iter().zip(numbers) {
+            grow(&mut boxes[number as usize], mesh, &subdomain.nodes);
+            subdomain.nodes.iter().for_each(|&node| body[node as usize] = number);
+        }
         Self {
             body,
             extents: boxes.iter().map(longest).collect(),
         }
     }
 
+    /// Longest side of the box around a subdomain of a node, m: no more than that of its body.
+    pub(crate) fn of_part(mesh: &TetMesh, decomposition: &Decomposition, node: u32) -> f64 {
+        let mut size = EMPTY;
+        if let Some(copy) = decomposition.copies(node as usize).first() {
+            grow(
+                &mut size,
+                mesh,
+                &decomposition.subdomains()[copy.subdomain as usize].nodes,
+            );
+        }
+        longest(&size)
+    }
+
     /// Longest side of the box around the body of a node, m.
     pub(crate) fn at(&self, node: u32) -> f64 {
         self.extents[self.body[node as usize] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use signorini_fem_mesh::Brick;
+
+    /// However bodies are cut, and wherever a cut runs.
+    #[test]
+    fn bodies_have_the_size_of_their_boxes() {
+        let small = Brick::new([1.0; 3], [2; 3]).build().expect("brick");
+        let long = Brick::new([1.0, 3.0, 1.0], [2, 6, 2]).build().expect("brick");
+        let apart = long.map_points(|[x, y, z]| [x + 1.0, y, z]).expect("moved");
+        let mesh = small.append(&apart).expect("two bodies");
+        for boxes in [[1, 1, 1], [2, 1, 1], [1, 3, 2], [4, 2, 1]] {
+            let decomposition = Decomposition::boxes(&mesh, boxes).expect("boxes");
+            let extents = Extents::new(&mesh, &decomposition);
+            let first = small.points().len();
+            for node in 0..mesh.points().len() {
+                let expected = if node < first { 1.0 } else { 3.0 };
+                assert_eq!(extents.at(node as u32), expected, "{boxes:?}");
+            }
+        }
     }
 }

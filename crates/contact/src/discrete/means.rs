@@ -80,7 +80,7 @@ impl<'a> Means<'a> {
                 let gap = vector::dot(&way, &frame.normal);
                 if gap.abs() <= self.rounding { 0.0 } else { gap }
             });
-            gap += weight * contact.gap_at(index, node, place, measured)?;
+            gap += weight * contact.gap_at(index, node, place, &frame.normal, measured)?;
         }
         let sides = Sides {
             own: Side::new(own),

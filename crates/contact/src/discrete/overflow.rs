@@ -3,7 +3,7 @@
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
-use crate::scene::Scene;
+use crate::scene::{Pose, Scene};
 use crate::tolerances::LARGEST;
 use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_qp::vector;
@@ -71,6 +71,11 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             let place = || format!("obstacle {index} at time {time} s: its displacement");
             expect(factor * vector::max_abs(value), "m", place)?;
         }
+        if let Some(rotation) = &contact.rotation {
+            let (angle, time) = scene.analysis.largest_factor(&rotation.angle);
+            let place = || format!("obstacle {index} at time {time} s: its angle");
+            expect(angle, "rad", place)?;
+        }
     }
     Ok(())
 }
@@ -99,14 +104,13 @@ pub(super) fn nodal_loads(
 }
 
 /// Refuses gaps at the start, and those that obstacles bring with them at the steps.
-pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint]) -> Result<(), ContactError> {
+pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint], poses: &[Vec<Pose>]) -> Result<(), ContactError> {
     for c in conditions {
         let place = || format!("contact at node {}: the gap", c.node());
         expect(c.gap.abs(), "m", place)?;
-        let contact = &scene.contacts[c.surface];
-        if contact.carries_field() {
-            for &time in scene.analysis.times() {
-                let gap = c.gap_after(scene, &contact.obstacle_at(time))?;
+        if scene.contacts[c.surface].carries_field() {
+            for pose in &poses[c.surface] {
+                let gap = c.gap_after(scene, pose)?;
                 expect(gap.abs(), "m", place)?;
             }
         }

@@ -4,11 +4,12 @@
 //! rounding, and across a gap to the normals of curved surfaces, which are those of facets. Nodes on sides that do
 //! not face each other are no partners: a thin body has nodes of its far side on the same normal.
 
+use super::normals::fixed_frame;
 use super::rounding::rounding;
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
-use crate::scene::{Contact, ContactNormal, Gap};
-use crate::tolerances::{ALONG, BESIDE, COARSER, FACING, MOST_TILT, TILT};
+use crate::scene::{Contact, Gap};
+use crate::tolerances::{BESIDE, COARSER, FACING, MOST_TILT, TILT};
 use rayon::prelude::*;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
@@ -95,23 +96,6 @@ impl Paired {
         let turned = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
         Ok(paired(other.surface, turned, partners, true))
     }
-}
-
-/// The one frame of all nodes of a contact with a fixed direction.
-fn fixed_frame(index: usize, contact: &Contact, surface: &Surface) -> Result<Option<SurfaceFrame>, ContactError> {
-    let ContactNormal::Fixed(normal) = contact.normal else {
-        return Ok(None);
-    };
-    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
-    let outside = |own: &SurfaceFrame| frame.normal_part(own.normal) > ALONG;
-    if !surface.frames().iter().any(outside) {
-        return Err(ContactError::ObstacleSide {
-            contact: index,
-            direction: normal,
-            nodes: surface.nodes().len(),
-        });
-    }
-    Ok(Some(frame))
 }
 
 /// The partner of each node; `None` where meshes do not match.

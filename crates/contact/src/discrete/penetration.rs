@@ -5,7 +5,7 @@
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
-use crate::scene::Scene;
+use crate::scene::{Pose, Scene};
 use crate::tolerances::DEPTH;
 use signorini_fem_mesh::History;
 use signorini_tfeti::internal::PrescribedPoint;
@@ -15,19 +15,19 @@ pub(super) fn check_penetration(
     scene: &Scene,
     points: &[ContactPoint],
     prescribed: &[PrescribedPoint],
-    motions: &[History],
+    (motions, poses): (&[History], &[Vec<Pose>]),
     rounding: f64,
 ) -> Result<(), ContactError> {
     if prescribed.is_empty() {
         return Ok(());
     }
-    for &time in scene.analysis.times() {
+    let rest = Pose::default();
+    for (step, &time) in scene.analysis.times().iter().enumerate() {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
         let mut deepest: Option<(f64, u32, f64, f64)> = None;
         for fixed in prescribed {
             let point = &points[fixed.point];
-            let contact = &scene.contacts[point.surface];
-            let gap = point.gap_after(scene, &contact.obstacle_at(time))?;
+            let gap = point.gap_after(scene, poses[point.surface].get(step).unwrap_or(&rest))?;
             let along = fixed.normal.iter();
             let displacement: f64 = along.map(|&(case, value)| factors[case as usize] * value).sum();
             let depth = displacement - gap;

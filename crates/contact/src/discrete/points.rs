@@ -8,14 +8,15 @@
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
 
-use super::creases::{SurfaceSide, area_vector, creases};
+use super::creases::{SurfaceSide, creases};
 use super::means::Means;
+use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
-use crate::scene::{ContactNormal, Gap, Scene};
-use crate::tolerances::{SAME_NORMAL, TURN};
+use crate::scene::{Gap, Pose, Scene};
+use crate::tolerances::SAME_NORMAL;
 use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -37,6 +38,8 @@ pub(crate) struct ContactPoint {
     pub(crate) area: f64,
     /// Initial distance to the obstacle, m.
     pub(crate) gap: f64,
+    /// Friction along the second tangent over that along the first.
+    pub(crate) stretch: f64,
 }
 
 impl ContactPoint {
@@ -45,25 +48,30 @@ impl ContactPoint {
         self.sides.node()
     }
 
-    /// The gap, m, that the obstacle has brought by moving by `way` along the surface, without what it opens.
-    pub(crate) fn gap_brought(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
+    /// The gap, m, that the obstacle has brought by moving along the surface, without what it opens.
+    pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
         let own = self.sides.own.nodes();
         if own.len() > 1 {
             let at = |&(node, weight): &(u32, f64)| {
                 let place = scene.mesh.points()[node as usize];
-                let gap = contact.gap_brought(self.surface, node, place, normal, (self.gap, way))?;
+                let gap = contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))?;
                 Ok(weight * gap)
             };
             return own.iter().map(at).sum();
         }
-        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, way))
+        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, pose))
     }
 
-    /// The gap where the obstacle has moved by `way`, m.
-    pub(crate) fn gap_after(&self, scene: &Scene, way: &[f64; 3]) -> Result<f64, ContactError> {
-        Ok(self.gap_brought(scene, way)? + vector::dot(way, &self.frame.normal))
+    /// The gap where the obstacle has moved, m.
+    pub(crate) fn gap_after(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
+        Ok(self.gap_brought(scene, pose)? + self.opened(pose))
+    }
+
+    /// What the obstacle opens by moving along the normal, m.
+    pub(crate) fn opened(&self, pose: &Pose) -> f64 {
+        vector::dot(&pose.drag(&self.position), &self.frame.normal)
     }
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
@@ -76,10 +84,10 @@ impl ContactPoint {
 pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
-        let first = out.len();
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
+        let shaped = shape_frames(&scene.mesh, index, contact, surface)?;
         let sides = match (partners, fixed) {
-            (Partners::Obstacle, None) => creases(&scene.mesh, surface, contact.crease),
+            (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
         let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding)?;
@@ -111,7 +119,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             };
             let own = sides.get(&(local as u32));
             for side in own.map_or(&one[..], Vec::as_slice) {
-                let frame = fixed.unwrap_or(side.frame);
+                let frame = fixed.or(shaped.get(local).copied()).unwrap_or(side.frame);
                 let (sides, gap) = match &means {
                     None => {
                         let sides = Sides {
@@ -119,10 +127,11 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                             partner: partner.clone(),
                             swapped: paired.swapped,
                         };
-                        (sides, contact.gap_at(index, node, position, measured)?)
+                        (sides, contact.gap_at(index, node, position, &frame.normal, measured)?)
                     }
                     Some(means) => means.point((local, &side.triangles), &frame)?,
                 };
+                let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
                     surface: index,
                     sides,
@@ -130,10 +139,10 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     frame,
                     area: side.area,
                     gap,
+                    stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                 });
             }
         }
-        check_turn(scene, index, surface, &out[first..])?;
     }
     Ok(out)
 }
@@ -202,7 +211,7 @@ pub(super) fn points(
 fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
-    if x.motion != y.motion || !stays(scene, rounding, point, other, nearer)? {
+    if x.motion != y.motion || x.rotation != y.rotation || !stays(scene, rounding, point, other, nearer)? {
         return Err(ContactError::SharedNode {
             node: point.node(),
             first: point.surface,
@@ -224,6 +233,9 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         Ordering::Less => {
             (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
             point.sides = other.sides.clone();
+            if x.friction_axis.is_some() || y.friction_axis.is_some() {
+                (point.frame, point.stretch) = (other.frame, other.stretch);
+            }
         }
         Ordering::Greater => {}
     }
@@ -267,60 +279,11 @@ fn stays(
     if !x.carries_field() && !y.carries_field() {
         return Ok(true);
     }
-    for &time in scene.analysis.times() {
-        let way = x.obstacle_at(time);
-        let difference = other.gap_after(scene, &way)? - point.gap_after(scene, &way)?;
+    for pose in x.poses(scene.analysis.times()) {
+        let difference = other.gap_after(scene, &pose)? - point.gap_after(scene, &pose)?;
         if order(difference, rounding) != nearer {
             return Ok(false);
         }
     }
     Ok(true)
-}
-
-/// Refuses gap fields that move far along a curved surface, on which the field and the normals of the nodes part.
-fn check_turn(scene: &Scene, index: usize, surface: &Surface, own: &[ContactPoint]) -> Result<(), ContactError> {
-    let contact = &scene.contacts[index];
-    let (Some((way, history)), true) = (contact.motion(), contact.carries_field()) else {
-        return Ok(());
-    };
-    if contact.normal != ContactNormal::Body {
-        return Ok(());
-    }
-    let factor = scene.analysis.largest_factor(history).0;
-    let mut worst = (0.0, 0);
-    for triangle in surface.triangles() {
-        let flat = area_vector(&scene.mesh, surface, triangle);
-        let nodes = triangle.map(|n| surface.nodes()[n as usize]);
-        let places = nodes.map(|n| scene.mesh.points()[n as usize]);
-        let edge = |a: usize| {
-            let [from, to] = [1, 2].map(|k| places[(a + k) % 3]);
-            vec3::sub(to, from)
-        };
-        // of a node in a crease the side that the facet belongs to
-        let along = |node: u32| {
-            let from = own.partition_point(|c| c.node() < node);
-            let sides = own[from..].iter().take_while(|c| c.node() == node);
-            let facing = |c: &&ContactPoint| c.frame.normal_part(flat);
-            let side = sides.max_by(|a, b| facing(a).total_cmp(&facing(b)));
-            side.map_or(0.0, |c| factor * c.frame.normal_part(way))
-        };
-        // length of the gradient of `n . way` on the facet
-        let mut sum = [0.0; 3];
-        for (a, &node) in nodes.iter().enumerate() {
-            vector::axpy(along(node), &edge(a), &mut sum);
-        }
-        let turn = vector::norm(&sum) / (2.0 * vec3::norm(flat));
-        if turn > worst.0 {
-            worst = (turn, nodes[0]);
-        }
-    }
-    if worst.0 > TURN {
-        return Err(ContactError::MovedField {
-            contact: index,
-            node: worst.1,
-            turn: worst.0.to_degrees(),
-            most: TURN.to_degrees(),
-        });
-    }
-    Ok(())
 }

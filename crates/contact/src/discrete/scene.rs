@@ -6,8 +6,9 @@ use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, points};
 use super::rounding::rounding;
 use super::supports::Supports;
+use super::turn::check_turn;
 use crate::error::ContactError;
-use crate::scene::{Scene, check_laws};
+use crate::scene::{Pose, Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
@@ -31,6 +32,8 @@ pub(crate) struct DiscreteScene {
     pub(crate) constraints: Vec<ContactConstraint>,
     /// Nodal forces of each load with factor one, subdomain by subdomain, N; the model takes them.
     pub(crate) loads: Vec<Vec<Vec<f64>>>,
+    /// Where the obstacle of each contact is at each step; none of those that rest.
+    pub(crate) poses: Vec<Vec<Pose>>,
     /// What of a gap may be rounding, m.
     pub(crate) rounding: f64,
 }
@@ -52,15 +55,22 @@ impl DiscreteScene {
         // a bonded node does not move against the other body
         let bonded: HashSet<u32> = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0).collect();
         conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
-        let surfaces = paired.into_iter().map(|p| p.surface).collect();
+        let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
+        let times = scene.analysis.times();
+        let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
+        for (index, own) in surfaces.iter().enumerate() {
+            let first = conditions.partition_point(|c| c.surface < index);
+            let end = conditions.partition_point(|c| c.surface <= index);
+            check_turn(scene, index, own, &conditions[first..end], &poses[index])?;
+        }
         let points = points(scene, &conditions, rounding)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
-        check_gaps(scene, &conditions)?;
+        check_gaps(scene, &conditions, &poses)?;
         let constraints = constraints(scene, &points, &ties);
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
-        check_penetration(scene, &points, &prescribed, &supports.motions, rounding)?;
+        check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;
         let loads = nodal_loads(scene, &decomposition, softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();
@@ -79,6 +89,7 @@ impl DiscreteScene {
             ties,
             constraints,
             loads,
+            poses,
             rounding,
         })
     }
@@ -108,8 +119,9 @@ fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) ->
         ContactConstraint::new(p.sides.own.clone(), p.frame)
             .with_partner(p.sides.partner.clone())
             .with_friction(contact.friction().is_some())
-            .with_moving_obstacle(contact.motion.is_some())
+            .with_moving_obstacle(contact.moves())
             .with_tied(contact.tied)
+            .with_stretch(p.stretch)
     };
     points.iter().chain(ties).map(point).collect()
 }

@@ -15,9 +15,10 @@ use nalgebra::{DMatrix, Vector3};
 /// normal one first, without the parts along directions that supports fix.
 type RowPart = [[f64; 3]; 3];
 
-/// Sum of the squares: 3 for a node without supports.
-fn freedom(part: &RowPart) -> f64 {
-    part.iter().map(|d| dot(d, d)).sum()
+/// Sum of the squares of directions without their factors: 3 for a node without supports.
+fn freedom([normal, along @ ..]: &RowPart, stretch: &[f64; 2]) -> f64 {
+    let squares = along.iter().zip(stretch).map(|(d, s)| dot(d, d) / (s * s));
+    dot(normal, normal) + squares.sum::<f64>()
 }
 
 /// For each row how both nodes move so that the row grows by one, and the others do not.
@@ -28,8 +29,11 @@ type Shifts = [[[f64; 3]; 2]; 3];
 pub(crate) struct AdmissibleNode {
     /// Mesh node.
     pub(crate) node: u32,
-    /// Directions of the rows in space, with row and scale: the normal one, then the tangential ones.
+    /// Directions of the rows in space, with row and scale: the normal one, then the tangential ones, in lengths in
+    /// which friction is the same in all directions.
     rows: Vec<([f64; 3], usize, f64)>,
+    /// Factors of the tangential ones.
+    stretch: [f64; 2],
     own: RowPart,
     still: Vec<(u32, RowPart)>,
     /// Where supports hold both nodes in part.
@@ -39,7 +43,7 @@ pub(crate) struct AdmissibleNode {
 impl AdmissibleNode {
     pub(crate) fn new(model: &Model, point: &ConstrainedPoint) -> Self {
         let subdomains = model.discrete.decomposition.subdomains();
-        let rows: Vec<_> = point.directions().collect();
+        let rows: Vec<_> = point.directions().take(1).chain(point.isotropic()).collect();
         let mut parts: Vec<(u32, RowPart)> = Vec::with_capacity(2);
         parts.push((point.node(), RowPart::default()));
         let others = point.contact.sides.nodes().skip(1);
@@ -65,7 +69,7 @@ impl AdmissibleNode {
             }
         }
         // a node that can move: of several partners, which have other points, only where the node itself cannot
-        let free = |k: usize| freedom(&parts[k].1);
+        let free = |k: usize| freedom(&parts[k].1, &point.stretch);
         let moving = match last {
             0 => 0,
             1 => usize::from(free(1) > free(0) + ROUNDING),
@@ -74,7 +78,7 @@ impl AdmissibleNode {
         };
         let (node, own) = parts.remove(moving);
         let still = parts;
-        let taken = freedom(&own) < rows.len() as f64 - FREEDOM_TAKEN;
+        let taken = freedom(&own, &point.stretch) < rows.len() as f64 - FREEDOM_TAKEN;
         let both = match &still[..] {
             [(_, still)] if taken => shifts(&own, still, rows.len()),
             _ => None,
@@ -82,6 +86,7 @@ impl AdmissibleNode {
         Self {
             node,
             rows,
+            stretch: point.stretch,
             own,
             still,
             both,
@@ -98,7 +103,10 @@ impl AdmissibleNode {
         }
         let direction = &self.own[k];
         // along the movable part, so that supports stay where they are
-        let by = if k == 0 { by / dot(direction, direction) } else { by };
+        let by = match k {
+            0 => by / dot(direction, direction),
+            k => by / (self.stretch[k - 1] * self.stretch[k - 1]),
+        };
         shift(self.value(v), direction, by);
     }
 
@@ -209,7 +217,8 @@ impl Correction {
         let mut start = [0.0; 2];
         for (j, (own, offset)) in conditions.along().iter().enumerate() {
             start[j] = dot(own, value) - offset;
-            moved.force[j] = dot(&node.rows[1 + j].0, &state.friction_force);
+            let factor = node.stretch[j] * node.stretch[j];
+            moved.force[j] = dot(&node.rows[1 + j].0, &state.friction_force) / factor;
         }
         // with the bound of the step, or with the friction force as the bound: whichever costs less
         let size = length(moved.force);

@@ -16,7 +16,11 @@ pub struct ConstrainedPoint {
     pub(crate) row: usize,
     /// Row value over normal displacement, and nodal force over multiplier.
     pub(crate) scale: f64,
+    /// The scale of tangential rows is that of the disc or interval.
     pub(crate) tangential: TangentialRows,
+    /// Factor of each tangential row beside that scale: the axes of an ellipse of friction. One where friction is the
+    /// same in all directions.
+    pub(crate) stretch: [f64; 2],
 }
 
 impl ConstrainedPoint {
@@ -69,6 +73,23 @@ impl ConstrainedPoint {
 
     /// Directions of the tangential rows, with row and scale.
     pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        let stretch = self.stretch.into_iter();
+        self.rows_along()
+            .zip(stretch)
+            .map(|((d, row, scale), factor)| (d, row, scale * factor))
+    }
+
+    /// The same with lengths in which friction is the same in all directions: vectors that need not have length one,
+    /// with row and the scale of the disc.
+    pub(crate) fn isotropic(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
+        let stretch = self.stretch.into_iter();
+        self.rows_along()
+            .zip(stretch)
+            .map(|((d, row, scale), factor)| (d.map(|c| c * factor), row, scale))
+    }
+
+    /// Unit vectors, rows, and the scale of the disc.
+    fn rows_along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
         let [a, b] = self.contact.frame.tangents;
         let list = match self.tangential {
             TangentialRows::Disc { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
@@ -78,7 +99,7 @@ impl ConstrainedPoint {
         list.into_iter().flatten()
     }
 
-    /// First tangential row, number of rows, scale.
+    /// First tangential row, number of rows, scale of the disc.
     pub(crate) fn tangential_rows(&self) -> Option<(usize, usize, f64)> {
         match self.tangential {
             TangentialRows::Disc { row, scale } => Some((row, 2, scale)),
@@ -90,12 +111,25 @@ impl ConstrainedPoint {
 
 /// The points that have rows.
 pub(super) fn constrained_points(points: &[ContactPoint], gluing: &Gluing) -> Vec<ConstrainedPoint> {
-    let point = |rows: &ContactRows| ConstrainedPoint {
-        contact: points[rows.point].clone(),
-        place: rows.point,
-        row: rows.row,
-        scale: rows.scale,
-        tangential: rows.tangential,
+    let point = |rows: &ContactRows| {
+        let contact = points[rows.point].clone();
+        let (mut tangential, mut stretch) = (rows.tangential, [1.0, contact.stretch]);
+        // of an ellipse its extent in the only direction of slip
+        if let TangentialRows::Interval { direction, scale, .. } = &mut tangential {
+            let [a, b] = contact.frame.tangential_part(*direction);
+            if contact.stretch != 1.0 {
+                stretch[0] = a.hypot(contact.stretch * b);
+                *scale /= stretch[0];
+            }
+        }
+        ConstrainedPoint {
+            contact,
+            place: rows.point,
+            row: rows.row,
+            scale: rows.scale,
+            tangential,
+            stretch,
+        }
     };
     gluing.contact().iter().map(point).collect()
 }

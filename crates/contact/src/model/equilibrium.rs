@@ -155,7 +155,10 @@ fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec
     let mut out = Vec::new();
     let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
     for point in model.points.iter().filter(own) {
-        let tangents = point.along().map(|(_, row, scale)| along(row, 1.0 / scale)).collect();
+        let tangents = point
+            .isotropic()
+            .map(|(_, row, scale)| along(row, 1.0 / scale))
+            .collect();
         let (coefficient, tresca) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
             Friction::Tresca(bound) => {

@@ -66,11 +66,9 @@ impl Model {
 
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
         let mut discrete = DiscreteScene::new(&scene)?;
-        let plan = Plan::of(&scene, &discrete, settings)?;
-        let tfeti = TfetiBuilder::new(&scene.mesh, &discrete.decomposition, &scene.materials)
+        let (plan, forecast) = Plan::of(&scene, &discrete, settings)?;
+        let tfeti = TfetiBuilder::of_forecast(&forecast)
             .with_supports(&discrete.supports.nodes)
-            .with_share_translates(settings.share_translates)
-            .with_inverse(settings.inverse)
             .with_contact(&discrete.constraints)
             .build()?;
         let loads = std::mem::take(&mut discrete.loads).into_iter();

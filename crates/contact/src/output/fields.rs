@@ -230,12 +230,9 @@ fn number(state: ContactState) -> f64 {
 /// The way of a contact point along the obstacle or the partner, m.
 fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
     let state = &result.recovered.points[point];
-    let obstacle = result.problem.obstacles[0]
-        .get(state.surface)
-        .copied()
-        .unwrap_or_default();
-    let mut way = obstacle.map(|w| -w);
-    for (node, weight) in result.model.points[point].contact.sides.nodes() {
+    let contact = &result.model.points[point];
+    let mut way = result.problem.pose(contact).drag(&contact.position()).map(|w| -w);
+    for (node, weight) in contact.contact.sides.nodes() {
         (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
     }
     let out: f64 = (0..3).map(|c| way[c] * state.normal[c]).sum();

@@ -70,7 +70,7 @@ impl Estimate {
         tets: f64,
         method: MethodKind,
         settings: &Settings,
-        forecast: &Forecast,
+        forecast: &Forecast<'_>,
     ) -> Self {
         Self {
             classes: forecast.classes.len(),

@@ -1,7 +1,7 @@
 //! Which effects a scene has.
 
 use crate::discrete::DiscreteScene;
-use crate::scene::{Analysis, Friction, Gap, Scene};
+use crate::scene::{Analysis, Contact, Friction, Gap, Scene};
 
 /// What kind of friction a scene has; of several the one with the most effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -76,7 +76,7 @@ impl Effects {
             gluing: discrete.decomposition.subdomains().len() > 1,
             supports: !scene.supports.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
-            moving_obstacle: contacts.iter().any(|c| c.motion.is_some()),
+            moving_obstacle: contacts.iter().any(Contact::moves),
         }
     }
 }

@@ -62,7 +62,7 @@ impl Plan {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
-        Self::of(scene, &DiscreteScene::new(scene)?, settings)
+        Ok(Self::of(scene, &DiscreteScene::new(scene)?, settings)?.0)
     }
 
     /// The same plan with times for a machine; [`Rate::measure`] measures this one.
@@ -84,8 +84,12 @@ impl Plan {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.tied_rows + self.dirichlet_rows
     }
 
-    /// The plan of a discrete scene.
-    pub(crate) fn of(scene: &Scene, discrete: &DiscreteScene, settings: &Settings) -> Result<Self, ContactError> {
+    /// The plan of a discrete scene, and the forecast that it is made from.
+    pub(crate) fn of<'a>(
+        scene: &'a Scene,
+        discrete: &'a DiscreteScene,
+        settings: &Settings,
+    ) -> Result<(Self, Forecast<'a>), ContactError> {
         settings.validate()?;
         let effects = Effects::of(scene, discrete);
         let decomposition = &discrete.decomposition;
@@ -145,7 +149,7 @@ impl Plan {
         let sizes = [plan.dual(), primal, plan.steps];
         let tets = elements as f64 / subdomains.max(1) as f64;
         plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast);
-        Ok(plan)
+        Ok((plan, forecast))
     }
 }
 

@@ -11,7 +11,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
     let points = &discrete.points;
     let found = [
         unused_materials(scene),
-        large_gap(scene, points, discrete.rounding),
+        large_gap(scene, discrete),
         large_coefficient(scene, points),
     ];
     found.into_iter().flatten().collect()
@@ -30,21 +30,20 @@ fn unused_materials(scene: &Scene) -> Option<Warning> {
 }
 
 /// The first contact whose nearest point is further away than its body is long.
-fn large_gap(scene: &Scene, points: &[ContactPoint], rounding: f64) -> Option<Warning> {
+fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let mut nearest: Vec<Option<&ContactPoint>> = vec![None; scene.contacts.len()];
-    for point in points {
+    for point in &discrete.points {
         let best = &mut nearest[point.surface];
         if best.is_none_or(|known| point.gap.abs() < known.gap.abs()) {
             *best = Some(point);
         }
     }
-    let mut far = nearest
-        .into_iter()
-        .flatten()
-        .filter(|p| p.gap.abs() > rounding)
-        .peekable();
+    // a body is no smaller than its parts: that is enough for most scenes
+    let part = |node: u32| Extents::of_part(&scene.mesh, &discrete.decomposition, node);
+    let far = |p: &&ContactPoint| p.gap.abs() > discrete.rounding.max(LARGE_GAP * part(p.node()));
+    let mut far = nearest.into_iter().flatten().filter(far).peekable();
     far.peek()?;
-    let extents = Extents::new(&scene.mesh);
+    let extents = Extents::new(&scene.mesh, &discrete.decomposition);
     let point = far.find(|p| p.gap.abs() > LARGE_GAP * extents.at(p.node()))?;
     Some(Warning::LargeGap {
         contact: point.surface,
@@ -60,7 +59,8 @@ fn large_coefficient(scene: &Scene, points: &[ContactPoint]) -> Option<Warning> 
     let coefficient = |point: &ContactPoint| match scene.contacts[point.surface].friction() {
         Friction::Coulomb(law) => {
             let at_rest = || law.value(point.node(), point.position, 0.0).ok();
-            law.largest(point.position).or_else(at_rest)
+            let along = law.largest(point.position).or_else(at_rest)?;
+            Some(along * point.stretch.max(1.0))
         }
         _ => None,
     };

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 /// [`RunReport::warnings`](crate::RunReport::warnings) has them and those of the results, each kind once, where it was
 /// first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known.
 ///
-/// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, the body
+/// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for
+/// the turn of normals, the body
 /// for gaps, 3 for coefficients and 10 % for the error of the mesh. A body is as long as the longest side of the box
 /// around it. By them the brick of the benchmark, pressed down by 0.1 m and 3 m long, does not warn of its displacement,
 /// as it would from a thirtieth on; it does of its strain, 6 % at the free corner, and of its mesh. Strain is
@@ -68,6 +69,15 @@ pub enum Warning {
         slip: f64,
         /// The longest edge of the facets at the node, m.
         edge: f64,
+    },
+    /// At a point that touches, the displacement has turned the normal of its obstacle.
+    TurnedNormal {
+        step: usize,
+        contact: usize,
+        node: u32,
+        place: [f64; 3],
+        /// Angle between the obstacle's normals at the node's place and at its displaced place, degrees.
+        turn: f64,
     },
     /// All of a contact begins further from its obstacle, or deeper inside it, than the body is long.
     LargeGap {
@@ -163,6 +173,19 @@ impl fmt::Display for Warning {
                 "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e} m, its facets are {edge:.3e} m \
                  long; it keeps the normal and the partner that it began with: take smaller steps, and where the other \
                  side is not plane a shorter way",
+                at(place)
+            ),
+            Self::TurnedNormal {
+                step,
+                contact,
+                node,
+                place,
+                turn,
+            } => write!(
+                f,
+                "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle \
+                 is another one by {turn:.1} degrees; it keeps the one that it began with, so forces point a little \
+                 aside there: make the way along the obstacle small against its radius of curvature",
                 at(place)
             ),
             Self::LargeGap {

@@ -84,8 +84,8 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
     };
     for condition in &model.judged {
         let normal = &condition.frame.normal;
-        let way = m.problem.obstacles[0].get(condition.surface);
-        let open = condition.gap_after(scene, way.unwrap_or(&[0.0; 3]));
+        let pose = m.problem.obstacles[0].get(condition.surface);
+        let open = condition.gap_after(scene, &pose.copied().unwrap_or_default());
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let sides = condition.sides.nodes();

@@ -36,7 +36,8 @@ pub struct PointState {
     pub normal_force: f64,
     /// Friction force on the body, N, in space.
     pub friction_force: [f64; 3],
-    /// Slip bound, N; 0 without friction.
+    /// Slip bound, N; 0 without friction. That along the axis where friction [differs by
+    /// direction](crate::Contact::with_friction_axis).
     pub slip_bound: f64,
     /// Distance to the obstacle or the partner, m.
     pub gap: f64,
@@ -87,14 +88,12 @@ fn point_state(
     };
     let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
     let mut on_bound = false;
-    if let Some((row, count, scale)) = point.tangential_rows() {
-        for j in 0..count {
-            let k = row + j;
-            friction[j] = scale * lambda[k];
-            displacement[j] = (rows[k] - entry_or_zero(&problem.prescribed, k)) / scale;
-            difference[j] = alpha * (rows[k] - problem.offset[k]) / scale;
-        }
-        on_bound = friction[0].hypot(friction[1]) >= bound * ON_BOUND;
+    for (j, (_, k, scale)) in point.along().enumerate() {
+        friction[j] = scale * lambda[k];
+        displacement[j] = (rows[k] - entry_or_zero(&problem.prescribed, k)) / scale;
+        difference[j] = alpha * (rows[k] - problem.offset[k]) / scale;
+        let [a, b] = point.stretch;
+        on_bound = (friction[0] / a).hypot(friction[1] / b) >= bound * ON_BOUND;
     }
     let opposed = difference[0] * friction[0] + difference[1] * friction[1] <= 0.0;
     let state = if normal_force >= 0.0 {

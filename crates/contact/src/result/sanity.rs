@@ -4,11 +4,12 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
-use crate::discrete::Extents;
-use crate::model::Model;
+use crate::discrete::{Extents, turned};
+use crate::model::{ConstrainedPoint, Model};
 use crate::report::Warning;
+use crate::scene::ContactNormal;
 use crate::step::StepProblem;
-use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LONG_SLIP, REST, RIGID};
+use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LONG_SLIP, REST, RIGID, TURN};
 use crate::vec3::norm;
 use signorini_fem_mesh::recovery::DiscretisationError;
 use signorini_fem_mesh::{Element, TetMesh, fields};
@@ -44,7 +45,7 @@ impl Lengths {
             longest
         });
         Self {
-            extents: Extents::new(mesh),
+            extents: Extents::new(mesh, &model.discrete.decomposition),
             thinnest: 1.0 / steepest,
             edges: edges.collect(),
         }
@@ -71,6 +72,9 @@ pub(crate) fn warnings(
     }
     if !known.iter().any(|w| matches!(w, Warning::LongSlip { .. })) {
         out.extend(long_slip(model, lengths, recovered, step));
+    }
+    if !known.iter().any(|w| matches!(w, Warning::TurnedNormal { .. })) {
+        out.extend(turned_normal(model, recovered, &u, step));
     }
     out
 }
@@ -133,6 +137,27 @@ fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usiz
         place: model.scene.mesh.points()[point.node as usize],
         slip,
         edge,
+    })
+}
+
+/// Looked at only where contacts have the normals of shapes.
+fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -> Option<Warning> {
+    let shaped = |p: &&ConstrainedPoint| model.scene.contacts[p.surface()].normal() == ContactNormal::Obstacle;
+    let pairs = model.points.iter().zip(&recovered.points);
+    let touching = pairs.filter(|(p, state)| shaped(p) && state.state != ContactState::Open);
+    let turns = touching.map(|(p, _)| {
+        let (at, first) = (p.position(), 3 * p.node() as usize);
+        let pose = model.discrete.poses[p.surface()].get(step).copied().unwrap_or_default();
+        let displaced = [0, 1, 2].map(|c| at[c] + u[first + c]);
+        (p, turned(&model.scene, &p.contact, &pose, &displaced))
+    });
+    let (point, turn) = worst(turns)?;
+    (turn > TURN).then(|| Warning::TurnedNormal {
+        step,
+        contact: point.surface(),
+        node: point.node(),
+        place: point.position(),
+        turn: turn.to_degrees(),
     })
 }
 

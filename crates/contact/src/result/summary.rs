@@ -75,13 +75,14 @@ pub(crate) fn summarise(
         for along in touch.along() {
             let (_, k, scale) = along;
             let old = entry_or_zero(before, k - start);
-            let new = problem.relative(touch.surface(), along, recovered.rows[k]);
+            let new = problem.relative(touch, along, recovered.rows[k]);
             s.friction_work -= scale * lambda[k] * (new - old);
         }
         if let (Some(now), Some(old)) = (
             problem.obstacles[0].get(touch.surface()),
             problem.obstacles[1].get(touch.surface()),
         ) {
+            let [now, old] = [now, old].map(|pose| pose.drag(&touch.contact.position));
             for c in 0..3 {
                 s.obstacle_work += force[c] * (now[c] - old[c]);
             }

@@ -1,6 +1,8 @@
 //! The contact surface of a scene: where it is, how far the obstacle or the other body, and with which friction.
 
 use super::friction::{Friction, PlaceField};
+use super::obstacle::Obstacle;
+use super::pose::{Pose, Rotation};
 use crate::error::ContactError;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
@@ -19,6 +21,8 @@ pub enum Gap {
     Field(PlaceField),
     /// The distance between the nodes of two bodies, along the normal: what coordinates say.
     Measured,
+    /// The distance to an [`Obstacle`] along the normal: what its shape says.
+    Obstacle,
 }
 
 impl fmt::Debug for Gap {
@@ -28,6 +32,7 @@ impl fmt::Debug for Gap {
             Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
             Self::Field(_) => f.write_str("Field(..)"),
             Self::Measured => f.write_str("Measured"),
+            Self::Obstacle => f.write_str("Obstacle"),
         }
     }
 }
@@ -41,6 +46,8 @@ pub enum ContactNormal {
     /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
     /// under a curved body.
     Fixed([f64; 3]),
+    /// At each node that of the [`Obstacle`]: into it, against the gradient of its distance.
+    Obstacle,
 }
 
 /// A part of the boundary that may touch a rigid obstacle, or another body.
@@ -52,10 +59,15 @@ pub struct Contact {
     pub(crate) gap: Gap,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
+    /// Axis along which the law of friction holds, and how many times as much there is at right angles to it.
+    pub(crate) friction_axis: Option<([f64; 3], f64)>,
     /// Angle of a crease, degrees.
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
+    pub(crate) rotation: Option<Rotation>,
+    /// Its shape, from which gap and normal follow.
+    pub(crate) shape: Option<Obstacle>,
     /// Whether both sides are bonded.
     pub(crate) tied: bool,
 }
@@ -73,9 +85,47 @@ impl Contact {
             gap: Gap::None,
             normal: ContactNormal::Body,
             friction: Friction::None,
+            friction_axis: None,
             crease: CREASE,
             motion: None,
+            rotation: None,
+            shape: None,
             tied: false,
+        }
+    }
+
+    /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the gradient
+    /// of its distance, and the gap is the distance.
+    ///
+    /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction, along
+    /// which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body and
+    /// obstacle at the start, as small displacements have it: slips and motions must be small against the radius of
+    /// curvature. Motions that turn the obstacle's normal at a node by more than 0.1 are refused
+    /// ([`TurnedNormal`](ContactError::TurnedNormal)), displacements that do so at a node that touches are
+    /// [warned](crate::Warning::TurnedNormal) of.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Load, Obstacle, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
+    ///
+    /// // a ball of radius 10 m pressed 0.02 m into a block from above
+    /// let ball = Obstacle::sphere([0.5, 0.5, 11.0 - 0.02], 10.0);
+    /// let mesh = Brick::new([1.0; 3], [4; 3]).build()?;
+    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e6, 0.3)?))
+    ///     .with_support(Support::fixed(brick::Z_MIN))
+    ///     .with_contact(Contact::obstacle(brick::Z_MAX, ball));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let result = simulation.step()?;
+    /// assert!(result.summary().normal_force > 1e3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn obstacle(tag: FacetTag, obstacle: Obstacle) -> Self {
+        Self {
+            gap: Gap::Obstacle,
+            normal: ContactNormal::Obstacle,
+            shape: Some(obstacle),
+            ..Self::rigid(tag)
         }
     }
 
@@ -190,6 +240,13 @@ impl Contact {
         self
     }
 
+    /// The body's own outward normals as directions of contact: what [`rigid`](Self::rigid) has.
+    #[must_use]
+    pub fn with_body_normals(mut self) -> Self {
+        self.normal = ContactNormal::Body;
+        self
+    }
+
     /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
     /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge
     /// between floor and wall meets both; elsewhere one with the mean normal. Flat sides that meet at a smaller angle
@@ -200,7 +257,7 @@ impl Contact {
         self
     }
 
-    /// The obstacle moves, but does not turn: its displacement at time `t` is `history(t) * displacement` (m), and zero
+    /// The obstacle moves: its displacement at time `t` is `history(t) * displacement` (m), and zero
     /// before the first step. Along the normal it opens or closes the gap; along the surface it drags the body by
     /// friction.
     ///
@@ -215,14 +272,39 @@ impl Contact {
         self
     }
 
-    /// Displacement of the obstacle at a time, m.
-    pub(crate) fn obstacle_at(&self, time: f64) -> [f64; 3] {
-        match &self.motion {
+    /// The obstacle turns about the axis through `point`: at time `t` by `angle(t)` radians, right-handed about `axis`,
+    /// and by none before the first step. The axis goes along with a [motion](Self::with_motion). Along the surface
+    /// the obstacle drags the body by friction, however far it turns; a shape that is not round about the axis brings
+    /// other gaps.
+    ///
+    /// The gap of an [obstacle](Self::obstacle) is measured at its place at each step. A
+    /// [gap field](Self::with_gap_field) turns with the obstacle. Other obstacles are taken to be of the shape of the
+    /// body's surface, and their normals must not turn by more than 0.1.
+    #[must_use]
+    pub fn with_rotation(mut self, point: [f64; 3], axis: [f64; 3], angle: History) -> Self {
+        self.rotation = Some(Rotation { point, axis, angle });
+        self
+    }
+
+    /// Whether the obstacle moves or turns.
+    pub(crate) fn moves(&self) -> bool {
+        self.motion.is_some() || self.rotation.is_some()
+    }
+
+    /// Where the obstacle is at some times; none if it rests.
+    pub(crate) fn poses(&self, times: &[f64]) -> Vec<Pose> {
+        let shift = |time: f64| match &self.motion {
             Some((displacement, history)) => {
                 let factor = history.value(time);
                 displacement.map(|c| factor * c)
             }
             None => [0.0; 3],
+        };
+        let times = times.iter().copied();
+        match &self.rotation {
+            Some(rotation) => Pose::turning(rotation, times.map(|t| (shift(t), rotation.angle.value(t)))),
+            None if self.motion.is_some() => times.map(|t| Pose::shifted(shift(t))).collect(),
+            None => Vec::new(),
         }
     }
 
@@ -237,6 +319,33 @@ impl Contact {
     #[must_use]
     pub fn is_tied(&self) -> bool {
         self.tied
+    }
+
+    /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles to
+    /// it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its normal
+    /// (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound) is the
+    /// bound along the axis.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Friction};
+    /// use signorini_fem_mesh::brick;
+    ///
+    /// // ground along x: 0.3 there, 0.6 across
+    /// let floor = Contact::rigid(brick::Z_MIN)
+    ///     .with_friction(Friction::coulomb(0.3))
+    ///     .with_friction_axis([1.0, 0.0, 0.0], 0.6 / 0.3);
+    /// assert_eq!(floor.friction_axis(), Some(([1.0, 0.0, 0.0], 2.0)));
+    /// ```
+    #[must_use]
+    pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
+        self.friction_axis = Some((axis, ratio));
+        self
+    }
+
+    /// The axis of a friction that differs by direction, and the ratio of friction across it to that along it.
+    #[must_use]
+    pub fn friction_axis(&self) -> Option<([f64; 3], f64)> {
+        self.friction_axis
     }
 
     /// The friction law.
@@ -282,20 +391,35 @@ impl Contact {
         Some((*displacement, history))
     }
 
-    /// The gap at a node, m, checked; `contact` is the position of the surface in the scene, `measured` the distance
-    /// to the partner of the node.
+    /// How the obstacle turns.
+    #[must_use]
+    pub fn rotation(&self) -> Option<&Rotation> {
+        self.rotation.as_ref()
+    }
+
+    /// The shape of the obstacle, if it has one.
+    #[must_use]
+    pub fn shape(&self) -> Option<&Obstacle> {
+        self.shape.as_ref()
+    }
+
+    /// The gap at a place, m, checked; `contact` is the position of the surface in the scene, `measured` the distance
+    /// to the partner of the node. The normal is asked only where the gap is measured along it.
     pub(crate) fn gap_at(
         &self,
         contact: usize,
         node: u32,
         position: [f64; 3],
+        normal: &[f64; 3],
         measured: f64,
     ) -> Result<f64, ContactError> {
-        let value = match &self.gap {
-            Gap::None => 0.0,
-            Gap::Constant(value) => *value,
-            Gap::Field(field) => field(position),
-            Gap::Measured => measured,
+        let value = match (&self.gap, &self.shape) {
+            (Gap::Constant(value), _) => *value,
+            (Gap::Field(field), _) => field(position),
+            (Gap::Measured, _) => measured,
+            (Gap::Obstacle, Some(shape)) if self.normal == ContactNormal::Obstacle => shape.distance(position).0,
+            (Gap::Obstacle, Some(shape)) => shape.along(position, *normal),
+            (Gap::None | Gap::Obstacle, _) => 0.0,
         };
         if value.is_finite() {
             Ok(value)
@@ -311,24 +435,35 @@ impl Contact {
 
     /// Whether the obstacle moves and takes a gap with it that depends on the place.
     pub(crate) fn carries_field(&self) -> bool {
-        self.motion.is_some() && matches!(self.gap, Gap::Field(_))
+        self.moves() && matches!(self.gap, Gap::Field(_) | Gap::Obstacle)
     }
 
-    /// The gap at a node, m, that is `initial` at first and to which the obstacle has brought that of the place from
-    /// which it comes along the surface. The part of the way along the normal, which opens the gap, is not in it.
+    /// The gap at a node, m, that is `initial` at first, where the obstacle has moved. The part of its way along the
+    /// normal, which opens the gap, is not in it.
     pub(crate) fn gap_brought(
         &self,
         contact: usize,
         node: u32,
         position: [f64; 3],
         normal: &[f64; 3],
-        (initial, way): (f64, &[f64; 3]),
+        (initial, pose): (f64, &Pose),
     ) -> Result<f64, ContactError> {
-        let out = vector::dot(way, normal);
-        let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
-        if !matches!(self.gap, Gap::Field(_)) || from == position {
-            return Ok(initial);
+        let at = |place: [f64; 3], normal: &[f64; 3]| self.gap_at(contact, node, place, normal, initial);
+        let opened = |way: [f64; 3]| vector::dot(&way, normal) - vector::dot(&pose.drag(&position), normal);
+        match &self.gap {
+            Gap::Obstacle => {
+                let whole = at(pose.origin(&position), &pose.back(normal))?;
+                Ok(whole - vector::dot(&pose.drag(&position), normal))
+            }
+            Gap::Field(_) => {
+                let way = pose.way(&position);
+                let out = vector::dot(&way, normal);
+                let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
+                let brought = if from == position { initial } else { at(from, normal)? };
+                Ok(if pose.turns() { brought + opened(way) } else { brought })
+            }
+            _ if pose.turns() => Ok(initial + opened(pose.small(&position))),
+            _ => Ok(initial),
         }
-        self.gap_at(contact, node, from, initial)
     }
 }

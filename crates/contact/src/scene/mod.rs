@@ -8,9 +8,12 @@
 //! `validate` says what can be said against a scene without computing; the rest is said by `discrete`.
 
 mod contact;
+mod facets;
 mod friction;
 mod load;
+mod obstacle;
 mod partition;
+mod pose;
 mod scene;
 mod support;
 mod time;
@@ -20,7 +23,10 @@ pub use contact::{Contact, ContactNormal, Gap};
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use load::Load;
+pub use obstacle::Obstacle;
 pub use partition::Partition;
+pub(crate) use pose::Pose;
+pub use pose::Rotation;
 pub use scene::Scene;
 pub use support::{Place, Support};
 pub use time::{Analysis, DifferenceFormula};

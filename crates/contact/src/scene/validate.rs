@@ -2,10 +2,13 @@
 
 use super::contact::{Contact, ContactNormal, Gap};
 use super::friction::Friction;
+use super::obstacle::Obstacle;
+use super::pose::Rotation;
 use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
 use signorini_fem_mesh::FacetTag;
+use signorini_fem_mesh::vec3::{is_finite, norm};
 
 impl Scene {
     /// Nodes of the support at a position, checked; as many displacements as nodes, if it has not one for all.
@@ -58,7 +61,8 @@ impl Scene {
         let contacts = self.contacts.iter().enumerate();
         let histories: Vec<_> = (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
-            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
+            .chain((contacts.clone()).filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
+            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.rotation.as_ref()?.angle))))
             .collect();
         for &time in self.analysis.times() {
             for &(what, index, history) in &histories {
@@ -93,7 +97,7 @@ impl Scene {
         if contact.tied && (loose || contact.normal != ContactNormal::Body) {
             return Err(ContactError::Tied { contact: index });
         }
-        if contact.motion.is_some() && !contact.partner.is_empty() {
+        if (contact.moves() || contact.shape().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion
@@ -105,11 +109,34 @@ impl Scene {
                 range: "of finite numbers",
             });
         }
+        if let Some(Rotation { point, axis, .. }) = &contact.rotation {
+            let length = norm(*axis);
+            if !(length.is_finite() && length > 0.0 && is_finite(*point)) {
+                return Err(ContactError::Setting {
+                    name: "length of the axis of rotation of an obstacle",
+                    value: length,
+                    range: "(0, inf), through a finite point",
+                });
+            }
+        }
+        if let Some((name, value)) = contact.shape().and_then(Obstacle::flaw) {
+            let range = "(0, inf)";
+            return Err(ContactError::Setting { name, value, range });
+        }
         if !(contact.crease > 0.0 && contact.crease <= 180.0) {
             return Err(ContactError::Setting {
                 name: "crease",
                 value: contact.crease,
                 range: "(0, 180]",
+            });
+        }
+        if let Some((_, value)) = contact.friction_axis
+            && !(value.is_finite() && value > 0.0)
+        {
+            return Err(ContactError::Setting {
+                name: "ratio of friction across its axis",
+                value,
+                range: "(0, inf): an ellipse has two axes",
             });
         }
         if let Friction::Coulomb(coefficient) = &contact.friction {

@@ -147,7 +147,7 @@ fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     for point in &model.points {
         for along in point.along() {
             let k = along.1;
-            trace[k - start] = problem.relative(point.surface(), along, rows[k]);
+            trace[k - start] = problem.relative(point, along, rows[k]);
         }
     }
     trace

@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
-use crate::scene::Scene;
+use crate::scene::{Pose, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
@@ -27,8 +27,8 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
-    /// Displacement of the obstacle of each contact surface, now and a step before; empty where none moves.
-    pub(crate) obstacles: [Vec<[f64; 3]>; 2],
+    /// Where the obstacle of each contact surface is, now and a step before; empty where none moves.
+    pub(crate) obstacles: [Vec<Pose>; 2],
     /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not
     /// in `B u`. By contact row, in row units; empty where no support moves such a point.
     pub(crate) prescribed: Vec<f64>,
@@ -100,15 +100,15 @@ impl StepProblem {
             if effects.gap {
                 self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
             }
-            if let (Some(formula), Some((row, count, scale))) = (formula, point.tangential_rows()) {
-                for k in row..row + count {
+            if let Some(formula) = formula {
+                for (_, k, scale) in point.along() {
                     let (last, before) = state.traces(k - start);
                     self.offset[k] += scale * formula.offset(last, before);
                 }
             }
             if effects.moving_obstacle {
                 for (direction, row, scale) in point.directions() {
-                    self.offset[row] += scale * self.carried(point.contact.surface, &direction);
+                    self.offset[row] += scale * self.carried(point, &direction);
                 }
             }
         }
@@ -120,11 +120,9 @@ impl StepProblem {
         if !model.plan.effects.moving_obstacle {
             return;
         }
-        let analysis = &model.scene.analysis;
-        let before = index.checked_sub(1).and_then(|i| analysis.time(i));
-        self.obstacles = [Some(self.time), before].map(|time| {
-            let contacts = model.scene.contacts.iter();
-            contacts.map(|c| time.map_or([0.0; 3], |t| c.obstacle_at(t))).collect()
+        self.obstacles = [Some(index), index.checked_sub(1)].map(|step| {
+            let pose = |poses: &Vec<Pose>| step.and_then(|k| poses.get(k)).copied().unwrap_or_default();
+            model.discrete.poses.iter().map(pose).collect()
         });
     }
 
@@ -138,16 +136,28 @@ impl StepProblem {
         gap_brought(scene, point, &self.obstacles[1])
     }
 
-    /// Displacement of the obstacle of a surface along a direction, m.
-    pub(crate) fn carried(&self, surface: usize, direction: &[f64; 3]) -> f64 {
-        let way = self.obstacles[0].get(surface);
-        way.map_or(0.0, |w| dot(w, direction))
+    /// Where the obstacle of a point is; at rest where none moves.
+    pub(crate) fn pose(&self, point: &ConstrainedPoint) -> Pose {
+        self.obstacles[0]
+            .get(point.contact.surface)
+            .copied()
+            .unwrap_or_default()
+    }
+
+    /// Way of its obstacle past a point along a direction, m.
+    fn carried(&self, point: &ConstrainedPoint, direction: &[f64; 3]) -> f64 {
+        dot(&self.pose(point).drag(&point.contact.position), direction)
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:
     /// `value` is what `B u` has of it.
-    pub(crate) fn relative(&self, surface: usize, (direction, row, scale): ([f64; 3], usize, f64), value: f64) -> f64 {
-        (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(surface, &direction)
+    pub(crate) fn relative(
+        &self,
+        point: &ConstrainedPoint,
+        (direction, row, scale): ([f64; 3], usize, f64),
+        value: f64,
+    ) -> f64 {
+        (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(point, &direction)
     }
 
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its
@@ -178,9 +188,9 @@ impl StepProblem {
     }
 }
 
-fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[[f64; 3]]) -> Result<f64, ContactError> {
+fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Pose]) -> Result<f64, ContactError> {
     match obstacles.get(point.contact.surface) {
-        Some(way) => point.contact.gap_brought(scene, way),
+        Some(pose) => point.contact.gap_brought(scene, pose),
         None => Ok(point.contact.gap),
     }
 }

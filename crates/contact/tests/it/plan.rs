@@ -47,6 +47,8 @@ fn the_plan_predicts_the_rows() {
         assert_eq!(plan.dirichlet_rows, ranges.dirichlet.len());
         assert_eq!(plan.dual(), simulation.tfeti().dual_dim());
         assert_eq!(plan.primal, simulation.tfeti().torn_dim());
+        // what the plan analysed the set-up takes over
+        assert_eq!(simulation.tfeti().report().analysed, 0);
     }
 }
 

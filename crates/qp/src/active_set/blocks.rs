@@ -212,9 +212,12 @@ impl ActiveSet {
     }
 
     /// Whether a disc on whose circle a point slides, or which fixes it, has grown by more than `limit` since its
-    /// radius was noted.
-    pub(crate) fn grew(&self, set: &ProductSet, radii: &[f64], limit: f64) -> bool {
+    /// radius was noted, or an interval has left an active component of `x` that far inside.
+    pub(crate) fn grew(&self, set: &ProductSet, x: &[f64], radii: &[f64], limit: f64) -> bool {
         let mut found = false;
+        for_bounds(set, |i, k, lo, hi| {
+            found |= !self.free[k] && lo + limit < x[i] && x[i] < hi - limit
+        });
         for_discs(set, |_, k, radius| {
             let bound = !matches!(self.discs[k], Disc::Free);
             found |= bound && radius - radii[k] > limit;

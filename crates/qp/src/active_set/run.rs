@@ -281,7 +281,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         self.follow()?;
         self.moved.followed = true;
         let (at, limit) = (&self.at, place.limits.constrained);
-        let moved = at.set.violation(at.x) > limit || at.work.active.grew(at.set, &at.work.before, limit);
+        let moved = at.set.violation(at.x) > limit || at.work.active.grew(at.set, at.x, &at.work.before, limit);
         Ok(!moved)
     }
 

@@ -122,6 +122,37 @@ fn a_problem_without_constraints_is_one_active_set_and_no_correction() {
     assert!(report.cg_steps <= n + 5);
 }
 
+/// An interval that the hook opens after the first set, which solved the problem with the closed one.
+#[test]
+fn an_interval_that_opens_is_entered() {
+    let a = DenseOperator::new(2, vec![2.0, 0.0, 0.0, 2.0]).expect("symmetric");
+    let mut set = ProductSet::new(vec![Segment::bounds(vec![0.0], vec![0.0]), Segment::Free(1)]).expect("a set");
+    let mut hook = |_: &[f64], set: &mut ProductSet| {
+        if let Ok((lower, upper)) = set.bounds_mut(0) {
+            (lower[0], upper[0]) = (-1.0, 1.0);
+        }
+    };
+    let settings = ActiveSetSettings::default().with_tolerance(1e-10);
+    for (pull, expected) in [(5.0, 1.0), (-5.0, -1.0), (1.0, 0.5)] {
+        let data = (&[pull, 0.0][..], &[][..]);
+        let solved = from_zero(
+            &a,
+            &mut no_equality(2),
+            &mut set,
+            data,
+            &settings,
+            (true, &[]),
+            &mut hook,
+        );
+        let solved = solved.expect("no breakdown");
+        assert_eq!(solved.report.status, Status::Converged);
+        assert!((solved.x[0] - expected).abs() < 1e-10, "{pull}: {:?}", solved.x);
+        if let Ok((lower, upper)) = set.bounds_mut(0) {
+            (lower[0], upper[0]) = (0.0, 0.0);
+        }
+    }
+}
+
 #[test]
 fn the_hook_follows_a_coupled_radius() {
     // one bound, one disc whose radius is half the bounded component: a scalar Coulomb law

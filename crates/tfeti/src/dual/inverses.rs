@@ -23,11 +23,12 @@ impl ClassInverse {
     }
 }
 
-/// Chooses and computes the inverses of all classes.
+/// Chooses and computes the inverses of all classes; their patterns may be `known`.
 pub(crate) fn invert(
     subdomains: &Subdomains,
     map: &BoundaryMap,
     settings: &InverseSettings,
+    known: Option<&[Symbolic]>,
 ) -> Result<Vec<ClassInverse>, TfetiError> {
     let (bases, classes) = (&subdomains.bases, subdomains.classes.classes());
     let first = |k: usize| classes[k].members[0] as usize;
@@ -36,7 +37,10 @@ pub(crate) fn invert(
             .map_err(|e| TfetiError::pattern(e, first(k)))
     };
     let each = || (0..bases.len()).into_par_iter();
-    let patterns: Vec<Symbolic> = each().map(symbolic).collect::<Result<_, _>>()?;
+    let patterns: Vec<Symbolic> = match known {
+        Some(known) => known.to_vec(),
+        None => each().map(symbolic).collect::<Result<_, _>>()?,
+    };
     let size = |k: usize| Size {
         dim: bases[k].stiffness.dim,
         boundary: 3 * map.classes[k].nodes.len(),

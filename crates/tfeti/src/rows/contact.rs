@@ -138,12 +138,13 @@ impl Space {
         }
     }
 
-    /// The row of a direction that does not leave out what supports fix.
-    fn full_row(&self, direction: Vector3<f64>) -> ContactRow {
+    /// The row of a direction times a factor that does not leave out what supports fix.
+    fn full_row(&self, direction: Vector3<f64>, factor: f64) -> ContactRow {
+        let part = |(c, _): &(f64, Matrix3<f64>)| (direction * (c * factor)).into();
         ContactRow {
-            parts: self.nodes.iter().map(|(c, _)| (direction * *c).into()).collect(),
+            parts: self.nodes.iter().map(part).collect(),
             direction: direction.into(),
-            scale: self.scale,
+            scale: self.scale * factor,
         }
     }
 
@@ -213,6 +214,8 @@ impl AllRows {
         }
         let normal = Vector3::from(point.frame.normal);
         let tangents = point.frame.tangents.map(Vector3::from);
+        let factors = [1.0, point.stretch];
+        let along_surface = || tangents.into_iter().zip(factors);
         let fixed = space.fixed();
         let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
         if fixed.len() == 3 || (normal - along).norm() <= FIXED {
@@ -238,12 +241,12 @@ impl AllRows {
         // friction and support act along the same directions, all rows are as without support.
         let normal = match fixed.len() {
             _ if dragged => {
-                tangential.extend(tangents.map(|t| space.full_row(t)));
-                space.full_row(normal)
+                tangential.extend(along_surface().map(|(t, factor)| space.full_row(t, factor)));
+                space.full_row(normal, 1.0)
             }
             0 => {
                 if point.friction {
-                    tangential.extend(tangents.map(|t| space.row(t, 1.0)));
+                    tangential.extend(along_surface().map(|(t, factor)| space.row(t, factor)));
                 }
                 space.row(normal, 1.0)
             }

@@ -80,6 +80,9 @@ pub struct ContactConstraint {
     pub moving: bool,
     /// Whether both sides move alike: equalities in place of contact and friction.
     pub tied: bool,
+    /// Factor of the second tangential row beside the first, 1 for isotropic friction. An ellipse with this ratio of its
+    /// axes, along the tangents, is a disc in the rows.
+    pub stretch: f64,
 }
 
 impl ContactConstraint {
@@ -94,6 +97,7 @@ impl ContactConstraint {
             friction: false,
             moving: false,
             tied: false,
+            stretch: 1.0,
         }
     }
 
@@ -115,6 +119,13 @@ impl ContactConstraint {
     #[must_use]
     pub fn with_moving_obstacle(mut self, moving: bool) -> Self {
         self.moving = moving;
+        self
+    }
+
+    /// Friction along the second tangent over that along the first: finite and positive.
+    #[must_use]
+    pub fn with_stretch(mut self, stretch: f64) -> Self {
+        self.stretch = stretch;
         self
     }
 
@@ -156,6 +167,10 @@ impl ContactConstraint {
     fn check(&self, point: usize, nodes: usize) -> Result<(), TfetiError> {
         for side in std::iter::once(&self.side).chain(&self.partner) {
             side.check(point, nodes)?;
+        }
+        if !(self.stretch.is_finite() && self.stretch > 0.0) {
+            let (node, stretch) = (self.side.first(), self.stretch);
+            return Err(TfetiError::BadStretch { point, node, stretch });
         }
         let [t1, t2] = self.frame.tangents;
         let axes = [self.frame.normal, t1, t2];

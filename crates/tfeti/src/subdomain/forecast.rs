@@ -12,9 +12,12 @@ use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::time::Instant;
 
 /// Forecast of memory and work of a T-FETI system: what [`SetupReport`](crate::SetupReport) will say.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// It keeps what it found, and the set-up takes it from there
+/// ([`TfetiBuilder::of_forecast`](crate::TfetiBuilder::of_forecast)).
+#[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Forecast {
+pub struct Forecast<'a> {
     /// The classes.
     pub classes: Vec<ClassReport>,
     /// Bytes of all inverses.
@@ -25,9 +28,17 @@ pub struct Forecast {
     pub coarse_flops: f64,
     /// Bytes of the gather tables, if there are three rows at each node that is touched.
     pub table_bytes: u64,
+    pub(crate) mesh: &'a TetMesh,
+    pub(crate) decomposition: &'a Decomposition,
+    pub(crate) materials: &'a Materials,
+    pub(crate) share_translates: bool,
+    pub(crate) settings: InverseSettings,
+    pub(crate) found: Classes,
+    /// Of each class that of its stiffness.
+    pub(crate) symbolic: Vec<Symbolic>,
 }
 
-impl Forecast {
+impl<'a> Forecast<'a> {
     /// Counts. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from
     /// the decomposition.
     ///
@@ -35,16 +46,16 @@ impl Forecast {
     /// [`TfetiError::Material`] for elements without material, and those of patterns too large to be analysed. A memory
     /// limit that is too low is left to the set-up.
     pub fn new(
-        mesh: &TetMesh,
-        decomposition: &Decomposition,
-        materials: &Materials,
+        mesh: &'a TetMesh,
+        decomposition: &'a Decomposition,
+        materials: &'a Materials,
         share_translates: bool,
         settings: &InverseSettings,
         touched: impl Fn(u32) -> bool,
     ) -> Result<Self, TfetiError> {
-        let classes = Classes::find(mesh, decomposition, materials, share_translates)?;
+        let found = Classes::find(mesh, decomposition, materials, share_translates)?;
         let subdomains = decomposition.subdomains();
-        let list = classes.classes();
+        let list = found.classes();
         let analysed = list.par_iter().map(|class| {
             let s = class.members[0] as usize;
             let subdomain = &subdomains[s];
@@ -103,6 +114,13 @@ impl Forecast {
             coarse_flops,
             table_bytes: (4 * words + 16 * entries + 56 * 3 * others) as u64,
             classes,
+            mesh,
+            decomposition,
+            materials,
+            share_translates,
+            settings: *settings,
+            symbolic: analysed.into_iter().map(|(_, symbolic)| symbolic).collect(),
+            found,
         })
     }
 
@@ -144,14 +162,14 @@ fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorEr
     let mut lower: Vec<Vec<u32>> = (0..count).map(|s| vec![s]).collect();
     let mut before: Vec<u32> = Vec::new();
     for node in 0..decomposition.nodes() {
-        let copies = decomposition.copies(node).iter();
-        let own: Vec<u32> = copies.map(|copy| copy.subdomain).collect();
+        let copies = decomposition.copies(node);
         // nodes of a facet follow one another
-        if own.len() > 1 && own != before {
-            for &a in &own {
-                lower[a as usize].extend(own.iter().filter(|b| **b > a));
+        let own = || copies.iter().map(|copy| copy.subdomain);
+        if copies.len() > 1 && !before.iter().copied().eq(own()) {
+            before = own().collect();
+            for &a in &before {
+                lower[a as usize].extend(before.iter().filter(|b| **b > a));
             }
-            before = own;
         }
     }
     let pattern = Columns::of_blocks(&mut lower, 6);

@@ -11,6 +11,7 @@ use crate::rows::supports::NodeSupport;
 use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::cost::InverseSettings;
+use crate::subdomain::forecast::Forecast;
 use crate::subdomain::kernel::mean;
 use crate::subdomain::matrices::Subdomains;
 use crate::system::report::{SetupReport, class_reports, count};
@@ -29,6 +30,7 @@ pub struct TfetiBuilder<'a> {
     contact: &'a [ContactConstraint],
     share_translates: bool,
     inverse: InverseSettings,
+    forecast: Option<&'a Forecast<'a>>,
 }
 
 impl<'a> TfetiBuilder<'a> {
@@ -43,6 +45,20 @@ impl<'a> TfetiBuilder<'a> {
             contact: &[],
             share_translates: true,
             inverse: InverseSettings::default(),
+            forecast: None,
+        }
+    }
+
+    /// The body of a forecast, without supports and contact. What the forecast found of mesh, decomposition and
+    /// materials is not looked for again; sharing and inverses are as it was told.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn of_forecast(forecast: &'a Forecast<'a>) -> Self {
+        Self {
+            share_translates: forecast.share_translates,
+            inverse: forecast.settings,
+            forecast: Some(forecast),
+            ..Self::new(forecast.mesh, forecast.decomposition, forecast.materials)
         }
     }
 
@@ -63,6 +79,8 @@ impl<'a> TfetiBuilder<'a> {
     /// Sets whether subdomains that are translations of one another share their matrices. Default: they do.
     #[must_use]
     pub fn with_share_translates(mut self, share: bool) -> Self {
+        // classes are others then
+        self.forecast = self.forecast.filter(|f| f.share_translates == share);
         self.share_translates = share;
         self
     }
@@ -88,7 +106,10 @@ impl<'a> TfetiBuilder<'a> {
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;
         let mut clock = Clock(Instant::now());
-        let classes = Classes::find(mesh, decomposition, self.materials, self.share_translates)?;
+        let classes = match self.forecast {
+            Some(forecast) => forecast.found.clone(),
+            None => Classes::find(mesh, decomposition, self.materials, self.share_translates)?,
+        };
         let classes_seconds = clock.lap();
         let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes)?;
         let subdomains = Arc::new(subdomains);
@@ -105,10 +126,11 @@ impl<'a> TfetiBuilder<'a> {
         let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
         let all = decomposition.subdomains().iter();
         let centres = all.map(|s| centre(&s.nodes)).collect();
+        let known = self.forecast.map(|f| f.symbolic.as_slice());
         let ((inverses, inverse_seconds), coarse) = rayon::join(
             || {
                 let started = Instant::now();
-                let inverses = invert(&subdomains, &map, &self.inverse);
+                let inverses = invert(&subdomains, &map, &self.inverse, known);
                 (inverses, started.elapsed().as_secs_f64())
             },
             || {
@@ -133,6 +155,7 @@ impl<'a> TfetiBuilder<'a> {
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
             factorisations: 1 + subdomains.bases.len(),
+            analysed: known.map_or(subdomains.bases.len(), |_| 0),
             free_motions: motions.map(ToString::to_string).collect(),
             classes_seconds,
             gluing_seconds,

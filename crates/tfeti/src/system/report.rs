@@ -31,6 +31,8 @@ pub struct SetupReport {
     pub table_bytes: u64,
     /// Numeric factorisations, the coarse one included.
     pub factorisations: usize,
+    /// Patterns of subdomains that were analysed: one a class, none where a forecast had done it.
+    pub analysed: usize,
     /// Rigid motions that no row stops, in words.
     pub free_motions: Vec<String>,
     /// Seconds to find the classes.

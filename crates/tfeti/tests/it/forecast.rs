@@ -2,17 +2,34 @@
 
 use crate::common::steel;
 use signorini_fem_mesh::{Decomposition, TetMesh, brick};
+use signorini_qp::SymmetricOperator;
 use signorini_tfeti::internal::{Forecast, Rate};
 use signorini_tfeti::{InverseSettings, NodeSupport, Tfeti, TfetiBuilder};
 
-fn both(mesh: &TetMesh, decomposition: &Decomposition, share: bool) -> (Forecast, Tfeti) {
+/// A forecast is compared with a system that was built without it, and with one that took over what it found.
+fn both(mesh: &TetMesh, decomposition: &Decomposition, share: bool, mut check: impl FnMut(&Forecast<'_>, &Tfeti)) {
     let held = mesh.nodes_on(brick::X_MIN);
     let supports = [NodeSupport::fixed(held.clone())];
     let (materials, settings) = (steel(), InverseSettings::default());
     let touched = |node| held.contains(&node);
-    let found = Forecast::new(mesh, decomposition, &materials, share, &settings, touched);
-    let builder = TfetiBuilder::new(mesh, decomposition, &materials).with_supports(&supports);
-    (found.unwrap(), builder.with_share_translates(share).build().unwrap())
+    let found = Forecast::new(mesh, decomposition, &materials, share, &settings, touched).unwrap();
+    let build = |b: TfetiBuilder<'_>| b.with_supports(&supports).build().unwrap();
+    let alone = build(TfetiBuilder::new(mesh, decomposition, &materials).with_share_translates(share));
+    let system = build(TfetiBuilder::of_forecast(&found));
+    check(&found, &alone);
+    assert_eq!(alone.report().analysed, found.classes.len());
+    assert_eq!(system.report().analysed, 0, "patterns are not analysed twice");
+    let other = build(TfetiBuilder::of_forecast(&found).with_share_translates(!share));
+    assert!(other.report().analysed > 0, "classes of another kind");
+    // the same bits
+    let rows = alone.dual_dim();
+    let x: Vec<f64> = (0..rows).map(|i| (i as f64).sin()).collect();
+    let [a, b] = [&alone, &system].map(|t| {
+        let mut y = vec![0.0; rows];
+        t.dual().apply(&x, &mut y, &mut t.dual().scratch());
+        y
+    });
+    assert!(a == b && alone.report().classes == system.report().classes);
 }
 
 #[test]
@@ -24,13 +41,14 @@ fn a_forecast_is_what_the_set_up_finds() {
     ] {
         let mesh = brick::Brick::new([3.0, 1.0, 1.0], cells).build().unwrap();
         let decomposition = Decomposition::boxes(&mesh, boxes).unwrap();
-        let (found, system) = both(&mesh, &decomposition, share);
-        let truth = system.report();
-        assert_eq!(found.classes, truth.classes);
-        assert_eq!(found.inverse_bytes, truth.inverse_bytes);
-        assert_eq!(found.coarse_bytes, truth.coarse_bytes);
-        assert_eq!(found.table_bytes, truth.table_bytes);
-        assert_eq!(found.product_flops() as u64, system.dual().flops());
+        both(&mesh, &decomposition, share, |found, system| {
+            let truth = system.report();
+            assert_eq!(found.classes, truth.classes);
+            assert_eq!(found.inverse_bytes, truth.inverse_bytes);
+            assert_eq!(found.coarse_bytes, truth.coarse_bytes);
+            assert_eq!(found.table_bytes, truth.table_bytes);
+            assert_eq!(found.product_flops() as u64, system.dual().flops());
+        });
     }
 }
 
@@ -42,10 +60,13 @@ fn the_coarse_factor_of_very_small_subdomains_is_counted() {
         let mesh = brick::Brick::new([3.0, 1.0, 1.0], [3 * n, n, n]).build().unwrap();
         let parts: Vec<u32> = (0..mesh.tets().len() as u32).collect();
         let decomposition = Decomposition::from_parts(&mesh, &parts).unwrap();
-        let (found, system) = both(&mesh, &decomposition, true);
-        assert_eq!(found.coarse_bytes, system.report().coarse_bytes);
+        let mut flops = 0.0;
+        both(&mesh, &decomposition, true, |found, system| {
+            assert_eq!(found.coarse_bytes, system.report().coarse_bytes);
+            flops = found.coarse_flops;
+        });
         // a dense matrix would be an upper bound
-        let (dim, flops) = (6.0 * parts.len() as f64, found.coarse_flops);
+        let dim = 6.0 * parts.len() as f64;
         assert!(flops < dim.powi(3) / 3.0 && flops > 10.0 * last, "{flops}");
         last = flops;
     }

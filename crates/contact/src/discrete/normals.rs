@@ -1,0 +1,101 @@
+//! Directions of contact that the scene gives: one for all nodes, or those of an obstacle.
+
+use crate::error::ContactError;
+use crate::scene::{Contact, ContactNormal};
+use crate::tolerances::{ALONG, AXIS, GRADIENT};
+use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub};
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+
+/// The one frame of all nodes of a contact with a fixed direction.
+pub(super) fn fixed_frame(
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+) -> Result<Option<SurfaceFrame>, ContactError> {
+    let ContactNormal::Fixed(normal) = contact.normal else {
+        return Ok(None);
+    };
+    let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
+    check_side(index, surface, normal, |_| frame)?;
+    Ok(Some(frame))
+}
+
+/// The frame with its first tangent along the axis of friction, if the contact has one.
+pub(super) fn along_axis(
+    index: usize,
+    contact: &Contact,
+    node: u32,
+    frame: SurfaceFrame,
+) -> Result<SurfaceFrame, ContactError> {
+    let Some((axis, _)) = contact.friction_axis else {
+        return Ok(frame);
+    };
+    let normal = frame.normal;
+    let first = sub(axis, scale(dot(axis, normal), normal));
+    let length = norm(first);
+    if length.is_nan() || length <= AXIS * norm(axis) {
+        let contact = index;
+        return Err(ContactError::FrictionAxis { contact, node, axis });
+    }
+    // twice, against rounding where the axis is nearly normal
+    let first = scale(1.0 / length, first);
+    let first = sub(first, scale(dot(first, normal), normal));
+    let first = scale(1.0 / norm(first), first);
+    let tangents = [first, cross(first, normal)];
+    Ok(SurfaceFrame { normal, tangents })
+}
+
+/// Refuses directions that point out of the body nowhere; `normal` is told.
+fn check_side(
+    index: usize,
+    surface: &Surface,
+    normal: [f64; 3],
+    frame: impl Fn(usize) -> SurfaceFrame,
+) -> Result<(), ContactError> {
+    let mut own = surface.frames().iter().enumerate();
+    if own.any(|(local, own)| frame(local).normal_part(own.normal) > ALONG) {
+        return Ok(());
+    }
+    Err(ContactError::ObstacleSide {
+        contact: index,
+        direction: normal,
+        nodes: surface.nodes().len(),
+    })
+}
+
+/// The frame at each node of a contact with the normals of its obstacle; empty for all others.
+pub(super) fn shape_frames(
+    mesh: &TetMesh,
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+) -> Result<Vec<SurfaceFrame>, ContactError> {
+    let (Some(shape), ContactNormal::Obstacle) = (contact.shape(), contact.normal) else {
+        return Ok(Vec::new());
+    };
+    let frame = |&node: &u32| {
+        let position = mesh.points()[node as usize];
+        let (distance, gradient) = shape.distance(position);
+        if !distance.is_finite() {
+            let (contact, value) = (index, distance);
+            return Err(ContactError::Gap {
+                contact,
+                node,
+                position,
+                value,
+            });
+        }
+        let is_unit = (norm(gradient) - 1.0).abs() <= GRADIENT;
+        let frame = SurfaceFrame::from_normal(gradient.map(|c| -c)).filter(|_| is_unit);
+        frame.ok_or(ContactError::ObstacleGradient {
+            contact: index,
+            node,
+            position,
+            gradient,
+        })
+    };
+    let frames: Vec<SurfaceFrame> = surface.nodes().iter().map(frame).collect::<Result<_, _>>()?;
+    let first = frames.first().map_or([0.0; 3], |f| f.normal);
+    check_side(index, surface, first, |local| frames[local])?;
+    Ok(frames)
+}

@@ -1,0 +1,155 @@
+//! Rigid obstacles of any shape, as signed distances.
+
+use super::facets::Facets;
+use crate::error::ContactError;
+use crate::tolerances::{NEWTON, RAY, STEEP};
+use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
+use std::fmt;
+use std::sync::Arc;
+
+type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
+
+/// A rigid obstacle of any shape: the signed distance to it, m, positive outside, and the gradient of the distance, a
+/// unit vector out of the obstacle.
+///
+/// ```
+/// use signorini_contact::Obstacle;
+///
+/// let ball = Obstacle::sphere([0.0, 0.0, -2.0], 1.5);
+/// assert_eq!(ball.distance([0.0, 0.0, 0.0]), (0.5, [0.0, 0.0, 1.0]));
+/// // the same by functions
+/// let length = |x: [f64; 3]| (x[0] * x[0] + x[1] * x[1] + (x[2] + 2.0).powi(2)).sqrt();
+/// let own = Obstacle::from_distance(
+///     move |x| length(x) - 1.5,
+///     move |x| [x[0], x[1], x[2] + 2.0].map(|c| c / length(x)),
+/// );
+/// assert_eq!(own.distance([3.0, 0.0, -2.0]), ball.distance([3.0, 0.0, -2.0]));
+/// // a socket: the body is inside
+/// assert_eq!(ball.hollow().distance([0.0, 0.0, -1.0]), (0.5, [-0.0, -0.0, -1.0]));
+/// ```
+#[derive(Clone)]
+pub struct Obstacle {
+    field: Arc<Field>,
+    /// What has to be finite and positive, with its name.
+    sizes: Vec<(&'static str, f64)>,
+}
+
+impl fmt::Debug for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Obstacle")
+            .field("sizes", &self.sizes)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Obstacle {
+    /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are asked at nodes of the
+    /// body, where the gradient must have length 1 to within a thousandth.
+    #[must_use]
+    pub fn from_distance(
+        distance: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static,
+        gradient: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static,
+    ) -> Self {
+        Self::new(Vec::new(), move |x| (distance(x), gradient(x)))
+    }
+
+    /// The half-space below a plane: `point` lies on the plane, `outward` points out of the obstacle.
+    #[must_use]
+    pub fn half_space(point: [f64; 3], outward: [f64; 3]) -> Self {
+        let length = norm(outward);
+        let unit = outward.map(|c| c / length);
+        Self::new(
+            vec![("length of the outward normal of an obstacle", length)],
+            move |x| (dot(sub(x, point), unit), unit),
+        )
+    }
+
+    /// A ball; its radius in m.
+    #[must_use]
+    pub fn sphere(centre: [f64; 3], radius: f64) -> Self {
+        Self::new(vec![("radius of an obstacle", radius)], move |x| {
+            from_core(sub(x, centre), radius)
+        })
+    }
+
+    /// An endless cylinder about an axis through `point`; its radius in m.
+    #[must_use]
+    pub fn cylinder(point: [f64; 3], axis: [f64; 3], radius: f64) -> Self {
+        let length = norm(axis);
+        let unit = axis.map(|c| c / length);
+        let sizes = vec![
+            ("radius of an obstacle", radius),
+            ("length of the axis of an obstacle", length),
+        ];
+        Self::new(sizes, move |x| {
+            let arm = sub(x, point);
+            from_core(sub(arm, scale(dot(arm, unit), unit)), radius)
+        })
+    }
+
+    /// A triangulated surface, closed or open: places of its nodes, m, and triangles whose nodes turn counter-clockwise
+    /// seen from outside. The nearest place is looked for in a tree.
+    ///
+    /// # Errors
+    /// [`ContactError::ObstacleFacet`] for triangles without area or with unknown nodes, or if there is none.
+    pub fn surface(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, ContactError> {
+        let facets = Facets::new(points, triangles)?;
+        Ok(Self::new(Vec::new(), move |x| facets.distance(x)))
+    }
+
+    /// What this obstacle leaves free is the obstacle: of a ball a socket, of a cylinder a bore.
+    #[must_use]
+    pub fn hollow(self) -> Self {
+        let field = self.field;
+        Self::new(self.sizes, move |x| {
+            let (distance, gradient) = field(x);
+            (-distance, gradient.map(|c| -c))
+        })
+    }
+
+    fn new(
+        sizes: Vec<(&'static str, f64)>,
+        field: impl Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync + 'static,
+    ) -> Self {
+        let field = Arc::new(field);
+        Self { field, sizes }
+    }
+
+    /// The signed distance of a place, m, and its gradient.
+    #[must_use]
+    pub fn distance(&self, place: [f64; 3]) -> (f64, [f64; 3]) {
+        (self.field)(place)
+    }
+
+    /// The way along a direction from a place to the obstacle, m, negative inside; the shortest distance where that
+    /// direction does not lead there.
+    pub(super) fn along(&self, place: [f64; 3], direction: [f64; 3]) -> f64 {
+        let (start, _) = self.distance(place);
+        let mut way = 0.0;
+        for _ in 0..NEWTON {
+            let (distance, gradient) = self.distance(add(place, scale(way, direction)));
+            let slope = -dot(gradient, direction);
+            if slope.is_nan() || slope < STEEP {
+                return start;
+            }
+            way += distance / slope;
+            if distance.abs() <= RAY * (start.abs() + way.abs()) {
+                return way;
+            }
+        }
+        start
+    }
+
+    /// A size that is not finite and positive.
+    pub(super) fn flaw(&self) -> Option<(&'static str, f64)> {
+        let flaw = |(_, value): &&(&str, f64)| !(value.is_finite() && *value > 0.0);
+        self.sizes.iter().find(flaw).copied()
+    }
+}
+
+/// Distance and gradient at the end of an arm from a point or an axis with so much around it. In the middle there is
+/// no gradient: it is not a number there.
+fn from_core(arm: [f64; 3], radius: f64) -> (f64, [f64; 3]) {
+    let length = norm(arm);
+    (length - radius, arm.map(|c| c / length))
+}
