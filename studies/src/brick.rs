@@ -4,6 +4,7 @@
 //! the tractions, the histories, the coefficient of friction and its decay.
 
 use signorini::contact::Plan;
+use signorini::fem_mesh::Surface;
 use signorini::prelude::*;
 
 use crate::Failure;
@@ -86,6 +87,8 @@ pub struct Block {
     pub boxes: [usize; 3],
     /// Cells of a subdomain along each edge.
     pub cells: [usize; 3],
+    /// Order of the elements, 1 or 2.
+    pub order: usize,
     /// Displacement of inner nodes relative to a cell; above 0 no two subdomains are alike.
     pub perturbation: f64,
     /// Young's modulus, Pa.
@@ -124,6 +127,7 @@ impl Default for Block {
             lengths: LENGTHS,
             boxes: [3, 1, 1],
             cells: [4; 3],
+            order: 1,
             perturbation: 0.0,
             young: YOUNG,
             poisson: POISSON,
@@ -160,7 +164,8 @@ impl Block {
     pub fn mesh(&self) -> Result<TetMesh, Failure> {
         let cells = std::array::from_fn(|d| self.boxes[d].saturating_mul(self.cells[d]));
         let brick = Brick::new(self.lengths.map(|l| l * self.metre), cells);
-        Ok(brick.perturbed(self.perturbation, 1).build()?)
+        let mesh = brick.perturbed(self.perturbation, 1).build()?;
+        Ok(if self.order == 2 { mesh.raise_order()? } else { mesh })
     }
 
     /// The material, in the unit of stress.
@@ -247,7 +252,8 @@ pub fn sizes(scene: &Scene, settings: &Settings) -> Result<Sizes, Failure> {
     let plan = Plan::new(scene, settings)?;
     let friction = scene.contacts().iter().any(|c| c.friction().is_some());
     let rows = if friction { 3 } else { 1 };
-    let nodes = scene.mesh().nodes_on(brick::Z_MIN).len();
+    let floor = Surface::new(scene.mesh(), &[brick::Z_MIN])?;
+    let nodes = floor.nodes().len();
     Ok(Sizes {
         n_s: plan.subdomains,
         n_p: plan.primal,

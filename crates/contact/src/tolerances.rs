@@ -242,3 +242,11 @@ pub(crate) const MOST_HALVINGS: u32 = 20;
 
 /// Stiffness of a spring at a node, over the largest of all, below which there is none: what projections leave.
 pub(crate) const NO_SPRING: f64 = 1e-12;
+
+// Estimates where contact points share nodes
+
+/// Most rounds of conjugate gradients, and iterations of each, by which points are moved together.
+pub(crate) const SHARED_ROUNDS: usize = 3;
+pub(crate) const SHARED_MOVES: usize = 300;
+/// Distance from its place, over the displacement, from which on a point is there.
+pub(crate) const SHARED_STOP: f64 = 1e-14;

@@ -60,7 +60,7 @@ pub enum DeckError {
         source: MeshError,
     },
     /// A deck with no elements.
-    #[error("{} has no elements; it needs *ELEMENT, TYPE=C3D4", path.display())]
+    #[error("{} has no elements; it needs *ELEMENT, TYPE=C3D4 or C3D10", path.display())]
     NoElements {
         /// The deck.
         path: PathBuf,

@@ -48,9 +48,9 @@
 //!     println!("t = {}", simulation.step()?.time());
 //! }
 //!
-//! let error = std::fs::write(&path, text.replace("C3D4", "C3D10")).map(|()| Deck::read(&path));
+//! let error = std::fs::write(&path, text.replace("C3D4", "C3D8")).map(|()| Deck::read(&path));
 //! let error = error?.unwrap_err();
-//! assert_eq!(error.word(), Some("TYPE=C3D10"));
+//! assert_eq!(error.word(), Some("TYPE=C3D8"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -60,7 +60,7 @@
 //! |---|---|---|
 //! | `*HEADING` | | a comment |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element uses are dropped |
-//! | `*ELEMENT` | `TYPE=C3D4`, `ELSET` | linear tetrahedra; `R3D3` and `R3D4` for rigid planes; other types are refused |
+//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra; `R3D3` and `R3D4` for rigid planes; other types are refused |
 //! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary; `SPOS`, `SNEG` of rigid facets |
 //! | `*MATERIAL` | `NAME` | |

@@ -4,7 +4,7 @@
 //! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
 //! no sum depends on their number, so the result is the same bit for bit for any thread count.
 
-use crate::element::{Element, nodal_stress, stiffness_block};
+use crate::element::{Block, Columns};
 use crate::material::Hooke;
 use crate::tables::{buckets, range};
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ errors! {
     }
 }
 
-/// Assembles the stiffness of linear tetrahedra.
+/// Assembles the stiffness of linear tetrahedra, given by four nodes, or of quadratic ones, given by ten.
 ///
 /// `points` and `tets` are those of a mesh or of a subdomain (local numbers), `hooke(tet)` is the
 /// law of a tetrahedron. Row and column 3 n + i belong to component i at node n. Returns the full
@@ -29,11 +29,14 @@ errors! {
 ///
 /// # Errors
 /// [`AssemblyError::NodeOutOfRange`] if a tetrahedron names a node that does not exist.
-pub fn assemble_stiffness<'h>(
+pub fn assemble_stiffness<'h, const N: usize>(
     points: &[[f64; 3]],
-    tets: &[[u32; 4]],
+    tets: &[[u32; N]],
     hooke: impl Fn(usize) -> &'h Hooke + Sync,
-) -> Result<CsMat<f64>, AssemblyError> {
+) -> Result<CsMat<f64>, AssemblyError>
+where
+    [u32; N]: TetNodes,
+{
     let nodes = points.len();
     for (tet, t) in tets.iter().enumerate() {
         if let Some(&node) = t.iter().find(|&&n| n as usize >= nodes) {
@@ -78,7 +81,11 @@ pub fn assemble_stiffness<'h>(
     Ok(CsMat::new_csc((3 * nodes, 3 * nodes), indptr, indices, data))
 }
 
-type Block = [[f64; 3]; 3];
+/// Node numbers of a tetrahedron: four of a linear one, ten of a quadratic one.
+pub trait TetNodes: Copy + Sync + Columns {}
+
+impl TetNodes for [u32; 4] {}
+impl TetNodes for [u32; 10] {}
 
 /// Which nodes share a tetrahedron, and which tetrahedra surround each node.
 struct Pattern {
@@ -91,9 +98,9 @@ struct Pattern {
 }
 
 impl Pattern {
-    fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
+    fn new<const N: usize>(nodes: usize, tets: &[[u32; N]]) -> Self {
         let (tet_start, mut around) = buckets(nodes, tets.as_flattened());
-        around.iter_mut().for_each(|corner| *corner /= 4);
+        around.iter_mut().for_each(|place| *place /= N as u32);
         let columns: Vec<Vec<u32>> = (0..nodes)
             .into_par_iter()
             .map(|node| {
@@ -127,31 +134,25 @@ impl Pattern {
         before(row) - before(node)
     }
 
-    fn lower_blocks<'h>(
+    fn lower_blocks<'h, T: TetNodes>(
         &self,
         node: usize,
         points: &[[f64; 3]],
-        tets: &[[u32; 4]],
+        tets: &[T],
         hooke: &impl Fn(usize) -> &'h Hooke,
     ) -> Vec<Block> {
         let height = self.column(node).iter().filter(|&&n| n as usize >= node).count();
         let mut blocks = vec![[[0.0; 3]; 3]; height];
         for &t in &self.tets[range(&self.tet_start, node)] {
-            let tet = tets[t as usize].map(|n| n as usize);
-            let element = Element::new(&tet.map(|n| points[n]));
-            for b in (0..4).filter(|&b| tet[b] == node) {
-                let law = hooke(t as usize).voigt();
-                let stress = nodal_stress(law, element.gradients[b], element.volume);
-                for a in (0..4).filter(|&a| tet[a] >= node) {
-                    let block = stiffness_block(element.gradients[a], &stress);
-                    let sum = &mut blocks[self.place(node, tet[a])];
-                    for i in 0..3 {
-                        for k in 0..3 {
-                            sum[i][k] += block[i][k];
-                        }
+            let law = hooke(t as usize);
+            tets[t as usize].lower_column(points, law, node, |row, block| {
+                let sum = &mut blocks[self.place(node, row)];
+                for i in 0..3 {
+                    for k in 0..3 {
+                        sum[i][k] += block[i][k];
                     }
                 }
-            }
+            });
         }
         // The diagonal block comes first.
         for i in 0..3 {

@@ -1,6 +1,6 @@
 //! Tetrahedral meshes and linear elasticity for domain decomposition with contact.
 //!
-//! This crate turns a body into numbers: a mesh of linear tetrahedra with tagged boundary facets,
+//! This crate turns a body into numbers: a mesh of linear or quadratic tetrahedra with tagged boundary facets,
 //! stiffness matrices, consistent loads, subdomains, and the normals, tangents and areas that a
 //! contact surface needs. It knows no solver. It is the ground floor of
 //! [`signorini`](https://github.com/signorini-rs/signorini), and usable alone.
@@ -8,7 +8,7 @@
 //! | you want | you use |
 //! |---|---|
 //! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`) |
-//! | another mesh of it | [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
+//! | another mesh of it | [`TetMesh::raise_order`], [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`Element`] |
 //! | a load | [`LoadDensity`] and [`assemble_load`]; [`History`] for its factor in time |
@@ -89,13 +89,14 @@ mod files;
 pub mod loads;
 mod material;
 pub mod mesh;
+mod quadrature;
 pub mod recovery;
 mod tables;
 mod tolerances;
 #[doc(hidden)]
 pub mod vec3;
 
-pub use assembly::{AssemblyError, assemble_stiffness};
+pub use assembly::{AssemblyError, TetNodes, assemble_stiffness};
 pub use decomposition::{Decomposition, DecompositionError};
 pub use element::Element;
 pub use fields::FieldError;

@@ -11,6 +11,12 @@ pub(crate) const COINCIDENT: f64 = 1e-12;
 pub(crate) const NEARLY_PARALLEL: f64 = 0.01;
 /// Length of the mean normal of the triangles around a node, over one for a plane, below which it has no normal.
 pub(crate) const NO_NORMAL: f64 = 1e-6;
+/// Distance of a mid-node from the middle of its edge, over the edge's length, above which it is off: at a quarter along
+/// the edge the map of the tetrahedron is singular at a corner.
+pub(crate) const MID_OFF: f64 = 0.25;
+/// Least volume of a curved tetrahedron per volume of the straight one of its corners, where it is looked at: less is
+/// inside out, or nearly so.
+pub(crate) const CURVED: f64 = 1e-3;
 /// How far outside of a tetrahedron a point may be, in barycentric coordinates, and still count.
 pub(crate) const OUTSIDE: f64 = 1e-9;
 
@@ -20,6 +26,10 @@ pub(crate) const OUTSIDE: f64 = 1e-9;
 pub(crate) const ASYMMETRY: f64 = 1e-9;
 /// Smallest over largest eigenvalue below which a tensor is not elliptic.
 pub(crate) const ELLIPTICITY: f64 = 1e-12;
+
+/// Poisson's ratio above which quadratic elements take the mean of the volume strain: at 0.45 plain ones begin to lock
+/// and need more products.
+pub(crate) const INCOMPRESSIBLE: f64 = 0.4;
 
 // Parts made compact
 

@@ -64,7 +64,7 @@ const CRATES: [(&str, &[&str]); 6] = [
             "decomposition",
             "element",
             "material mesh",
-            "tables tolerances vec3",
+            "tables tolerances vec3 quadrature",
         ],
     ),
 ];

@@ -45,6 +45,29 @@ fn table_6_1_has_exactly_the_papers_sizes() {
     }
 }
 
+/// Quadratic elements with about as many unknowns take a third more products, at any size; most of it is friction.
+#[test]
+fn elements_of_order_two_need_little_more_products() {
+    let products = |line: &str| {
+        let (outcomes, text) = run(line);
+        assert!(text.contains("not the benchmark as it stands"), "{text}");
+        let record = &outcomes[0].record;
+        assert!(
+            record.unconverged.is_empty() && record.largest_certificate < 1e-6,
+            "{record:?}"
+        );
+        (record.n_p as f64, record.n_m as f64)
+    };
+    for n in [1, 2] {
+        let (linear, one) = products(&format!("brick --n {n} --loading b --cells 4 --quiet"));
+        let (quadratic, two) = products(&format!("brick --n {n} --loading b --cells 2 --order 2 --quiet"));
+        assert!((quadratic / linear - 1.0).abs() < 0.1, "{linear} {quadratic}");
+        assert!(two <= 1.4 * one, "n = {n}: {two} products, {one} with order 1");
+    }
+    let bad = BrickOptions::try_parse_from(["brick", "--order", "3"]).expect_err("order");
+    assert!(bad.to_string().contains("order 1 or 2"));
+}
+
 #[test]
 fn five_steps_of_both_loadings_by_all_methods_agree() {
     let (face, text) = run("brick --n 1 --steps 5 --quiet --threads 1 --tolerance 1e-8");

@@ -13,6 +13,8 @@ mod cases;
 mod effects;
 #[path = "../../examples/frictionless.rs"]
 mod frictionless;
+#[path = "../../examples/order.rs"]
+mod order;
 #[path = "../../examples/parts.rs"]
 mod parts;
 #[path = "../../examples/performance/main.rs"]

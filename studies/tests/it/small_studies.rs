@@ -5,6 +5,7 @@ use signorini_studies::record::RunRecord;
 
 use crate::bodies::{self, BodiesOptions, COEFFICIENT};
 use crate::frictionless::{self, FrictionlessOptions};
+use crate::order::{self, OrderOptions};
 use crate::parts::{self, PartRun, PartsOptions};
 use crate::{folder, options, read};
 
@@ -119,4 +120,25 @@ fn a_bracket_that_its_friction_holds_costs_the_same_in_any_fine_partition() {
     }
     let none = options::<PartsOptions>("parts nowhere.msh");
     assert!(parts::execute(&none, &mut Vec::new()).is_err());
+}
+
+#[test]
+fn quadratic_elements_are_nearer_with_fewer_unknowns() {
+    let options = options::<OrderOptions>("order --mesh 1/10,2/3,2/4/1.3 --rounds 1");
+    let mut out = Vec::new();
+    let rows = order::execute(&options, &mut out).expect("run");
+    let [linear, coarse, graded] = &rows[..] else {
+        panic!("{rows:?}")
+    };
+    assert!(coarse.unknowns < linear.unknowns / 4 && graded.unknowns < linear.unknowns / 2);
+    for row in [coarse, graded] {
+        assert!(row.errors[0].abs() < linear.errors[0].abs(), "{rows:?}");
+        assert!(row.estimate < linear.estimate);
+    }
+    assert!(
+        graded.errors[0].abs() < 2e-3 && (linear.errors[0].abs() - 7.6e-3).abs() < 3e-4,
+        "{rows:?}"
+    );
+    assert!(String::from_utf8(out).expect("text").contains("friction force"));
+    assert!(OrderOptions::try_parse_from(["order", "--mesh", "3/4"]).is_err());
 }

@@ -4,8 +4,26 @@ use signorini_fem_mesh::vec3::{self, dot, norm};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
 
-/// The sides that meet at each node of a crease, as frames and areas; keys are places in the surface.
-pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<(SurfaceFrame, f64)>> {
+/// A side of a surface at a node: all of it, or that on one side of a crease.
+#[derive(Debug, Clone)]
+pub(super) struct SurfaceSide {
+    pub(super) frame: SurfaceFrame,
+    pub(super) area: f64,
+    /// Triangles around the node, as far as they are needed.
+    pub(super) triangles: Vec<u32>,
+}
+
+/// The triangles around each node of a surface, ascending.
+pub(super) fn around(surface: &Surface) -> Vec<Vec<u32>> {
+    let mut around: Vec<Vec<u32>> = vec![Vec::new(); surface.nodes().len()];
+    for (k, triangle) in surface.triangles().iter().enumerate() {
+        triangle.iter().for_each(|&n| around[n as usize].push(k as u32));
+    }
+    around
+}
+
+/// The sides that meet at each node of a crease; keys are places in the surface.
+pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<SurfaceSide>> {
     let mut out = HashMap::new();
     if crease >= 180.0 {
         return out;
@@ -16,28 +34,33 @@ pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
         .iter()
         .map(|t| area_vector(mesh, surface, t))
         .collect();
-    let mut around: Vec<Vec<u32>> = vec![Vec::new(); surface.nodes().len()];
-    for (k, triangle) in surface.triangles().iter().enumerate() {
-        triangle.iter().for_each(|&n| around[n as usize].push(k as u32));
-    }
-    for (node, triangles) in around.iter().enumerate() {
+    for (node, triangles) in around(surface).iter().enumerate() {
         let sides = sides(surface, &vectors, triangles, limit);
         if sides.len() < 2 {
             continue;
         }
-        let side = |members: &Vec<u32>| {
+        let side = |triangles: Vec<u32>| {
             let mut sum = [0.0; 3];
             let mut area = 0.0;
-            for &t in members {
-                let v = vectors[t as usize];
-                area += norm(v) / 3.0;
-                (0..3).for_each(|c| sum[c] += v[c]);
+            for &t in &triangles {
+                let (own, normal) = match mesh.order() {
+                    1 => (norm(vectors[t as usize]) / 3.0, vectors[t as usize]),
+                    _ => corner_area(mesh, surface, t as usize, node),
+                };
+                area += own;
+                (0..3).for_each(|c| sum[c] += normal[c]);
             }
-            SurfaceFrame::from_normal(sum).map(|frame| (frame, area))
+            SurfaceFrame::from_normal(sum).map(|frame| SurfaceSide { frame, area, triangles })
         };
-        out.insert(node as u32, sides.iter().filter_map(side).collect());
+        out.insert(node as u32, sides.into_iter().filter_map(side).collect());
     }
     out
+}
+
+fn corner_area(mesh: &TetMesh, surface: &Surface, triangle: usize, node: usize) -> (f64, [f64; 3]) {
+    let corners = surface.triangles()[triangle];
+    let corner = corners.iter().position(|&n| n as usize == node).unwrap_or(0);
+    surface.corner_area(mesh, triangle, corner)
 }
 
 /// Triangles around a node, grouped: those that share an edge and are not separated by a crease are of one side.

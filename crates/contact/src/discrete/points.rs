@@ -8,7 +8,8 @@
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
 
-use super::creases::creases;
+use super::creases::{SurfaceSide, creases};
+use super::means::Means;
 use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners};
 use super::side::Sides;
@@ -51,6 +52,15 @@ impl ContactPoint {
     pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
+        let own = self.sides.own.nodes();
+        if own.len() > 1 {
+            let at = |&(node, weight): &(u32, f64)| {
+                let place = scene.mesh.points()[node as usize];
+                let gap = contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))?;
+                Ok(weight * gap)
+            };
+            return own.iter().map(at).sum();
+        }
         contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, pose))
     }
 
@@ -80,9 +90,14 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
+        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding)?;
         for (local, &node) in surface.nodes().iter().enumerate() {
             let position = scene.mesh.points()[node as usize];
-            let mut one = [(surface.frames()[local], surface.areas()[local])];
+            let mut one = [SurfaceSide {
+                frame: surface.frames()[local],
+                area: surface.areas()[local],
+                triangles: Vec::new(),
+            }];
             let mut measured = 0.0;
             let partner = match partners {
                 Partners::Obstacle => None,
@@ -94,7 +109,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     let Some(seen) = &nodes[local] else {
                         continue;
                     };
-                    one = [(seen.frame, seen.area)];
+                    (one[0].frame, one[0].area) = (seen.frame, seen.area);
                     let normal = fixed.unwrap_or(seen.frame).normal;
                     let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
@@ -103,20 +118,26 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 }
             };
             let own = sides.get(&(local as u32));
-            for &(frame, area) in own.map_or(&one[..], Vec::as_slice) {
-                let frame = fixed.or(shaped.get(local).copied()).unwrap_or(frame);
-                let gap = contact.gap_at(index, node, position, &frame.normal, measured)?;
+            for side in own.map_or(&one[..], Vec::as_slice) {
+                let frame = fixed.or(shaped.get(local).copied()).unwrap_or(side.frame);
+                let (sides, gap) = match &means {
+                    None => {
+                        let sides = Sides {
+                            own: Side::node(node),
+                            partner: partner.clone(),
+                            swapped: paired.swapped,
+                        };
+                        (sides, contact.gap_at(index, node, position, &frame.normal, measured)?)
+                    }
+                    Some(means) => means.point((local, &side.triangles), &frame)?,
+                };
                 let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
                     surface: index,
-                    sides: Sides {
-                        own: Side::node(node),
-                        partner: partner.clone(),
-                        swapped: paired.swapped,
-                    },
+                    sides,
                     position,
                     frame,
-                    area,
+                    area: side.area,
                     gap,
                     stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                 });
@@ -204,6 +225,9 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
     match nearer {
         Ordering::Equal => {
             let shared = x.tags.iter().any(|t| y.tags.contains(t));
+            if point.sides.own != other.sides.own {
+                point.sides.own = both(point, other);
+            }
             point.area = if shared && point.surface != other.surface {
                 point.area.max(other.area)
             } else {
@@ -212,6 +236,7 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         }
         Ordering::Less => {
             (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+            point.sides = other.sides.clone();
             if x.friction_axis.is_some() || y.friction_axis.is_some() {
                 (point.frame, point.stretch) = (other.frame, other.stretch);
             }
@@ -219,6 +244,22 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         Ordering::Greater => {}
     }
     Ok(())
+}
+
+/// The mean over the sides of two conditions on one node, by their areas.
+fn both(point: &ContactPoint, other: &ContactPoint) -> Side {
+    let area = point.area + other.area;
+    let mut nodes: Vec<(u32, f64)> = Vec::new();
+    for side in [point, other] {
+        for &(node, weight) in side.sides.own.nodes() {
+            let share = weight * side.area / area;
+            match nodes.iter_mut().find(|n| n.0 == node) {
+                Some(known) => known.1 += share,
+                None => nodes.push((node, share)),
+            }
+        }
+    }
+    Side::new(nodes)
 }
 
 /// The sign of a difference of gaps.

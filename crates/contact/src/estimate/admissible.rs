@@ -2,7 +2,7 @@
 //!
 //! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more
 //! freedom. Where it is not free either, both move, each where it can. Where the other side is of several nodes, which
-//! other points have too, they stay.
+//! other points have too, they stay. Where the own side is, all points move together ([`shared`](super::shared)).
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
@@ -46,7 +46,7 @@ impl AdmissibleNode {
         let rows: Vec<_> = point.directions().take(1).chain(point.isotropic()).collect();
         let mut parts: Vec<(u32, RowPart)> = Vec::with_capacity(2);
         parts.push((point.node(), RowPart::default()));
-        let others = point.contact.sides.partner.iter().flat_map(|side| side.nodes());
+        let others = point.contact.sides.nodes().skip(1);
         parts.extend(others.map(|other| (other.0, RowPart::default())));
         let last = parts.len() - 1;
         for (k, &(_, row, scale)) in rows.iter().enumerate() {
@@ -108,6 +108,14 @@ impl AdmissibleNode {
             k => by / (self.stretch[k - 1] * self.stretch[k - 1]),
         };
         shift(self.value(v), direction, by);
+    }
+
+    /// What the rows measure where the point is moved to its best place, m: the normal one, then those along the
+    /// surface.
+    pub(crate) fn targets(&self, problem: &StepProblem, moved: &Correction) -> impl Iterator<Item = f64> {
+        let values = [moved.open, moved.slip[0], moved.slip[1]];
+        let rows = self.rows.iter().zip(values);
+        rows.map(|(&(_, row, scale), value)| problem.offset[row] / scale + value)
     }
 
     /// Moves the node out of the obstacle, if it is inside.
@@ -237,6 +245,20 @@ impl Correction {
             node.shift(v, 1 + j, moved.slip[j] - start[j]);
         }
         moved
+    }
+
+    /// The best place of a point, of which nothing is moved yet.
+    pub(crate) fn planned(
+        node: &AdmissibleNode,
+        state: &PointState,
+        problem: &StepProblem,
+        stiffness: &[f64],
+        v: &mut [f64],
+    ) -> Self {
+        let before: [f64; 3] = std::array::from_fn(|c| node.value(v)[c]);
+        let planned = Self::new(node, state, problem, stiffness, v);
+        node.value(v).copy_from_slice(&before);
+        planned
     }
 
     /// Whether the node is at the obstacle.

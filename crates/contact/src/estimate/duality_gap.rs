@@ -12,6 +12,7 @@
 //! is at least `1/2 |v - u*|² + 1/2 |u - u*|²`, `u*` the solution of the discrete problem with the slip bounds `r`.
 
 use super::admissible::{AdmissibleNode, Correction};
+use super::shared::SharedNodes;
 use crate::model::Model;
 use crate::report::AlgebraicError;
 use crate::result::{Lengths, Recovered};
@@ -35,6 +36,8 @@ pub(crate) struct Weights {
     rows: Vec<f64>,
     /// What moves at each contact point.
     nodes: Vec<AdmissibleNode>,
+    /// Where points share the nodes that move.
+    shared: Option<SharedNodes>,
     /// Made where a step needs it: the active-set method leaves nothing to balance.
     interior: OnceLock<Option<CoarseFactor>>,
 }
@@ -48,6 +51,7 @@ impl Weights {
         Self {
             rows,
             nodes,
+            shared: SharedNodes::new(model),
             interior: OnceLock::new(),
         }
     }
@@ -90,12 +94,25 @@ impl Solved<'_> {
         let mut v = self.mean();
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
         let points = || self.recovered.points.iter().zip(&weights.nodes);
-        let moved: Vec<Correction> = points()
-            .map(|(state, node)| Correction::new(node, state, self.problem, &weights.rows, &mut v))
-            .collect();
+        let moved: Vec<Correction> = match &weights.shared {
+            None => points()
+                .map(|(state, node)| Correction::new(node, state, self.problem, &weights.rows, &mut v))
+                .collect(),
+            Some(shared) => {
+                self.support(&mut v);
+                let planned = |(state, node)| Correction::planned(node, state, self.problem, &weights.rows, &mut v);
+                let planned: Vec<Correction> = points().map(planned).collect();
+                let targets = weights.nodes.iter().zip(&planned);
+                let targets = targets.flat_map(|(node, planned)| node.targets(self.problem, planned));
+                shared.reach(targets.collect(), &self.problem.offset, &mut v);
+                planned
+            }
+        };
         self.support(&mut v);
-        self.agree(&moved, &weights.nodes, &mut v);
-        self.tie(&mut v);
+        if weights.shared.is_none() {
+            self.agree(&moved, &weights.nodes, &mut v);
+            self.tie(&mut v);
+        }
         let (mut terms, mut change) = (0.0, 0.0);
         for ((state, node), moved) in points().zip(&moved) {
             let conditions = node.conditions(self.problem, &v);

@@ -8,5 +8,6 @@
 
 mod admissible;
 mod duality_gap;
+mod shared;
 
 pub(crate) use duality_gap::{Caches, Solved};

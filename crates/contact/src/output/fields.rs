@@ -3,7 +3,7 @@
 use crate::error::ContactError;
 use crate::result::{ContactState, PointState};
 use crate::simulation::StepResult;
-use signorini_fem_mesh::fields::{nodal_average, von_mises};
+use signorini_fem_mesh::fields::{nodal_average, nodal_stresses, von_mises};
 use signorini_fem_mesh::output::Field;
 
 /// A field that a [`ResultWriter`](crate::ResultWriter) can write, with its name and unit in the files.
@@ -102,7 +102,10 @@ pub(super) fn body(result: &StepResult, chosen: &[ResultField], moment: Moment) 
         result.stress()
     };
     let nodal = if stressed {
-        nodal_average(mesh, &stress)?
+        match mesh.order() {
+            2 if !rest => nodal_stresses(mesh, result.scene().materials(), result.displacement().as_flattened())?,
+            _ => nodal_average(mesh, &stress)?,
+        }
     } else {
         Vec::new()
     };

@@ -7,6 +7,9 @@ use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 /// Tetrahedra of a subdomain that a scene without a partition asks for. From 400 to 1500 the work is much the same.
 const TETS: usize = 700;
 
+/// The same of quadratic tetrahedra: about as many unknowns.
+const QUADRATIC: usize = 120;
+
 /// Most subdomains that a scene without a partition is cut into: their rigid motions are one problem, solved in each iteration.
 const MOST: usize = 1000;
 
@@ -14,7 +17,8 @@ const MOST: usize = 1000;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Partition {
-    /// Into parts of some hundred tetrahedra each, by [`even_parts`]; materials are not mixed. Less than 1400 tetrahedra are one part.
+    /// Into parts of some hundred tetrahedra each, by [`even_parts`]; materials are not mixed. Less than 1400 tetrahedra, 240
+    /// of order 2, are one part.
     Automatic,
     /// As [`Partition::Automatic`], into so many.
     Subdomains(usize),
@@ -37,9 +41,10 @@ impl Partition {
             Ok(Decomposition::from_parts(mesh, &parts)?)
         };
         let tets = mesh.tets().len();
+        let own = if mesh.order() == 2 { QUADRATIC } else { TETS };
         match self {
-            Self::Automatic if tets < 2 * TETS => Ok(Decomposition::whole(mesh)),
-            Self::Automatic => even(PartCount::About((tets / TETS).min(MOST))),
+            Self::Automatic if tets < 2 * own => Ok(Decomposition::whole(mesh)),
+            Self::Automatic => even(PartCount::About((tets / own).min(MOST))),
             Self::Subdomains(count) => even(PartCount::Exactly(*count)),
             Self::Whole => Ok(Decomposition::whole(mesh)),
             Self::Boxes(boxes) => Ok(Decomposition::boxes(mesh, *boxes)?),

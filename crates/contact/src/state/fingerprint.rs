@@ -27,7 +27,7 @@ impl Fingerprint {
     pub(crate) fn new(model: &Model) -> Self {
         let mesh = &model.scene.mesh;
         let coordinates = mesh.points().iter().flatten();
-        let tets = mesh.tets().iter().flatten();
+        let tets = mesh.tets().iter().flatten().chain(mesh.mids().iter().flatten());
         let parts = model.discrete.decomposition.parts().iter();
         Self {
             points: hash(coordinates.map(|x| number(*x))),

@@ -93,28 +93,56 @@ fn boundary(mesh: &TetMesh) -> (Vec<u32>, Vec<[f64; 3]>) {
     (nodes, values)
 }
 
+/// H1 and L2 errors on a mesh.
+fn errors(mesh: &TetMesh) -> (f64, f64) {
+    let (nodes, values) = boundary(mesh);
+    let scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
+        .with_support(Support::fixed(Place::Nodes(nodes)).with_motions(values, History::constant(1.0)))
+        .with_load(Load::new(LoadDensity::body_field(force)))
+        .with_boxes([2, 2, 2]);
+    let (_, results) = run(scene, tight());
+    let u = &results[0].displacement;
+    (
+        h1_seminorm_error(mesh, u, gradient).expect("field"),
+        l2_error(mesh, u, exact).expect("field"),
+    )
+}
+
+/// Orders from meshes with twice as many cells each.
+fn assert_orders(errors: &[(f64, f64)], h1: std::ops::Range<f64>, l2: std::ops::Range<f64>) {
+    for pair in errors.windows(2) {
+        let orders = [pair[0].0 / pair[1].0, pair[0].1 / pair[1].1].map(f64::log2);
+        println!("orders: H1 {:.3}, L2 {:.3}; {pair:?}", orders[0], orders[1]);
+        assert!(h1.contains(&orders[0]), "H1 order {}", orders[0]);
+        assert!(l2.contains(&orders[1]), "L2 order {}", orders[1]);
+    }
+}
+
 #[test]
 fn orders_of_convergence() {
-    let mut errors = Vec::new();
-    for cells in [4, 8, 16] {
-        let mesh = block([1.0; 3], [cells; 3]);
-        let (nodes, values) = boundary(&mesh);
-        let scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
-            .with_support(Support::fixed(Place::Nodes(nodes)).with_motions(values, History::constant(1.0)))
-            .with_load(Load::new(LoadDensity::body_field(force)))
-            .with_boxes([2, 2, 2]);
-        let (_, results) = run(scene, tight());
-        let u = &results[0].displacement;
-        errors.push((
-            h1_seminorm_error(&mesh, u, gradient).expect("field"),
-            l2_error(&mesh, u, exact).expect("field"),
-        ));
-    }
-    for pair in errors.windows(2) {
-        let h1 = (pair[0].0 / pair[1].0).log2();
-        let l2 = (pair[0].1 / pair[1].1).log2();
-        println!("orders: H1 {h1:.3}, L2 {l2:.3}");
-        assert!((0.9..1.15).contains(&h1), "H1 order {h1}");
-        assert!((1.8..2.2).contains(&l2), "L2 order {l2}");
-    }
+    let errors: Vec<_> = [4, 8, 16].map(|cells| errors(&block([1.0; 3], [cells; 3]))).into();
+    assert_orders(&errors, 0.9..1.15, 1.8..2.2);
+}
+
+#[test]
+fn orders_of_quadratic_elements() {
+    let mesh = |cells| block([1.0; 3], [cells; 3]).raise_order().expect("quadratic");
+    assert_orders(&[2, 4, 8].map(|cells| errors(&mesh(cells))), 1.85..2.15, 2.8..3.3);
+}
+
+/// All edges curved: bent by a smooth map.
+#[test]
+fn orders_of_curved_quadratic_elements() {
+    let bend = |[x, y, z]: [f64; 3]| {
+        [
+            x + 0.15 * (2.0 * y).sin() * z,
+            y + 0.1 * z * z,
+            z + 0.1 * (3.0 * x).cos(),
+        ]
+    };
+    let mesh = |cells| {
+        let straight = block([1.0; 3], [cells; 3]).raise_order().expect("quadratic");
+        straight.map_points(bend).expect("bent")
+    };
+    assert_orders(&[2, 4, 8].map(|cells| errors(&mesh(cells))), 1.8..2.2, 2.7..3.3);
 }

@@ -29,6 +29,12 @@ fn meshes() -> Vec<(&'static str, TetMesh)> {
             "graded",
             build(Brick::new([1.5, 1.0, 0.5], cells).graded([3.0, 0.5, 4.0])),
         ),
+        (
+            "quadratic",
+            build(Brick::new([1.5, 1.0, 0.5], [3, 2, 2]).perturbed(0.15, 7))
+                .raise_order()
+                .expect("quadratic"),
+        ),
     ]
 }
 

@@ -100,7 +100,7 @@ const FLAT: &str = "decks with parts and an assembly are not read; write a flat 
 Attributes, do not use parts and assemblies)";
 const ELASTIC: &str = "materials are linear and elastic";
 const THERMAL: &str = "temperature plays no role here; remove it";
-const SOLID: &str = "only solid elements C3D4 are read";
+const SOLID: &str = "only solid elements C3D4 and C3D10 are read";
 const PROCEDURE: &str = "only *STATIC is solved";
 
 const BEFORE: &str = "this belongs to the model; put it before the first *STEP";

@@ -7,8 +7,8 @@ use crate::lexer::{Card, Line, label, name};
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
 
-const TYPES: &str = "only linear tetrahedra C3D4 are read, and R3D3 and R3D4 for rigid planes; mesh in \
-first order, and \
+const TYPES: &str = "only tetrahedra C3D4 and C3D10 are read, and R3D3 and R3D4 for rigid planes; mesh in \
+these, and \
     leave out elements of surfaces and lines (in Gmsh: save only physical volumes)";
 
 pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -38,13 +38,15 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
-    let kinds = [Kind::Solid, Kind::Triangle, Kind::Quadrilateral];
+    let kinds = [Kind::Solid, Kind::Triangle, Kind::Quadrilateral, Kind::Solid];
     let kind = card.need("TYPE")?;
-    let kind = ["C3D4", "R3D3", "R3D4"].iter().position(|k| *k == kind);
+    let kind = ["C3D4", "R3D3", "R3D4", "C3D10"].iter().position(|k| *k == kind);
+    let quadratic = kind == Some(3);
     let (kind, nodes, wanted) = match (kind.map(|k| kinds[k]), card.param("TYPE")) {
         (None, Some(param)) => {
             return Err(card.param_fault(param, Fault::Unsupported(TYPES)));
         }
+        (Some(_), _) if quadratic => (Kind::Solid, 10, "an element number and ten node numbers"),
         (Some(Kind::Triangle), _) => (Kind::Triangle, 3, "an element number and three node numbers"),
         (kind, _) => (
             kind.unwrap_or(Kind::Solid),
@@ -56,7 +58,7 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     let mut members = Vec::new();
     let mut lines = card.lines.iter();
     while let Some(line) = lines.next() {
-        let mut numbers = Vec::with_capacity(5);
+        let mut numbers = Vec::with_capacity(1 + nodes);
         let mut next = Some(line);
         // a line that ends with a comma goes on in the next one
         while let Some(line) = next {
@@ -67,9 +69,10 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
             next = if open { lines.next() } else { None };
         }
-        let (label, nodes) = match numbers[..] {
-            [label, a, b, c] if nodes == 3 => (label, [a, b, c, c]),
-            [label, a, b, c, d] => (label, [a, b, c, d]),
+        let (label, nodes, mids) = match numbers[..] {
+            [label, a, b, c] if nodes == 3 => (label, [a, b, c, c], [0; 6]),
+            [label, a, b, c, d] if nodes == 4 => (label, [a, b, c, d], [0; 6]),
+            [label, a, b, c, d, e, f, g, h, i, j] => (label, [a, b, c, d], [e, f, g, h, i, j]),
             _ => return Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
         };
         let location = line.location.clone();
@@ -80,6 +83,7 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             label,
             kind,
             nodes,
+            mids,
             location,
         });
     }

@@ -48,7 +48,7 @@ pub(crate) struct Node {
 /// What an element is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// C3D4.
+    /// C3D4 or C3D10.
     Solid,
     /// R3D3, whose last node is there twice.
     Triangle,
@@ -62,6 +62,8 @@ pub(crate) struct Element {
     pub(crate) label: u32,
     pub(crate) kind: Kind,
     pub(crate) nodes: [u32; 4],
+    /// Of a C3D10 the nodes on its edges; zeros of others.
+    pub(crate) mids: [u32; 6],
     pub(crate) location: Location,
 }
 
@@ -76,7 +78,7 @@ pub(crate) enum Member {
 /// A set of nodes or elements: its members, each with its place and word.
 pub(crate) type Set = Vec<(Member, Location)>;
 
-/// Nodes of the faces 1 to 4 of an element C3D4.
+/// Corners of the faces 1 to 4 of a solid element.
 pub(crate) const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
 /// A side of an element.

@@ -202,6 +202,11 @@ impl FaceTable {
 }
 
 impl Face {
+    /// The nodes that share the force of a constant pressure evenly.
+    pub(super) fn loaded(&self, raw: &Raw) -> [u32; 3] {
+        raw.loaded(self.tet, self.nodes)
+    }
+
     /// Its area along the outward normal.
     pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
         let [a, b, c] = self.nodes.map(|n| raw.points[n as usize]);

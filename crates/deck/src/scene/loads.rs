@@ -132,7 +132,7 @@ impl Loads {
             for (face, value, history, order) in of_face {
                 let face = &faces.list[face as usize];
                 let area = face.area_vector(context.known.raw);
-                for node in face.nodes {
+                for node in face.loaded(context.known.raw) {
                     self.force(history, order, node, area.map(|a| -value * a / 3.0));
                 }
             }
@@ -182,8 +182,8 @@ impl Loads {
                 continue;
             }
             for (&element, density) in elements.iter().zip(densities) {
-                let share = 0.25 * density * raw.volume(element);
-                for node in raw.tets[element as usize] {
+                for (node, part) in raw.shares(element) {
+                    let share = part * density * raw.volume(element);
                     self.force(history, order, node, value.map(|v| share * v));
                 }
             }

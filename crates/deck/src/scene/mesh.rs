@@ -15,6 +15,8 @@ use crate::model::{Kind, Model, Names};
 pub(super) struct Raw {
     pub(super) points: Vec<[f64; 3]>,
     pub(super) tets: Vec<[u32; 4]>,
+    /// Nodes on the edges of each; empty if they are of first order.
+    pub(super) mids: Vec<[u32; 6]>,
     /// Number in the mesh of each node and element of the deck, by position.
     of_node: Vec<Option<u32>>,
     of_element: Vec<Option<u32>>,
@@ -26,7 +28,7 @@ pub(super) struct Raw {
 
 impl Raw {
     pub(super) fn new(path: &Path, model: &Model, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
-        let (mut tets, mut elements) = (Vec::new(), Vec::new());
+        let (mut tets, mut mids, mut elements) = (Vec::new(), Vec::new(), Vec::new());
         let mut of_element = vec![None; model.elements.len()];
         let mut used = vec![false; model.nodes.len()];
         for (position, element) in model.elements.iter().enumerate() {
@@ -44,7 +46,17 @@ impl Raw {
                 let word = element.label.to_string();
                 return Err(DeckError::at(&element.location, &word, Fault::Volume));
             }
-            nodes.iter().for_each(|&n| used[n as usize] = true);
+            let own = bodies.mids(sets, element)?;
+            if !tets.is_empty() && own.is_some() == mids.is_empty() {
+                let text = "the deck has elastic elements of first and of second order; mesh all in one order";
+                let word = element.label.to_string();
+                return Err(DeckError::at(&element.location, &word, Fault::Cannot(text.into())));
+            }
+            nodes
+                .iter()
+                .chain(own.iter().flatten())
+                .for_each(|&n| used[n as usize] = true);
+            mids.extend(own);
             of_element[position] = Some(tets.len() as u32);
             tets.push(nodes);
             elements.push(position as u32);
@@ -67,7 +79,8 @@ impl Raw {
         let label = |&e: &u32| model.elements[e as usize].label;
         Ok(Self {
             points,
-            tets: tets.into_iter().map(|tet| tet.map(number)).collect(),
+            tets: tets.into_iter().map(|tet: [u32; 4]| tet.map(number)).collect(),
+            mids: mids.into_iter().map(|mids: [u32; 6]| mids.map(number)).collect(),
             of_node,
             of_element,
             node_labels,
@@ -122,12 +135,47 @@ impl Raw {
         self.tets[tet as usize].map(|n| self.points[n as usize])
     }
 
+    /// Shares of a tetrahedron in a force per volume that is constant in it, as far as its edges are straight.
+    pub(super) fn shares(&self, tet: u32) -> Vec<(u32, f64)> {
+        let corners = self.tets[tet as usize];
+        match self.mids.get(tet as usize) {
+            None => corners.map(|n| (n, 0.25)).into(),
+            Some(mids) => {
+                let corners = corners.into_iter().map(|n| (n, -0.05));
+                corners.chain(mids.iter().map(|&n| (n, 0.2))).collect()
+            }
+        }
+    }
+
+    /// Nodes that share the force on a face of a tetrahedron evenly: its corners, or the nodes on its edges.
+    pub(super) fn loaded(&self, tet: u32, face: [u32; 3]) -> [u32; 3] {
+        let Some(mids) = self.mids.get(tet as usize) else {
+            return face;
+        };
+        let corners = self.tets[tet as usize];
+        let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+        let on_face = edges
+            .iter()
+            .zip(mids)
+            .filter(|(edge, _)| edge.iter().all(|&k| face.contains(&corners[k])));
+        let mut found = on_face.map(|(_, mid)| *mid);
+        face.map(|corner| found.next().unwrap_or(corner))
+    }
+
     pub(super) fn volume(&self, tet: u32) -> f64 {
         tet_volume(&self.tet_points(tet))
     }
 
     pub(super) fn mesh(&self, path: &Path, facets: Vec<Facet>, regions: Vec<u32>) -> Result<TetMesh, DeckError> {
-        let mesh = TetMesh::new(self.points.clone(), self.tets.clone(), facets);
+        let whole =
+            |(tet, mids): (&[u32; 4], &[u32; 6])| std::array::from_fn(|k| if k < 4 { tet[k] } else { mids[k - 4] });
+        let mesh = match self.mids[..] {
+            [] => TetMesh::new(self.points.clone(), self.tets.clone(), facets),
+            _ => {
+                let tets = self.tets.iter().zip(&self.mids).map(whole);
+                TetMesh::quadratic(self.points.clone(), tets.collect(), facets)
+            }
+        };
         let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));
         mesh.map_err(|source| DeckError::Mesh {
             path: path.to_owned(),

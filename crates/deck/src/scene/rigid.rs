@@ -112,14 +112,13 @@ impl RigidBodies {
 
     /// The nodes of an element, by position.
     pub(super) fn nodes(&self, sets: &Sets, element: &Element) -> Result<[u32; 4], DeckError> {
-        let mut nodes = [0; 4];
-        for (position, label) in nodes.iter_mut().zip(element.nodes) {
-            *position = sets.node_numbers.get(label).ok_or_else(|| {
-                let fault = Fault::UnknownNumber("node");
-                DeckError::at(&element.location, &label.to_string(), fault)
-            })?;
-        }
-        Ok(nodes)
+        positions(sets, element, element.nodes)
+    }
+
+    /// The nodes on the edges of an element C3D10, by position; `None` for others.
+    pub(super) fn mids(&self, sets: &Sets, element: &Element) -> Result<Option<[u32; 6]>, DeckError> {
+        let quadratic = element.mids != [0; 6];
+        quadratic.then(|| positions(sets, element, element.mids)).transpose()
     }
 
     /// A side of a rigid element, by its position.
@@ -269,4 +268,16 @@ fn contains(triangle: &[[f64; 3]; 3], normal: [f64; 3], x: [f64; 3]) -> bool {
         let edge = norm(sub(b, a));
         inside >= -ROUNDING * edge * (edge + norm(sub(x, a)))
     })
+}
+
+/// The positions of nodes of an element by their labels.
+fn positions<const N: usize>(sets: &Sets, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
+    let mut nodes = [0; N];
+    for (position, label) in nodes.iter_mut().zip(labels) {
+        *position = sets.node_numbers.get(label).ok_or_else(|| {
+            let fault = Fault::UnknownNumber("node");
+            DeckError::at(&element.location, &label.to_string(), fault)
+        })?;
+    }
+    Ok(nodes)
 }

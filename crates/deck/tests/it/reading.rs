@@ -4,7 +4,7 @@ use signorini_contact::Directions;
 use signorini_deck::Deck;
 use signorini_fem_mesh::FacetTag;
 
-use crate::write::{STEEL, cube, folder, read};
+use crate::write::{STEEL, cube, folder, mesh, read};
 
 const TWO: &str = "*NODE
  10, 0., 0., 0.
@@ -180,4 +180,55 @@ fn a_deck_of_a_user_interface() {
     );
     let rotations = deck.ignored().iter().filter(|i| i.word == "6");
     assert_eq!(rotations.count(), 2);
+}
+
+/// Ten nodes an element, in the order of the manuals, on one line or two; their loads at nodes.
+#[test]
+fn elements_of_second_order_are_read_with_their_nodes() {
+    use signorini_fem_mesh::{Brick, LoadDensity};
+    let straight = Brick::new([1.0; 3], [2, 2, 2])
+        .build()
+        .expect("brick")
+        .raise_order()
+        .expect("quadratic");
+    let bent = straight.map_points(|[x, y, z]| [x, y, z + 0.1 * x * y]).expect("bent");
+    for own in [&straight, &bent] {
+        let text = mesh(own);
+        let found = read(&text).expect("deck");
+        assert_eq!(found.mesh().points(), own.points());
+        assert_eq!(found.mesh().quadratic_tets(), own.quadratic_tets());
+        let first = text
+            .lines()
+            .find(|l| l.starts_with("1, ") && l.split(',').count() == 11)
+            .expect("an element");
+        let fields: Vec<&str> = first.split(", ").collect();
+        let broken = format!("{},\n{}", fields[..6].join(", "), fields[6..].join(", "));
+        let again = read(&text.replacen(first, &broken, 1)).expect("deck");
+        assert_eq!(again.mesh(), found.mesh());
+        let few = read(&text.replacen(first, &fields[..5].join(", "), 1)).expect_err("too few");
+        assert!(few.to_string().contains("ten node numbers"), "{few}");
+    }
+    // gravity in a part of the elements and many pressures are forces at nodes, which do the work of linear fields
+    let text = mesh(&straight) + STEEL;
+    let some = "*ELSET, ELSET=SOME\n1, 2, 3, 4, 5\n*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n*DLOAD\nSOME, GRAV, 10., 0., 0., -1.\n*END STEP\n";
+    let scene = read(&(text + some)).expect("deck").scene().expect("scene");
+    let [load] = scene.loads() else { panic!("one load") };
+    let LoadDensity::NodalForces(forces) = load.density() else {
+        panic!("forces at nodes")
+    };
+    let points = straight.points();
+    for (weight, power) in [([1.0, 0.0], 0), ([0.0, 1.0], 1)] {
+        let of = |x: f64| weight[0] + weight[1] * x;
+        let work: f64 = forces.iter().map(|(n, f)| f[2] * of(points[*n as usize][0])).sum();
+        let exact: f64 = (0..5)
+            .map(|t| {
+                let centre = straight.tet_points(t).iter().map(|p| p[0]).sum::<f64>() / 4.0;
+                -7.8e-8 * straight.volume(t) * of(centre)
+            })
+            .sum();
+        assert!((work / exact - 1.0).abs() < 1e-12, "{power}: {work:e} {exact:e}");
+    }
+    let mixed = mesh(&straight) + "*ELEMENT, TYPE=C3D4\n999, 1, 2, 4, 10\n";
+    let error = read(&mixed).expect_err("mixed").to_string();
+    assert!(error.contains("second order") || error.contains("volume"), "{error}");
 }

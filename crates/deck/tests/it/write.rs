@@ -33,10 +33,12 @@ pub(crate) fn mesh(mesh: &TetMesh) -> String {
     for (n, [x, y, z]) in mesh.points().iter().enumerate() {
         writeln!(deck, "{}, {x:?}, {y:?}, {z:?}", n + 1).expect("text");
     }
-    deck.push_str("*ELEMENT, TYPE=C3D4, ELSET=ALL\n");
-    for (t, [a, b, c, d]) in mesh.tets().iter().enumerate() {
-        let [a, b, c, d] = [a + 1, b + 1, c + 1, d + 1];
-        writeln!(deck, "{}, {a}, {b}, {c}, {d}", t + 1).expect("text");
+    let kind = if mesh.order() == 2 { "C3D10" } else { "C3D4" };
+    writeln!(deck, "*ELEMENT, TYPE={kind}, ELSET=ALL").expect("text");
+    for (t, corners) in mesh.tets().iter().enumerate() {
+        let mids = mesh.mids().get(t).into_iter().flatten();
+        let nodes: Vec<String> = corners.iter().chain(mids).map(|n| (n + 1).to_string()).collect();
+        writeln!(deck, "{}, {}", t + 1, nodes.join(", ")).expect("text");
     }
     for tag in mesh.tags() {
         writeln!(deck, "*SURFACE, NAME=S{}", tag.0).expect("text");

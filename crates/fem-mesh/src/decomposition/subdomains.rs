@@ -1,6 +1,6 @@
 //! Decomposition into subdomains that are torn apart at their common nodes.
 
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, quadratic_tets};
 use crate::tables::{buckets, range};
 
 /// A part of the mesh with its own numbering of nodes and tetrahedra.
@@ -10,8 +10,10 @@ pub struct Subdomain {
     /// Global number of each local node, ascending. Local numbers therefore follow the global
     /// order, and translates of a regular mesh have the same local tables.
     pub nodes: Vec<u32>,
-    /// Tetrahedra in local node numbers, in the order of `elements`.
+    /// Corners of the tetrahedra in local node numbers, in the order of `elements`.
     pub tets: Vec<[u32; 4]>,
+    /// Their mid-nodes ([`TetMesh::mids`]) in local numbers; empty in a mesh of order 1.
+    pub mids: Vec<[u32; 6]>,
     /// Global number of each tetrahedron, ascending.
     pub elements: Vec<u32>,
 }
@@ -21,6 +23,12 @@ impl Subdomain {
     #[must_use]
     pub fn dofs(&self) -> usize {
         3 * self.nodes.len()
+    }
+
+    /// The ten nodes of each tetrahedron in local numbers; empty in a mesh of order 1.
+    #[must_use]
+    pub fn quadratic_tets(&self) -> Vec<[u32; 10]> {
+        quadratic_tets(&self.tets, &self.mids)
     }
 
     /// Local number of a global node, if it is here.
@@ -94,7 +102,9 @@ impl Decomposition {
             .map(|part| {
                 let elements = tets[range(&starts, part)].to_vec();
                 let global = |&tet: &u32| mesh.tets()[tet as usize];
+                let own_mids = || elements.iter().filter_map(|&tet| mesh.mids().get(tet as usize));
                 let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
+                nodes.extend(own_mids().flatten());
                 nodes.sort_unstable();
                 nodes.dedup();
                 for (number, &node) in nodes.iter().enumerate() {
@@ -102,7 +112,13 @@ impl Decomposition {
                 }
                 let to_local = |tet: &u32| global(tet).map(|n| local[n as usize]);
                 let tets = elements.iter().map(to_local).collect();
-                Subdomain { nodes, tets, elements }
+                let mids = own_mids().map(|mids| mids.map(|n| local[n as usize])).collect();
+                Subdomain {
+                    nodes,
+                    tets,
+                    mids,
+                    elements,
+                }
             })
             .collect();
         let (copy_start, copies) = collect_copies(nodes, &subdomains);

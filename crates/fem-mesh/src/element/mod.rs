@@ -1,13 +1,17 @@
-//! Elements and their quadrature.
+//! Elements, and integrals over them.
 //!
-//! `p1` is the linear tetrahedron: gradients of its shape functions, strain, blocks of stiffness. A quadratic one has
-//! its place beside it. `quadrature` has rules of degree 5 on tetrahedron and triangle.
+//! `p1` is the linear tetrahedron: gradients of its shape functions, strain, blocks of stiffness; `p2` the quadratic
+//! one, `columns` what assembly takes of both. `piece` has a displacement in a tetrahedron of either kind, and integrals over a mesh.
 //!
-//! Uses: `mesh`, `vec3`. In: the points of an element. Out: gradients, blocks of stiffness, integrals.
+//! Uses: `material`, `mesh`, `quadrature`, `vec3`. In: the points of an element. Out: gradients, blocks of stiffness, integrals.
 
+mod columns;
 mod p1;
-pub(crate) mod quadrature;
+mod p2;
+mod piece;
 
 pub use p1::Element;
 
-pub(crate) use p1::{nodal_stress, stiffness_block, strain_of};
+pub(crate) use columns::Columns;
+pub(crate) use p1::{Block, strain_of};
+pub(crate) use piece::{Piece, integral, over_quadratic};

@@ -60,8 +60,11 @@ pub(crate) fn nodal_stress(c: &[[f64; 6]; 6], g: [f64; 3], volume: f64) -> [[f64
     })
 }
 
+/// What unit displacements of one node do to another one, by rows.
+pub(crate) type Block = [[f64; 3]; 3];
+
 /// Block B_a^T (C B_b) of the stiffness, 3 x 3 by rows.
-pub(crate) fn stiffness_block(g: [f64; 3], s: &[[f64; 3]; 6]) -> [[f64; 3]; 3] {
+pub(crate) fn stiffness_block(g: [f64; 3], s: &[[f64; 3]; 6]) -> Block {
     let row = |i0: usize, i1: usize, i2: usize| [0, 1, 2].map(|k| g[0] * s[i0][k] + g[1] * s[i1][k] + g[2] * s[i2][k]);
     [row(0, 5, 4), row(5, 1, 3), row(4, 3, 2)]
 }

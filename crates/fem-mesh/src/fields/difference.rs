@@ -1,12 +1,12 @@
 //! Finds the tetrahedron at a point, and compares displacements of two meshes of the same body.
 
-use crate::element::quadrature::{self, integral};
+use crate::element::{Piece, integral};
 use crate::material::Materials;
 use crate::mesh::TetMesh;
 use crate::tolerances::OUTSIDE;
 use crate::vec3::{sub, tet_volume};
 
-use super::strain::{FieldError, strains};
+use super::strain::{FieldError, nodal_vectors};
 
 /// Tetrahedra sorted into a grid of boxes, to find the one at a point.
 ///
@@ -79,7 +79,7 @@ impl<'m> Locator<'m> {
     }
 
     /// The tetrahedron at a point with the point's barycentric coordinates; `None` outside of the
-    /// mesh. On faces the tetrahedron with the smallest number.
+    /// mesh. On faces the tetrahedron with the smallest number. Tetrahedra count as straight.
     #[must_use]
     pub fn locate(&self, point: [f64; 3]) -> Option<(usize, [f64; 4])> {
         let candidates = &self.tets[self.place(self.grid_box(point))];
@@ -116,16 +116,17 @@ pub fn energy_of_difference(
     v: &[f64],
 ) -> Result<f64, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
-    let (own, foreign) = (strains(mesh, u)?, strains(other, v)?);
+    let (u, v) = (nodal_vectors(mesh, u)?, nodal_vectors(other, v)?);
     let locator = Locator::new(other);
     Ok(integral(mesh, |tet| {
-        let (points, law, own) = (mesh.tet_points(tet), laws[tet], own[tet]);
-        let (locator, foreign) = (&locator, &foreign);
+        let (piece, law) = (Piece::new(mesh, tet, &u), laws[tet]);
+        let (locator, v) = (&locator, &v);
         move |l: &[f64; 4]| {
-            let strain = match locator.locate(quadrature::at(&points, l)) {
-                Some((place, _)) => foreign[place],
+            let strain = match locator.locate(piece.place(l)) {
+                Some((place, there)) => Piece::new(other, place, v).strain(&there),
                 None => [0.0; 6],
             };
+            let own = piece.strain(l);
             law.energy_density(&std::array::from_fn(|i| own[i] - strain[i]))
         }
     }))

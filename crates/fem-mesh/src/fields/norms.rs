@@ -1,12 +1,11 @@
 //! Errors of a displacement against a known one, by quadrature of degree 5.
 
-use crate::element::quadrature::{self, integral};
-use crate::element::{Element, strain_of};
+use crate::element::{Piece, integral, strain_of};
 use crate::material::Materials;
 use crate::mesh::TetMesh;
 use crate::vec3::{dot, sub};
 
-use super::strain::{FieldError, nodal_vectors, strains};
+use super::strain::{FieldError, nodal_vectors};
 
 /// The L2 norm of u - exact over the mesh. With `u` zero it is the norm of `exact`.
 ///
@@ -16,10 +15,9 @@ pub fn l2_error(mesh: &TetMesh, u: &[f64], exact: impl Fn([f64; 3]) -> [f64; 3] 
     let u = nodal_vectors(mesh, u)?;
     let exact = &exact;
     let square = integral(mesh, |tet| {
-        let points = mesh.tet_points(tet);
-        let nodal = mesh.tets()[tet].map(|n| u[n as usize]);
+        let piece = Piece::new(mesh, tet, &u);
         move |l: &[f64; 4]| {
-            let error = sub(quadrature::at(&nodal, l), exact(quadrature::at(&points, l)));
+            let error = sub(piece.value(l), exact(piece.place(l)));
             dot(error, error)
         }
     });
@@ -39,12 +37,10 @@ pub fn h1_seminorm_error(
     let u = nodal_vectors(mesh, u)?;
     let exact = &exact_gradient;
     let square = integral(mesh, |tet| {
-        let points = mesh.tet_points(tet);
-        let nodal = mesh.tets()[tet].map(|n| u[n as usize]);
-        let gradient = Element::new(&points).displacement_gradient(&nodal);
+        let piece = Piece::new(mesh, tet, &u);
         move |l: &[f64; 4]| {
-            let exact = exact(quadrature::at(&points, l));
-            let rows = gradient.iter().zip(&exact).map(|(&g, &e)| sub(g, e));
+            let exact = exact(piece.place(l));
+            let rows = piece.gradient(l).into_iter().zip(exact).map(|(g, e)| sub(g, e));
             rows.map(|row| dot(row, row)).sum()
         }
     });
@@ -63,12 +59,12 @@ pub fn energy_of_error(
     exact_gradient: impl Fn([f64; 3]) -> [[f64; 3]; 3] + Sync,
 ) -> Result<f64, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
-    let strains = strains(mesh, u)?;
+    let u = nodal_vectors(mesh, u)?;
     let exact = &exact_gradient;
     Ok(integral(mesh, |tet| {
-        let (points, law, own) = (mesh.tet_points(tet), laws[tet], strains[tet]);
+        let (piece, law) = (Piece::new(mesh, tet, &u).with_law(laws[tet]), laws[tet]);
         move |l: &[f64; 4]| {
-            let exact = strain_of(&exact(quadrature::at(&points, l)));
+            let (exact, own) = (strain_of(&exact(piece.place(l))), piece.strain(l));
             law.energy_density(&std::array::from_fn(|i| exact[i] - own[i]))
         }
     }))

@@ -1,8 +1,9 @@
 //! Strain, stress and energy of a displacement of the mesh.
 
-use crate::element::Element;
-use crate::material::{MaterialError, Materials};
-use crate::mesh::TetMesh;
+use crate::element::{Element, Piece, over_quadratic};
+use crate::material::{Hooke, MaterialError, Materials};
+use crate::mesh::{EDGES, TetMesh};
+use crate::quadrature::FOUR_POINTS;
 use rayon::prelude::*;
 
 errors! {
@@ -26,7 +27,7 @@ pub(crate) fn expect_entries(what: &'static str, given: usize, expected: usize) 
 }
 
 /// The displacement of each node as a vector.
-pub(super) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, FieldError> {
+pub(crate) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, FieldError> {
     expect_entries("displacement", u.len(), 3 * mesh.points().len())?;
     let vectors: Vec<_> = u.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect();
     match vectors.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
@@ -38,25 +39,36 @@ pub(super) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, 
     }
 }
 
-/// Strain of each tetrahedron.
+/// Strain of each tetrahedron, of a quadratic one at its centroid.
 ///
 /// # Errors
 /// [`FieldError`] if the displacement has the wrong length or is not finite.
 pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     let u = nodal_vectors(mesh, u)?;
     let strain = |tet: usize| {
+        if mesh.order() == 2 {
+            return Piece::new(mesh, tet, &u).strain(&[0.25; 4]);
+        }
         let nodal = mesh.tets()[tet].map(|n| u[n as usize]);
         Element::new(&mesh.tet_points(tet)).strain(&nodal)
     };
     Ok((0..mesh.tets().len()).into_par_iter().map(strain).collect())
 }
 
-/// Stress of each tetrahedron.
+/// Stress of each tetrahedron, of a quadratic one at its centroid.
 ///
 /// # Errors
 /// [`FieldError`] as [`strains`], and if a region has no material.
 pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
+    if mesh.order() == 2 {
+        let u = nodal_vectors(mesh, u)?;
+        let stress = |(tet, law): (usize, &&Hooke)| {
+            let piece = Piece::new(mesh, tet, &u).with_law(law);
+            law.stress(&piece.strain(&[0.25; 4]))
+        };
+        return Ok(laws.par_iter().enumerate().map(stress).collect());
+    }
     let strains = strains(mesh, u)?;
     Ok(strains
         .par_iter()
@@ -65,12 +77,22 @@ pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<
         .collect())
 }
 
-/// Elastic energy, half of stress times strain integrated over the mesh.
+/// Elastic energy, half of stress times strain integrated over the mesh: that of the stiffness matrix.
 ///
 /// # Errors
 /// [`FieldError`] as [`stresses`].
 pub fn strain_energy(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<f64, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
+    if mesh.order() == 2 {
+        let u = nodal_vectors(mesh, u)?;
+        let rule = FOUR_POINTS.map(|l| (l, 0.25));
+        let energy = |tet: usize| {
+            let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
+            over_quadratic(mesh, tet, &rule, |l| laws[tet].energy_density(&piece.strain(l)))
+        };
+        let energies: Vec<f64> = (0..mesh.tets().len()).into_par_iter().map(energy).collect();
+        return Ok(energies.iter().sum());
+    }
     let strains = strains(mesh, u)?;
     let energy = |tet: usize| mesh.volume(tet) * laws[tet].energy_density(&strains[tet]);
     Ok((0..strains.len()).map(energy).sum())
@@ -84,6 +106,41 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
     (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
 }
 
+/// Stress at the nodes: the mean of what it is there in the tetrahedra around each, weighted by volume. Where two
+/// materials meet the mean blurs the jump of the stress.
+///
+/// # Errors
+/// [`FieldError`] as [`stresses`].
+pub fn nodal_stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
+    let laws = materials.of_tets(mesh.regions())?;
+    if mesh.order() == 1 {
+        return nodal_average(mesh, &stresses(mesh, materials, u)?);
+    }
+    let u = nodal_vectors(mesh, u)?;
+    let at_nodes = |tet: usize| {
+        let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
+        NODES.map(|l| laws[tet].stress(&piece.strain(&l)))
+    };
+    let values: Vec<[[f64; 6]; 10]> = (0..mesh.tets().len()).into_par_iter().map(at_nodes).collect();
+    Ok(average(mesh, |tet, k| values[tet][k]))
+}
+
+/// Barycentric coordinates of the ten nodes.
+const NODES: [[f64; 4]; 10] = {
+    let mut out = [[0.0; 4]; 10];
+    let mut k = 0;
+    while k < 10 {
+        if k < 4 {
+            out[k][k] = 1.0;
+        } else {
+            out[k][EDGES[k - 4][0]] = 0.5;
+            out[k][EDGES[k - 4][1]] = 0.5;
+        }
+        k += 1;
+    }
+    out
+};
+
 /// Recovers values at the nodes as the mean of the tetrahedra around each, weighted by volume.
 /// Where two materials meet the mean blurs the jump of the stress.
 ///
@@ -91,19 +148,24 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// [`FieldError::Length`] unless there is one value for each tetrahedron.
 pub fn nodal_average<const N: usize>(mesh: &TetMesh, values: &[[f64; N]]) -> Result<Vec<[f64; N]>, FieldError> {
     expect_entries("table of tetrahedra", values.len(), mesh.tets().len())?;
+    Ok(average(mesh, |tet, _| values[tet]))
+}
+
+/// Mean of the values of each node number in the tetrahedra around each node.
+fn average<const N: usize>(mesh: &TetMesh, value: impl Fn(usize, usize) -> [f64; N]) -> Vec<[f64; N]> {
     let mut sums = vec![[0.0; N]; mesh.points().len()];
     let mut volumes = vec![0.0; mesh.points().len()];
-    for (tet, value) in values.iter().enumerate() {
+    for (tet, corners) in mesh.tets().iter().enumerate() {
         let volume = mesh.volume(tet);
-        for &node in &mesh.tets()[tet] {
+        let mids = mesh.mids().get(tet).map_or(&[][..], |mids| mids);
+        for (k, &node) in corners.iter().chain(mids).enumerate() {
             volumes[node as usize] += volume;
-            let sum = &mut sums[node as usize];
+            let (sum, value) = (&mut sums[node as usize], value(tet, k));
             (0..N).for_each(|i| sum[i] += volume * value[i]);
         }
     }
-    Ok(sums
-        .iter()
+    sums.iter()
         .zip(&volumes)
         .map(|(sum, volume)| sum.map(|s| s / volume))
-        .collect())
+        .collect()
 }

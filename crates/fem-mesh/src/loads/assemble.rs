@@ -3,18 +3,19 @@
 use rayon::prelude::*;
 
 use crate::decomposition::{Decomposition, Subdomain};
-use crate::element::quadrature;
-use crate::mesh::{FacetTag, TetMesh, facet_area_vector};
-use crate::vec3::{add, is_finite, norm, scale};
+use crate::mesh::{FacetTag, TetMesh, curved_facet, facet_area_vector, facet_shape, shape, tangents};
+use crate::quadrature;
+use crate::vec3::{Vec3, add, is_finite, norm, scale, tet_volume};
 
 use super::density::{LoadDensity, LoadError};
 
 /// Turns a load into nodal forces of the subdomains, one vector each with component i of local
 /// node n at 3 n + i.
 ///
-/// The forces are consistent: the work of the load on the piecewise linear displacements. A
+/// The forces are consistent: the work of the load on the displacements of the elements. In a mesh of order 1 a
 /// constant load gives a third of each triangle's force, a quarter of each tetrahedron's, to its
-/// nodes; functions are integrated by rules of degree 5. Each facet and tetrahedron loads only the
+/// nodes; in one of order 2 with straight edges a third of each triangle's to its mid-nodes and nothing to its corners.
+/// Functions and curved elements are integrated by rules of degree 5, along the normal at each point. Each facet and tetrahedron loads only the
 /// subdomain that owns it, a nodal force only the first copy of its node.
 ///
 /// # Errors
@@ -50,13 +51,42 @@ pub fn assemble_load(
 /// Area of all facets of a tag.
 fn tagged_area(mesh: &TetMesh, tag: FacetTag) -> f64 {
     let tagged = mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag);
+    if mesh.order() == 2 {
+        let rule = quadrature::triangle();
+        let area = |points: [Vec3; 6]| -> f64 { rule.iter().map(|(l, w)| w * norm(curved_facet(&points, l).1)).sum() };
+        return tagged.map(|(facet, _)| area(mesh.quadratic_facet_points(facet))).sum();
+    }
     tagged.map(|(facet, _)| norm(facet_area_vector(mesh, facet))).sum()
 }
 
 /// A density as a function of point and normal (the latter zero inside the body).
+#[derive(Clone, Copy)]
 enum Density<'a> {
     Constant([f64; 3]),
     Varying(&'a (dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Sync)),
+}
+
+/// What an integral over a curved element needs at a point: values of its shape functions, the place, the normal (zero
+/// inside the body), and its measure (area or volume) there.
+type At<const N: usize> = ([f64; N], Vec3, Vec3, f64);
+
+/// Forces of the nodes of a curved element with `N` nodes, from each point with its weight.
+fn curved_forces<'a, const N: usize>(
+    points: impl Iterator<Item = (At<N>, f64)>,
+    density: impl Fn(Vec3) -> Density<'a>,
+) -> Result<[Vec3; N], LoadError> {
+    let mut forces = [[0.0; 3]; N];
+    for ((shape, place, normal, measure), weight) in points {
+        let value = match density(normal) {
+            Density::Constant(value) => value,
+            Density::Varying(of) => of(place, normal),
+        };
+        let value = finite(place, value)?;
+        for (force, value_of_shape) in forces.iter_mut().zip(shape) {
+            *force = add(*force, scale(measure * weight * value_of_shape, value));
+        }
+    }
+    Ok(forces)
 }
 
 impl Density<'_> {
@@ -108,6 +138,21 @@ fn body(mesh: &TetMesh, decomposition: &Decomposition, density: Density<'_>) -> 
     let rule = quadrature::tetrahedron();
     let of_subdomain = |subdomain: &Subdomain| {
         let mut vector = vec![0.0; subdomain.dofs()];
+        for (&element, tet) in subdomain.elements.iter().zip(subdomain.quadratic_tets()) {
+            let points = mesh.quadratic_points(element as usize);
+            let at = |(l, weight): &([f64; 4], f64)| {
+                let shape = shape(l);
+                let volume = tet_volume(&tangents(&points, l));
+                ((shape, quadrature::at(&points, &shape), [0.0; 3], volume), *weight)
+            };
+            let forces = curved_forces(rule.iter().map(at), |_| density)?;
+            tet.iter()
+                .zip(forces)
+                .for_each(|(&node, force)| accumulate(&mut vector, node, force));
+        }
+        if mesh.order() == 2 {
+            return Ok(vector);
+        }
         for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
             let points = mesh.tet_points(element as usize);
             let volume = mesh.volume(element as usize);
@@ -141,6 +186,21 @@ fn traction<'a>(
     let of_subdomain = |(subdomain, facets): (&Subdomain, &Vec<usize>)| {
         let mut vector = vec![0.0; subdomain.dofs()];
         for &facet in facets {
+            if mesh.order() == 2 {
+                let points = mesh.quadratic_facet_points(facet);
+                let at = |(l, weight): &([f64; 3], f64)| {
+                    let (place, area) = curved_facet(&points, l);
+                    let size = norm(area);
+                    ((facet_shape(l), place, scale(1.0 / size, area), size), *weight)
+                };
+                let forces = curved_forces(rule.iter().map(at), &density)?;
+                for (node, force) in mesh.quadratic_facet(facet).into_iter().zip(forces) {
+                    if let Some(local) = subdomain.local(node) {
+                        accumulate(&mut vector, local as u32, force);
+                    }
+                }
+                continue;
+            }
             let points = mesh.facet_points(facet);
             let vector_area = facet_area_vector(mesh, facet);
             let area = norm(vector_area);

@@ -1,6 +1,6 @@
 //! Hooke's law with a general elasticity tensor.
 
-use crate::tolerances::{ASYMMETRY, ELLIPTICITY};
+use crate::tolerances::{ASYMMETRY, ELLIPTICITY, INCOMPRESSIBLE};
 use nalgebra::SMatrix;
 
 /// Position of the tensor indices (i, j) in the Voigt order xx, yy, zz, yz, xz, xy.
@@ -63,6 +63,40 @@ impl Hooke {
         let ratio = (1.0 - 2.0 * poisson) / (1.0 + poisson);
         let extreme = ratio.min(1.0 / ratio) < 2.0 * ELLIPTICITY;
         Self::from_voigt(&c).map_err(|error| if extreme { HookeError::Poisson(poisson) } else { error })
+    }
+
+    /// Poisson's ratio of an isotropic law, however it was given; `None` of another one.
+    #[must_use]
+    pub fn poisson(&self) -> Option<f64> {
+        let (lambda, shear) = (self.voigt[0][1], self.voigt[3][3]);
+        let expected = |i: usize, j: usize| match (i < 3 && j < 3, i == j) {
+            (true, same) => lambda + if same { 2.0 * shear } else { 0.0 },
+            (false, same) => {
+                if same {
+                    shear
+                } else {
+                    0.0
+                }
+            }
+        };
+        let near = |(i, j): (usize, usize)| (self.voigt[i][j] - expected(i, j)).abs() <= ASYMMETRY * self.largest;
+        let isotropic = (0..36).map(|k| (k / 6, k % 6)).all(near);
+        isotropic.then(|| lambda / (2.0 * (lambda + shear)))
+    }
+
+    /// Whether Poisson's ratio is above 0.4: quadratic elements then take the mean of the volume strain of each element.
+    #[must_use]
+    pub fn is_nearly_incompressible(&self) -> bool {
+        self.poisson().is_some_and(|p| p > INCOMPRESSIBLE)
+    }
+
+    /// The law with a Poisson's ratio of 0.4 and the same Young's modulus, of one that is nearly incompressible: for
+    /// preconditioners.
+    #[must_use]
+    pub fn compressible(&self) -> Option<Self> {
+        let poisson = self.poisson().filter(|p| *p > INCOMPRESSIBLE)?;
+        let young = 2.0 * self.voigt[3][3] * (1.0 + poisson);
+        Self::isotropic(young, INCOMPRESSIBLE).ok()
     }
 
     /// A general law from c_ijkl; see (2.8) for the conditions.

@@ -84,9 +84,9 @@ pub(super) fn shapes(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError
     fault.map_or(Ok(()), Err)
 }
 
-pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshError> {
+pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Result<(), MeshError> {
     let mut used = vec![false; nodes];
-    for &node in tets.iter().flatten() {
+    for &node in tets.iter().flatten().chain(mids.iter().flatten()) {
         used[node as usize] = true;
     }
     match used.iter().position(|&u| !u) {
@@ -101,7 +101,7 @@ pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]]) -> Result<(), MeshErr
 /// Coinciding nodes of the same body are a cut that nobody meant; those of different bodies are
 /// allowed, since bodies in contact may have matching nodes. Here tetrahedra with a common node
 /// belong to the same body.
-pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError> {
+pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Result<(), MeshError> {
     let pairs = close_pairs(points, 0.0);
     if pairs.is_empty() {
         return Ok(());
@@ -110,6 +110,10 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), Me
     for tet in tets {
         tet[1..]
             .iter()
+            .for_each(|&node| bodies.join(tet[0] as usize, node as usize));
+    }
+    for (tet, mids) in tets.iter().zip(mids) {
+        mids.iter()
             .for_each(|&node| bodies.join(tet[0] as usize, node as usize));
     }
     match pairs.into_iter().find(|&(a, b)| bodies.first(a) == bodies.first(b)) {

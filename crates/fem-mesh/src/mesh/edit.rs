@@ -39,13 +39,15 @@ impl TetMesh {
         self
     }
 
-    /// Moves every node to `map(point)`, keeping connectivity, tags and regions.
+    /// Moves every node to `map(point)`, keeping connectivity, tags and regions. Mid-nodes move as all others: a map
+    /// that is not linear makes curved edges.
     ///
     /// # Errors
     /// [`MeshError`] if the mapped mesh is not valid, for instance inverted by a reflection.
     pub fn map_points(&self, map: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, MeshError> {
         let points = self.points.iter().copied().map(map).collect();
-        Self::new(points, self.tets.clone(), self.facets.clone())?.with_regions(self.regions.clone())
+        let (tets, mids, facets) = (self.tets.clone(), self.mids.clone(), self.facets.clone());
+        Self::checked(points, tets, mids, facets)?.with_regions(self.regions.clone())
     }
 
     /// This mesh and, numbered after it, `other` as separate bodies. Tags and regions stay; the
@@ -53,15 +55,21 @@ impl TetMesh {
     /// another is not checked.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if the sum is too large to be numbered.
+    /// [`MeshError::TooLarge`] if the sum is too large to be numbered, [`MeshError::MixedOrder`] of meshes of different
+    /// orders.
     pub fn append(&self, other: &Self) -> Result<Self, MeshError> {
         let nodes = self.points.len() + other.points.len();
         let tets = self.tets.len() + other.tets.len();
         check::sizes(nodes, tets)?;
+        let (first, second) = (self.order(), other.order());
+        if first != second {
+            return Err(MeshError::MixedOrder { first, second });
+        }
         let (by_node, by_tet) = (self.points.len() as u32, self.tets.len() as u32);
         let mut sum = self.clone();
         sum.points.extend(&other.points);
         sum.tets.extend(other.tets.iter().map(|t| t.map(|n| n + by_node)));
+        sum.mids.extend(other.mids.iter().map(|t| t.map(|n| n + by_node)));
         sum.facets.extend((other.facets.iter()).map(|f| Facet {
             nodes: f.nodes.map(|n| n + by_node),
             ..*f
@@ -74,14 +82,21 @@ impl TetMesh {
     }
 }
 
-/// Swaps the last two nodes of every tetrahedron of negative volume and returns how many there
-/// were. Tetrahedra that name unknown nodes are left for [`TetMesh::new`] to report.
-pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
+/// Swaps the last two corners of every tetrahedron of negative volume, of ten nodes with the mid-nodes that go with
+/// them, and returns how many there were. Tetrahedra that name unknown nodes are left for [`TetMesh::new`] to report.
+pub fn orient_tets<const N: usize>(points: &[[f64; 3]], tets: &mut [[u32; N]]) -> usize {
     let mut turned = 0;
     for tet in tets {
-        if tet.iter().all(|&n| (n as usize) < points.len()) && vec3::tet_volume(&tet.map(|n| points[n as usize])) < 0.0
-        {
+        let Some(corners) = tet.first_chunk::<4>() else {
+            continue;
+        };
+        let known = corners.iter().all(|&n| (n as usize) < points.len());
+        if known && vec3::tet_volume(&corners.map(|n| points[n as usize])) < 0.0 {
             tet.swap(2, 3);
+            if N == 10 {
+                tet.swap(5, 8);
+                tet.swap(6, 7);
+            }
             turned += 1;
         }
     }
@@ -111,7 +126,12 @@ pub fn orient_tets(points: &[[f64; 3]], tets: &mut [[u32; 4]]) -> usize {
 /// assert!(!one.components().contains(&1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn merge_nodes(points: &[[f64; 3]], tets: &mut [[u32; 4]], facets: &mut [Facet], distance: f64) -> usize {
+pub fn merge_nodes<const N: usize>(
+    points: &[[f64; 3]],
+    tets: &mut [[u32; N]],
+    facets: &mut [Facet],
+    distance: f64,
+) -> usize {
     let pairs = check::close_pairs(points, distance);
     let mut sets = DisjointSets::new(points.len());
     for (a, b) in pairs {
@@ -128,7 +148,11 @@ pub fn merge_nodes(points: &[[f64; 3]], tets: &mut [[u32; 4]], facets: &mut [Fac
 /// Removes nodes that no tetrahedron uses and renumbers the others in the same order. Returns,
 /// for each node that stays, its old number. Facets that use a removed node, and numbers out of
 /// range, are left with a number out of range for [`TetMesh::new`] to report.
-pub fn drop_unused_nodes(points: &mut Vec<[f64; 3]>, tets: &mut [[u32; 4]], facets: &mut [Facet]) -> Vec<u32> {
+pub fn drop_unused_nodes<const N: usize>(
+    points: &mut Vec<[f64; 3]>,
+    tets: &mut [[u32; N]],
+    facets: &mut [Facet],
+) -> Vec<u32> {
     const GONE: u32 = u32::MAX;
     let mut new_number = vec![GONE; points.len()];
     for &node in tets.iter().flatten() {

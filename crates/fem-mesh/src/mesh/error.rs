@@ -43,6 +43,25 @@ errors! {
             tag only facets of the boundary";
         FacetRepeated { first: usize, second: usize, nodes: [u32; 3] } =
             "facets {first} and {second} are the same triangle {nodes:?}; a facet has one tag, so list it once";
+        MidNodeCorner { tet: usize, node: u32 } =
+            "tetrahedron {tet} has the mid-node {node}, which is a corner; mid-nodes have numbers of their own, so \
+            look for another order of the ten nodes";
+        MidNodeTwice { node: u32, first: [u32; 2], second: [u32; 2] } =
+            "node {node} is in the middle of two edges, {first:?} and {second:?}; look for another order of the ten \
+            nodes, or give each edge a node of its own";
+        MidNodesOfEdge { edge: [u32; 2], first: u32, second: u32 } =
+            "the edge {edge:?} has two mid-nodes, {first} and {second}; use one in all tetrahedra around it \
+            (merge_nodes), otherwise the body is cut open there";
+        MidNodeOff { tet: usize, node: u32, edge: [u32; 2], distance: f64, limit: f64 } =
+            "the mid-node {node} of tetrahedron {tet} is {distance:.2} of the length of its edge {edge:?} away from its \
+            middle, more than {limit:.2}; move it there, remesh finer around it, or look for another order of the \
+            ten nodes";
+        CurvedInside { tet: usize, nodes: [u32; 4], least: f64, limit: f64 } =
+            "tetrahedron {tet} with corners {nodes:?} is turned inside out by its mid-nodes: its volume per volume of \
+            the straight one falls to {least:.1e} somewhere in it, less than {limit:.0e}; straighten its edges or \
+            remesh finer around it";
+        MixedOrder { first: usize, second: usize } =
+            "a mesh of order {first} and one of order {second} cannot be one; raise_order the linear one";
         RegionCount { given: usize, tets: usize } =
             "{given} region numbers for {tets} tetrahedra; give exactly one each";
     }

@@ -1,16 +1,18 @@
 //! Meshes of tetrahedra with tagged boundary facets, and the surfaces that contact needs of them.
 //!
-//! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `edit`
-//! meshes made from meshes, `brick` a box of cells, `surface` nodal normals, frames and areas, `error` what can be
-//! wrong.
+//! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `quadratic`
+//! mid-nodes, `curved` the geometry of tetrahedra and facets that have them, `edit` meshes made from meshes, `brick` a
+//! box of cells, `surface` nodal normals, frames, areas and means, `error` what can be wrong.
 //!
 //! Uses: `tables`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
 
 pub mod brick;
 mod check;
+mod curved;
 mod edit;
 mod error;
 mod faces;
+mod quadratic;
 mod surface;
 mod tet_mesh;
 
@@ -19,5 +21,7 @@ pub use error::MeshError;
 pub use surface::{Surface, SurfaceError, SurfaceFrame};
 pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 
+pub(crate) use curved::{EDGES, curved_facet, facet_shape, shape, tangents};
 pub(crate) use faces::{NONE, connected_sets};
+pub(crate) use quadratic::quadratic_tets;
 pub(crate) use tet_mesh::{facet_area_vector, tag_list};

@@ -1,8 +1,10 @@
 //! Surfaces with nodal normals, frames and areas, flat or curved.
 
+use crate::quadrature;
 use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL};
-use crate::vec3::{self, add, cross, dot, norm, scale, sub};
+use crate::vec3::{self, Vec3, add, cross, dot, norm, scale, sub};
 
+use super::curved::{curved_facet, facet_shape};
 use super::tet_mesh::{FacetTag, TetMesh, facet_area_vector, tag_list};
 
 /// An orthonormal frame on a surface: the outward normal nu and two tangents T1, T2.
@@ -85,10 +87,12 @@ errors! {
     }
 }
 
-/// A part of the boundary with what contact needs at its nodes.
+/// A part of the boundary with what contact needs at its nodes, the corners of its triangles.
 ///
 /// The area of a node is a third of the triangles around it; its normal is the mean of theirs,
-/// weighted by area.
+/// weighted by area. In a mesh of order 2 both are integrals with the linear hat function of the node, which are the
+/// same where edges are straight; mid-nodes have none, but a share in the means of the nodes around
+/// ([`Surface::mean`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     facets: Vec<u32>,
@@ -96,6 +100,41 @@ pub struct Surface {
     nodes: Vec<u32>,
     areas: Vec<f64>,
     frames: Vec<SurfaceFrame>,
+    /// Integrals over each triangle in a mesh of order 2.
+    integrals: Vec<FacetIntegrals>,
+}
+
+/// Integrals over a quadratic facet.
+#[derive(Debug, Clone, PartialEq)]
+struct FacetIntegrals {
+    nodes: [u32; 6],
+    /// Of the hat function of each corner times the normal, and times one.
+    normals: [Vec3; 3],
+    areas: [f64; 3],
+    /// Of the hat function of each corner times the shape function of each node.
+    products: [[f64; 6]; 3],
+}
+
+impl FacetIntegrals {
+    fn new(mesh: &TetMesh, facet: usize) -> Self {
+        let points = mesh.quadratic_facet_points(facet);
+        let mut out = Self {
+            nodes: mesh.quadratic_facet(facet),
+            normals: [[0.0; 3]; 3],
+            areas: [0.0; 3],
+            products: [[0.0; 6]; 3],
+        };
+        for (l, weight) in quadrature::triangle() {
+            let ((_, normal), shape) = (curved_facet(&points, &l), facet_shape(&l));
+            for i in 0..3 {
+                let hat = weight * l[i];
+                out.normals[i] = add(out.normals[i], scale(hat, normal));
+                out.areas[i] += hat * norm(normal);
+                (0..6).for_each(|k| out.products[i][k] += hat * norm(normal) * shape[k]);
+            }
+        }
+        out
+    }
 }
 
 impl Surface {
@@ -117,7 +156,18 @@ impl Surface {
 
         let mut areas = vec![0.0; nodes.len()];
         let mut normals = vec![[0.0; 3]; nodes.len()];
-        for (&facet, triangle) in facets.iter().zip(&triangles) {
+        let curved = mesh.order() == 2;
+        let integrals: Vec<_> = (facets.iter().filter(|_| curved))
+            .map(|&facet| FacetIntegrals::new(mesh, facet as usize))
+            .collect();
+        for (triangle, facet) in triangles.iter().zip(&integrals) {
+            for (i, &n) in triangle.iter().enumerate() {
+                areas[n as usize] += facet.areas[i];
+                // three times, as the whole triangle counts below
+                normals[n as usize] = add(normals[n as usize], scale(3.0, facet.normals[i]));
+            }
+        }
+        for (&facet, triangle) in facets.iter().zip(&triangles).filter(|_| !curved) {
             let normal = facet_area_vector(mesh, facet as usize);
             let area = norm(normal);
             for &n in triangle {
@@ -141,6 +191,7 @@ impl Surface {
             nodes,
             areas,
             frames,
+            integrals,
         })
     }
 
@@ -179,6 +230,53 @@ impl Surface {
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// The mean of a displacement around a node, as mesh nodes with weights that sum to one, over those triangles around
+    /// it that are chosen (all of its own side, at a crease): the node alone in a mesh of order 1. In a mesh of order 2
+    /// the displacement is weighted by the linear hat function of the node; the corners around it have negative
+    /// weights. The node comes first, the others ascend.
+    ///
+    /// # Panics
+    /// If there is no such node or triangle.
+    #[must_use]
+    pub fn mean(&self, local: usize, triangles: impl Iterator<Item = usize>) -> Vec<(u32, f64)> {
+        let own = self.nodes[local];
+        let mut entries: Vec<(u32, f64)> = Vec::new();
+        for t in triangles.filter(|&t| t < self.integrals.len()) {
+            let facet = &self.integrals[t];
+            let corners = self.triangles[t].iter().zip(&facet.products);
+            for (_, products) in corners.filter(|(n, _)| **n as usize == local) {
+                entries.extend(facet.nodes.iter().copied().zip(products.iter().copied()));
+            }
+        }
+        entries.sort_by_key(|e| (e.0 != own, e.0));
+        let mut mean: Vec<(u32, f64)> = Vec::with_capacity(entries.len());
+        for (node, weight) in entries {
+            match mean.last_mut().filter(|last| last.0 == node) {
+                Some(last) => last.1 += weight,
+                None => mean.push((node, weight)),
+            }
+        }
+        let total: f64 = mean.iter().map(|e| e.1).sum();
+        mean.iter_mut().for_each(|e| e.1 /= total);
+        if mean.is_empty() { vec![(own, 1.0)] } else { mean }
+    }
+
+    /// Area of the hat function of a corner of a triangle, a third of a straight one's, and the normal integrated with
+    /// it.
+    ///
+    /// # Panics
+    /// If there is no such triangle or corner.
+    #[must_use]
+    pub fn corner_area(&self, mesh: &TetMesh, triangle: usize, corner: usize) -> (f64, [f64; 3]) {
+        match self.integrals.get(triangle) {
+            Some(facet) => (facet.areas[corner], facet.normals[corner]),
+            None => {
+                let normal = facet_area_vector(mesh, self.facets[triangle] as usize);
+                (norm(normal) / 3.0, scale(1.0 / 3.0, normal))
+            }
+        }
     }
 
     /// Area of the whole surface.

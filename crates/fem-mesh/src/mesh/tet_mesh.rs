@@ -3,6 +3,7 @@
 use crate::vec3::{self, Vec3};
 
 use super::check;
+use super::curved;
 use super::error::MeshError;
 use super::faces::{FaceTable, NONE, Sides, connected_sets, face_nodes};
 
@@ -45,7 +46,10 @@ pub struct BoundaryFacet {
     pub tet: u32,
 }
 
-/// A mesh of linear tetrahedra with tagged boundary facets and material regions.
+/// A mesh of linear or quadratic tetrahedra with tagged boundary facets and material regions.
+///
+/// In a mesh of order 2 every edge has a mid-node ([`TetMesh::quadratic`], [`TetMesh::raise_order`]); tetrahedra and
+/// facets are listed by their corners all the same, and [`TetMesh::mids`] has the rest.
 ///
 /// A value of this type has passed all checks: finite coordinates, valid node numbers,
 /// tetrahedra of positive volume that do not overlap at faces, no unused nodes, no coinciding
@@ -57,6 +61,8 @@ pub struct BoundaryFacet {
 pub struct TetMesh {
     pub(super) points: Vec<[f64; 3]>,
     pub(super) tets: Vec<[u32; 4]>,
+    /// Mid-nodes of the edges of each tetrahedron; empty in a mesh of order 1.
+    pub(super) mids: Vec<[u32; 6]>,
     pub(super) facets: Vec<Facet>,
     pub(super) owners: Vec<u32>,
     pub(super) regions: Vec<u32>,
@@ -70,19 +76,31 @@ impl TetMesh {
     /// # Errors
     /// [`MeshError`] names the first fault and its remedy.
     pub fn new(points: Vec<[f64; 3]>, tets: Vec<[u32; 4]>, facets: Vec<Facet>) -> Result<Self, MeshError> {
+        Self::checked(points, tets, Vec::new(), facets)
+    }
+
+    /// A mesh of order 2, or without mid-nodes of order 1, that has passed all checks.
+    pub(super) fn checked(
+        points: Vec<[f64; 3]>,
+        tets: Vec<[u32; 4]>,
+        mids: Vec<[u32; 6]>,
+        facets: Vec<Facet>,
+    ) -> Result<Self, MeshError> {
         check::sizes(points.len(), tets.len())?;
         check::coordinates(&points)?;
         check::connectivity(points.len(), &tets)?;
         check::shapes(&points, &tets)?;
-        check::no_dangling(points.len(), &tets)?;
+        curved::check(&points, &tets, &mids)?;
+        check::no_dangling(points.len(), &tets, &mids)?;
         let table = FaceTable::new(points.len(), &tets);
         let neighbours = table.neighbours(tets.len())?;
-        check::no_coincident(&points, &tets)?;
+        check::no_coincident(&points, &tets, &mids)?;
         let (facets, owners) = place_facets(points.len(), &tets, &table, facets)?;
         let regions = vec![0; tets.len()];
         Ok(Self {
             points,
             tets,
+            mids,
             facets,
             owners,
             regions,
@@ -109,7 +127,7 @@ impl TetMesh {
         &self.points
     }
 
-    /// Nodes of each tetrahedron.
+    /// Corners of each tetrahedron: all its nodes in a mesh of order 1.
     #[must_use]
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.tets
@@ -145,17 +163,21 @@ impl TetMesh {
         tags
     }
 
-    /// Nodes on the facets of a tag, ascending; empty if the tag is absent.
+    /// Nodes on the facets of a tag, mid-nodes too, ascending; empty if the tag is absent.
     #[must_use]
     pub fn nodes_on(&self, tag: FacetTag) -> Vec<u32> {
         let on_tag = self.facets.iter().filter(|f| f.tag == tag);
         let mut nodes: Vec<_> = on_tag.flat_map(|f| f.nodes).collect();
+        if self.order() == 2 {
+            let on_tag = (0..self.facets.len()).filter(|&f| self.facets[f].tag == tag);
+            nodes.extend(on_tag.flat_map(|f| self.facet_mids(f)));
+        }
         nodes.sort_unstable();
         nodes.dedup();
         nodes
     }
 
-    /// Coordinates of the four nodes of a tetrahedron.
+    /// Coordinates of the four corners of a tetrahedron.
     ///
     /// # Panics
     /// If there is no such tetrahedron.
@@ -164,7 +186,7 @@ impl TetMesh {
         self.tets[tet].map(|n| self.points[n as usize])
     }
 
-    /// Coordinates of the three nodes of a tagged facet.
+    /// Coordinates of the three corners of a tagged facet.
     ///
     /// # Panics
     /// If there is no such facet.
@@ -179,7 +201,10 @@ impl TetMesh {
     /// If there is no such tetrahedron.
     #[must_use]
     pub fn volume(&self, tet: usize) -> f64 {
-        vec3::tet_volume(&self.tet_points(tet))
+        match self.mids.get(tet) {
+            None => vec3::tet_volume(&self.tet_points(tet)),
+            Some(_) => curved::volume(&self.quadratic_points(tet)),
+        }
     }
 
     /// Volume of the whole mesh.

@@ -6,11 +6,12 @@
 
 use rayon::prelude::*;
 
-use crate::fields::{FieldError, expect_entries, strains};
+use crate::fields::{FieldError, expect_entries, nodal_vectors, strains};
 use crate::material::Materials;
 use crate::mesh::TetMesh;
 
 use super::patches::StrainRecovery;
+use super::quadratic::energies;
 
 /// Estimated discretisation error, tetrahedron by tetrahedron.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +75,15 @@ impl StrainRecovery {
     pub fn error(&self, mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<DiscretisationError, FieldError> {
         expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
         let laws = materials.of_tets(mesh.regions())?;
+        if mesh.order() == 2 {
+            let all = energies(mesh, &laws, &nodal_vectors(mesh, u)?, &self.fits, &self.corners);
+            let energies: Vec<f64> = all.iter().map(|e| e[0]).collect();
+            return Ok(DiscretisationError {
+                total: energies.iter().sum(),
+                energies,
+                elastic: all.iter().map(|e| e[1]).sum(),
+            });
+        }
         let strains = strains(mesh, u)?;
         let at = |k: usize| {
             let mut sum = [0.0; 6];

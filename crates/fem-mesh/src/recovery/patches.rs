@@ -11,6 +11,8 @@ use crate::tables::buckets;
 use crate::tolerances::{PIVOT, SMALL_PATCH};
 use crate::vec3::{centroid, sub};
 
+use super::quadratic::Fit;
+
 /// The recovery of strains at the nodes of a mesh, to be used for many displacements: the fits
 /// depend on the mesh only, so that each recovered strain is a fixed combination of strains.
 #[derive(Debug, Clone)]
@@ -23,6 +25,8 @@ pub struct StrainRecovery {
     pub(super) corners: Vec<[u32; 4]>,
     /// Of each tetrahedron.
     pub(super) volumes: Vec<f64>,
+    /// The patches in a mesh of order 2, instead of their weights.
+    pub(super) fits: Vec<Fit>,
 }
 
 /// What a fit needs of a tetrahedron.
@@ -75,6 +79,26 @@ impl Around {
         &self.tets[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
+    /// A patch and those of its neighbours, ascending.
+    fn wide(&self, mesh: &TetMesh, k: usize) -> Vec<u32> {
+        let mut wide: Vec<u32> = self
+            .patch(k)
+            .iter()
+            .flat_map(|&tet| mesh.tets()[tet as usize].map(|node| self.place(mesh, node, tet)))
+            .flat_map(|k| self.patch(k))
+            .copied()
+            .collect();
+        wide.sort_unstable();
+        wide.dedup();
+        wide
+    }
+
+    /// Patches of the corners of each tetrahedron.
+    fn corners(&self, mesh: &TetMesh) -> Vec<[u32; 4]> {
+        let corner = |(tet, nodes): (usize, &[u32; 4])| nodes.map(|node| self.place(mesh, node, tet as u32) as u32);
+        mesh.tets().iter().enumerate().map(corner).collect()
+    }
+
     /// The patch around `node` that `tet`, one of its tetrahedra, belongs to.
     fn place(&self, mesh: &TetMesh, node: u32, tet: u32) -> usize {
         let own = self.first[node as usize] as usize..self.first[node as usize + 1] as usize;
@@ -89,6 +113,9 @@ impl StrainRecovery {
     #[must_use]
     pub fn new(mesh: &TetMesh) -> Self {
         let around = Around::new(mesh);
+        if mesh.order() == 2 {
+            return Self::quadratic(mesh, &around);
+        }
         let cells: Vec<Cell> = (0..mesh.tets().len())
             .into_par_iter()
             .map(|tet| Cell {
@@ -104,14 +131,7 @@ impl StrainRecovery {
             {
                 return (own.to_vec(), weights);
             }
-            let mut wide: Vec<u32> = own
-                .iter()
-                .flat_map(|&tet| mesh.tets()[tet as usize].map(|node| around.place(mesh, node, tet)))
-                .flat_map(|k| around.patch(k))
-                .copied()
-                .collect();
-            wide.sort_unstable();
-            wide.dedup();
+            let wide = around.wide(mesh, k);
             match fit(&cells, &wide, centre) {
                 Some(weights) => (wide, weights),
                 None => (own.to_vec(), mean(&cells, own)),
@@ -125,13 +145,30 @@ impl StrainRecovery {
             weights.extend(w);
             pointers.push(tets.len());
         }
-        let corner = |(tet, nodes): (usize, &[u32; 4])| nodes.map(|node| around.place(mesh, node, tet as u32) as u32);
         Self {
             pointers,
             tets,
             weights,
-            corners: mesh.tets().iter().enumerate().map(corner).collect(),
+            corners: around.corners(mesh),
             volumes: cells.iter().map(|c| c.volume).collect(),
+            fits: Vec::new(),
+        }
+    }
+
+    fn quadratic(mesh: &TetMesh, around: &Around) -> Self {
+        let patch = |k: usize| {
+            let (own, centre) = (around.patch(k), mesh.points()[around.nodes[k] as usize]);
+            let first = Some(own).filter(|own| own.len() >= SMALL_PATCH);
+            let fit = first.and_then(|own| Fit::quadratic(mesh, own, centre));
+            fit.unwrap_or_else(|| Fit::best(mesh, &around.wide(mesh, k), centre))
+        };
+        Self {
+            pointers: vec![0],
+            tets: Vec::new(),
+            weights: Vec::new(),
+            corners: around.corners(mesh),
+            volumes: (0..mesh.tets().len()).map(|tet| mesh.volume(tet)).collect(),
+            fits: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
         }
     }
 }

@@ -11,6 +11,7 @@ mod merge;
 mod mesh;
 #[cfg(feature = "vtu")]
 mod output;
+mod quadratic;
 mod recovery;
 mod refusals;
 mod stiffness;

@@ -417,3 +417,32 @@ fn a_short_file_is_refused() {
         [0.0, 1.0, 2.0]
     );
 }
+
+/// Cells of type 24, whose mid-nodes VTK has on the edges 01, 12, 20, 03, 13, 23.
+#[test]
+fn meshes_of_order_two_are_quadratic_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = mesh().raise_order().unwrap();
+    let (points, cells) = fields(&mesh);
+    let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
+    let [whole, cut] = ["whole.vtu", "cut.vtu"].map(|name| folder.path().join(name));
+    write_vtu(&whole, &mesh, &points, &cells).unwrap();
+    write_vtu_pieces(&cut, &mesh, &parts, &points, &cells).unwrap();
+    assert_eq!(pieces(&cut).len(), 3);
+    for piece in pieces(&whole).into_iter().chain(pieces(&cut)) {
+        assert!(piece.cells.types.iter().all(|&t| t == CellType::QuadraticTetra));
+        let places = piece.points.cast_into::<f64>().unwrap();
+        let (connectivity, offsets) = piece.cells.cell_verts.clone().into_xml();
+        assert_eq!(offsets.last().copied(), Some(connectivity.len() as u64));
+        for cell in connectivity.chunks_exact(10) {
+            for (mid, (a, b)) in cell[4..].iter().zip([(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]) {
+                let at = |node: u64, c: usize| places[3 * node as usize + c];
+                (0..3).for_each(|c| {
+                    assert_abs_diff_eq!(2.0 * at(*mid, c), at(cell[a], c) + at(cell[b], c), epsilon = 1e-14)
+                });
+            }
+        }
+        let field = values(&piece.data.point, "height");
+        assert_eq!(field.len(), places.len() / 3);
+    }
+}

@@ -181,7 +181,7 @@ impl ActiveSetPreconditioner for DualPreconditioner {
 impl BoundaryStiffness {
     fn new(base: &ClassBase, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
         let layout = &map.classes[class];
-        let split = Split::new(&base.stiffness, &layout.nodes);
+        let split = Split::new(base.preconditioning(), &layout.nodes);
         let shared = layout.members.len() >= SHARED;
         if kind == Kind::Lumped || split.coupling.interior == 0 {
             // Sparse also for shared classes: a tenth of the operations of a dense product.

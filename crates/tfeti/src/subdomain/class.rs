@@ -173,7 +173,10 @@ impl<'a> Candidate<'a> {
 
     fn is_translate_of(&self, other: &Self) -> bool {
         let (nodes, other_nodes) = (&self.subdomain.nodes, &other.subdomain.nodes);
-        if nodes.len() != other_nodes.len() || self.subdomain.tets != other.subdomain.tets {
+        if nodes.len() != other_nodes.len()
+            || self.subdomain.tets != other.subdomain.tets
+            || self.subdomain.mids != other.subdomain.mids
+        {
             return false;
         }
         let same = |(a, b): (&(usize, &Hooke), &(usize, &Hooke))| a.0 == b.0 && a.1.voigt() == b.1.voigt();

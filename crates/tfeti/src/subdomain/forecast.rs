@@ -58,7 +58,11 @@ impl<'a> Forecast<'a> {
         let list = found.classes();
         let analysed = list.par_iter().map(|class| {
             let s = class.members[0] as usize;
-            let pattern = nodal_pattern(class.nodes, &subdomains[s].tets);
+            let subdomain = &subdomains[s];
+            let pattern = match subdomain.mids.is_empty() {
+                true => nodal_pattern(class.nodes, &subdomain.tets),
+                false => nodal_pattern(class.nodes, &subdomain.quadratic_tets()),
+            };
             let symbolic = Symbolic::new(&pattern, 3).map_err(|e| TfetiError::pattern(e, s))?;
             Ok((pattern, symbolic))
         });
@@ -142,7 +146,7 @@ impl<'a> Forecast<'a> {
 }
 
 /// Pattern of the stiffness of some tetrahedra: full blocks for all pairs of nodes of an element.
-fn nodal_pattern(nodes: usize, tets: &[[u32; 4]]) -> Columns {
+fn nodal_pattern<const N: usize>(nodes: usize, tets: &[[u32; N]]) -> Columns {
     let mut graph: Vec<Vec<u32>> = (0..nodes as u32).map(|n| vec![n]).collect();
     for tet in tets {
         tet.iter().for_each(|&n| graph[n as usize].extend(tet));

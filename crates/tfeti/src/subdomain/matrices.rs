@@ -6,7 +6,7 @@ use crate::linalg::sparse::Columns;
 use crate::subdomain::class::{Class, Classes};
 use crate::subdomain::kernel::Kernel;
 use rayon::prelude::*;
-use signorini_fem_mesh::{Decomposition, Materials, TetMesh, assemble_stiffness};
+use signorini_fem_mesh::{Decomposition, Hooke, Materials, TetMesh, assemble_stiffness};
 use std::sync::OnceLock;
 
 /// All subdomains with their matrices.
@@ -24,6 +24,16 @@ pub(crate) struct ClassBase {
     /// The same for products with several members, made when first needed.
     pub(crate) blocks: OnceLock<BlockRows>,
     pub(crate) kernel: Kernel,
+    /// What preconditioners are made of where the material is nearly incompressible and elements do not lock: the
+    /// stiffness of a compressible one. With its own they would need many times more iterations.
+    pub(crate) compressible: Option<Columns>,
+}
+
+impl ClassBase {
+    /// The stiffness that preconditioners are made of.
+    pub(crate) fn preconditioning(&self) -> &Columns {
+        self.compressible.as_ref().unwrap_or(&self.stiffness)
+    }
 }
 
 impl Subdomains {
@@ -44,10 +54,28 @@ impl Subdomains {
             let element = subdomain.elements[0] as usize;
             let material = |message| TfetiError::Material { element, message };
             let hooke = materials.of_tets(&regions).map_err(|e| material(e.to_string()))?;
-            let matrix =
-                assemble_stiffness(&points, &subdomain.tets, |t| hooke[t]).map_err(|e| material(e.to_string()))?;
+            let assemble = |laws: &[&Hooke]| {
+                let matrix = if subdomain.mids.is_empty() {
+                    assemble_stiffness(&points, &subdomain.tets, |t| laws[t])
+                } else {
+                    assemble_stiffness(&points, &subdomain.quadratic_tets(), |t| laws[t])
+                };
+                let matrix = matrix.map_err(|e| material(e.to_string()))?;
+                Ok::<_, TfetiError>(Columns::from_symmetric(&matrix))
+            };
+            let softer = || hooke.iter().map(|law| law.compressible()).collect::<Vec<_>>();
+            let softer = (!subdomain.mids.is_empty()).then(softer);
+            let softer = softer.filter(|laws| laws.iter().any(Option::is_some));
+            let compressible = softer.map(|softer| {
+                let laws = softer
+                    .iter()
+                    .zip(&hooke)
+                    .map(|(soft, &law)| soft.as_ref().unwrap_or(law));
+                assemble(&laws.collect::<Vec<_>>())
+            });
             Ok(ClassBase {
-                stiffness: Columns::from_symmetric(&matrix),
+                stiffness: assemble(&hooke)?,
+                compressible: compressible.transpose()?,
                 blocks: OnceLock::new(),
                 kernel: Kernel::new(&points, s)?,
             })

@@ -5,7 +5,7 @@ use crate::write::{cube, read};
 
 #[test]
 fn mesh() {
-    for kind in ["C3D10", "C3D8", "S3", "R2D2"] {
+    for kind in ["C3D20", "C3D8", "S3", "R2D2"] {
         let line = format!("*ELEMENT, TYPE={kind}");
         behind(&format!("{line}\n"), &line, &format!("TYPE={kind}"), "C3D4");
     }

@@ -1,6 +1,6 @@
 //! Mesh files of Gmsh, format 4.1, text or binary (feature `gmsh`).
 //!
-//! Linear triangles become tagged facets, linear tetrahedra the mesh; points and lines are skipped, and nodes that no
+//! Triangles become tagged facets, tetrahedra the mesh, of order 2 if they have ten nodes; points and lines are skipped, and nodes that no
 //! tetrahedron uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron
 //! that of its volume; if the file has no physical groups of that dimension, the numbers of the geometric entities
 //! are used, and surfaces between two volumes are skipped. Entities outside of the groups, if there are any groups,
@@ -41,8 +41,11 @@ errors! {
         UnknownName { what: &'static str, name: String, known: Vec<String> } =
             "the Gmsh file has no physical {what} named {name:?}; {}", listed(what, known);
         Unsupported { kind: i32, name: &'static str } =
-            "the Gmsh file has elements of type {kind} ({name}); only linear triangles and tetrahedra are read, so \
-            mesh with order 1 and without recombination";
+            "the Gmsh file has elements of type {kind} ({name}); only triangles and tetrahedra of order 1 or 2 are \
+            read, so mesh with these and without recombination";
+        MixedOrder { linear: usize, quadratic: usize } =
+            "the Gmsh file has {linear} tetrahedra of order 1 and {quadratic} of order 2; save all volumes with one \
+            order (Mesh.ElementOrder)";
         RepeatedNode { tag: u64 } = "the Gmsh file defines node {tag} twice; export the mesh again";
         UnknownNode { element: u64, node: u64 } =
             "element {element} of the Gmsh file uses node {node}, which the file does not define; export the mesh \
@@ -151,28 +154,54 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshErro
     if tets.is_empty() {
         return Err(GmshError::NoTetrahedra);
     }
+    if !file.mids.is_empty() {
+        let (linear, quadratic) = (tets.len() - file.mids.len(), file.mids.len());
+        if linear > 0 {
+            return Err(GmshError::MixedOrder { linear, quadratic });
+        }
+        let owners = file.elements.iter().filter(|e| e.is_tet);
+        let mut whole = Vec::with_capacity(quadratic);
+        for ((owner, corners), mids) in owners.zip(&tets).zip(&file.mids) {
+            let mut tet = [0; 10];
+            tet[..4].copy_from_slice(corners);
+            for (place, &node) in tet[4..].iter_mut().zip(mids) {
+                let element = owner.tag;
+                *place = number
+                    .get(&node)
+                    .copied()
+                    .ok_or(GmshError::UnknownNode { element, node })?;
+            }
+            whole.push(tet);
+        }
+        orient_tets(&points, &mut whole);
+        drop_unused_nodes(&mut points, &mut whole, &mut facets);
+        if !surfaces.grouped {
+            facets = on_boundary(&TetMesh::quadratic(points.clone(), whole.clone(), Vec::new())?, facets);
+        }
+        let mesh = TetMesh::quadratic(points, whole, facets)?.with_regions(regions)?;
+        return Ok((mesh, file.names));
+    }
     orient_tets(&points, &mut tets);
     drop_unused_nodes(&mut points, &mut tets, &mut facets);
     if !surfaces.grouped {
         // Nobody asked for these surfaces by name, and some may lie between two volumes.
-        facets = on_boundary(&points, &tets, facets)?;
+        facets = on_boundary(&TetMesh::new(points.clone(), tets.clone(), Vec::new())?, facets);
     }
     let mesh = TetMesh::new(points, tets, facets)?.with_regions(regions)?;
     Ok((mesh, file.names))
 }
 
 /// The facets that lie on the boundary of the mesh.
-fn on_boundary(points: &[[f64; 3]], tets: &[[u32; 4]], facets: Vec<Facet>) -> Result<Vec<Facet>, GmshError> {
+fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {
     let sorted = |mut nodes: [u32; 3]| {
         nodes.sort_unstable();
         nodes
     };
-    let bare = TetMesh::new(points.to_vec(), tets.to_vec(), Vec::new())?;
     let boundary: HashSet<_> = bare.boundary_facets().iter().map(|f| sorted(f.nodes)).collect();
-    Ok(facets
+    facets
         .into_iter()
         .filter(|f| boundary.contains(&sorted(f.nodes)))
-        .collect())
+        .collect()
 }
 
 /// From entities to tags, for one dimension.

@@ -11,12 +11,18 @@ const TYPES: [(i32, usize, &str, bool); 12] = [
     (5, 8, "8-node hexahedron", false),
     (6, 6, "6-node prism", false),
     (7, 5, "5-node pyramid", false),
-    (8, 3, "3-node line of second order", false),
-    (9, 6, "6-node triangle of second order", false),
+    (8, 3, "3-node line of second order", true),
+    (9, 6, "6-node triangle of second order", true),
     (10, 9, "9-node quadrangle of second order", false),
-    (11, 10, "10-node tetrahedron of second order", false),
+    (11, 10, "10-node tetrahedron of second order", true),
     (15, 1, "point", true),
 ];
+
+/// Types of the elements that are kept.
+const TRIANGLE_3: i32 = 2;
+const TET_4: i32 = 4;
+const TRIANGLE_6: i32 = 9;
+const TET_10: i32 = 11;
 
 /// Dimension, number and name of a physical group.
 pub(super) type Name = (i32, i32, String);
@@ -35,6 +41,8 @@ pub(super) struct Contents {
     pub(super) points: Vec<[f64; 3]>,
     /// Triangles and tetrahedra in the order of the file.
     pub(super) elements: Vec<Element>,
+    /// Nodes on the edges 01, 12, 02, 03, 13, 23 of each tetrahedron of second order.
+    pub(super) mids: Vec<[u64; 6]>,
 }
 
 /// A triangle or a tetrahedron.
@@ -42,7 +50,7 @@ pub(super) struct Element {
     pub(super) tag: u64,
     /// The surface or volume that it belongs to.
     pub(super) entity: i32,
-    /// Node numbers; four only for a tetrahedron.
+    /// Numbers of the corners; four only for a tetrahedron.
     pub(super) nodes: [u64; 4],
     pub(super) is_tet: bool,
 }
@@ -82,7 +90,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
             }
             b"$Elements" => {
                 reader.section = "$Elements";
-                out.elements = reader.elements()?;
+                (out.elements, out.mids) = reader.elements()?;
                 reader.end(b"$EndElements")?;
                 elements = true;
             }
@@ -314,8 +322,8 @@ impl<'a> Reader<'a> {
         Ok((tags, points))
     }
 
-    fn elements(&mut self) -> Result<Vec<Element>, GmshError> {
-        let mut out = Vec::new();
+    fn elements(&mut self) -> Result<(Vec<Element>, Vec<[u64; 6]>), GmshError> {
+        let (mut out, mut mids) = (Vec::new(), Vec::new());
         for _ in 0..self.header()? {
             let (_dimension, entity, kind) = (self.int()?, self.int()?, self.int()?);
             let name = match TYPES.iter().find(|t| t.0 == kind) {
@@ -325,21 +333,28 @@ impl<'a> Reader<'a> {
             };
             let count = name.map_err(|name| GmshError::Unsupported { kind, name })?;
             for _ in 0..self.count(1 + count)? {
-                let (tag, mut nodes) = (self.size()?, [0; 4]);
+                let (tag, mut nodes) = (self.size()?, [0; 10]);
                 for node in &mut nodes[..count] {
                     *node = self.size()?;
                 }
-                if count > 2 {
+                let [a, b, c, d, ..] = nodes;
+                if kind == TET_10 {
+                    // Gmsh has the edges 23 and 13 in this order
+                    let [.., e, f, g, h, i, j] = nodes;
+                    mids.push([e, f, g, h, j, i]);
+                }
+                let is_tet = matches!(kind, TET_4 | TET_10);
+                if is_tet || matches!(kind, TRIANGLE_3 | TRIANGLE_6) {
                     out.push(Element {
                         tag,
                         entity,
-                        nodes,
-                        is_tet: count == 4,
+                        nodes: [a, b, c, d],
+                        is_tet,
                     });
                 }
             }
         }
-        Ok(out)
+        Ok((out, mids))
     }
 
     /// Skips a section of another kind, up to and with its end.

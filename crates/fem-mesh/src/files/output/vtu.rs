@@ -13,7 +13,8 @@ use crate::mesh::{Surface, TetMesh};
 use super::pvd::escape;
 use super::{Field, OutputError, SurfaceFields};
 
-/// Writes the mesh as one piece with fields at its nodes and in its tetrahedra.
+/// Writes the mesh as one piece with fields at its nodes and in its tetrahedra, which are quadratic cells if it has
+/// order 2.
 ///
 /// # Errors
 /// [`OutputError`] if a field does not fit the mesh or the file cannot be written.
@@ -27,7 +28,11 @@ pub fn write_vtu(
     check(cell_fields, mesh.tets().len(), "cells")?;
     let mut file = File::new();
     let all = (0..mesh.points().len(), 0..mesh.tets().len());
-    file.piece(mesh.points(), mesh.tets(), (point_fields, all.0), (cell_fields, all.1));
+    let fields = ((point_fields, all.0), (cell_fields, all.1));
+    match mesh.order() {
+        1 => file.piece(mesh.points(), mesh.tets(), fields.0, fields.1),
+        _ => file.piece(mesh.points(), &mesh.quadratic_tets(), fields.0, fields.1),
+    }
     file.write(path.as_ref())
 }
 
@@ -56,12 +61,11 @@ pub fn write_vtu_pieces(
         let nodes = subdomain.nodes.iter().map(|&n| n as usize);
         let elements = subdomain.elements.iter().map(|&e| e as usize);
         let points = subdomain.points(mesh);
-        file.piece(
-            &points,
-            &subdomain.tets,
-            (point_fields, nodes),
-            (&cell_fields, elements),
-        );
+        let fields = ((point_fields, nodes), (&cell_fields[..], elements));
+        match mesh.order() {
+            1 => file.piece(&points, &subdomain.tets, fields.0, fields.1),
+            _ => file.piece(&points, &subdomain.quadratic_tets(), fields.0, fields.1),
+        }
     }
     file.write(path.as_ref())
 }
@@ -187,8 +191,12 @@ impl File {
         self.array("UInt64", "connectivity", 1, connectivity.collect());
         let offsets = (1..=cells.len()).flat_map(|n| numbers((N * n) as u64));
         self.array("UInt64", "offsets", 1, offsets.collect());
-        // triangle or tetrahedron
-        let kind = if N == 3 { 5 } else { 10 };
+        // triangle, tetrahedron or quadratic tetrahedron, whose nodes VTK has in the same order
+        let kind = match N {
+            3 => 5,
+            4 => 10,
+            _ => 24,
+        };
         self.array("UInt8", "types", 1, vec![kind; cells.len()]);
         self.close("Cells");
         self.close("Piece");

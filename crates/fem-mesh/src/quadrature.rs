@@ -1,8 +1,12 @@
 //! Quadrature on tetrahedra and triangles in barycentric coordinates. Weights sum up to one.
 
-use rayon::prelude::*;
-
-use crate::mesh::TetMesh;
+/// Degree 2 on the tetrahedron, four points of equal weight: what the stiffness of a quadratic tetrahedron takes.
+pub(crate) const FOUR_POINTS: [[f64; 4]; 4] = {
+    // (5 + 3 sqrt 5) / 20 and (5 - sqrt 5) / 20
+    const A: f64 = 0.585_410_196_624_968_5;
+    const B: f64 = 0.138_196_601_125_010_5;
+    [[A, B, B, B], [B, A, B, B], [B, B, A, B], [B, B, B, A]]
+};
 
 /// Degree 5 on the tetrahedron, 15 points (Keast).
 pub(crate) fn tetrahedron() -> Vec<([f64; 4], f64)> {
@@ -45,22 +49,9 @@ pub(crate) fn triangle() -> Vec<([f64; 3], f64)> {
     rule
 }
 
-/// The point with the given barycentric coordinates.
-pub(crate) fn at<const N: usize>(nodes: &[[f64; 3]; N], barycentric: &[f64; N]) -> [f64; 3] {
-    std::array::from_fn(|d| (0..N).map(|a| barycentric[a] * nodes[a][d]).sum())
-}
-
-/// Integrates over a mesh the function that `of_tet` makes of each tetrahedron, at barycentric coordinates. The sum
-/// runs in the order of the tetrahedra, whatever the threads do.
-pub(crate) fn integral<F: Fn(&[f64; 4]) -> f64>(mesh: &TetMesh, of_tet: impl Fn(usize) -> F + Sync) -> f64 {
-    let rule = tetrahedron();
-    let part = |tet: usize| {
-        let value = of_tet(tet);
-        let mean: f64 = rule.iter().map(|(l, weight)| weight * value(l)).sum();
-        mesh.volume(tet) * mean
-    };
-    let parts: Vec<f64> = (0..mesh.tets().len()).into_par_iter().map(part).collect();
-    parts.iter().sum()
+/// The mean of points with the given weights: barycentric coordinates, or values of shape functions.
+pub(crate) fn at<const N: usize>(nodes: &[[f64; 3]; N], weights: &[f64; N]) -> [f64; 3] {
+    std::array::from_fn(|d| (0..N).map(|a| weights[a] * nodes[a][d]).sum())
 }
 
 #[cfg(test)]

@@ -1,0 +1,136 @@
+//! The sides of contact points in a mesh of order 2.
+//!
+//! Under a constant pressure the corners of a quadratic facet carry no force, so that conditions at single nodes fail.
+//! A contact point is a corner all the same; what counts is the mean of the displacement weighted by the linear hat
+//! function of the corner ([`Surface::mean`]), and the same mean of the gap. Forces of the points over their areas are
+//! then a pressure that is linear on each facet.
+
+use super::creases::around;
+use super::partners::{Partner, Partners};
+use super::side::Sides;
+use crate::error::ContactError;
+use crate::scene::Contact;
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use signorini_qp::vector;
+use signorini_tfeti::Side;
+use std::collections::HashMap;
+
+/// What means over the sides of a contact need.
+pub(super) struct Means<'a> {
+    mesh: &'a TetMesh,
+    contact: (usize, &'a Contact),
+    surface: &'a Surface,
+    /// What of a gap may be rounding, m.
+    rounding: f64,
+    /// Triangles around each node.
+    around: Vec<Vec<u32>>,
+    /// Partner of each node of the surface, corners and mid-nodes; empty against a rigid obstacle.
+    partners: HashMap<u32, u32>,
+}
+
+impl<'a> Means<'a> {
+    /// `None` for a mesh of order 1.
+    pub(super) fn new(
+        mesh: &'a TetMesh,
+        (index, contact): (usize, &'a Contact),
+        surface: &'a Surface,
+        partners: &Partners,
+        rounding: f64,
+    ) -> Result<Option<Self>, ContactError> {
+        if mesh.order() == 1 {
+            return Ok(None);
+        }
+        Ok(Some(Self {
+            mesh,
+            contact: (index, contact),
+            surface,
+            rounding,
+            around: around(surface),
+            partners: match partners {
+                Partners::Obstacle => HashMap::new(),
+                Partners::Nodes(partners) => all_partners(mesh, index, contact, surface, partners)?,
+                Partners::Mortar(_) => {
+                    let node = surface.nodes()[0];
+                    return Err(ContactError::QuadraticApart { contact: index, node });
+                }
+            },
+        }))
+    }
+
+    /// Sides and gap of the point of a node on the triangles of its side, all around it if there are none.
+    pub(super) fn point(
+        &self,
+        (local, triangles): (usize, &[u32]),
+        frame: &SurfaceFrame,
+    ) -> Result<(Sides, f64), ContactError> {
+        let (index, contact) = self.contact;
+        let triangles = if triangles.is_empty() {
+            &self.around[local]
+        } else {
+            triangles
+        };
+        let own = self.surface.mean(local, triangles.iter().map(|&t| t as usize));
+        let other = |&(node, weight): &(u32, f64)| Some((*self.partners.get(&node)?, weight));
+        let partner: Option<Vec<(u32, f64)>> = own.iter().map(other).collect();
+        let mut gap = 0.0;
+        for &(node, weight) in &own {
+            let place = self.mesh.points()[node as usize];
+            let measured = self.partners.get(&node).map_or(0.0, |&to| {
+                let way = vector_between(place, self.mesh.points()[to as usize]);
+                let gap = vector::dot(&way, &frame.normal);
+                if gap.abs() <= self.rounding { 0.0 } else { gap }
+            });
+            gap += weight * contact.gap_at(index, node, place, &frame.normal, measured)?;
+        }
+        let sides = Sides {
+            own: Side::new(own),
+            partner: partner.map(Side::new),
+            swapped: false,
+        };
+        Ok((sides, gap))
+    }
+}
+
+fn vector_between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|c| to[c] - from[c])
+}
+
+/// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.
+fn all_partners(
+    mesh: &TetMesh,
+    index: usize,
+    contact: &Contact,
+    surface: &Surface,
+    partners: &[Partner],
+) -> Result<HashMap<u32, u32>, ContactError> {
+    let mut mids: HashMap<[u32; 2], u32> = HashMap::new();
+    for (facet, own) in mesh
+        .facets()
+        .iter()
+        .enumerate()
+        .filter(|(_, f)| contact.partner.contains(&f.tag))
+    {
+        for (edge, mid) in edges(own.nodes).into_iter().zip(mesh.facet_mids(facet)) {
+            mids.insert(edge, mid);
+        }
+    }
+    let corners = surface.nodes().iter().zip(partners);
+    let mut out: HashMap<u32, u32> = corners.map(|(&node, partner)| (node, partner.node)).collect();
+    for &facet in surface.facets() {
+        let facet = facet as usize;
+        let others = mesh.facets()[facet].nodes.map(|n| out[&n]);
+        for (edge, node) in edges(others).into_iter().zip(mesh.facet_mids(facet)) {
+            let partner = mids.get(&edge).copied();
+            out.insert(
+                node,
+                partner.ok_or(ContactError::QuadraticApart { contact: index, node })?,
+            );
+        }
+    }
+    Ok(out)
+}
+
+/// The edges 01, 12, 20 with their ends ascending.
+fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
+}

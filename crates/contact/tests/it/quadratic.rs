@@ -1,0 +1,238 @@
+//! Contact of quadratic tetrahedra.
+
+use crate::common::*;
+use crate::estimates::estimated;
+
+fn quadratic(lengths: [f64; 3], cells: [usize; 3]) -> TetMesh {
+    block(lengths, cells).raise_order().expect("quadratic")
+}
+
+/// The brick at half load on a floor with coefficient 0.2, one static step.
+fn half_loaded(mesh: TetMesh) -> Scene {
+    let q = 0.5e8;
+    Scene::new(mesh, steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]))
+        .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]))
+        .with_contact(foundation(Friction::coulomb(0.2)))
+}
+
+/// Normal and friction force of the floor on the brick, N.
+fn floor_forces(result: &Solved) -> [f64; 2] {
+    let sum = |c: usize| result.points.iter().map(|p| p.force()[c]).sum();
+    [sum(2), sum(0)]
+}
+
+/// Limits of meshes that get finer and finer: N, T of shared/calculix.md.
+const LIMITS: [f64; 2] = [2.6228e9, -8.38e7];
+
+fn errors(result: &Solved) -> [f64; 2] {
+    let found = floor_forces(result);
+    [0, 1].map(|k| (found[k] / LIMITS[k] - 1.0).abs())
+}
+
+/// Linear elements need some 35 cells a metre for 0.1 % in the normal force.
+#[test]
+fn forces_of_the_brick_come_near_their_limits() {
+    let [coarse, fine] = [4, 6].map(|k| {
+        let mesh = quadratic([3.0, 1.0, 1.0], [3 * k, k, k]);
+        solve(half_loaded(mesh).with_boxes([6, 2, 2]), tight())
+    });
+    println!("{:?} {:?}", errors(&coarse), errors(&fine));
+    println!("{} {}", coarse.report.counters.products, fine.report.counters.products);
+    assert!(errors(&coarse)[0] < 3.5e-3 && errors(&fine)[0] < 1e-3 && errors(&fine)[1] < 3.5e-2);
+}
+
+/// Cells that get smaller towards edges and rims.
+#[test]
+fn a_graded_mesh_reaches_a_per_mille_and_a_per_cent() {
+    let towards = |s: f64| {
+        let half = |s: f64| 0.5 * (2.0 * s).powf(1.5);
+        if s < 0.5 { half(s) } else { 1.0 - half(1.0 - s) }
+    };
+    let mesh = block([3.0, 1.0, 1.0], [18, 6, 6]);
+    let mesh = mesh.map_points(|[x, y, z]| [3.0 * towards(x / 3.0), towards(y), towards(z)]);
+    let mesh = mesh.expect("graded").raise_order().expect("quadratic");
+    let result = solve(half_loaded(mesh).with_subdomains(24), tight());
+    println!("{:?} {}", errors(&result), result.report.counters.products);
+    assert!(
+        errors(&result)[0] < 1e-3 && errors(&result)[1] < 1e-2,
+        "{:?}",
+        errors(&result)
+    );
+}
+
+#[test]
+fn cuts_and_methods_agree() {
+    let mesh = quadratic([3.0, 1.0, 1.0], [6, 2, 2]);
+    let scene = half_loaded(mesh);
+    let whole = solve(scene.clone().with_boxes([1, 1, 1]), at(1e-11));
+    let cut = solve(scene.clone().with_boxes([3, 2, 1]), at(1e-11));
+    assert_close(&cut.displacement, &whole.displacement, 1e-8, "cut");
+    for method in methods() {
+        let other = solve(
+            scene.clone().with_boxes([3, 1, 1]),
+            at(1e-9).with_method(method.clone()),
+        );
+        assert_close(
+            &other.displacement,
+            &whole.displacement,
+            1e-5,
+            &method.kind().to_string(),
+        );
+    }
+}
+
+/// A history with a coefficient that depends on the slip rate: certificates and reactions.
+#[test]
+fn a_history_is_certified_and_in_equilibrium() {
+    let mesh = quadratic([3.0, 1.0, 1.0], [6, 2, 2]);
+    let scene = loaded_brick(mesh, up_down_up())
+        .with_contact(foundation(weakening()))
+        .with_analysis(paper_steps(1.0, 8))
+        .with_boxes([3, 1, 1]);
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    while !simulation.is_finished() {
+        let result = simulation.step().expect("step");
+        assert!(result.certificate().largest() <= 1e-6 && result.report().status.converged());
+        let (load, reactions) = (result.load_resultant(), result.reactions());
+        let supports: Vec<[f64; 3]> = reactions.supports.iter().map(|s| s.resultant.force).collect();
+        for c in 0..3 {
+            let contact: f64 = result.contact_force_field().iter().map(|f| f[c]).sum();
+            let sum = load[c] + contact + supports.iter().map(|f| f[c]).sum::<f64>();
+            assert!(sum.abs() < 1e-6 * norm(&load), "{sum:e}");
+        }
+        let pressure = result.contact_pressure(0).expect("a surface");
+        let areas = result.surfaces()[0].areas();
+        let force: f64 = pressure.iter().zip(areas).map(|(p, a)| p * a).sum();
+        let expected: f64 = result.points().iter().map(|p| -p.normal_force).sum();
+        assert!(
+            (force - expected).abs() < 1e-9 * expected.abs().max(1.0),
+            "{force} {expected}"
+        );
+    }
+}
+
+#[test]
+fn estimates_hold_where_points_share_nodes() {
+    for friction in [Friction::None, Friction::coulomb(0.2), Friction::tresca(2e8)] {
+        let scene = loaded_brick(quadratic([3.0, 1.0, 1.0], [6, 2, 2]), ramp())
+            .with_contact(foundation(friction.clone()))
+            .with_analysis(Analysis::quasistatic(1.0, 2))
+            .with_boxes([3, 1, 2]);
+        let exact = estimated(&scene, at(1e-12));
+        for tolerance in [1e-2, 1e-4, 1e-6] {
+            let own = &estimated(&scene, at(tolerance))[0];
+            let truth = energy_distance(&scene, &own.0.displacement, &exact[0].0.displacement);
+            let index = own.1.energy.sqrt() / truth;
+            println!("{friction:?}, {tolerance:e}: {index:.2}, {truth:e}");
+            assert!((0.99..10.0).contains(&index), "{index}");
+        }
+        let settings = Settings::default().with_accuracy(Accuracy::balanced());
+        let (result, error, _) = &estimated(&scene, settings)[1];
+        let report = result.report.accuracy.expect("a report");
+        assert!(report.reached && report.certified, "{friction:?}: {error:?}");
+    }
+}
+
+/// Two blocks, the second on the first, whose edges match: uniaxial stress, and exact pressure at each point.
+#[test]
+fn pressure_passes_between_quadratic_bodies() {
+    let (young, poisson, pressure) = (2e9, 0.3, 1e6);
+    // an even number of cells: diagonals of both sides are in the same place
+    let lower = block([1.0; 3], [2, 2, 2]);
+    let mesh = with_second(&lower, &lifted(&lower, 1.0))
+        .raise_order()
+        .expect("quadratic");
+    for (contact, tied) in [
+        (Contact::between(second(brick::Z_MIN), brick::Z_MAX), false),
+        (Contact::tied(second(brick::Z_MIN), brick::Z_MAX), true),
+    ] {
+        let mut scene = Scene::new(mesh.clone(), uniform(young, poisson))
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_load(Load::pressure(second(brick::Z_MAX), pressure))
+            .with_contact(if tied {
+                contact
+            } else {
+                contact.with_friction(Friction::coulomb(0.3))
+            })
+            .with_boxes([2, 1, 2]);
+        for tag in [brick::X_MIN, second(brick::X_MIN)] {
+            scene = scene.with_support(Support::components(tag, [true, false, false]));
+        }
+        for tag in [brick::Y_MIN, second(brick::Y_MIN)] {
+            scene = scene.with_support(Support::components(tag, [false, true, false]));
+        }
+        let result = solve(scene, tight());
+        let strain = pressure / young;
+        let exact: Vec<f64> = mesh
+            .points()
+            .iter()
+            .flat_map(|[x, y, z]| [poisson * strain * x, poisson * strain * y, -strain * z])
+            .collect();
+        assert_close(&result.displacement, &exact, 1e-7, "column");
+        assert_eq!(result.points.is_empty(), tied);
+        for point in &result.points {
+            assert!((-point.normal_force / (point.area * pressure) - 1.0).abs() < 1e-6);
+        }
+    }
+}
+
+/// The plate of the GRECO comparison (Code_Aster SSNV128): friction 1, one quadratic element over the thickness.
+/// Displacements on the foundation at 0 and 5 mm.
+#[test]
+fn plate_with_a_coefficient_of_one() {
+    let cells = 24;
+    let mesh = quadratic([0.04, 0.04, 0.001], [cells, cells, 1]);
+    let scene = Scene::new(mesh.clone(), uniform(1.3e11, 0.2))
+        .with_support(Support::components(brick::X_MAX, [true, false, false]))
+        .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+        .with_support(Support::components(brick::Z_MAX, [false, false, true]))
+        .with_load(Load::pressure(brick::Y_MAX, 5e7))
+        .with_load(Load::pressure(brick::X_MIN, 15e7))
+        .with_contact(Contact::rigid(brick::Y_MIN).with_friction(Friction::coulomb(1.0)));
+    let result = solve(scene, Settings::default());
+    for (x, expected) in [(0.0, 2.87187e-5), (0.005, 2.28971e-5)] {
+        let on = |p: &[f64; 3]| (p[0] - x).abs() < 1e-9 && p[1] == 0.0;
+        let nodes: Vec<usize> = (0..mesh.points().len()).filter(|&n| on(&mesh.points()[n])).collect();
+        let found = nodes.iter().map(|&n| result.displacement[3 * n]).sum::<f64>() / nodes.len() as f64;
+        println!("{x}: {found:e} {:.2} %", 100.0 * (found / expected - 1.0));
+        assert!((found / expected - 1.0).abs() < 5e-3, "{x}: {found:e}");
+    }
+}
+
+/// A clamped bar that bends under its end load: it neither locks nor needs many products as it becomes incompressible.
+#[test]
+fn a_bar_of_rubber_bends_as_it_should() {
+    let mut deflections = Vec::new();
+    for poisson in [0.3, 0.499, 0.4999] {
+        let mesh = quadratic([4.0, 1.0, 1.0], [8, 2, 2]);
+        let tip = mesh
+            .points()
+            .iter()
+            .position(|p| *p == [4.0, 1.0, 1.0])
+            .expect("a corner");
+        let scene = Scene::new(mesh, uniform(1e9, poisson))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::X_MAX, [0.0, 0.0, -1e5]))
+            .with_boxes([4, 1, 1]);
+        let result = solve(scene, at(1e-6));
+        deflections.push((
+            poisson,
+            -result.displacement[3 * tip + 2],
+            result.report.counters.products,
+        ));
+    }
+    println!("{deflections:?}");
+    let [(_, soft, few), rubber @ ..] = &deflections[..] else {
+        panic!()
+    };
+    for (poisson, deflection, products) in rubber {
+        // bending does not depend on Poisson's ratio, clamping and shear by some per cent
+        assert!(
+            (deflection / soft - 1.0).abs() < 0.05,
+            "{poisson}: {deflection:e} {soft:e}"
+        );
+        assert!(*products as f64 <= 2.5 * *few as f64, "{poisson}: {products} {few}");
+    }
+}

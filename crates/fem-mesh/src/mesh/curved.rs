@@ -1,0 +1,141 @@
+//! The geometry of quadratic tetrahedra and of their facets, with straight or curved edges, and its checks.
+
+use rayon::prelude::*;
+
+use crate::quadrature;
+use crate::tolerances::{CURVED, MID_OFF};
+use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume};
+
+use super::error::MeshError;
+
+/// Ends of the edges of a tetrahedron on which its mid-nodes lie.
+pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+
+/// The same of a facet.
+const FACET_EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
+/// Quadratic shape functions at barycentric coordinates: those of the corners, then those of the mid-nodes.
+pub(crate) fn shape(l: &[f64; 4]) -> [f64; 10] {
+    let corner = |i: usize| l[i] * (2.0 * l[i] - 1.0);
+    let mid = |k: usize| 4.0 * l[EDGES[k][0]] * l[EDGES[k][1]];
+    std::array::from_fn(|k| if k < 4 { corner(k) } else { mid(k - 4) })
+}
+
+/// The same of a facet: corners, then the mid-nodes of the edges 01, 12, 20.
+pub(crate) fn facet_shape(l: &[f64; 3]) -> [f64; 6] {
+    let corner = |i: usize| l[i] * (2.0 * l[i] - 1.0);
+    let mid = |k: usize| 4.0 * l[FACET_EDGES[k][0]] * l[FACET_EDGES[k][1]];
+    std::array::from_fn(|k| if k < 3 { corner(k) } else { mid(k - 3) })
+}
+
+/// Derivatives of values at the nodes along each barycentric coordinate.
+fn derivatives<const C: usize>(values: &[Vec3], edges: &[[usize; 2]], l: &[f64; C]) -> [Vec3; C] {
+    let mut out: [Vec3; C] = std::array::from_fn(|i| scale(4.0 * l[i] - 1.0, values[i]));
+    for (&[a, b], &value) in edges.iter().zip(&values[C..]) {
+        out[a] = add(out[a], scale(4.0 * l[b], value));
+        out[b] = add(out[b], scale(4.0 * l[a], value));
+    }
+    out
+}
+
+/// The straight tetrahedron that a quadratic one is like at a point: its edges from corner 0 are the derivatives of
+/// the place there, so that it has the volume and the gradients of barycentric coordinates at this point.
+pub(crate) fn tangents(points: &[Vec3; 10], l: &[f64; 4]) -> [Vec3; 4] {
+    let along = derivatives(points, &EDGES, l);
+    std::array::from_fn(|i| if i == 0 { [0.0; 3] } else { sub(along[i], along[0]) })
+}
+
+/// Place and area vector, twice the area per barycentric area, of a facet at a point.
+pub(crate) fn curved_facet(points: &[Vec3; 6], l: &[f64; 3]) -> (Vec3, Vec3) {
+    let along = derivatives(points, &FACET_EDGES, l);
+    let [u, v] = [1, 2].map(|i| sub(along[i], along[0]));
+    (quadrature::at(points, &facet_shape(l)), scale(0.5, cross(u, v)))
+}
+
+/// Volume of a quadratic tetrahedron.
+pub(super) fn volume(points: &[Vec3; 10]) -> f64 {
+    let rule = quadrature::tetrahedron();
+    rule.iter()
+        .map(|(l, weight)| weight * tet_volume(&tangents(points, l)))
+        .sum()
+}
+
+/// Checks the mid-nodes: their numbers, their places on the edges, and that no tetrahedron is turned inside out.
+pub(super) fn check(points: &[Vec3], tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Result<(), MeshError> {
+    if mids.is_empty() {
+        return Ok(());
+    }
+    check_numbers(points.len(), tets, mids)?;
+    let fault = tets
+        .par_iter()
+        .zip(mids)
+        .enumerate()
+        .find_map_first(|(tet, (corners, mids))| {
+            let at = |n: u32| points[n as usize];
+            for (&[a, b], &node) in EDGES.iter().zip(mids) {
+                let edge = [corners[a], corners[b]];
+                let [from, to] = edge.map(at);
+                let distance = norm(sub(at(node), scale(0.5, add(from, to)))) / norm(sub(to, from));
+                if distance > MID_OFF {
+                    let limit = MID_OFF;
+                    return Some(MeshError::MidNodeOff {
+                        tet,
+                        node,
+                        edge,
+                        distance,
+                        limit,
+                    });
+                }
+            }
+            let all = std::array::from_fn(|k| at(if k < 4 { corners[k] } else { mids[k - 4] }));
+            let least = least_volume(&all) / tet_volume(&corners.map(at));
+            (least < CURVED).then_some(MeshError::CurvedInside {
+                tet,
+                nodes: *corners,
+                least,
+                limit: CURVED,
+            })
+        });
+    fault.map_or(Ok(()), Err)
+}
+
+/// Least volume of the tangent tetrahedra at nodes and points of quadrature.
+fn least_volume(points: &[Vec3; 10]) -> f64 {
+    let corner = |i: usize| std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 });
+    let mid = |[a, b]: [usize; 2]| std::array::from_fn(|k| if k == a || k == b { 0.5 } else { 0.0 });
+    let nodes = (0..4).map(corner).chain(EDGES.map(mid));
+    let inside = quadrature::tetrahedron().into_iter().map(|(l, _)| l);
+    let all = nodes.chain(inside).chain(quadrature::FOUR_POINTS);
+    all.map(|l| tet_volume(&tangents(points, &l)))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Every edge has one mid-node, and every mid-node one edge.
+fn check_numbers(nodes: usize, tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Result<(), MeshError> {
+    let mut is_corner = vec![false; nodes];
+    tets.iter().flatten().for_each(|&n| is_corner[n as usize] = true);
+    let mut edges: Vec<([u32; 2], u32)> = Vec::with_capacity(6 * tets.len());
+    for (tet, (corners, mids)) in tets.iter().zip(mids).enumerate() {
+        for (&[a, b], &node) in EDGES.iter().zip(mids) {
+            match is_corner.get(node as usize) {
+                None => return Err(MeshError::NodeOutOfRange { tet, node, nodes }),
+                Some(true) => return Err(MeshError::MidNodeCorner { tet, node }),
+                Some(false) => {}
+            }
+            let [a, b] = [corners[a], corners[b]];
+            edges.push(([a.min(b), a.max(b)], node));
+        }
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    if let Some(w) = edges.windows(2).find(|w| w[0].0 == w[1].0) {
+        let (edge, first, second) = (w[0].0, w[0].1, w[1].1);
+        return Err(MeshError::MidNodesOfEdge { edge, first, second });
+    }
+    edges.sort_unstable_by_key(|e| (e.1, e.0));
+    if let Some(w) = edges.windows(2).find(|w| w[0].1 == w[1].1) {
+        let (node, first, second) = (w[0].1, w[0].0, w[1].0);
+        return Err(MeshError::MidNodeTwice { node, first, second });
+    }
+    Ok(())
+}
