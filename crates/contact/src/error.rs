@@ -88,9 +88,6 @@ signorini_fem_mesh::errors! {
         NoPartner { contact: usize, distance: f64 } =
             "contact {contact}: no facet of the first side faces one of the other side (their nearest nodes are \
             {distance:.3e} apart); name sides that look at each other";
-        QuadraticApart { contact: usize, node: u32 } =
-            "contact {contact}: node {node} has no partner on the other body, or its edges have none; in meshes of \
-            order 2 both sides have to match, edges too: mesh them so, or use order 1";
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
             "contact {contact}: node {node} lies {depth:.3e} inside the other body, seen from its partner \
             {partner}, deeper than its facets are large ({size:.3e}); give sides that face each other across the \

@@ -34,7 +34,7 @@ pub(crate) fn tetrahedron() -> Vec<([f64; 4], f64)> {
 }
 
 /// Degree 5 on the triangle, 7 points (Radon).
-pub(crate) fn triangle() -> Vec<([f64; 3], f64)> {
+pub fn triangle() -> Vec<([f64; 3], f64)> {
     let mut rule = vec![([1.0 / 3.0; 3], 9.0 / 40.0)];
     let root = 15f64.sqrt();
     for sign in [-1.0, 1.0] {

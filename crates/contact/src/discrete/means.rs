@@ -29,32 +29,28 @@ pub(super) struct Means<'a> {
 }
 
 impl<'a> Means<'a> {
-    /// `None` for a mesh of order 1.
+    /// `None` for a mesh of order 1, and where `mortar` has made the sides.
     pub(super) fn new(
         mesh: &'a TetMesh,
         (index, contact): (usize, &'a Contact),
         surface: &'a Surface,
         partners: &Partners,
         rounding: f64,
-    ) -> Result<Option<Self>, ContactError> {
-        if mesh.order() == 1 {
-            return Ok(None);
+    ) -> Option<Self> {
+        if mesh.order() == 1 || matches!(partners, Partners::Mortar(_)) {
+            return None;
         }
-        Ok(Some(Self {
+        Some(Self {
             mesh,
             contact: (index, contact),
             surface,
             rounding,
             around: around(surface),
             partners: match partners {
-                Partners::Obstacle => HashMap::new(),
-                Partners::Nodes(partners) => all_partners(mesh, index, contact, surface, partners)?,
-                Partners::Mortar(_) => {
-                    let node = surface.nodes()[0];
-                    return Err(ContactError::QuadraticApart { contact: index, node });
-                }
+                Partners::Nodes(partners) => all_partners(mesh, contact, surface, partners),
+                _ => HashMap::new(),
             },
-        }))
+        })
     }
 
     /// Sides and gap of the point of a node on the triangles of its side, all around it if there are none.
@@ -96,13 +92,7 @@ fn vector_between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
 }
 
 /// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.
-fn all_partners(
-    mesh: &TetMesh,
-    index: usize,
-    contact: &Contact,
-    surface: &Surface,
-    partners: &[Partner],
-) -> Result<HashMap<u32, u32>, ContactError> {
+fn all_partners(mesh: &TetMesh, contact: &Contact, surface: &Surface, partners: &[Partner]) -> HashMap<u32, u32> {
     let mut mids: HashMap<[u32; 2], u32> = HashMap::new();
     for (facet, own) in mesh
         .facets()
@@ -120,14 +110,11 @@ fn all_partners(
         let facet = facet as usize;
         let others = mesh.facets()[facet].nodes.map(|n| out[&n]);
         for (edge, node) in edges(others).into_iter().zip(mesh.facet_mids(facet)) {
-            let partner = mids.get(&edge).copied();
-            out.insert(
-                node,
-                partner.ok_or(ContactError::QuadraticApart { contact: index, node })?,
-            );
+            // where meshes match all edges have theirs
+            out.extend(mids.get(&edge).map(|&partner| (node, partner)));
         }
     }
-    Ok(out)
+    out
 }
 
 /// The edges 01, 12, 20 with their ends ascending.

@@ -142,7 +142,8 @@ fn nodes(
 }
 
 /// Whether facets match where nodes have partners: those of other nodes differ, and of each facet two edges at least
-/// are edges of the other side. There may be other diagonals, but no nodes between.
+/// are edges of the other side. There may be other diagonals, but no nodes between; in a mesh of order 2, which has
+/// nodes on diagonals, all three.
 fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Surface, rounding: f64) -> bool {
     let place = |node: u32| &mesh.points()[node as usize];
     let mut owners = HashMap::new();
@@ -162,7 +163,7 @@ fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Su
     }
     surface.triangles().iter().all(|triangle| {
         let seen = edges(triangle.map(|n| found[n as usize].node));
-        seen.iter().filter(|e| there.contains(*e)).count() > 1
+        seen.iter().filter(|e| there.contains(*e)).count() > mesh.order()
     })
 }
 

@@ -90,7 +90,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
-        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding)?;
+        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
         for (local, &node) in surface.nodes().iter().enumerate() {
             let position = scene.mesh.points()[node as usize];
             let mut one = [SurfaceSide {
@@ -99,6 +99,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 triangles: Vec::new(),
             }];
             let mut measured = 0.0;
+            let mut mean = vec![(node, 1.0)];
             let partner = match partners {
                 Partners::Obstacle => None,
                 Partners::Nodes(partners) => {
@@ -114,6 +115,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
                     measured = if gap.abs() <= weights * rounding { 0.0 } else { gap };
+                    mean.clone_from(&seen.own);
                     Some(Side::new(seen.partner.clone()))
                 }
             };
@@ -123,11 +125,15 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 let (sides, gap) = match &means {
                     None => {
                         let sides = Sides {
-                            own: Side::node(node),
+                            own: Side::new(mean.clone()),
                             partner: partner.clone(),
                             swapped: paired.swapped,
                         };
-                        (sides, contact.gap_at(index, node, position, &frame.normal, measured)?)
+                        let gap = |&(node, weight): &(u32, f64)| {
+                            let place = scene.mesh.points()[node as usize];
+                            Ok(weight * contact.gap_at(index, node, place, &frame.normal, measured)?)
+                        };
+                        (sides, mean.iter().map(gap).sum::<Result<f64, ContactError>>()?)
                     }
                     Some(means) => means.point((local, &side.triangles), &frame)?,
                 };
@@ -161,7 +167,10 @@ fn mortar_gap(
         let way = vec3::sub(scene.mesh.points()[other as usize], from);
         weight * vector::dot(&way, normal)
     };
-    let gap: f64 = seen.partner.iter().map(along).sum();
+    let mut gap: f64 = seen.partner.iter().map(along).sum();
+    if seen.own.len() > 1 {
+        gap -= seen.own.iter().map(along).sum::<f64>();
+    }
     let size = surface.areas()[local].sqrt();
     if matches!(scene.contacts[contact].gap, Gap::Measured) && -gap > size {
         return Err(ContactError::Overlap {

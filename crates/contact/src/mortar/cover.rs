@@ -1,13 +1,17 @@
-//! The part of a facet that facets of the other side cover, and the means of their shape functions that dual shape
-//! functions take there.
+//! The part of a facet that facets of the other side cover, and the means of shape functions that multipliers take
+//! there.
 //!
-//! On the covered part `C` of a facet with corners `x_j` and linear shape functions `l_j` the dual shape functions are
+//! **Linear facets.** On the covered part `C` of a facet with corners `x_j` and linear shape functions `l_j` the dual shape functions are
 //! those combinations `psi_j` of them with `int_C psi_j l_k = delta_jk d_j`, `d_j = int_C l_j` (consistent dual basis:
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). With `P` the L2 projection on linear
 //! functions on `C` then `int_C psi_j f = d_j (P f)(x_j)`: that is what is computed, in coordinates about the centroid
 //! of `C`, so that nothing cancels where `C` is small.
+//!
+//! **Quadratic facets** have multipliers that are linear on a facet, as where meshes match: `psi_j` is `l_j` itself, and
+//! both sides are lists of nodes. They are laid into the plane of their corners.
 
 use crate::tolerances::{COVERED, FLAT};
+use signorini_fem_mesh::internal::{facet_shape, triangle};
 
 type Point = [f64; 2];
 
@@ -16,6 +20,8 @@ type Point = [f64; 2];
 pub(super) struct Laid {
     pub(super) corners: [Point; 3],
     pub(super) nodes: [u32; 3],
+    /// Nodes on the edges 01, 12, 20 in a mesh of order 2.
+    pub(super) mids: Option<[u32; 3]>,
 }
 
 /// The covered part of a facet.
@@ -25,8 +31,18 @@ pub(super) struct Cover {
     pub(super) area: f64,
     /// `d_j`, m², of the three corners.
     pub(super) areas: [f64; 3],
-    /// Of each node of the other side the integrals of its shape function times the three dual ones, m².
+    /// Of each node of the other side the integrals of its shape function times the three `psi_j`, m².
     pub(super) weights: Vec<(u32, [f64; 3])>,
+    /// The same of the nodes of the facet in a mesh of order 2.
+    pub(super) own: Vec<(u32, [f64; 3])>,
+}
+
+/// Adds to what a node has.
+fn add(weights: &mut Vec<(u32, [f64; 3])>, node: u32, values: [f64; 3]) {
+    match weights.iter_mut().find(|w| w.0 == node) {
+        Some((_, sum)) => (0..3).for_each(|j| sum[j] += values[j]),
+        None => weights.push((node, values)),
+    }
 }
 
 /// What is left of a triangle inside a facet.
@@ -59,6 +75,19 @@ impl Piece {
         [0, 1].map(|c| self.polygon.iter().map(|p| p[c]).sum::<f64>() / count)
     }
 
+    /// Calls `f` at the points of a rule of degree 5, with their weights, m².
+    fn integrate_fifth(&self, rule: &[([f64; 3], f64)], mut f: impl FnMut(Point, f64)) {
+        let first = self.polygon[0];
+        for pair in self.polygon[1..].windows(2) {
+            let triangle = [first, pair[0], pair[1]];
+            let whole = area(&triangle);
+            for (l, weight) in rule {
+                let point = [0, 1].map(|c| (0..3).map(|k| l[k] * triangle[k][c]).sum());
+                f(point, weight * whole);
+            }
+        }
+    }
+
     /// Calls `f` at the points of a rule that is exact for squares, with their weights, m².
     fn integrate(&self, mut f: impl FnMut(Point, f64)) {
         let first = self.polygon[0];
@@ -73,6 +102,39 @@ impl Piece {
 }
 
 impl Cover {
+    /// The cover of a facet of order 2 (its nodes, corners first) by pieces that do not overlap; `None` without pieces.
+    pub(super) fn quadratic(facet: &[Point; 3], nodes: &[u32; 6], pieces: &[Piece]) -> Option<Self> {
+        let rule = triangle();
+        let mut out = Self {
+            area: 0.0,
+            areas: [0.0; 3],
+            weights: Vec::new(),
+            own: nodes.iter().map(|&node| (node, [0.0; 3])).collect(),
+        };
+        for piece in pieces {
+            let [a, b, c] = piece.laid.nodes;
+            let Some([ab, bc, ca]) = piece.laid.mids else {
+                continue;
+            };
+            let mut there = [[0.0; 3]; 6];
+            piece.integrate_fifth(&rule, |p, w| {
+                out.area += w;
+                let hats = barycentric(facet, p).map(|l| w * l);
+                let [own, other] =
+                    [barycentric(facet, p), barycentric(&piece.laid.corners, p)].map(|l| facet_shape(&l));
+                for j in 0..3 {
+                    out.areas[j] += hats[j];
+                    (0..6).for_each(|k| out.own[k].1[j] += hats[j] * own[k]);
+                    (0..6).for_each(|k| there[k][j] += hats[j] * other[k]);
+                }
+            });
+            for (node, values) in [a, b, c, ab, bc, ca].into_iter().zip(there) {
+                add(&mut out.weights, node, values);
+            }
+        }
+        (out.area > 0.0).then_some(out)
+    }
+
     /// The cover of a facet by pieces that do not overlap; `None` without pieces.
     pub(super) fn new(facet: &[Point; 3], pieces: &[Piece]) -> Option<Self> {
         let (mut area, mut first) = (0.0, [0.0; 2]);
@@ -120,17 +182,17 @@ impl Cover {
                 }
             });
             for (&node, moments) in piece.laid.nodes.iter().zip(&moments) {
-                let at = weights.iter().position(|w| w.0 == node).unwrap_or_else(|| {
-                    weights.push((node, [0.0; 3]));
-                    weights.len() - 1
-                });
-                for (j, kernel) in kernel.iter().enumerate() {
-                    let projected: f64 = kernel.iter().zip(moments).map(|(k, m)| k * m).sum();
-                    weights[at].1[j] += areas[j] * projected;
-                }
+                let projected = |j: usize| kernel[j].iter().zip(moments).map(|(k, m)| k * m).sum::<f64>();
+                add(&mut weights, node, [0, 1, 2].map(|j| areas[j] * projected(j)));
             }
         }
-        Some(Self { area, areas, weights })
+        let own = Vec::new();
+        Some(Self {
+            area,
+            areas,
+            weights,
+            own,
+        })
     }
 }
 
@@ -201,6 +263,7 @@ mod tests {
         Laid {
             corners,
             nodes: [first, first + 1, first + 2],
+            mids: None,
         }
     }
 

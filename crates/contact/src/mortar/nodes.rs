@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 /// What a node of the first side sees of the other one.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MortarNode {
+    /// Nodes of its own side with weights that sum to one, the node itself first; in a mesh of order 1 nothing else.
+    pub(crate) own: Vec<(u32, f64)>,
     /// Nodes of the other side with weights that sum to one, the largest first.
     pub(crate) partner: Vec<(u32, f64)>,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
@@ -22,18 +24,21 @@ pub(crate) struct MortarNode {
 /// The row of node `j` is `u_j - sum_k (M_jk / D_jj) u_k` with `M_jk = int psi_j phi_k`: it vanishes where both sides
 /// move alike by a linear function, and forces of constant pressure are in balance.
 pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<MortarNode>> {
-    let triangles = in_order(surface);
-    let covers = covers(mesh, (surface, &triangles), other);
+    let triangles = in_order(mesh, surface);
+    let covers = covers(mesh, &triangles, other);
     let mut around: Vec<Vec<(u32, u8)>> = vec![Vec::new(); surface.nodes().len()];
     for (k, triangle) in triangles.iter().enumerate() {
-        for (corner, &node) in triangle.iter().enumerate() {
-            around[node as usize].push((k as u32, corner as u8));
+        for (corner, &node) in triangle.nodes.iter().enumerate() {
+            if let Some(local) = surface.local(node) {
+                around[local].push((k as u32, corner as u8));
+            }
         }
     }
     let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
         let own = surface.nodes()[local];
         let (mut area, mut normal) = (0.0, [0.0; 3]);
         let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut side: BTreeMap<u32, f64> = BTreeMap::new();
         for &(facet, corner) in facets {
             let Some((cover, direction)) = &covers[facet as usize] else {
                 continue;
@@ -43,19 +48,44 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -
             for (node, weight) in &cover.weights {
                 *weights.entry(*node).or_insert(0.0) += weight[corner as usize];
             }
+            for (node, weight) in &cover.own {
+                *side.entry(*node).or_insert(0.0) += weight[corner as usize];
+            }
         }
-        // a node that is on both sides, as at the tip of a crack, does not move against itself
-        area -= weights.remove(&own).unwrap_or(0.0);
+        if side.is_empty() {
+            side.insert(own, area);
+        }
+        // what is on both sides, as the tip of a crack, does not move against itself
+        for (node, weight) in &mut side {
+            if let Some(other) = weights.remove(node) {
+                *weight -= other;
+                area -= other;
+            }
+        }
         if area <= COVERED * surface.areas()[local] {
             return None;
         }
         let most = weights.values().fold(0.0, |m: f64, w| m.max(w.abs()));
-        weights.retain(|_, w| w.abs() > NO_WEIGHT * most);
-        let sum: f64 = weights.values().sum();
-        let mut partner: Vec<(u32, f64)> = weights.into_iter().map(|(node, w)| (node, w / sum)).collect();
+        let mean = |mut weights: BTreeMap<u32, f64>| {
+            weights.retain(|_, w| w.abs() > NO_WEIGHT * most);
+            let sum: f64 = weights.values().sum();
+            weights
+                .into_iter()
+                .map(|(node, w)| (node, w / sum))
+                .collect::<Vec<(u32, f64)>>()
+        };
+        let (mut side, mut partner) = (mean(side), mean(weights));
+        side.sort_by_key(|n| (n.0 != own, n.0));
+        if side.first().is_none_or(|n| n.0 != own) {
+            return None;
+        }
         partner.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
-        let frame = SurfaceFrame::from_normal(normal)?;
-        Some(MortarNode { partner, area, frame })
+        Some(MortarNode {
+            own: side,
+            partner,
+            area,
+            frame: SurfaceFrame::from_normal(normal)?,
+        })
     };
     around.par_iter().enumerate().map(node).collect()
 }

@@ -15,22 +15,46 @@ const FARTHER: f64 = 4.0;
 
 type Corners = [[f64; 3]; 3];
 
-/// The triangles of a surface by places of its nodes, each from its smallest node on, ascending: whatever the order of
-/// the facets in a file, sums have the same bits.
-pub(super) fn in_order(surface: &Surface) -> Vec<[u32; 3]> {
-    let turned = surface.triangles().iter().map(|t| {
-        let first = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
-        [0, 1, 2].map(|k| t[(first + k) % 3])
+/// A triangle of a surface: mesh nodes of its corners, and in a mesh of order 2 those on its edges 01, 12, 20.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Triangle {
+    pub(super) nodes: [u32; 3],
+    mids: Option<[u32; 3]>,
+}
+
+impl Triangle {
+    fn corners(&self, mesh: &TetMesh) -> Corners {
+        self.nodes.map(|n| mesh.points()[n as usize])
+    }
+
+    /// All nodes in a mesh of order 2.
+    fn quadratic(&self) -> Option<[u32; 6]> {
+        let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);
+        Some([a, b, c, ab, bc, ca])
+    }
+}
+
+/// The triangles of a surface, each from its smallest node on, ascending: whatever the order of the facets in a file,
+/// sums have the same bits.
+pub(super) fn in_order(mesh: &TetMesh, surface: &Surface) -> Vec<Triangle> {
+    let turned = surface.facets().iter().map(|&facet| {
+        let nodes = mesh.facets()[facet as usize].nodes;
+        let first = (0..3).min_by_key(|&k| nodes[k]).unwrap_or(0);
+        let turn = |of: [u32; 3]| [0, 1, 2].map(|k| of[(first + k) % 3]);
+        let quadratic = mesh.order() == 2;
+        Triangle {
+            nodes: turn(nodes),
+            mids: quadratic.then(|| turn(mesh.facet_mids(facet as usize))),
+        }
     });
-    let mut triangles: Vec<[u32; 3]> = turned.collect();
+    let mut triangles: Vec<Triangle> = turned.collect();
     triangles.sort_unstable();
     triangles
 }
 
 /// The facets of the other side in a tree of their boxes.
-struct OtherSide<'a> {
-    surface: &'a Surface,
-    triangles: Vec<[u32; 3]>,
+struct OtherSide {
+    triangles: Vec<Triangle>,
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, u32>>,
     corners: Vec<Corners>,
     normals: Vec<[f64; 3]>,
@@ -48,16 +72,9 @@ struct Plane {
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-pub(super) fn covers(
-    mesh: &TetMesh,
-    (surface, triangles): (&Surface, &[[u32; 3]]),
-    other: &Surface,
-) -> Vec<Option<(Cover, [f64; 3])>> {
+pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) -> Vec<Option<(Cover, [f64; 3])>> {
     let other = OtherSide::new(mesh, other);
-    let planes: Vec<Option<Plane>> = triangles
-        .iter()
-        .map(|t| Plane::new(&corners(mesh, surface, t)))
-        .collect();
+    let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
     let size = planes.iter().flatten().map(|p| p.size).fold(0.0, f64::max);
     let most = other.farthest(planes.iter().flatten());
     let mut out: Vec<Option<(Cover, [f64; 3])>> = vec![None; planes.len()];
@@ -71,7 +88,11 @@ pub(super) fn covers(
                 let pieces = other.pieces(plane, reach);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
-                Some((k, Cover::new(&plane.corners, &pieces), farthest))
+                let cover = match triangles[k].quadratic() {
+                    Some(nodes) => Cover::quadratic(&plane.corners, &nodes, &pieces),
+                    None => Cover::new(&plane.corners, &pieces),
+                };
+                Some((k, cover, farthest))
             })
             .collect();
         let mut farthest = None::<f64>;
@@ -93,10 +114,6 @@ pub(super) fn covers(
         }
         reach = next.max(reach * NEAR).min(most);
     }
-}
-
-fn corners(mesh: &TetMesh, surface: &Surface, triangle: &[u32; 3]) -> Corners {
-    triangle.map(|n| mesh.points()[surface.nodes()[n as usize] as usize])
 }
 
 impl Plane {
@@ -126,10 +143,10 @@ impl Plane {
     }
 }
 
-impl<'a> OtherSide<'a> {
-    fn new(mesh: &TetMesh, surface: &'a Surface) -> Self {
-        let triangles = in_order(surface);
-        let corners: Vec<Corners> = triangles.iter().map(|t| corners(mesh, surface, t)).collect();
+impl OtherSide {
+    fn new(mesh: &TetMesh, surface: &Surface) -> Self {
+        let triangles = in_order(mesh, surface);
+        let corners: Vec<Corners> = triangles.iter().map(|t| t.corners(mesh)).collect();
         let boxes = corners.iter().enumerate().map(|(k, c)| {
             let [low, high] = extent(c);
             GeomWithData::new(Rectangle::from_corners(low, high), k as u32)
@@ -145,7 +162,6 @@ impl<'a> OtherSide<'a> {
                 .collect(),
             corners,
             triangles,
-            surface,
         }
     }
 
@@ -197,10 +213,11 @@ impl<'a> OtherSide<'a> {
         // seen from the other side it turns the other way round
         let [a, b, c] = self.corners[facet];
         let seen = [a, c, b].map(|corner| plane.lay(corner));
-        let [i, j, k] = self.triangles[facet].map(|n| self.surface.nodes()[n as usize]);
+        let [i, j, k] = self.triangles[facet].nodes;
         let laid = Laid {
             corners: seen.map(|s| s.0),
             nodes: [i, k, j],
+            mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
         };
         let piece = Piece::new(&plane.corners, laid)?;
         let shape = barycentric(&laid.corners, piece.middle());

@@ -259,3 +259,38 @@ fn facets_covered_in_part_pass_uniform_pressure() {
         }
     }
 }
+
+/// Quadratic tetrahedra meshed apart: uniform pressure passes exactly, touching and tied; the estimate is small.
+#[test]
+fn quadratic_bodies_meshed_apart_pass_uniform_pressure() {
+    for (lower, upper, boxes) in [
+        ([2, 2, 1], [3, 3, 1], [1, 1, 2]),
+        ([3, 2, 1], [1, 1, 1], [2, 1, 2]),
+        ([2, 2, 2], [2, 3, 1], [1, 1, 1]),
+    ] {
+        for tied in [false, true] {
+            for (a, b) in [(second(brick::Z_MIN), brick::Z_MAX), (brick::Z_MAX, second(brick::Z_MIN))] {
+                let mesh = blocks(lower, upper, 1.0).raise_order().expect("order 2");
+                let contact = match tied {
+                    true => Contact::tied(a, b),
+                    false => Contact::between(a, b).with_friction(Friction::coulomb(0.3)),
+                };
+                let scene = pressed_blocks(mesh.clone(), 1.0).with_contact(contact).with_boxes(boxes);
+                let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+                let what = format!("{lower:?} {upper:?} {tied} {a}");
+                let result = step(&mut simulation);
+                assert_certified(&result, &what);
+                let error = patch_error(&mesh, &result.displacement, 1.0);
+                assert!(error < 1e-8, "{what}: {error:e}");
+                let area: f64 = result.points.iter().map(|p| p.area).sum();
+                assert!(tied || (area - 1.0).abs() < 1e-12, "{what}: {area}");
+                for point in &result.points {
+                    let pressure = -point.normal_force / point.area;
+                    assert!((pressure / PRESSURE - 1.0).abs() < 1e-6, "{what}: {pressure:e}");
+                }
+                let error = simulation.result().expect("a step").algebraic_error();
+                assert!(error.relative() < 1e-5, "{what}: {error:?}");
+            }
+        }
+    }
+}

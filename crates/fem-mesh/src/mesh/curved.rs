@@ -22,7 +22,7 @@ pub(crate) fn shape(l: &[f64; 4]) -> [f64; 10] {
 }
 
 /// The same of a facet: corners, then the mid-nodes of the edges 01, 12, 20.
-pub(crate) fn facet_shape(l: &[f64; 3]) -> [f64; 6] {
+pub fn facet_shape(l: &[f64; 3]) -> [f64; 6] {
     let corner = |i: usize| l[i] * (2.0 * l[i] - 1.0);
     let mid = |k: usize| 4.0 * l[FACET_EDGES[k][0]] * l[FACET_EDGES[k][1]];
     std::array::from_fn(|k| if k < 3 { corner(k) } else { mid(k - 3) })

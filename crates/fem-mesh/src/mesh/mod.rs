@@ -21,7 +21,8 @@ pub use error::MeshError;
 pub use surface::{Surface, SurfaceError, SurfaceFrame};
 pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 
-pub(crate) use curved::{EDGES, curved_facet, facet_shape, shape, tangents};
+pub use curved::facet_shape;
+pub(crate) use curved::{EDGES, curved_facet, shape, tangents};
 pub(crate) use faces::{NONE, connected_sets};
 pub(crate) use quadratic::quadratic_tets;
 pub(crate) use tet_mesh::{facet_area_vector, tag_list};
