@@ -1,21 +1,33 @@
 //! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
 //!
 //! Prints what the deck asks for and does not get, the plan, and a line a step; progress and warnings on standard error.
-//! With `--out` series for ParaView and a table are written.
+//! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every five
+//! minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use signorini::deck::Deck;
 use signorini::prelude::*;
 
-const USAGE: &str = "usage: deck PART.inp [--out FOLDER]";
+const USAGE: &str = "usage: deck PART.inp [--out FOLDER] [--states FOLDER]";
+
+/// How a program ends that Ctrl-C has stopped.
+const STOPPED: i32 = 130;
 
 fn main() -> Result<(), Error> {
-    let (mut part, mut out) = (None, None);
-    let mut arguments = std::env::args().skip(1);
+    command(std::env::args().skip(1))
+}
+
+/// The command with its arguments.
+pub fn command(mut arguments: impl Iterator<Item = String>) -> Result<(), Error> {
+    let (mut part, mut out, mut states) = (None, None, None);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--out" => out = arguments.next().map(PathBuf::from),
+            "--states" => states = arguments.next().map(PathBuf::from),
             _ if part.is_none() && !argument.starts_with('-') => part = Some(argument),
             other => {
                 eprintln!("{other:?} is not understood; {USAGE}");
@@ -27,10 +39,24 @@ fn main() -> Result<(), Error> {
         eprintln!("{USAGE}");
         std::process::exit(2);
     };
-    run(Path::new(&part), out.as_deref())
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = stop.clone();
+    let handler = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(STOPPED);
+        }
+    });
+    if let Err(error) = handler {
+        eprintln!("Ctrl-C will end the program at once: {error}");
+    }
+    if run(Path::new(&part), out.as_deref(), states.as_deref(), stop)? {
+        std::process::exit(STOPPED);
+    }
+    Ok(())
 }
 
-fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
+/// Whether it was stopped.
+fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicBool>) -> Result<bool, Error> {
     let deck = Deck::read(part)?;
     for ignored in deck.ignored() {
         println!("{ignored}");
@@ -61,13 +87,23 @@ fn run(part: &Path, out: Option<&Path>) -> Result<(), Error> {
         step.require_converged()?;
         Ok(())
     };
-    let mut observer = |step: &StepResult| Flow::from(table(step));
-    let report = simulation.run(&mut (Progress::new(std::io::stderr()), &mut observer))?;
+    let write = |step: &StepResult| Flow::from(table(step));
+    let mut observer = ((Progress::new(std::io::stderr()), write), stop);
+    let report = match states {
+        Some(folder) => simulation.run_or_resume(folder, Duration::from_secs(300), &mut observer)?,
+        None => simulation.run(&mut observer)?,
+    };
+    if report.stopped {
+        println!("stopped at {} s", simulation.result().map_or(0.0, |step| step.time()));
+        if let Some(folder) = states {
+            println!("the same command goes on from {}", folder.display());
+        }
+    }
     if let Some(error) = report.mesh_error {
         println!("estimated error of the mesh: {:.0} %", 100.0 * error);
     }
     if let Some(writer) = writer {
         println!("written: {}", writer.path().display());
     }
-    Ok(())
+    Ok(report.stopped)
 }

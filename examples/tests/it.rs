@@ -1,6 +1,10 @@
 //! The plain programs: each runs, and finds what it must find.
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
+#[path = "../deck.rs"]
+mod deck;
+#[path = "../from_mesh.rs"]
+mod from_mesh;
 #[path = "../own_mesh.rs"]
 mod own_mesh;
 #[path = "../qp_only.rs"]
@@ -9,6 +13,8 @@ mod qp_only;
 mod tresca;
 
 mod docs;
+#[cfg(unix)]
+mod signal;
 
 use signorini::prelude::*;
 use signorini_qp::kprgp::Expansion;
@@ -33,6 +39,27 @@ fn a_mesh_of_ones_own_becomes_a_series() {
     let series = std::fs::read_to_string(format!("{folder}/roller.pvd")).expect("a series");
     // at rest, and ten steps
     assert_eq!(series.matches("<DataSet").count(), 11);
+}
+
+/// The newcomer's path: twenty lines from a mesh, none from a deck, to what ParaView opens.
+#[test]
+fn from_a_mesh_or_a_deck_to_paraview() {
+    let program = include_str!("../from_mesh.rs").split_once("pub fn run").expect("run").1;
+    assert!(program.lines().count() <= 20);
+    let folder = concat!(env!("CARGO_TARGET_TMPDIR"), "/newcomer");
+    from_mesh::run(concat!(env!("CARGO_MANIFEST_DIR"), "/roller.msh"), folder).expect("from_mesh");
+    let pad = concat!(env!("CARGO_MANIFEST_DIR"), "/decks/pad.inp");
+    let words = [pad, "--out", folder].map(String::from);
+    deck::command(words.into_iter()).expect("deck");
+    for (series, steps) in [
+        ("roller.pvd", 5),
+        ("roller_contact.pvd", 5),
+        ("pad.pvd", 5),
+        ("pad_contact.pvd", 5),
+    ] {
+        let text = std::fs::read_to_string(format!("{folder}/{series}")).expect("a series");
+        assert_eq!(text.matches("<DataSet").count(), steps + 1, "{series}");
+    }
 }
 
 #[test]

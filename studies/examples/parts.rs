@@ -5,14 +5,17 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 use signorini::fem_mesh::gmsh::{GroupNames, read_named_gmsh};
 use signorini::fem_mesh::{Surface, TetMesh};
 use signorini::prelude::*;
+use signorini_studies::chart::{Chart, Curve, page};
+use signorini_studies::draw::{self, Shown};
 use signorini_studies::record::StepRecord;
 use signorini_studies::run::{pool, solve};
-use signorini_studies::{Failure, exit};
+use signorini_studies::{Failure, exit, save};
 
 /// Young's modulus and Poisson's ratio of steel.
 const STEEL: [f64; 2] = [210e3, 0.3];
@@ -20,6 +23,9 @@ const STEEL: [f64; 2] = [210e3, 0.3];
 const RADIUS: f64 = 10.0;
 /// Radius of the contact that the force on the ball is chosen for.
 const CONTACT_RADIUS: f64 = 0.8;
+
+/// From where parts are drawn.
+const EYE: [f64; 3] = [1.0, -1.6, 0.9];
 
 /// Options of `parts`.
 #[derive(Debug, Clone, PartialEq, Parser)]
@@ -34,6 +40,12 @@ pub struct PartsOptions {
     /// Threads; 0 takes all cores.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
+    /// Draws the pressure under the balls beside the formula into this SVG.
+    #[arg(long)]
+    pub plot: Option<PathBuf>,
+    /// Draws each part at its end, by von Mises stress, into this folder.
+    #[arg(long)]
+    pub pictures: Option<PathBuf>,
 }
 
 #[allow(dead_code)]
@@ -68,15 +80,22 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
         let part = stem.split('-').next().unwrap_or_default().to_owned();
         let (mesh, names) = read_named_gmsh(&path)?;
         for &count in &options.subdomains {
-            let run = pool.install(|| run(&part, &mesh, &names, count, out))?;
+            let (run, last) = pool.install(|| run(&part, &mesh, &names, count, out))?;
+            if let (Some(folder), Some(last)) = (&options.pictures, last) {
+                let text = draw::result(&last, Shown::VonMises, EYE);
+                save(&folder.join(format!("{stem}.svg")), &text)?;
+            }
             runs.push(run);
         }
     }
     let mut balls: Vec<&Hertz> = runs.iter().filter_map(|run| run.hertz.as_ref()).collect();
     // the same for all partitions of a mesh, but for the last digits
     balls.dedup_by_key(|ball| ball.nodes);
-    for ball in balls {
+    for ball in &balls {
         writeln!(out, "\nsphere, {} pressed nodes: {ball}", ball.nodes)?;
+    }
+    if let Some(path) = &options.plot {
+        save(path, &chart(&balls)?)?;
     }
     Ok(runs)
 }
@@ -107,7 +126,7 @@ fn run(
     names: &GroupNames,
     count: usize,
     out: &mut (impl Write + Send),
-) -> Result<PartRun, Failure> {
+) -> Result<(PartRun, Option<Arc<StepResult>>), Failure> {
     let mut scene = scene(part, mesh, names)?;
     if count > 0 {
         scene = scene.with_subdomains(count);
@@ -141,12 +160,13 @@ fn run(
         },
     )?;
     let hertz = (part == "sphere").then(|| Hertz::new(&simulation));
-    Ok(PartRun {
+    let run = PartRun {
         part: part.to_owned(),
         tets,
         steps,
         hertz: hertz.flatten(),
-    })
+    };
+    Ok((run, simulation.result().cloned()))
 }
 
 /// What is done to a part.
@@ -174,7 +194,7 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
         "sphere" => bare
             .with_support(Support::partial(surface("x")?, component(0)))
             .with_support(Support::partial(surface("y")?, component(1)))
-            .with_load(push("top", [0.0, 0.0, -Hertz::force() / 4.0])?)
+            .with_load(push("top", [0.0, 0.0, -Hertz::load() / 4.0])?)
             .with_contact(Contact::half_space(surface("ball")?, [0.0; 3], [0.0, 0.0, 1.0])),
         // pressed, then pushed with half of what friction holds
         "punch" => bare
@@ -220,17 +240,29 @@ fn component(axis: usize) -> Directions {
 pub struct Hertz {
     /// Nodes pressed.
     pub nodes: usize,
+    /// Contact force over the load, less 1.
+    pub force: f64,
     /// Largest pressure by the formula for the force that acts.
     pub peak: f64,
     /// Radius of the contact by the formula, and that of a disc with the pressed nodes' area, over it, less 1.
     pub radius: f64,
-    /// Mean over the pressed nodes within 0.8 of the radius of the pressure's distance from the profile, root of squares, over the peak.
-    pub profile: f64,
+    /// Force over area at the pressed nodes within 0.8 of the radius, off the profile: root of the mean square, over the
+    /// peak.
+    pub rough: f64,
+    /// The same of the library's contact pressure.
+    pub smooth: f64,
+    /// The largest of these distances.
+    pub worst: f64,
+    /// The library's contact pressure within a third of the radius, the mean over the nodes, off that of the profile,
+    /// over the peak.
+    pub middle: f64,
+    /// Distance from the axis over the radius, and the library's contact pressure over the peak, of each node.
+    pub pressures: Vec<(f64, f64)>,
 }
 
 impl Hertz {
     /// Force on the whole ball for [`CONTACT_RADIUS`].
-    fn force() -> f64 {
+    fn load() -> f64 {
         4.0 * Self::modulus() * CONTACT_RADIUS.powi(3) / (3.0 * RADIUS)
     }
 
@@ -247,32 +279,78 @@ impl Hertz {
         let peak = 1.5 * force / area;
         let covered: f64 = 4.0 * pressed.iter().map(|p| p.area).sum::<f64>();
         let points = result.scene().mesh().points();
-        let (mut sum, mut count) = (0.0_f64, 0);
-        for point in &pressed {
-            let [x, y, _] = points[point.node as usize];
-            let inside: f64 = 1.0 - (x * x + y * y) / (radius * radius);
-            if inside > 0.36 {
-                let off = point.force()[2] / point.area / peak - inside.sqrt();
-                (sum, count) = (sum + off * off, count + 1);
-            }
-        }
+        let place = |node: u32| points[node as usize][0].hypot(points[node as usize][1]) / radius;
+        let over_area = pressed.iter().map(|p| (place(p.node), p.force()[2] / p.area / peak));
+        let nodes = result.surfaces()[0].nodes();
+        let pressure = result.contact_pressure(0)?;
+        let pressures: Vec<_> = nodes
+            .iter()
+            .zip(&pressure)
+            .map(|(n, p)| (place(*n), p / peak))
+            .collect();
+        let off = |&(r, p): &(f64, f64)| p - profile(r);
+        let within = |r: f64| pressures.iter().filter(move |p| p.0 < r);
+        let squares = |p: &(f64, f64)| off(p).powi(2);
         Some(Self {
             nodes: pressed.len(),
+            force: force / Self::load() - 1.0,
             peak,
             radius: (covered / area).sqrt() - 1.0,
-            profile: (sum / f64::from(count)).sqrt(),
+            rough: mean(over_area.filter(|p| p.0 < 0.8).map(|p| squares(&p))).sqrt(),
+            smooth: mean(within(0.8).map(squares)).sqrt(),
+            worst: within(0.8).map(|p| off(p).abs()).fold(0.0, f64::max),
+            middle: mean(within(1.0 / 3.0).map(off)),
+            pressures,
         })
     }
+}
+
+/// Hertz's pressure over its peak, at a distance over the radius.
+fn profile(r: f64) -> f64 {
+    (1.0 - r * r).max(0.0).sqrt()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
+    sum / f64::from(count)
 }
 
 impl std::fmt::Display for Hertz {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "p0 {:.0} N/mm2 (Hertz), radius {:+.1} %, pressure off the profile by {:.1} % of p0",
+            "force {:+.0e}, p0 {:.0} N/mm2 (Hertz), radius {:+.1} %; off the profile by, of p0: force over area {:.1} %, \
+             contact pressure {:.2} %, at worst {:.1} %, in the middle {:+.2} %",
+            self.force,
             self.peak,
             100.0 * self.radius,
-            100.0 * self.profile
+            100.0 * self.rough,
+            100.0 * self.smooth,
+            100.0 * self.worst,
+            100.0 * self.middle
         )
     }
+}
+
+/// The contact pressure under the balls over the distance from the axis.
+fn chart(balls: &[&Hertz]) -> Result<String, Failure> {
+    let formula = (0..=150).map(|k| f64::from(k) / 100.0).map(|r| (r, profile(r)));
+    let mut curves = vec![Curve::new("Hertz", 5, formula)];
+    for (k, ball) in balls.iter().enumerate() {
+        let mut points: Vec<_> = ball.pressures.iter().copied().filter(|p| p.0 < 1.5).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        curves.push(Curve::new(format!("{} pressed nodes", ball.nodes), k, points));
+    }
+    let chart = Chart {
+        title: "Contact pressure under a ball".into(),
+        axes: [
+            "distance from the axis / radius".into(),
+            "pressure / largest by Hertz".into(),
+        ],
+        log: [false; 2],
+        marks: false,
+        legend: true,
+        curves,
+    };
+    page((720, 420), [1, 1], "", &[chart])
 }

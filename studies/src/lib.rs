@@ -20,6 +20,7 @@ use std::process::ExitCode;
 
 pub mod brick;
 pub mod chart;
+pub mod draw;
 pub mod files;
 pub mod options;
 pub mod paper;

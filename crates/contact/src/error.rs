@@ -48,13 +48,13 @@ signorini_fem_mesh::errors! {
             "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate \
             with its coefficient";
         TableRate { contact: usize, entry: usize, rate: f64 } =
-            "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate} m/s, which \
+            "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate}, which \
             is not finite or out of order; give finite slip rates, each larger than the one before";
         CoefficientAt { node: u32, rate: f64, value: f64 } =
-            "friction at node {node}: the law gives the coefficient {value} at slip rate {rate} m/s; it must be \
+            "friction at node {node}: the law gives the coefficient {value} at slip rate {rate}; it must be \
             finite and not negative";
         SlipBound { node: u32, value: f64 } =
-            "friction at node {node}: the slip bound {value} Pa must be finite and not negative";
+            "friction at node {node}: the slip bound {value} must be finite and not negative";
         Formula { alpha: f64, beta: f64, gamma: f64, rule: &'static str } =
             "difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER";
         NoSteps = "the analysis has no step or more than a hundred million; ask for at least one step";
@@ -65,16 +65,19 @@ signorini_fem_mesh::errors! {
             equal steps, backward Euler does not";
         UnknownTag { what: &'static str, index: usize, tag: u32, known: String } =
             "{what} {index}: no facet has the tag {tag}; the mesh has {known}";
+        SpringStiffness { spring: usize, value: f64 } =
+            "spring {spring}: its stiffness is {value}; it must be finite and not negative, and some component \
+            positive";
         UnknownNode { support: usize, node: u32, nodes: usize } =
             "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ValueCount { support: usize, values: usize, nodes: usize } =
             "support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node";
         Gap { contact: usize, node: u32, position: [f64; 3], value: f64 } =
-            "contact {contact}: the gap at node {node}, at {position:?}, is {value} m; it must be finite at every \
+            "contact {contact}: the gap at node {node}, at {position:?}, is {value}; it must be finite at every \
             node of the surface";
         SupportInObstacle { node: u32, depth: f64, time: f64, displacement: f64, gap: f64 } =
-            "support at node {node}: at time {time} s it holds this contact node {depth} m inside the obstacle \
-            (normal displacement {displacement} m, gap {gap} m); shorten the motion of the support, correct the gap \
+            "support at node {node}: at time {time} s it holds this contact node {depth} inside the obstacle \
+            (normal displacement {displacement}, gap {gap}); shorten the motion of the support, correct the gap \
             or the place of the obstacle, or leave the node free along the normal";
         ObstacleNormal { contact: usize, normal: [f64; 3] } =
             "contact {contact}: the obstacle's normal {normal:?} must be finite and not zero";
@@ -84,13 +87,13 @@ signorini_fem_mesh::errors! {
             needs the normal that points out of the obstacle, up for a floor)";
         NoPartner { contact: usize, distance: f64 } =
             "contact {contact}: no facet of the first side faces one of the other side (their nearest nodes are \
-            {distance:.3e} m apart); name sides that look at each other";
+            {distance:.3e} apart); name sides that look at each other";
         QuadraticApart { contact: usize, node: u32 } =
             "contact {contact}: node {node} has no partner on the other body, or its edges have none; in meshes of \
             order 2 both sides have to match, edges too: mesh them so, or use order 1";
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
-            "contact {contact}: node {node} lies {depth:.3e} m inside the other body, seen from its partner \
-            {partner}, deeper than its facets are large ({size:.3e} m); give sides that face each other across the \
+            "contact {contact}: node {node} lies {depth:.3e} inside the other body, seen from its partner \
+            {partner}, deeper than its facets are large ({size:.3e}); give sides that face each other across the \
             gap, or, if they are to be pressed apart, tell how far by with_gap";
         SameSide { contact: usize, tag: u32 } =
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
@@ -127,14 +130,14 @@ signorini_fem_mesh::errors! {
         HistoryValue { what: &'static str, index: usize, time: f64, value: f64 } =
             "{what} {index}: its history gives {value} at time {time} s";
         TooLarge { place: String, value: f64, unit: &'static str, most: f64 } =
-            "{place}: {value:e} {unit} is too large, squares of what follows from it would overflow (at most {most:e} \
-            {unit}); check its units and its history";
+            "{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \
+            its units and its history";
         Stiffness { region: u32, value: f64, least: f64, most: f64 } =
-            "region {region}: its material has a stiffness of {value:e} Pa, and squares of what follows from it would \
-            overflow or vanish (at least {least:e} Pa, at most {most:e} Pa); check the units of its material";
+            "region {region}: its material has a stiffness of {value:e}, and squares of what follows from it would \
+            overflow or vanish (at least {least:e}, at most {most:e}); check the units of its material";
         NotHeld { step: usize, body: usize, node: u32, mode: String, force: f64, friction: Option<f64> } =
             "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push \
-            along it with {force:.3e} N; {}",
+            along it with a force of {force:.3e}; {}",
             held_by(*friction), held_remedy(*friction);
         NotDetermined { body: usize, count: usize, motions: String } =
             "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are \
@@ -151,7 +154,8 @@ signorini_fem_mesh::errors! {
             it, with smaller steps or other settings";
         Checkpoint { reason: String } = "checkpoint: {reason}";
         CheckpointFile { what: &'static str, path: std::path::PathBuf, source: std::io::Error } =
-            "checkpoint: cannot {what} {}: {source}", path.display();
+            "checkpoint: cannot {what} {}: {source}; those stored before stay: make room, correct the rights of the \
+            folder or give another one, then go on", path.display();
         Probe { node: u32, nodes: usize } =
             "probe: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ResultTable { path: std::path::PathBuf, line: usize, found: String, expected: String } =

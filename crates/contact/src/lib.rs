@@ -102,11 +102,13 @@ pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
     Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Obstacle, Partition, Place,
-    Rotation, Scene, SlipBound, Support,
+    Rotation, Scene, SlipBound, Spring, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
+#[cfg(feature = "checkpoint")]
+pub use simulation::Every;
 pub use simulation::{Flow, Observer, Progress, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
 pub use status::{StepFailure, StepStatus};

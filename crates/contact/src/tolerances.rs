@@ -235,6 +235,14 @@ pub(crate) const COARSE_MESH: f64 = 0.1;
 /// Strain over displacement by size below which it may be what the solver left of a rigid motion.
 pub(crate) const RIGID: f64 = 1e-6;
 
+// ---- steps (settings, simulation) ----
+
+/// Most halvings of a step: a millionth of it is no step any more.
+pub(crate) const MOST_HALVINGS: u32 = 20;
+
+/// Stiffness of a spring at a node, over the largest of all, below which there is none: what projections leave.
+pub(crate) const NO_SPRING: f64 = 1e-12;
+
 // Estimates where contact points share nodes
 
 /// Most rounds of conjugate gradients, and iterations of each, by which points are moved together.

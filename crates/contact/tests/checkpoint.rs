@@ -1,12 +1,16 @@
 //! States as bytes: what was stored and read back is the same state, and continues bit for bit.
 //! Stands alone, so that it runs with the feature `checkpoint` and no other.
 
+use allocation_counter::measure;
 use signorini_contact::{
-    Accuracy, Analysis, Coefficient, Contact, ContactError, DifferenceFormula, Flow, Friction, Load, Method, RunReport,
-    Scene, Settings, Silent, Simulation, State, StepResult, Support, Warning,
+    Accuracy, Analysis, Coefficient, Contact, ContactError, DifferenceFormula, Every, Flow, Friction, Load, Method,
+    RunReport, Scene, Settings, Silent, Simulation, State, StepResult, Support, Warning,
 };
 use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// A coarse relative of the benchmark.
 fn simulation(friction: &Friction, settings: &Settings) -> Simulation {
@@ -204,7 +208,7 @@ fn checkpoints_are_stored_every_few_steps_and_at_the_end() {
     assert_same_end(&simulation);
 
     let error = rough().run_or_resume(&folder.0, 0, &mut Silent).expect_err("zero");
-    assert!(error.to_string().contains("every_steps"), "{error}");
+    assert!(error.to_string().contains("every = 0"), "{error}");
 }
 
 #[test]
@@ -274,4 +278,140 @@ fn checkpoints_that_cannot_be_used_are_named_and_left() {
         assert!(error.contains(word), "{error}");
     }
     assert_eq!(folder.names(), ["step-00000001.state"]);
+}
+
+/// The third checkpoint finds a full disk (a device that takes no byte): an error with file and remedy, those before
+/// stay, and the run goes on from them once there is room.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_the_checkpoints_before() {
+    let folder = Folder::new("full");
+    std::fs::create_dir_all(&folder.0).expect("folder");
+    let full = folder.0.join("step-00000003.state.tmp");
+    std::os::unix::fs::symlink("/dev/full", full).expect("a full disk");
+    let error = run_until(4, &folder.0).map(|_| ()).expect_err("no room");
+    let text = error.to_string();
+    for word in ["step-00000003.state", "No space left", "make room"] {
+        assert!(text.contains(word), "{text}");
+    }
+    assert_eq!(folder.names(), ["step-00000001.state", "step-00000002.state"]);
+    let (second, report) = run_until(4, &folder.0).expect("room again");
+    assert_eq!(report.steps, 2);
+    assert_same_end(&second);
+}
+
+/// A flag that is set ends the run after the step, with its checkpoint, and the report says so.
+#[test]
+fn a_flag_ends_the_run_after_the_step() {
+    let folder = Folder::new("flag");
+    let stop = Arc::new(AtomicBool::new(false));
+    let mut simulation = rough();
+    let mut asked = |result: &StepResult| {
+        stop.store(result.step() == 1, Ordering::Relaxed);
+        Flow::Continue
+    };
+    let report = simulation.run_or_resume(&folder.0, 3, &mut (&mut asked, stop.clone()));
+    let report = report.expect("run");
+    assert!(report.stopped && report.steps == 2);
+    assert_eq!(folder.names(), ["step-00000002.state"]);
+    stop.store(false, Ordering::Relaxed);
+    let report = simulation.run_or_resume(&folder.0, 3, &mut stop.clone()).expect("run");
+    assert!(!report.stopped && report.steps == 2);
+    assert_same_end(&simulation);
+    // a stop after the last step has stopped nothing
+    let mut last = |result: &StepResult| if result.step() == 3 { Flow::Stop } else { Flow::Continue };
+    assert!(!rough().run(&mut last).expect("run").stopped);
+}
+
+#[test]
+fn checkpoints_are_stored_by_time() {
+    let stored = |every: Every| {
+        let folder = Folder::new(&format!("time-{every:?}").replace(' ', ""));
+        let mut seen = 0;
+        let mut look = |_: &StepResult| {
+            seen += folder.names().len();
+            Flow::Continue
+        };
+        let _ = rough().run_or_resume(&folder.0, every, &mut look).expect("run");
+        assert_eq!(folder.names().last().map(String::as_str), Some("step-00000004.state"));
+        seen
+    };
+    // before the steps there are 0, 1, 2 and 2 files; by the hour there is none before the end
+    assert_eq!(stored(Duration::ZERO.into()), 5);
+    assert_eq!(stored(Duration::from_secs(3600).into()), 0);
+}
+
+/// Halved steps are resumed between the user's times only, with the same bits, from bytes as well.
+#[test]
+fn halved_steps_go_on_from_a_folder() {
+    let few = signorini_qp::ActiveSetSettings::default().with_max_products(12);
+    let settings = Settings::default()
+        .with_method(Method::ActiveSet(few))
+        .with_max_fallback_products(1)
+        .with_step_halving(4);
+    let new = || simulation(&Friction::coulomb(0.3), &settings);
+    let mut whole = new();
+    let report = whole.run(&mut Silent).expect("run");
+    assert!(report.counters.halvings > 0);
+    let folder = Folder::new("halved");
+    for _ in 0..4 {
+        let _ = new()
+            .run_or_resume(&folder.0, 1, &mut |_: &StepResult| Flow::Stop)
+            .expect("run");
+    }
+    let mut again = new();
+    let _ = again.run_or_resume(&folder.0, 1, &mut Silent).expect("run");
+    assert!(again.state() == whole.state());
+}
+
+/// The bytes with another payload and the checksum that belongs to it.
+fn resealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let sum = bytes[12..].iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    bytes[4..12].copy_from_slice(&sum.to_le_bytes());
+    bytes
+}
+
+/// Bytes made on purpose, which the checksum does not find: lengths beyond all bounds, numbers that are none, cuts. An
+/// answer, no memory for what is not there, and what can be read is refused or can be gone on from.
+#[test]
+fn made_up_bytes_are_refused_or_harmless() {
+    let mut simulation = rough();
+    let _ = simulation.step().expect("step");
+    let whole = simulation.state().to_bytes().expect("encode");
+    let mut good = 0;
+    let mut try_one = |bytes: Vec<u8>, what: &str| {
+        let bytes = resealed(bytes);
+        let mut state = None;
+        let used = measure(|| state = Some(State::from_bytes(&bytes)));
+        // postcard believes a length up to a megabyte before the numbers come
+        let most = 16 * 1024 * 1024 + 16 * bytes.len() as u64;
+        assert!(used.bytes_max < most, "{what}: {} bytes", used.bytes_max);
+        if let Some(Ok(state)) = state {
+            good += 1;
+            if let Err(error) = simulation.resume(state) {
+                assert!(matches!(error, ContactError::Checkpoint { .. }), "{what}: {error}");
+            }
+        }
+    };
+    for at in 12..whole.len() {
+        for new in [0x00, 0x01, 0x7f, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] = new;
+            try_one(bytes, "one byte");
+        }
+        if at % 7 == 0 {
+            // a length of 2^63 in the encoding of postcard, in the place of what is there, and between
+            let long = [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f];
+            let mut bytes = whole.clone();
+            bytes.splice(at..(at + 9).min(whole.len()), long);
+            try_one(bytes, "long");
+            let mut bytes = whole.clone();
+            bytes.splice(at..at, long);
+            try_one(bytes, "longer");
+            try_one(whole[..at].to_vec(), "cut");
+        }
+    }
+    assert!(good > 100, "{good}");
 }

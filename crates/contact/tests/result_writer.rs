@@ -259,6 +259,36 @@ fn a_failure_half_way_loses_nothing() {
     assert_eq!(String::from_utf8_lossy(&longer).lines().count(), 3 + STEPS);
 }
 
+/// A full disk (a device that takes no byte) in the place of each file in turn: the error names the file and what to do,
+/// what was written stays, and the step is written again once there is room.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_loses_nothing() {
+    for full in ["beam_0002.vtu", "beam_contact_0002.vtu", "beam.pvd", "beam_contact.pvd"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let (mut simulation, mut writer) = (simulation(), writer(folder.path()));
+        let first = simulation.step().expect("step");
+        writer.write(&first).expect("room");
+        let before = times(&path("beam.pvd"));
+        std::os::unix::fs::symlink("/dev/full", path(&format!("{full}.tmp"))).expect("a full disk");
+        let second = simulation.step().expect("step");
+        let error = writer.write(&second).expect_err("no room").to_string();
+        for word in [full, "No space left", "make room"] {
+            assert!(error.contains(word), "{error}");
+        }
+        assert!(times(&path("beam.pvd")).starts_with(&before));
+        for k in 0..before.len() {
+            assert!(has(&path(&format!("beam_{k:04}.vtu")), "displacement"));
+        }
+        writer.write(&second).expect("room again");
+        let _ = simulation.run(&mut writer).expect("the rest");
+        for series in ["beam.pvd", "beam_contact.pvd"] {
+            assert_eq!(times(&path(series)), [0.0, 0.25, 0.5, 0.75, 1.0], "{full}");
+        }
+    }
+}
+
 /// A run that is resumed leaves the files of an unbroken one, bit for bit.
 #[test]
 fn a_resumed_run_goes_on_with_its_files() {

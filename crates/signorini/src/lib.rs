@@ -52,11 +52,13 @@ pub use error::Error;
 /// The names that a program usually needs.
 pub mod prelude {
     pub use crate::Error;
+    #[cfg(feature = "checkpoint")]
+    pub use signorini_contact::Every;
     pub use signorini_contact::result::ContactSummary;
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Contact, ContactError, ContactNormal, ContactState,
         DifferenceFormula, Directions, Flow, Friction, Gap, Load, Method, Observer, Obstacle, Partition, Place, Plan,
-        PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, State,
+        PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, Spring, State,
         StepResult, StepStatus, Support, Warning,
     };
     #[cfg(feature = "vtu")]

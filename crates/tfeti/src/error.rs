@@ -12,6 +12,9 @@ signorini_fem_mesh::errors! {
         Collinear { subdomain: usize } =
             "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions";
         Material { element: usize, message: String } = "tetrahedron {element}: {message}";
+        Spring { node: u32, stiffness: f64 } =
+            "spring at node {node}: its stiffness is {stiffness}; it must be positive, and neither so small nor so \
+            large that its inverse overflows or vanishes";
         UnknownNode { place: String, node: u32, nodes: usize } =
             "{place}: node {node} does not exist, the mesh has nodes 0..{nodes}";
         EmptySupport { support: usize, what: &'static str } =
@@ -27,7 +30,7 @@ signorini_fem_mesh::errors! {
             "support {support}, node {node}: the prescribed displacement is not finite";
         ContradictorySupports { node: u32, first: usize, second: usize, case: u32, difference: f64 } =
             "node {node}: supports {first} and {second} prescribe different displacements in the same direction (case \
-            {case}, difference {difference:e} m); make them agree or remove one";
+            {case}, difference {difference:e}); make them agree or remove one";
         ContactNodeTwice { node: u32 } =
             "node {node} has two contact points with the same partner along the same normal, or is its own partner; \
             give each pair of nodes, and each obstacle of a node, once";

@@ -89,3 +89,6 @@ pub(crate) const NODE: usize = 90;
 pub(crate) const BORDER: usize = 12;
 /// What a group of a subdomain's factor costs a solve besides its tiles, in tiles.
 pub(crate) const GROUP: usize = 4;
+
+/// Least scale of the row of a spring: softer ones are still seen as holding.
+pub(crate) const SOFTEST: f64 = 1e-3;

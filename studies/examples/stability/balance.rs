@@ -58,6 +58,8 @@ pub(crate) struct Ledger {
     arms: Vec<[f64; 3]>,
     before: Option<Kept>,
     turnover: f64,
+    /// Nodes of each contact point with their weights.
+    points: Vec<Vec<(u32, f64)>>,
     /// The step before the first one entered is not known.
     resumed: bool,
     /// The result.
@@ -116,6 +118,11 @@ impl Ledger {
             supported,
             arms: mesh.points().iter().map(arm).collect(),
             before: None,
+            points: simulation
+                .constrained_points()
+                .iter()
+                .map(|p| p.nodes().collect())
+                .collect(),
             turnover: 0.0,
             resumed: false,
             balance: Balance::default(),
@@ -148,12 +155,11 @@ impl Ledger {
             .map(|row| row.iter().map(|&(j, v)| v * u[j]).sum())
             .collect();
         let mut applied = self.load(result.time());
-        for state in result.points() {
+        for (state, nodes) in result.points().iter().zip(&self.points) {
             let force = state.force();
-            let partner = state.partner.map(|node| (node, -1.0));
-            for (node, sign) in std::iter::once((state.node, 1.0)).chain(partner) {
+            for (node, weight) in nodes {
                 for c in 0..3 {
-                    applied[3 * node as usize + c] += sign * force[c];
+                    applied[3 * *node as usize + c] += weight * force[c];
                 }
             }
         }

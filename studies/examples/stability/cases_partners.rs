@@ -21,6 +21,8 @@ fn of(block: usize, tag: FacetTag) -> FacetTag {
 #[derive(Debug, Clone, Copy)]
 struct Stack {
     blocks: usize,
+    /// Cells an edge of the lowest block and of every second one, and of the others.
+    cells: [usize; 2],
     softer: f64,
     /// Height of each gap over the edge of a cube.
     gap: f64,
@@ -30,11 +32,11 @@ struct Stack {
 
 impl Stack {
     fn setup(self) -> Result<Setup, Failure> {
-        let cube = Brick::new([1.0; 3], [3; 3]).build()?;
-        let mut mesh = cube.clone();
+        let cube = |k: usize| Brick::new([1.0; 3], [self.cells[k % 2]; 3]).build();
+        let mut mesh = cube(0)?;
         for k in 1..self.blocks {
             let up = k as f64 * (1.0 + self.gap);
-            let next = cube.map_points(|[x, y, z]| [x, y, z + up])?;
+            let next = cube(k)?.map_points(|[x, y, z]| [x, y, z + up])?;
             mesh = mesh.append(&next.map_tags(|tag| of(k, tag)))?;
         }
         let regions = mesh.components();
@@ -63,6 +65,7 @@ impl Stack {
 pub(crate) fn cases() -> Vec<Case> {
     let base = Stack {
         blocks: 2,
+        cells: [3, 3],
         softer: 1.0,
         gap: 0.0,
         push: 0.1,
@@ -108,6 +111,54 @@ pub(crate) fn cases() -> Vec<Case> {
                 gap: 1e-3,
                 push: 0.05,
                 ..base
+            },
+        ),
+    ]);
+    for (cells, softer, hard) in [
+        (
+            [3, 4],
+            1.0,
+            "nearly the same mesh: thin pieces of facets lie over one another",
+        ),
+        ([3, 8], 1e3, "a fine soft block on a coarse one"),
+        ([3, 8], 1e-3, "a fine stiff block on a coarse soft one"),
+        ([9, 3], 1e3, "a coarse soft block on a fine one"),
+        ([9, 3], 1e-3, "a coarse stiff block on a fine soft one"),
+    ] {
+        let [lower, upper] = cells;
+        let name = format!("meshed apart, {lower} below {upper} cells, upper softer by {softer:e}");
+        cases.push(stack(&name, hard, Stack { cells, softer, ..base }).at_most(60));
+    }
+    let apart = Stack { cells: [4, 3], ..base };
+    cases.extend([
+        stack(
+            "meshed apart, pushed at 99 % of friction",
+            "nearly all of the surface slides, rows share nodes",
+            Stack { push: 0.297, ..apart },
+        ),
+        stack(
+            "meshed apart, pushed beyond friction",
+            "nothing holds the upper block",
+            Stack { push: 0.301, ..apart },
+        )
+        .expect(Expect::Refused("body 1")),
+        stack(
+            "meshed apart, stack of five loose blocks",
+            "nodes of one contact are in the sides of the next",
+            Stack {
+                blocks: 5,
+                push: 0.05,
+                ..apart
+            },
+        ),
+        stack(
+            "meshed apart, stack of three falls together",
+            "gaps to close rigidly, between weighted means",
+            Stack {
+                blocks: 3,
+                gap: 1e-3,
+                push: 0.05,
+                ..apart
             },
         ),
     ]);

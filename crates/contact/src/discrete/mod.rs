@@ -18,6 +18,7 @@ mod points;
 mod rounding;
 mod scene;
 mod side;
+mod springs;
 mod supports;
 mod turn;
 

@@ -40,6 +40,10 @@ pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
     Ok(ends.map(|s| s * extent))
 }
 
+/// What numbers count, in words: scenes have units of their own.
+const LENGTH: &str = "units of length";
+const FORCE: &str = "units of force";
+
 /// Refuses what is too large; what is not a number is left to others.
 fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
     if value > LARGEST {
@@ -60,21 +64,21 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             let (factor, time) = scene.analysis.largest_factor(history);
             let size = vector::max_abs(values.as_flattened());
             let place = || format!("support {index} at time {time} s: its displacement");
-            expect(factor * size, "m", place)?;
+            expect(factor * size, LENGTH, place)?;
             let place = || format!("support {index} at time {time} s: its displacement times the stiffness");
-            expect(factor * size * spring, "N", place)?;
+            expect(factor * size * spring, FORCE, place)?;
         }
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
         if let Some((value, history)) = &contact.motion {
             let (factor, time) = scene.analysis.largest_factor(history);
             let place = || format!("obstacle {index} at time {time} s: its displacement");
-            expect(factor * vector::max_abs(value), "m", place)?;
+            expect(factor * vector::max_abs(value), LENGTH, place)?;
         }
         if let Some(rotation) = &contact.rotation {
             let (angle, time) = scene.analysis.largest_factor(&rotation.angle);
             let place = || format!("obstacle {index} at time {time} s: its angle");
-            expect(angle, "rad", place)?;
+            expect(angle, "radians", place)?;
         }
     }
     Ok(())
@@ -96,22 +100,22 @@ pub(super) fn nodal_loads(
         let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
         let (factor, time) = scene.analysis.largest_factor(&load.history);
         let place = |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
-        expect(factor * size, "N", || place(""))?;
-        expect(factor * size / spring, "m", || place(" over the stiffness"))?;
+        expect(factor * size, FORCE, || place(""))?;
+        expect(factor * size / spring, LENGTH, || place(" over the stiffness"))?;
         out.push(local);
     }
     Ok(out)
 }
 
-/// Refuses gaps at the start, and those that obstacles bring with them at the steps.
+/// Refuses gaps as given, and what becomes of them at the steps.
 pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint], poses: &[Vec<Pose>]) -> Result<(), ContactError> {
     for c in conditions {
         let place = || format!("contact at node {}: the gap", c.node());
-        expect(c.gap.abs(), "m", place)?;
-        if scene.contacts[c.surface].carries_field() {
+        expect(c.gap.abs(), LENGTH, place)?;
+        if scene.contacts[c.surface].changes_gap() {
             for pose in &poses[c.surface] {
                 let gap = c.gap_after(scene, pose)?;
-                expect(gap.abs(), "m", place)?;
+                expect(gap.abs(), LENGTH, place)?;
             }
         }
     }

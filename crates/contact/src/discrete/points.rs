@@ -36,7 +36,7 @@ pub(crate) struct ContactPoint {
     pub(crate) frame: SurfaceFrame,
     /// A third of the areas of the facets of its side, m².
     pub(crate) area: f64,
-    /// Initial distance to the obstacle, m.
+    /// Distance to the obstacle as given, m.
     pub(crate) gap: f64,
     /// Friction along the second tangent over that along the first.
     pub(crate) stretch: f64,
@@ -211,7 +211,11 @@ pub(super) fn points(
 fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
-    if x.motion != y.motion || x.rotation != y.rotation || !stays(scene, rounding, point, other, nearer)? {
+    if x.motion != y.motion
+        || x.rotation != y.rotation
+        || x.gap_history != y.gap_history
+        || !stays(scene, rounding, point, other, nearer)?
+    {
         return Err(ContactError::SharedNode {
             node: point.node(),
             first: point.surface,
@@ -267,7 +271,8 @@ fn order(difference: f64, rounding: f64) -> Ordering {
     }
 }
 
-/// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along may change that.
+/// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along and factors of the
+/// gap may change that.
 fn stays(
     scene: &Scene,
     rounding: f64,
@@ -276,7 +281,7 @@ fn stays(
     nearer: Ordering,
 ) -> Result<bool, ContactError> {
     let [x, y] = [point, other].map(|c| &scene.contacts[c.surface]);
-    if !x.carries_field() && !y.carries_field() {
+    if !x.changes_gap() && !y.changes_gap() {
         return Ok(true);
     }
     for pose in x.poses(scene.analysis.times()) {

@@ -5,6 +5,7 @@ use super::partners::Paired;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, points};
 use super::rounding::rounding;
+use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
 use crate::error::ContactError;
@@ -20,6 +21,7 @@ pub(crate) struct DiscreteScene {
     /// How the body is cut.
     pub(crate) decomposition: Decomposition,
     pub(crate) supports: Supports,
+    pub(crate) springs: Springs,
     /// The sides that have the contact points, in the order of the contacts, fixed nodes included.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
@@ -45,6 +47,7 @@ impl DiscreteScene {
         scene.validate()?;
         let decomposition = scene.decompose()?;
         let supports = Supports::new(scene)?;
+        let springs = Springs::new(scene, &supports)?;
         let contacts = scene.contacts.iter().enumerate();
         let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
@@ -83,6 +86,7 @@ impl DiscreteScene {
         Ok(Self {
             decomposition,
             supports,
+            springs,
             surfaces,
             conditions,
             points,

@@ -226,7 +226,7 @@ impl Solved<'_> {
         let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
         for row in gluing.ranges().dirichlet.clone() {
             if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
-                let plane = (gluing.direction(row), self.problem.offset[row]);
+                let plane = (gluing.direction(row), self.prescribed(row));
                 planes.entry(node).or_default().push(plane);
             }
         }
@@ -254,6 +254,13 @@ impl Solved<'_> {
             dependent.iter().for_each(|(node, _)| node.push_out(self.problem, v));
         }
         on_planes(v);
+    }
+
+    /// Prescribed value of a support row. A spring is held where its multiplier puts it: it then adds nothing to the gap.
+    fn prescribed(&self, row: usize) -> f64 {
+        let gluing = self.model.tfeti.gluing();
+        let multiplier = self.recovered.support_multipliers[row - gluing.ranges().dirichlet.start];
+        self.problem.offset[row] - gluing.gives_way(row, multiplier)
     }
 
     /// Moves the nodes of tied contacts to where their partners want them.
@@ -289,7 +296,7 @@ impl Solved<'_> {
             };
             let direction = gluing.direction(row);
             let value = &mut v[3 * node as usize..][..3];
-            let missing = self.problem.offset[row] - dot(&direction, value);
+            let missing = self.prescribed(row) - dot(&direction, value);
             let off = missing / dot(&direction, &direction);
             for c in 0..3 {
                 value[c] += off * direction[c];

@@ -30,10 +30,17 @@ impl ConstrainedPoint {
         self.contact.node()
     }
 
-    /// Its partner on another body; `None` for a rigid obstacle.
+    /// Its partner on another body, of several nodes the one with the largest weight; `None` for a rigid obstacle.
     #[must_use]
     pub fn partner(&self) -> Option<u32> {
         self.contact.sides.partner()
+    }
+
+    /// Mesh nodes with weights: the displacement relative to the obstacle or the partner is their weighted sum, and a
+    /// force on the point acts on each of them with its weight. Those of the partner are last, with negative weights
+    /// (but for dual shape functions, of either sign) that sum to minus one.
+    pub fn nodes(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.contact.sides.nodes()
     }
 
     /// Position of its contact surface in [`Scene::contacts`](crate::Scene::contacts).

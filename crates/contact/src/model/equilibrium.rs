@@ -128,7 +128,7 @@ fn escape(step: usize, motions: &[&FreeMotion], found: &Separation, force: f64, 
     let (part, mut mode, share) = describe(motions, &motion);
     if found.tresca > 0.0 {
         let held = found.tresca * share;
-        mode = format!("{mode}, of which Tresca friction holds {held:.3e} N,");
+        mode = format!("{mode}, of which Tresca friction holds {held:.3e},");
     }
     Escape {
         step,
@@ -224,7 +224,7 @@ fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (Part, String, f64) {
         let moves = v.iter().any(|v| *v != 0.0);
         moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
     };
-    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e} m"));
+    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e}"));
     let parts: Vec<String> = words("translation", &m[..3]).into_iter().chain(turn).collect();
     (most, format!("its {}", parts.join(" with ")), length)
 }

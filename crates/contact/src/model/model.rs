@@ -69,6 +69,7 @@ impl Model {
         let (plan, forecast) = Plan::of(&scene, &discrete, settings)?;
         let tfeti = TfetiBuilder::of_forecast(&forecast)
             .with_supports(&discrete.supports.nodes)
+            .with_springs(&discrete.springs.nodal)
             .with_contact(&discrete.constraints)
             .build()?;
         let loads = std::mem::take(&mut discrete.loads).into_iter();

@@ -194,7 +194,7 @@ fn on_surface(
                 let friction = stress.as_ref().map(|s| s.friction.clone());
                 Field::vector(name, &friction.unwrap_or_else(still))
             }
-            ResultField::Gap if rest => Field::scalar(name, scalars(&|k| result.model.points[k].gap())),
+            ResultField::Gap if rest => Field::scalar(name, scalars(&|k| gap_at_rest(result, k))),
             ResultField::Gap => Field::scalar(name, scalars(&|k| states[k].gap)),
             ResultField::Slip if rest => Field::vector(name, &still()),
             ResultField::Slip => {
@@ -225,6 +225,13 @@ fn number(state: ContactState) -> f64 {
         ContactState::Stick => 1.0,
         ContactState::Slip => 2.0,
     }
+}
+
+/// The gap of a contact point before the first step, m.
+fn gap_at_rest(result: &StepResult, point: usize) -> f64 {
+    let point = &result.model.points[point];
+    let contact = &result.scene().contacts()[point.surface()];
+    contact.gap_history().map_or(1.0, |h| h.value(0.0)) * point.gap()
 }
 
 /// The way of a contact point along the obstacle or the partner, m.

@@ -104,8 +104,10 @@ impl Estimate {
         let moved = |[fixed, each]: [f64; 2], count: f64| (fixed + each * count) / rate.numbers;
         let coarse = COARSE_CHANGES * self.coarse_flops / rate.flops
             + COARSE_READS * self.coarse_bytes as f64 / 8.0 / rate.numbers;
-        // operator and preconditioner
-        let product = 2.0 * self.product_flops / rate.flops + moved(NUMBERS_OF_PRODUCT, rows) + coarse;
+        // operator and preconditioner; matrices that subdomains do not share are read for a single column each, and
+        // memory sets the pace
+        let read = self.inverse_bytes as f64 / 8.0 / rate.numbers;
+        let product = 2.0 * (self.product_flops / rate.flops).max(read) + moved(NUMBERS_OF_PRODUCT, rows) + coarse;
         let setup = (self.setup_flops + COARSE_FACTORS * self.coarse_flops) / rate.flops;
         let step = moved([0.0, NUMBERS_OF_STEP], primal);
         Times {

@@ -37,10 +37,14 @@ pub struct Effects {
     pub gluing: bool,
     /// Supports.
     pub supports: bool,
+    /// Elastic foundations.
+    pub springs: bool,
     /// Supports that move.
     pub motion: bool,
     /// Obstacles that move.
     pub moving_obstacle: bool,
+    /// Gaps that change in time.
+    pub gap_history: bool,
 }
 
 impl FrictionKind {
@@ -75,8 +79,10 @@ impl Effects {
             history: friction != FrictionKind::None && quasistatic,
             gluing: discrete.decomposition.subdomains().len() > 1,
             supports: !scene.supports.is_empty(),
+            springs: !scene.springs.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
             moving_obstacle: contacts.iter().any(Contact::moves),
+            gap_history: (0..contacts.len()).any(|k| has_gap(k) && contacts[k].gap_history.is_some()),
         }
     }
 }

@@ -117,7 +117,7 @@ impl Plan {
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
             interface_rows: primal - 3 * nodes,
-            dirichlet_rows: fixed.values().copied().sum(),
+            dirichlet_rows: fixed.values().copied().sum::<usize>() + discrete.springs.nodal.len(),
             tied_rows: discrete.ties.iter().map(free).sum(),
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
@@ -132,7 +132,8 @@ impl Plan {
         };
         let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
         let touching = points.iter().copied().chain(&discrete.ties);
-        let touching: BTreeSet<u32> = touching.flat_map(|p| nodes(&p)).collect();
+        let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes(&p)).collect();
+        touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
         let forecast = Forecast::new(
             &scene.mesh,
             decomposition,

@@ -79,10 +79,13 @@ impl Plan {
 
     fn supports_text(&self) -> String {
         let moving = if self.effects.motion { ", moving" } else { "" };
-        match self.effects.supports {
-            true => format!("{} rows{moving}", self.dirichlet_rows),
-            false => "none (free body)".to_owned(),
-        }
+        let springs = match (self.effects.supports, self.effects.springs) {
+            (false, false) => return "none (free body)".to_owned(),
+            (true, false) => "",
+            (true, true) => ", with springs",
+            (false, true) => ", springs only",
+        };
+        format!("{} rows{moving}{springs}", self.dirichlet_rows)
     }
 
     fn contact_text(&self) -> String {
@@ -94,7 +97,8 @@ impl Plan {
             None => "no gap: zero offset".to_owned(),
             Some([low, high]) => {
                 let inside = if low < 0.0 { ", starts inside" } else { "" };
-                format!("gaps {low:.3e} to {high:.3e} m{inside}")
+                let changing = if e.gap_history { ", with a history" } else { "" };
+                format!("gaps {low:.3e} to {high:.3e}{inside}{changing}")
             }
         };
         let moving = if e.moving_obstacle { ", moving obstacle" } else { "" };

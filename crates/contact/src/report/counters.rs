@@ -24,6 +24,11 @@ pub struct Counters {
     pub rate_updates: usize,
     /// Entries into an inequality solver.
     pub inequality_solves: usize,
+    /// Increments that failed and were halved, see
+    /// [`with_step_halving`](crate::Settings::with_step_halving).
+    pub halvings: usize,
+    /// States solved for between the times of the analysis.
+    pub between: usize,
 }
 
 impl std::ops::AddAssign for Counters {
@@ -38,5 +43,7 @@ impl std::ops::AddAssign for Counters {
         self.slip_bound_updates += other.slip_bound_updates;
         self.rate_updates += other.rate_updates;
         self.inequality_solves += other.inequality_solves;
+        self.halvings += other.halvings;
+        self.between += other.between;
     }
 }

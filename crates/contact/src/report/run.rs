@@ -24,6 +24,8 @@ use crate::status::StepFailure;
 pub struct RunReport {
     /// Steps solved.
     pub steps: usize,
+    /// Whether the observer ended it before the last step.
+    pub stopped: bool,
     /// Steps that did not converge, in order.
     pub failures: Vec<StepFailure>,
     /// The first step before this run that did not converge and on whose displacement its steps depend, see

@@ -143,7 +143,7 @@ impl fmt::Display for Warning {
                 extent,
             } => write!(
                 f,
-                "step {step}: the displacement of node {node} at {} is {displacement:.3e} m, the body is {extent:.3e} m \
+                "step {step}: the displacement of node {node} at {} is {displacement:.3e}, the body is {extent:.3e} \
                  long; displacements count as small here, so from a tenth of the body on shapes and forces are wrong: \
                  look at the units of loads, material and gaps, and at the supports",
                 at(place)
@@ -170,7 +170,7 @@ impl fmt::Display for Warning {
                 edge,
             } => write!(
                 f,
-                "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e} m, its facets are {edge:.3e} m \
+                "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e}, its facets are {edge:.3e} \
                  long; it keeps the normal and the partner that it began with: take smaller steps, and where the other \
                  side is not plane a shorter way",
                 at(place)
@@ -196,8 +196,8 @@ impl fmt::Display for Warning {
                 extent,
             } => write!(
                 f,
-                "contact {contact} begins {:.3e} m {} its obstacle even at the nearest node, {node} at {}, and the body \
-                 is {extent:.3e} m long; look at the unit of the gap and at the places of the bodies",
+                "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body \
+                 is {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
                 gap.abs(),
                 if *gap < 0.0 { "inside" } else { "from" },
                 at(place)
@@ -244,5 +244,5 @@ impl fmt::Display for Warning {
 
 /// A place in words.
 fn at([x, y, z]: &[f64; 3]) -> String {
-    format!("({x:.4e}, {y:.4e}, {z:.4e}) m")
+    format!("({x:.4e}, {y:.4e}, {z:.4e})")
 }

@@ -27,9 +27,10 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     for own in sizes {
         c.equilibrium.worsen(own.residual, own.forces);
     }
+    let gluing = model.tfeti.gluing();
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
-        let jump = (m.rows[row] - problem.offset[row]).abs();
+        let jump = (m.rows[row] + gluing.gives_way(row, lambda[row]) - problem.offset[row]).abs();
         c.continuity.worsen(jump, own.displacement);
     }
     for (k, point) in model.points.iter().enumerate() {
@@ -118,7 +119,8 @@ mod tests {
         let mut model = Model::new(scene, &Settings::default()).expect("model");
         model.points.clear();
         let mut problem = StepProblem::default();
-        problem.prepare(&model, &State::default(), 0).expect("step");
+        let first = model.scene.analysis.increment(0).expect("a step");
+        problem.prepare(&model, &State::default(), first).expect("step");
         let u = displacement.repeat(model.tfeti.torn_dim() / 3);
         let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
         let measured = Measured {

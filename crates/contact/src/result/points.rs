@@ -23,7 +23,9 @@ pub enum ContactState {
 pub struct PointState {
     /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
     pub node: u32,
-    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle.
+    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle. Where meshes do not
+    /// match it is the node with the largest weight of several
+    /// ([`ConstrainedPoint::nodes`](crate::ConstrainedPoint::nodes)).
     pub partner: Option<u32>,
     /// Position of the contact surface in [`Scene::contacts`](crate::Scene::contacts).
     pub surface: usize,
@@ -66,20 +68,19 @@ pub(crate) fn point_states(model: &Model, problem: &StepProblem, lambda: &[f64],
     states
         .map(|(k, point)| {
             let bound = problem.slip_bound(k, point, lambda);
-            point_state(model, problem, point, (lambda, rows), bound)
+            point_state(problem, point, (lambda, rows), bound)
         })
         .collect()
 }
 
 /// Evaluates one point with its slip bound.
 fn point_state(
-    model: &Model,
     problem: &StepProblem,
     point: &ConstrainedPoint,
     (lambda, rows): (&[f64], &[f64]),
     bound: f64,
 ) -> PointState {
-    let alpha = model.scene.analysis.formula().map_or(1.0, |f| f.weights()[0]);
+    let alpha = problem.formula.map_or(1.0, |f| f.weights()[0]);
     let normal_force = point.scale * lambda[point.row];
     let space = |values: [f64; 2]| match point.tangential {
         TangentialRows::Disc { .. } => point.contact.frame.vector(0.0, values),

@@ -8,8 +8,9 @@ use super::recovered::Recovered;
 use crate::discrete::{ContactPoint, Supports};
 use crate::model::{ConstrainedPoint, Model};
 use crate::step::StepProblem;
-use crate::tolerances::ROUNDING;
+use crate::tolerances::{NO_SPRING, ROUNDING};
 use crate::vec3::dot;
+use nalgebra::{Matrix3, Vector3};
 use signorini_tfeti::internal::PrescribedDirection;
 use signorini_tfeti::{NodeSupport, TiedRows};
 use std::collections::BTreeMap;
@@ -75,6 +76,8 @@ pub struct Reactions {
     pub point: [f64; 3],
     /// What each support does, in the order of the scene.
     pub supports: Vec<SupportReaction>,
+    /// What each [elastic foundation](crate::Spring) does, in the order of the scene.
+    pub springs: Vec<SupportReaction>,
     /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
     /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the
@@ -94,10 +97,11 @@ impl Reactions {
         sum
     }
 
-    /// Supports, contact and loads together: zero in equilibrium.
+    /// Supports, springs, contact and loads together: zero in equilibrium.
     #[must_use]
     pub fn imbalance(&self) -> Resultant {
         let mut sum = self.of_supports();
+        self.springs.iter().for_each(|s| sum += s.resultant);
         sum += self.contact;
         sum += self.loads;
         sum
@@ -226,10 +230,47 @@ pub(crate) fn reactions_about(
     Reactions {
         point: about,
         supports: by_support(&model.discrete.supports, &forces, arm),
+        springs: by_spring(model, recovered, arm),
         contact,
         contacts,
         loads,
     }
+}
+
+/// What springs do, from the multipliers of their rows; several at a node have the parts that their stiffness has.
+fn by_spring(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]) -> Vec<SupportReaction> {
+    let springs = &model.discrete.springs.by_spring;
+    let gluing = model.tfeti.gluing();
+    let rows = gluing.ranges().dirichlet.clone();
+    let mut forces: BTreeMap<u32, Vector3<f64>> = BTreeMap::new();
+    let multipliers = rows.zip(&recovered.support_multipliers).rev();
+    for (row, lambda) in multipliers.take(gluing.springs().len()) {
+        if let Some(node) = gluing.node(row) {
+            *forces.entry(node).or_default() += Vector3::from(gluing.direction(row)) * *lambda;
+        }
+    }
+    let own = springs.iter().map(|nodes| {
+        let mut reaction = SupportReaction::default();
+        for (&node, stiffness) in nodes {
+            let Some(&whole) = forces.get(&node) else {
+                continue;
+            };
+            let sharing = springs.iter().filter_map(|other| other.get(&node));
+            let part = match sharing.clone().count() {
+                1 => whole,
+                _ => {
+                    let sum: Matrix3<f64> = sharing.sum();
+                    let inverse = sum.pseudo_inverse(NO_SPRING * sum.amax()).unwrap_or_default();
+                    stiffness * inverse * whole
+                }
+            };
+            let force = [part[0], part[1], part[2]];
+            reaction.resultant.add(arm(node), force);
+            reaction.nodes.push(NodalForce { node, force });
+        }
+        reaction
+    });
+    own.collect()
 }
 
 /// Splits nodal forces among the supports: each has the part along the directions that it is the first to fix.

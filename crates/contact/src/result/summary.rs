@@ -40,7 +40,7 @@ pub struct ContactSummary {
     pub dissipation: f64,
     /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the
     /// displacement of the obstacle, and normal forces times the change of a [gap that moves
-    /// along](crate::Contact::with_motion).
+    /// along](crate::Contact::with_motion) or [has a history](crate::Contact::with_gap_history).
     pub obstacle_work: f64,
 }
 

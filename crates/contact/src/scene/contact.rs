@@ -65,6 +65,8 @@ pub struct Contact {
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
+    /// Factor of the gap in time.
+    pub(crate) gap_history: Option<History>,
     pub(crate) rotation: Option<Rotation>,
     /// Its shape, from which gap and normal follow.
     pub(crate) shape: Option<Obstacle>,
@@ -88,6 +90,7 @@ impl Contact {
             friction_axis: None,
             crease: CREASE,
             motion: None,
+            gap_history: None,
             rotation: None,
             shape: None,
             tied: false,
@@ -232,6 +235,27 @@ impl Contact {
         self
     }
 
+    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field or the coordinates
+    /// say. A press fit grows from nothing by a negative gap and a ramp; a factor that changes its sign opens or closes
+    /// again. Before the first step the factor is that at time 0. For obstacles and between bodies. What the growing
+    /// interference does to the bodies is part of
+    /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
+    ///
+    /// ```
+    /// use signorini_contact::Contact;
+    /// use signorini_fem_mesh::{FacetTag, History};
+    ///
+    /// let (hub, shaft) = (FacetTag(1), FacetTag(2));
+    /// // 20 micrometres of interference, within a second
+    /// let fit = Contact::between(hub, shaft).with_gap(-20e-6).with_gap_history(History::ramp(1.0, 1.0)?);
+    /// # Ok::<(), signorini_fem_mesh::HistoryError>(())
+    /// ```
+    #[must_use]
+    pub fn with_gap_history(mut self, history: History) -> Self {
+        self.gap_history = Some(history);
+        self
+    }
+
     /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at
     /// least.
     #[must_use]
@@ -291,7 +315,7 @@ impl Contact {
         self.motion.is_some() || self.rotation.is_some()
     }
 
-    /// Where the obstacle is at some times; none if it rests.
+    /// Where the obstacle is at some times, and what has become of the gap; none if it rests and the gap stays.
     pub(crate) fn poses(&self, times: &[f64]) -> Vec<Pose> {
         let shift = |time: f64| match &self.motion {
             Some((displacement, history)) => {
@@ -300,12 +324,25 @@ impl Contact {
             }
             None => [0.0; 3],
         };
-        let times = times.iter().copied();
-        match &self.rotation {
-            Some(rotation) => Pose::turning(rotation, times.map(|t| (shift(t), rotation.angle.value(t)))),
-            None if self.motion.is_some() => times.map(|t| Pose::shifted(shift(t))).collect(),
+        let all = times.iter().copied();
+        let mut poses: Vec<Pose> = match &self.rotation {
+            Some(rotation) => Pose::turning(rotation, all.map(|t| (shift(t), rotation.angle.value(t)))),
+            None if self.motion.is_some() => all.map(|t| Pose::shifted(shift(t))).collect(),
+            None if self.gap_history.is_some() => vec![Pose::default(); times.len()],
             None => Vec::new(),
+        };
+        if let Some(history) = &self.gap_history {
+            let with_times = poses.iter_mut().zip(times);
+            with_times.for_each(|(pose, time)| pose.factor = history.value(*time));
         }
+        poses
+    }
+
+    /// The same before the first step.
+    pub(crate) fn pose_at_rest(&self) -> Pose {
+        let mut pose = Pose::default();
+        pose.factor = self.gap_history.as_ref().map_or(1.0, |h| h.value(0.0));
+        pose
     }
 
     /// The friction law. A bound or coefficient that is zero everywhere is no friction.
@@ -391,6 +428,12 @@ impl Contact {
         Some((*displacement, history))
     }
 
+    /// The factor of the gap in time; `None` if it stays.
+    #[must_use]
+    pub fn gap_history(&self) -> Option<&History> {
+        self.gap_history.as_ref()
+    }
+
     /// How the obstacle turns.
     #[must_use]
     pub fn rotation(&self) -> Option<&Rotation> {
@@ -438,8 +481,13 @@ impl Contact {
         self.moves() && matches!(self.gap, Gap::Field(_) | Gap::Obstacle)
     }
 
-    /// The gap at a node, m, that is `initial` at first, where the obstacle has moved. The part of its way along the
-    /// normal, which opens the gap, is not in it.
+    /// Whether the gap changes otherwise than by what an obstacle opens.
+    pub(crate) fn changes_gap(&self) -> bool {
+        self.carries_field() || self.gap_history.is_some()
+    }
+
+    /// The gap at a node, m, that is `initial` at first, where the obstacle has moved, times its factor. The part of its
+    /// way along the normal, which opens the gap, is not in it.
     pub(crate) fn gap_brought(
         &self,
         contact: usize,
@@ -453,17 +501,18 @@ impl Contact {
         match &self.gap {
             Gap::Obstacle => {
                 let whole = at(pose.origin(&position), &pose.back(normal))?;
-                Ok(whole - vector::dot(&pose.drag(&position), normal))
+                Ok(pose.factor * whole - vector::dot(&pose.drag(&position), normal))
             }
             Gap::Field(_) => {
                 let way = pose.way(&position);
                 let out = vector::dot(&way, normal);
                 let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
                 let brought = if from == position { initial } else { at(from, normal)? };
+                let brought = pose.factor * brought;
                 Ok(if pose.turns() { brought + opened(way) } else { brought })
             }
-            _ if pose.turns() => Ok(initial + opened(pose.small(&position))),
-            _ => Ok(initial),
+            _ if pose.turns() => Ok(pose.factor * initial + opened(pose.small(&position))),
+            _ => Ok(pose.factor * initial),
         }
     }
 }

@@ -15,11 +15,20 @@ pub struct Rotation {
 }
 
 /// Where an obstacle is at a step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pose {
     /// Its displacement, m; with a turn that of its axis.
     shift: [f64; 3],
     turn: Option<Turn>,
+    /// Factor of the gap.
+    pub(crate) factor: f64,
+}
+
+impl Default for Pose {
+    /// At rest.
+    fn default() -> Self {
+        Self::shifted([0.0; 3])
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +43,11 @@ struct Turn {
 
 impl Pose {
     pub(crate) fn shifted(shift: [f64; 3]) -> Self {
-        Self { shift, turn: None }
+        Self {
+            shift,
+            turn: None,
+            factor: 1.0,
+        }
     }
 
     /// The poses of an obstacle that has displacements and angles (rad) at a sequence of steps. Between two steps the
@@ -54,6 +67,7 @@ impl Pose {
                     angle,
                     swept,
                 }),
+                factor: 1.0,
             }
         };
         ways.map(pose).collect()
@@ -153,7 +167,7 @@ mod tests {
         }
         // after three radians the spoke at the ground has gone by
         let last = poses.last().expect("poses").origin(&[1.5, 0.0, 0.0]);
-        let expected = [-radius * 3f64.sin() * -1.0, 0.0, radius - radius * 3f64.cos()];
+        let expected = [radius * 3f64.sin(), 0.0, radius - radius * 3f64.cos()];
         assert!(norm(sub(last, expected)) < 1e-14, "{last:?}");
     }
 

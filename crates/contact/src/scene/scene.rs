@@ -3,6 +3,7 @@
 use super::contact::Contact;
 use super::load::Load;
 use super::partition::Partition;
+use super::spring::Spring;
 use super::support::Support;
 use super::time::Analysis;
 use crate::error::ContactError;
@@ -14,6 +15,7 @@ pub struct Scene {
     pub(crate) mesh: TetMesh,
     pub(crate) materials: Materials,
     pub(crate) supports: Vec<Support>,
+    pub(crate) springs: Vec<Spring>,
     pub(crate) loads: Vec<Load>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) partition: Partition,
@@ -28,6 +30,7 @@ impl Scene {
             mesh,
             materials,
             supports: Vec::new(),
+            springs: Vec::new(),
             loads: Vec::new(),
             contacts: Vec::new(),
             partition: Partition::Automatic,
@@ -39,6 +42,13 @@ impl Scene {
     #[must_use]
     pub fn with_support(mut self, support: Support) -> Self {
         self.supports.push(support);
+        self
+    }
+
+    /// Adds an elastic foundation.
+    #[must_use]
+    pub fn with_spring(mut self, spring: Spring) -> Self {
+        self.springs.push(spring);
         self
     }
 
@@ -121,6 +131,12 @@ impl Scene {
     #[must_use]
     pub fn supports(&self) -> &[Support] {
         &self.supports
+    }
+
+    /// The elastic foundations, in the order in which they were added.
+    #[must_use]
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
     }
 
     /// The loads, in the order in which they were added.

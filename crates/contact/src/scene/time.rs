@@ -58,6 +58,18 @@ impl DifferenceFormula {
         self.0[2] == 0.0
     }
 
+    /// The formula for a step that is `ratio` times as long as the one before, for a rate in units of the new step: the
+    /// new difference quotient, and that of the last step, weighted so that a rate that grows evenly is met as well as
+    /// with equal steps. From [`PAPER`](Self::PAPER) follows the formula of second order with variable steps, stable for
+    /// ratios up to `1 + sqrt(2)` (Grigorieff 1983).
+    pub(crate) fn at_ratio(self, ratio: f64) -> Self {
+        if ratio == 1.0 || self.is_one_step() {
+            return self;
+        }
+        let weight = self.0[2] * 2.0 * ratio / (1.0 + ratio);
+        Self([1.0 + weight, -(1.0 + weight + weight * ratio), weight * ratio])
+    }
+
     /// `z` of section 3: the displacement at which the difference vanishes, `-(beta u[i] + gamma u[i-1]) / alpha`.
     #[must_use]
     pub fn offset(&self, last: f64, before: f64) -> f64 {
@@ -89,6 +101,42 @@ pub enum Analysis {
         /// The difference formula.
         formula: DifferenceFormula,
     },
+}
+
+/// What is solved at once: a step, or a part of one that was halved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Increment {
+    /// The step, from 0.
+    pub(crate) index: usize,
+    /// Time at which it begins, s; `None` where the body is at rest before.
+    pub(crate) start: Option<f64>,
+    /// Time to which it leads, s.
+    pub(crate) end: f64,
+    /// Its length, s; `None` in a static scene.
+    pub(crate) length: Option<f64>,
+    /// The difference formula; `None` in a static scene.
+    pub(crate) formula: Option<DifferenceFormula>,
+}
+
+impl Increment {
+    /// The part of a step between two fractions of it, `ratio` times as long as what was solved before.
+    pub(crate) fn part(self, [from, to]: [f64; 2], ratio: f64) -> Self {
+        let Some(length) = self.length else {
+            return self;
+        };
+        // the ends of a step are exact
+        let at = |fraction: f64| match fraction {
+            1.0 => self.end,
+            _ => self.end - length + fraction * length,
+        };
+        Self {
+            start: if from == 0.0 { self.start } else { Some(at(from)) },
+            end: at(to),
+            length: Some((to - from) * length),
+            formula: self.formula.map(|formula| formula.at_ratio(ratio)),
+            ..self
+        }
+    }
 }
 
 /// Most equal steps.
@@ -163,6 +211,17 @@ impl Analysis {
         Some(end - step.checked_sub(1).map_or(0.0, |before| times[before]))
     }
 
+    /// A whole step; `None` after the last.
+    pub(crate) fn increment(&self, step: usize) -> Option<Increment> {
+        Some(Increment {
+            index: step,
+            start: step.checked_sub(1).and_then(|before| self.time(before)),
+            end: self.time(step)?,
+            length: self.step_size(step),
+            formula: self.formula(),
+        })
+    }
+
     /// The difference formula; `None` for a static scene.
     #[must_use]
     pub fn formula(&self) -> Option<DifferenceFormula> {
@@ -219,6 +278,36 @@ mod tests {
         assert!(DifferenceFormula::new(1.0, -1.0, 0.5).is_err());
         assert!(DifferenceFormula::new(-1.0, 1.0, 0.0).is_err());
         assert!(DifferenceFormula::new(2.0, -2.0, 0.0).is_err());
+    }
+
+    /// Uniform motion has its rate, with any steps; with the paper's weights also the end of a rate that grows evenly.
+    #[test]
+    fn unequal_steps_have_weights_of_their_own() {
+        let f = DifferenceFormula::PAPER;
+        assert_eq!(f.at_ratio(1.0), f);
+        assert_eq!(
+            DifferenceFormula::BACKWARD_EULER.at_ratio(0.5),
+            DifferenceFormula::BACKWARD_EULER
+        );
+        for ratio in [0.5, 2.0, 0.125] {
+            let [alpha, beta, gamma] = f.at_ratio(ratio).weights();
+            // a new step of length 1 up to time 0, before it one of 1 / ratio
+            let rate = |u: fn(f64) -> f64| alpha * u(0.0) + beta * u(-1.0) + gamma * u(-1.0 - 1.0 / ratio);
+            assert!(rate(|_| 1.0).abs() < 1e-14);
+            assert!((rate(|t| t) - 1.0).abs() < 1e-14);
+            assert!(rate(|t| t * t).abs() < 1e-13, "{ratio}");
+        }
+    }
+
+    #[test]
+    fn parts_of_a_step_end_where_it_ends() {
+        let whole = Analysis::quasistatic(0.5, 5).increment(1).expect("a step");
+        assert_eq!((whole.start, whole.end), (Some(0.1), 0.2));
+        assert_eq!(whole.part([0.0, 1.0], 1.0), whole);
+        let last = whole.part([0.75, 1.0], 1.0);
+        assert_eq!((last.end, last.length), (0.2, whole.length.map(|h| h / 4.0)));
+        assert!(last.start.is_some_and(|t| (t - 0.175).abs() < 1e-15));
+        assert_eq!(Analysis::quasistatic(1.0, 2).increment(0).expect("a step").start, None);
     }
 
     #[test]

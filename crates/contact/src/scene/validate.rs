@@ -56,29 +56,39 @@ impl Scene {
     /// Checks what needs neither nodes nor computation.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         self.analysis.validate()?;
-        let loads = self.loads.iter().enumerate();
-        let supports = self.supports.iter().enumerate();
-        let contacts = self.contacts.iter().enumerate();
-        let histories: Vec<_> = (loads.map(|(k, l)| ("load", k, &l.history)))
-            .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
-            .chain((contacts.clone()).filter_map(|(k, c)| Some(("contact", k, &c.motion.as_ref()?.1))))
-            .chain(contacts.filter_map(|(k, c)| Some(("contact", k, &c.rotation.as_ref()?.angle))))
-            .collect();
-        for &time in self.analysis.times() {
-            for &(what, index, history) in &histories {
-                let value = history.value(time);
-                if !value.is_finite() {
-                    return Err(ContactError::HistoryValue {
-                        what,
-                        index,
-                        time,
-                        value,
-                    });
-                }
+        let mut times = self.analysis.times().iter();
+        times.try_for_each(|&time| self.check_histories(time))?;
+        for (index, contact) in self.contacts.iter().enumerate() {
+            // what it is at rest, too
+            let value = contact.gap_history.as_ref().map_or(0.0, |h| h.value(0.0));
+            check_value(("contact", index), 0.0, value)?;
+        }
+        for (index, spring) in self.springs.iter().enumerate() {
+            spring.validate(index)?;
+            if self.mesh.nodes_on(spring.tag).is_empty() {
+                return Err(self.unknown_tag("spring", index, spring.tag));
             }
         }
         let mut contacts = self.contacts.iter().enumerate();
         contacts.try_for_each(|(index, c)| self.check(index, c))
+    }
+
+    /// Checks that all histories have a value at a time.
+    pub(crate) fn check_histories(&self, time: f64) -> Result<(), ContactError> {
+        let loads = self.loads.iter().enumerate();
+        let supports = self.supports.iter().enumerate();
+        let contacts = self.contacts.iter().enumerate();
+        let histories = (loads.map(|(k, l)| ("load", k, &l.history)))
+            .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
+            .chain(contacts.flat_map(|(k, c)| {
+                let motion = c.motion.as_ref().map(|(_, history)| history);
+                let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);
+                (motion.into_iter().chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
+            }));
+        for (what, index, history) in histories {
+            check_value((what, index), time, history.value(time))?;
+        }
+        Ok(())
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {
@@ -93,7 +103,7 @@ impl Scene {
                 return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
         }
-        let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None);
+        let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
         if contact.tied && (loose || contact.normal != ContactNormal::Body) {
             return Err(ContactError::Tied { contact: index });
         }
@@ -144,4 +154,18 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// Refuses a value of a history that is none; `place` is what has it, and its position in the scene.
+fn check_value(place: (&'static str, usize), time: f64, value: f64) -> Result<(), ContactError> {
+    let (what, index) = place;
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(ContactError::HistoryValue {
+        what,
+        index,
+        time,
+        value,
+    })
 }

@@ -3,6 +3,7 @@
 use super::accuracy::Accuracy;
 use super::method::{InnerAccuracy, Method};
 use crate::error::ContactError;
+use crate::tolerances::MOST_HALVINGS;
 use signorini_tfeti::InverseSettings;
 
 /// The preconditioner of the default method.
@@ -36,6 +37,7 @@ pub struct Settings {
     pub(crate) inverse: InverseSettings,
     pub(crate) preconditioner: Preconditioner,
     pub(crate) max_fallback_products: usize,
+    pub(crate) step_halving: u32,
 }
 
 impl Default for Settings {
@@ -50,6 +52,7 @@ impl Default for Settings {
             inverse: InverseSettings::default(),
             preconditioner: Preconditioner::default(),
             max_fallback_products: 20_000,
+            step_halving: 0,
         }
     }
 }
@@ -120,6 +123,21 @@ impl Settings {
         self
     }
 
+    /// How often a step that fails or does not converge may be halved, at most 20; never (0) by default.
+    ///
+    /// Loads, motions and obstacles are taken at the times between, where their histories have kinks they are seen.
+    /// What was short becomes longer again as steps converge: parts of a step join two by two, and the next step begins
+    /// with parts twice as long as the last one ended with. Results are reported at the times of the analysis only.
+    /// What lies between is counted ([`halvings`](crate::report::Counters::halvings),
+    /// [`between`](crate::report::Counters::between)), works of friction and obstacles are its sums. With a difference
+    /// formula of three displacements unequal increments have weights of their own. Where the shortest increment does
+    /// not converge either, the step ends with its status. Static scenes have nothing to halve.
+    #[must_use]
+    pub fn with_step_halving(mut self, most: u32) -> Self {
+        self.step_halving = most;
+        self
+    }
+
     /// The relative accuracy of a step.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
@@ -145,6 +163,13 @@ impl Settings {
             "max_fallback_products",
             0.0,
             "at least 1",
+        )?;
+        let most = f64::from(self.step_halving);
+        check(
+            self.step_halving <= MOST_HALVINGS,
+            "step_halving",
+            most,
+            "of at most 20",
         )?;
         match &self.method {
             Method::ActiveSet(settings) => settings.validate()?,

@@ -11,13 +11,36 @@ use crate::state::State;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How often [`Simulation::run_or_resume`] stores a checkpoint, beside the last one. A number is one of steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Every {
+    /// After so many steps, counted from the first of the scene.
+    Steps(usize),
+    /// After the first step at whose end so much time has passed since the last checkpoint, or since the start.
+    Time(Duration),
+}
+
+impl From<usize> for Every {
+    fn from(steps: usize) -> Self {
+        Self::Steps(steps)
+    }
+}
+
+impl From<Duration> for Every {
+    fn from(time: Duration) -> Self {
+        Self::Time(time)
+    }
+}
 
 /// Checkpoints that are kept: the newest and the one before.
 const KEPT: usize = 2;
 
 impl Simulation {
     /// [Runs](Self::run) from the newest checkpoint in a folder, or from the start where there is none, and stores a
-    /// checkpoint every `every_steps` steps and after the last one, also where the observer stops (feature
+    /// checkpoint every so many steps, or minutes, and after the last one, also where the observer stops (feature
     /// `checkpoint`). The same program, started again after a kill, goes on: with the same bits as a run that was
     /// never interrupted.
     ///
@@ -59,32 +82,39 @@ impl Simulation {
     /// As [`run`](Self::run). [`ContactError::Checkpoint`] where the newest checkpoint belongs to another scene, and
     /// where none that there are can be read; it names the files, which are left as they are.
     /// [`ContactError::CheckpointFile`] if the file system refuses; what was stored before is then as it was.
-    /// [`ContactError::Setting`] for `every_steps` of zero.
+    /// [`ContactError::Setting`] for every zero steps.
     pub fn run_or_resume(
         &mut self,
         folder: impl AsRef<Path>,
-        every_steps: usize,
+        every: impl Into<Every>,
         observer: &mut (impl Observer + ?Sized),
     ) -> Result<RunReport, ContactError> {
         let folder = folder.as_ref();
-        if every_steps == 0 {
+        let every = every.into();
+        if every == Every::Steps(0) {
             return Err(ContactError::Setting {
-                name: "every_steps",
+                name: "every",
                 value: 0.0,
                 range: "of at least one step",
             });
         }
         fs::create_dir_all(folder).map_err(failed("write", folder))?;
         let warnings = self.resume_newest(folder)?;
+        let mut stored_at = Instant::now();
         self.run_and_keep(observer, warnings, |simulation, last| {
             let step = simulation.state.step();
-            if !last && !step.is_multiple_of(every_steps) {
+            let due = match every {
+                Every::Steps(steps) => step.is_multiple_of(steps),
+                Every::Time(time) => stored_at.elapsed() >= time,
+            };
+            if !last && !due {
                 return Ok(());
             }
             simulation.state.save(folder.join(format!("step-{step:08}.state")))?;
             for (_, path) in stored(folder)?.into_iter().skip(KEPT) {
                 fs::remove_file(&path).map_err(failed("remove", &path))?;
             }
+            stored_at = Instant::now();
             Ok(())
         })
     }

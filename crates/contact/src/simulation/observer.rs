@@ -4,6 +4,8 @@ use super::result::StepResult;
 use crate::plan::Plan;
 use crate::report::Warning;
 use std::error::Error;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether a run goes on.
 ///
@@ -74,6 +76,36 @@ pub trait Observer {
 impl<F: FnMut(&StepResult) -> Flow> Observer for F {
     fn step(&mut self, result: &StepResult) -> Flow {
         self(result)
+    }
+}
+
+/// A flag that others may set, such as a handler of Ctrl-C or another thread: the run ends after the step in which it
+/// was set. [`RunReport::stopped`](crate::report::RunReport::stopped) says so.
+///
+/// ```
+/// use signorini_contact::{Analysis, Load, Scene, Settings, Simulation, Support};
+/// use signorini_fem_mesh::{brick, Brick, Hooke};
+/// use std::sync::Arc;
+/// use std::sync::atomic::{AtomicBool, Ordering};
+///
+/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+/// let scene = Scene::new(mesh, Hooke::isotropic(1e9, 0.3)?.into())
+///     .with_support(Support::fixed(brick::X_MIN))
+///     .with_load(Load::pressure(brick::Z_MAX, 1e5))
+///     .with_analysis(Analysis::quasistatic(1.0, 8));
+/// let mut stop = Arc::new(AtomicBool::new(false));
+/// let handler = stop.clone();
+/// handler.store(true, Ordering::Relaxed);
+/// let report = Simulation::new(scene, Settings::default())?.run(&mut stop)?;
+/// assert!(report.stopped && report.steps == 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+impl Observer for Arc<AtomicBool> {
+    fn step(&mut self, _: &StepResult) -> Flow {
+        match self.load(Ordering::Relaxed) {
+            true => Flow::Stop,
+            false => Flow::Continue,
+        }
     }
 }
 

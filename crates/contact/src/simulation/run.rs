@@ -49,6 +49,7 @@ impl Simulation {
             let stop = matches!(flow, Flow::Stop);
             keep(self, stop || self.is_finished())?;
             if stop {
+                report.stopped = !self.is_finished();
                 break;
             }
         }

@@ -1,5 +1,6 @@
 //! One step: prepared, solved, recovered, remembered.
 
+use super::halving::{Before, Way};
 use super::result::StepResult;
 use super::simulation::{Simulation, on_pool};
 use crate::error::ContactError;
@@ -7,7 +8,7 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
-use crate::solve::Task;
+use crate::solve::{Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
@@ -19,24 +20,56 @@ impl Simulation {
     /// # Errors
     /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged.
     pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
-        // not taken out: laws of the user may panic
-        let state = self.state.clone();
         self.result = None;
-        let mut result = on_pool(|| self.solve_after(&state))?;
-        drop(state);
-        result.report.unconverged_history = self.state.unconverged_history();
-        self.remember(&mut result);
+        let result = Arc::new(on_pool(|| self.take_step())?);
         self.total += result.report.counters;
-        let result = Arc::new(result);
         self.result = Some(result.clone());
         Ok(result)
     }
 
-    /// Solves the step that follows on a state.
-    fn solve_after(&mut self, state: &State) -> Result<StepResult, ContactError> {
+    /// Takes the next step, in increments where it fails and the settings allow it.
+    fn take_step(&mut self) -> Result<StepResult, ContactError> {
+        let analysis = &self.model.scene.analysis;
+        let steps = analysis.steps();
+        let whole = analysis.increment(self.state.step());
+        let whole = whole.ok_or(ContactError::Finished { steps })?;
+        // not taken out: laws of the user may panic
+        let mut state = self.state.clone();
+        let last = (state.step() > 0).then_some(state.halved);
+        let mut way = Way::new(whole, self.settings.step_halving, last);
+        let mut before = Before::default();
+        loop {
+            let solved = self.solve_after(&state, &way);
+            let converged = matches!(&solved, Ok(result) if result.report.status.converged());
+            if !converged && way.halve() {
+                before.enter_halved(solved.ok().map(|result| result.report));
+                continue;
+            }
+            let mut result = solved?;
+            result.report.unconverged_history = self.state.unconverged_history();
+            if way.goes_on() {
+                self.remember(Arc::make_mut(&mut state), &mut result, &way);
+                before.enter_between(result);
+                way.pass();
+                continue;
+            }
+            self.state = Arc::default();
+            self.remember(Arc::make_mut(&mut state), &mut result, &way);
+            self.state = state;
+            before.complete(&mut result);
+            return Ok(result);
+        }
+    }
+
+    /// Solves the increment that follows on a state.
+    fn solve_after(&mut self, state: &State, way: &Way) -> Result<StepResult, ContactError> {
+        let increment = way.increment();
+        if way.halved() > 0 {
+            self.model.scene.check_histories(increment.end)?;
+        }
         self.controller = state.controller;
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, state.step())?;
-        self.start(state);
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
+        self.start(state, way.ratio());
         let (report, recovered) = self.solve()?;
         let (model, problem) = (&self.model, &self.problem);
         let before: Vec<f64> = (0..model.tangential_rows()).map(|k| state.traces(k).0).collect();
@@ -65,24 +98,25 @@ impl Simulation {
         Ok((report, recovered))
     }
 
-    /// Start vectors of a step: zero, the last step, or the line through the last two.
-    fn start(&mut self, state: &State) {
+    /// Start vectors of an increment, `ratio` times as long as the last one: zero, the last vectors, or the line through
+    /// the last two.
+    fn start(&mut self, state: &State, ratio: f64) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
-        let on = self.settings.extrapolate;
+        let along = self.settings.extrapolate.then_some(ratio);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too
-        let from_rest = state.step() == 1 && model.plan.steps > 1 && lambda[1].is_empty();
+        let from_rest = state.step() <= 1 && !lambda[0].is_empty() && lambda[1].is_empty();
         let zero = vec![0.0; if from_rest { rows } else { 0 }];
         let extrapolated = |[last, before]: &[Vec<f64>; 2]| {
             let before = if from_rest { &zero } else { before };
-            start_vector(last, before, rows, on)
+            start_vector(last, before, rows, along)
         };
         iterate.lambda = extrapolated(lambda);
         iterate.f_lambda = extrapolated(f_lambda);
         iterate.known = (0..2).all(|k| lambda[k].len() == f_lambda[k].len());
         let [last, before] = &state.multiplier;
-        iterate.multiplier = start_vector(last, before, coarse, on);
+        iterate.multiplier = start_vector(last, before, coarse, along);
         if state.sliding.iter().any(|s| *s) {
             let old = iterate.lambda.clone();
             self.problem.restore_sliding(model, &state.sliding, &mut iterate.lambda);
@@ -90,12 +124,14 @@ impl Simulation {
         }
     }
 
-    /// Makes the state after the step.
-    fn remember(&mut self, result: &mut StepResult) {
+    /// Makes the state after an increment from that before it.
+    fn remember(&mut self, state: &mut State, result: &mut StepResult, way: &Way) {
         let (model, problem, recovered) = (&self.model, &self.problem, &result.recovered);
         let history = model.plan.effects.history;
         let mut kept = Kept {
             time: problem.time,
+            halved: way.halved(),
+            between: way.goes_on(),
             ..Kept::default()
         };
         if history {
@@ -107,12 +143,11 @@ impl Simulation {
             kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
             result.report.counters.rate_updates += 1;
         }
-        if model.plan.steps > 1 {
-            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate.alpha);
+        if model.plan.steps > 1 || kept.between {
+            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate);
             kept.lambda = std::mem::take(&mut self.iterate.lambda);
             kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
         }
-        let state = Arc::make_mut(&mut self.state);
         if result.report.status.converged() {
             // what did not converge is no scale for later steps
             let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
@@ -128,14 +163,14 @@ impl Simulation {
     }
 }
 
-/// The last vector, or the line through the last two; zero before the first.
-fn start_vector(last: &[f64], before: &[f64], n: usize, extrapolate: bool) -> Vec<f64> {
+/// The last vector, or the line through the last two, so many of their distances on; zero before the first.
+fn start_vector(last: &[f64], before: &[f64], n: usize, along: Option<f64>) -> Vec<f64> {
     if last.is_empty() {
         return vec![0.0; n];
     }
     let mut x = last.to_vec();
-    if extrapolate && before.len() == n {
-        vector::extrapolate(last, before, 1.0, &mut x);
+    if let Some(ratio) = along.filter(|_| before.len() == n) {
+        vector::extrapolate(last, before, ratio, &mut x);
     }
     x
 }
@@ -153,11 +188,13 @@ fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     trace
 }
 
-/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`.
-fn product(model: &Model, problem: &StepProblem, rows: &[f64], alpha: &[f64]) -> Vec<f64> {
+/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`, with what springs give way.
+fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &Iterate) -> Vec<f64> {
     let coarse = model.tfeti.coarse();
     let mut rigid = vec![0.0; rows.len()];
-    coarse.apply_transpose(alpha, &mut rigid, &mut coarse.scratch());
+    coarse.apply_transpose(&iterate.alpha, &mut rigid, &mut coarse.scratch());
     let parts = rows.iter().zip(&problem.load).zip(&rigid);
-    parts.map(|((u, load), rigid)| u - (load + rigid)).collect()
+    let mut out: Vec<f64> = parts.map(|((u, load), rigid)| u - (load + rigid)).collect();
+    model.tfeti.gluing().add_compliance(&iterate.lambda, &mut out);
+    out
 }

@@ -88,7 +88,7 @@ impl ActiveSetSolver {
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let Task { model, problem, .. } = task;
-        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set)?;
         let mut updates = usize::from(model.any_law(Friction::is_some));
         self.space.set_coarse_rhs(&problem.rhs);
         let dual = ActiveSetProblem {
@@ -107,9 +107,10 @@ impl ActiveSetSolver {
             let slopes = problem.slip_slopes(model);
             self.work.set_slopes(&slopes);
         }
+        let mut written = Ok(());
         let mut hook = |x: &[f64], set: &mut ProductSet| {
-            if coulomb {
-                problem.write_slip_bounds(model, x, set);
+            if coulomb && written.is_ok() {
+                written = problem.write_slip_bounds(model, x, set);
                 updates += 1;
             }
         };
@@ -151,7 +152,7 @@ impl ActiveSetSolver {
             turns += 1;
         };
         report.counters.slip_bound_updates = updates;
-        Ok(status)
+        written.map(|()| status)
     }
 
     fn fall_back(

@@ -3,6 +3,7 @@
 use super::fingerprint::{Fingerprint, seal};
 use super::tolerance::Controller;
 use crate::error::ContactError;
+use crate::tolerances::MOST_HALVINGS;
 
 /// What one step hands to the next.
 ///
@@ -30,6 +31,8 @@ pub struct State {
     pub(crate) peaks: Vec<Peak>,
     /// With history: the first step that did not converge.
     pub(crate) unconverged: Option<usize>,
+    /// How often a step was halved to get the last increment.
+    pub(crate) halved: u32,
     /// What its numbers refer to; `None` if that is not to be compared.
     pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
@@ -75,6 +78,9 @@ pub(crate) struct Kept {
     pub(crate) rate: Vec<f64>,
     /// Points that slide.
     pub(crate) sliding: Vec<bool>,
+    /// How often the step was halved to get the increment, and whether the step goes on after it.
+    pub(crate) halved: u32,
+    pub(crate) between: bool,
 }
 
 impl State {
@@ -146,6 +152,10 @@ impl State {
         self.trace[0] = new.trace;
         self.rate = new.rate;
         self.sliding = new.sliding;
+        self.halved = new.halved;
+        if new.between {
+            return;
+        }
         self.step += 1;
         if let Some(origin) = &mut self.origin {
             origin.pass(new.time);
@@ -194,7 +204,9 @@ impl State {
         }
         let sizes = self.peaks.iter().flat_map(|p| [p.multipliers, p.force, p.displacement]);
         let mut sizes = sizes.chain(self.controller.numbers());
-        let damage = if !self.numbers().flatten().all(|v| v.is_finite()) {
+        let damage = if self.halved > MOST_HALVINGS {
+            "it says that a step was halved more often than it can be"
+        } else if !self.numbers().flatten().all(|v| v.is_finite()) {
             "it contains NaN or infinity"
         } else if self.unconverged.is_some_and(|k| k >= self.step) {
             "it says that a step did not converge that it has not solved"
@@ -278,6 +290,9 @@ pub(crate) mod tests {
             other.controller.discretisation.relative = bad;
             assert!(other.fits(2, 6, 1, 1).is_err(), "controller {bad}");
         }
+        let mut other = state.clone();
+        other.halved = 21;
+        assert!(other.fits(2, 6, 1, 1).is_err(), "halved");
         let mut other = state.clone();
         other.note_unconverged();
         assert!(other.fits(2, 6, 1, 1).is_err(), "a level to come");

@@ -22,6 +22,7 @@ pub(crate) fn block(gap: f64, friction: Friction) -> Scene {
 pub(crate) fn first_step(scene: Scene) -> (Model, StepProblem) {
     let model = Model::new(scene, &Settings::default()).expect("model");
     let mut problem = StepProblem::default();
-    problem.prepare(&model, &State::default(), 0).expect("step");
+    let first = model.scene.analysis.increment(0).expect("a step");
+    problem.prepare(&model, &State::default(), first).expect("step");
     (model, problem)
 }

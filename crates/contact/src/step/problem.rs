@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
-use crate::scene::{Pose, Scene};
+use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
@@ -15,8 +15,10 @@ pub(crate) struct StepProblem {
     pub(crate) index: usize,
     /// Time, s.
     pub(crate) time: f64,
-    /// Step length; `None` in a static scene.
+    /// Length of the increment; `None` in a static scene.
     pub(crate) step: Option<f64>,
+    /// Difference formula of the increment; `None` in a static scene.
+    pub(crate) formula: Option<DifferenceFormula>,
     /// Factor of each load.
     pub(crate) factors: Vec<f64>,
     /// `c`: gap, old tangential displacement and prescribed displacement, in row units.
@@ -27,7 +29,7 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
-    /// Where the obstacle of each contact surface is, now and a step before; empty where none moves.
+    /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
     pub(crate) obstacles: [Vec<Pose>; 2],
     /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not
     /// in `B u`. By contact row, in row units; empty where no support moves such a point.
@@ -46,14 +48,13 @@ pub(crate) struct StepProblem {
 }
 
 impl StepProblem {
-    /// Computes the data of step `index` from the model and the state before it.
-    pub(crate) fn prepare(&mut self, model: &Model, state: &State, index: usize) -> Result<(), ContactError> {
-        let analysis = &model.scene.analysis;
-        let steps = analysis.steps();
-        let time = analysis.time(index).ok_or(ContactError::Finished { steps })?;
-        self.index = index;
+    /// Computes the data of an increment from the model and the state before it.
+    pub(crate) fn prepare(&mut self, model: &Model, state: &State, increment: Increment) -> Result<(), ContactError> {
+        let time = increment.end;
+        self.index = increment.index;
         self.time = time;
-        self.step = analysis.step_size(index);
+        self.step = increment.length;
+        self.formula = increment.formula;
         self.peaks.clear();
         self.peaks.extend_from_slice(&state.peaks);
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
@@ -82,7 +83,7 @@ impl StepProblem {
                 self.prescribed[row] = self.offset[row];
             }
         }
-        self.find_obstacles(model, index);
+        self.find_obstacles(model, increment.start);
         self.add_offsets(model, state)?;
         self.linear.resize(rows, 0.0);
         for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
@@ -94,7 +95,7 @@ impl StepProblem {
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.
     fn add_offsets(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
         let effects = &model.plan.effects;
-        let formula = model.scene.analysis.formula().filter(|_| effects.history);
+        let formula = self.formula.filter(|_| effects.history);
         let start = model.tangential_start();
         for point in &model.points {
             if effects.gap {
@@ -115,18 +116,38 @@ impl StepProblem {
         Ok(())
     }
 
-    /// Where the obstacles that move are.
-    fn find_obstacles(&mut self, model: &Model, index: usize) {
-        if !model.plan.effects.moving_obstacle {
+    /// Where the obstacles that move are, and the gaps that change.
+    fn find_obstacles(&mut self, model: &Model, before: Option<f64>) {
+        let effects = &model.plan.effects;
+        if !effects.moving_obstacle && !effects.gap_history {
             return;
         }
-        self.obstacles = [Some(index), index.checked_sub(1)].map(|step| {
-            let pose = |poses: &Vec<Pose>| step.and_then(|k| poses.get(k)).copied().unwrap_or_default();
-            model.discrete.poses.iter().map(pose).collect()
+        let analysis = &model.scene.analysis;
+        let index = self.index;
+        // where a step is reached its pose is known; between, the obstacle comes from the last step
+        let at = |time: f64, contact: usize| {
+            let poses = &model.discrete.poses[contact];
+            let reached = [Some(index), index.checked_sub(1)].into_iter().flatten();
+            let known = reached
+                .filter(|k| analysis.time(*k) == Some(time))
+                .find_map(|k| poses.get(k));
+            known.copied().or_else(|| {
+                let times = [&analysis.times()[..index], &[time]].concat();
+                model.scene.contacts[contact].poses(&times).pop()
+            })
+        };
+        self.obstacles = [Some(self.time), before].map(|time| {
+            let contacts = model.scene.contacts.iter().enumerate();
+            let pose = |(k, contact): (usize, &Contact)| {
+                let known = time.and_then(|time| at(time, k));
+                known.unwrap_or_else(|| contact.pose_at_rest())
+            };
+            contacts.map(pose).collect()
         });
     }
 
-    /// The gap of a point with what an obstacle that moves along the surface has brought, without what it opens, m.
+    /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time, without
+    /// what the obstacle opens, m.
     pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[0])
     }

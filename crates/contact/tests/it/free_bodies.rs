@@ -31,7 +31,7 @@ fn not_held(scene: Scene) -> (usize, usize, String, f64) {
             ..
         } => {
             assert!(
-                text.contains(&format!("{force:.3e} N;")) && text.contains(&mode),
+                text.contains(&format!("with a force of {force:.3e};")) && text.contains(&mode),
                 "{text}"
             );
             (step, body, mode, force)
@@ -84,7 +84,6 @@ fn a_couple_is_a_moment() {
     let (_, _, mode, force) = not_held(scene);
     let radius = mode
         .strip_prefix("its rotation (0.000, 0.000, 1.000) at radius ")
-        .and_then(|rest| rest.strip_suffix(" m"))
         .and_then(|number| number.parse::<f64>().ok())
         .expect("radius");
     assert!((force * radius / 1e6 - 1.0).abs() < 1e-3, "{force:e} at {radius}");
@@ -179,7 +178,7 @@ fn loads_beyond_given_slip_bounds_are_refused() {
     for along in [60.1, 90.0] {
         match Simulation::new(scene(along), Settings::default()) {
             Err(ContactError::NotHeld { mode, force, .. }) => {
-                assert!(mode.contains("Tresca friction holds 6.000e1 N"), "{mode}");
+                assert!(mode.contains("Tresca friction holds 6.000e1,"), "{mode}");
                 assert!((force / along - 1.0).abs() < 1e-3, "{force}");
             }
             Err(error) => panic!("{error}"),

@@ -261,18 +261,11 @@ fn bodies_slide_along_the_normal_of_the_ellipse() {
 #[test]
 fn the_estimate_bounds_the_error() {
     let floor = Contact::rigid(brick::Z_MIN)
-        .with_friction(Friction::coulomb(0.8))
-        .with_friction_axis([1.0, 1.0, 0.0], 0.4);
-    let scene = Scene::new(block([3.0, 1.0, 1.0], [12, 4, 4]), steel())
-        .with_support(Support::fixed(brick::X_MIN))
-        .with_load(Load::pressure(brick::Z_MAX, 1e8))
-        .with_load(Load::traction(brick::X_MAX, [2e8, 1e8, 0.0]))
-        .with_contact(floor)
-        .with_boxes([3, 1, 1])
-        .with_analysis(Analysis::quasistatic(1.0, 1));
+        .with_friction(Friction::coulomb(0.2))
+        .with_friction_axis([1.0, 0.5, 0.0], 2.5);
+    let scene = pulled(floor, 1);
     let reference = solve(scene.clone(), at(1e-11));
-    let counts = (reference.summary.slip, reference.summary.stick);
-    assert!(counts.0 > 0 && counts.1 > 0, "{counts:?}");
+    assert!(reference.summary.slip > 20);
     for tolerance in [1e-1, 1e-2, 1e-4, 1e-6] {
         let mut simulation = Simulation::new(scene.clone(), at(tolerance)).expect("set-up");
         let result = step(&mut simulation);

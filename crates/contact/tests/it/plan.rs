@@ -24,7 +24,7 @@ fn the_plan_tells_the_range_of_the_gaps() {
     let wedge = plan(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 0.25 * x[0] - 0.125));
     assert_eq!(wedge.gaps, Some([-0.125, 0.375]));
     let text = wedge.to_string();
-    assert!(text.contains("gaps -1.250e-1 to 3.750e-1 m, starts inside"), "{text}");
+    assert!(text.contains("gaps -1.250e-1 to 3.750e-1, starts inside"), "{text}");
     let scene = Scene::new(block([1.0; 3], [2; 3]), steel()).with_support(Support::fixed(brick::X_MIN));
     let none = Plan::new(&scene, &Settings::default()).expect("plan");
     assert_eq!(none.gaps, None);
@@ -81,4 +81,26 @@ fn the_plan_knows_what_very_small_subdomains_cost() {
     assert!(seconds(&fine) > 30.0 * seconds(&plan(6, false)));
     assert!(fine.to_string().contains("too small ones"), "{fine}");
     assert!(!plan(6, false).to_string().contains("too small ones"));
+}
+
+/// Of 24 equal subdomains that share their matrices a product is dense; if each has its own, memory sets the pace.
+#[test]
+fn matrices_that_are_not_shared_are_read_at_the_pace_of_memory() {
+    let plan = |share: bool| {
+        let scene = Scene::new(block([6.0, 2.0, 2.0], [30, 10, 10]), steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01))
+            .with_boxes([6, 2, 2]);
+        let settings = Settings::default().with_share_translates(share);
+        Plan::new(&scene, &settings)
+            .expect("plan")
+            .with_machine(Rate::default())
+            .estimate
+    };
+    let product = |e: &signorini_contact::plan::Estimate| e.times.expect("a machine").product;
+    let (shared, own) = (plan(true), plan(false));
+    let reading = own.inverse_bytes as f64 / 8.0 / Rate::default().numbers;
+    assert!(product(&own) > 2.0 * reading);
+    assert!(own.products == shared.products);
 }

@@ -258,12 +258,24 @@ fn sizes_whose_squares_overflow_are_named() {
     };
     let pressed = press(1.0).with_load(Load::body([0.0, 0.0, -1.0]).with_history(large(1e200)));
     let cases = [
-        (press(1e200).with_contact(floor()), "load 0 at time 1 s", "N"),
-        (press(1e308).with_contact(floor()), "load 0", "N"),
-        (pressed.with_contact(floor()), "load 1", "N"),
-        (moved(-1e200).with_contact(floor()), "support 0 at time 1 s", "m"),
-        (press(1.0).with_contact(floor().with_gap(1e200)), "contact at node", "m"),
-        (press(1e200), "load 0", "N"),
+        (
+            press(1e200).with_contact(floor()),
+            "load 0 at time 1 s",
+            "units of force",
+        ),
+        (press(1e308).with_contact(floor()), "load 0", "units of force"),
+        (pressed.with_contact(floor()), "load 1", "units of force"),
+        (
+            moved(-1e200).with_contact(floor()),
+            "support 0 at time 1 s",
+            "units of length",
+        ),
+        (
+            press(1.0).with_contact(floor().with_gap(1e200)),
+            "contact at node",
+            "units of length",
+        ),
+        (press(1e200), "load 0", "units of force"),
     ];
     for (scene, place, unit) in cases {
         let error = refused_at(scene.with_analysis(Analysis::quasistatic(1.0, 1)), place);

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use allocation_counter::measure;
 use signorini_deck::Deck;
 
 use crate::write::{cube, face, folder};
@@ -27,20 +28,27 @@ fn valid() -> String {
 fn survive(path: &std::path::Path, bytes: &[u8]) -> bool {
     std::fs::write(path, bytes).expect("written");
     let start = Instant::now();
-    let read = Deck::read(path);
+    let mut read = None;
+    let used = measure(|| read = Some(Deck::read(path)));
     assert!(start.elapsed() < Duration::from_secs(5));
+    assert!(used.bytes_max < MEMORY, "{} bytes", used.bytes_max);
     match read {
-        Ok(deck) => {
+        Some(Ok(deck)) => {
             // scenes from broken decks may be refused, not more
             let _ = deck.scene();
             true
         }
-        Err(error) => {
+        Some(Err(error)) => {
             assert!(!error.to_string().is_empty());
             false
         }
+        None => false,
     }
 }
+
+/// Most bytes that reading may hold at once: for files of at most two million bytes, a keyword of many parameters being the
+/// dearest.
+const MEMORY: u64 = 100_000_000;
 
 /// SplitMix64.
 struct Dice(u64);
@@ -141,4 +149,21 @@ fn bombs() {
     survive(&path, ",".repeat(1_000_000).as_bytes());
     survive(&path, format!("*NODE{}", ",\n".repeat(200_000)).as_bytes());
     survive(&path, &[0; 100_000]);
+}
+
+/// Any number of a deck set to what no model has.
+#[test]
+fn huge_numbers() {
+    let text = valid();
+    let (_folder, path) = folder(&[("part.inp", &text)]);
+    let huge = ["99999999999999999999", "4294967295", "-1", "1e308", "nan", "inf", ""];
+    let is_number = |word: &str| word.trim().starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    let words: Vec<&str> = text.split_inclusive([',', '\n', '=']).collect();
+    let numbers = (0..words.len()).filter(|&k| is_number(words[k]));
+    for (count, at) in numbers.enumerate() {
+        let new = huge[count % huge.len()];
+        let end = &words[at][words[at].len() - 1..];
+        let broken = [&words[..at].concat(), new, end, &words[at + 1..].concat()].concat();
+        survive(&path, broken.as_bytes());
+    }
 }

@@ -1,5 +1,6 @@
 //! Gmsh files: good ones in text and binary, and many damaged ones.
 
+use allocation_counter::measure;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -334,6 +335,80 @@ proptest! {
         if let Err(error) = parse_gmsh(&bytes) {
             prop_assert!(!error.to_string().is_empty());
         }
+    }
+}
+
+/// Most memory that reading may take at once: a node of a mesh takes many times its two characters in a file.
+fn modest(bytes: &[u8], what: &str) {
+    let mut text = String::new();
+    let used = measure(|| {
+        if let Err(error) = parse_named_gmsh(bytes) {
+            text = error.to_string();
+        }
+    });
+    let most = 64 * 1024 + 200 * bytes.len() as u64;
+    assert!(
+        used.bytes_max < most,
+        "{what}: {} bytes of {}",
+        used.bytes_max,
+        bytes.len()
+    );
+}
+
+/// Any word of a text file, and any bytes of a binary one, in which a count may be, set to what no file holds: an answer,
+/// and no memory for what is not there.
+#[test]
+fn huge_counts_take_no_memory() {
+    let words: Vec<&str> = TEXT.split_inclusive(char::is_whitespace).collect();
+    let huge = [
+        "18446744073709551615",
+        "9223372036854775807",
+        "4294967296",
+        "2147483647",
+        "-1",
+        "1e308",
+        "nan",
+        "0",
+        "",
+    ];
+    for at in 0..words.len() {
+        for new in huge {
+            let end = &words[at][words[at].trim_end().len()..];
+            let text = [&words[..at].concat(), new, end, &words[at + 1..].concat()].concat();
+            modest(text.as_bytes(), &format!("word {at} is {new:?}"));
+        }
+        // lost, and said twice
+        modest([&words[..at], &words[at + 1..]].concat().concat().as_bytes(), "lost");
+        modest([&words[..=at], &words[at..]].concat().concat().as_bytes(), "twice");
+    }
+    for whole in [binary(false), binary(true)] {
+        for at in 0..whole.len() - 8 {
+            for new in [u64::MAX, 1 << 62, 1 << 40, 1 << 31, 0xffff_ffff, 0] {
+                for value in [new.to_le_bytes(), new.to_be_bytes()] {
+                    let mut bytes = whole.clone();
+                    bytes[at..at + 8].copy_from_slice(&value);
+                    modest(&bytes, &format!("bytes {at} are {new:x}"));
+                }
+            }
+        }
+    }
+}
+
+/// Files that are made to be slow: many sections, names and blanks.
+#[test]
+fn long_files_of_nothing_end() {
+    let head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    for body in [
+        "\n".repeat(200_000),
+        "$A\n$EndA\n".repeat(20_000),
+        "$A\n".repeat(50_000),
+        format!("$PhysicalNames\n1\n2 1 \"{}\"\n", "x".repeat(200_000)),
+        format!("$Nodes\n{}", "1 ".repeat(100_000)),
+        "9".repeat(200_000),
+    ] {
+        let start = std::time::Instant::now();
+        assert!(parse_gmsh(format!("{head}{body}").as_bytes()).is_err());
+        assert!(start.elapsed().as_secs() < 5);
     }
 }
 

@@ -383,6 +383,41 @@ fn surfaces_are_pieces_with_the_same_fields() {
     assert_eq!(std::fs::read(&path).unwrap(), before);
 }
 
+/// A file that was cut is named before anything is written; one of a step that is dropped, or that its owner has put
+/// elsewhere, is not missed.
+#[test]
+fn a_short_file_is_refused() {
+    let directory = tempfile::tempdir().expect("a folder");
+    let (folder, mesh) = (directory.path(), mesh());
+    let mut series = PvdSeries::create(folder, "cut").expect("a series");
+    for time in [0.0, 1.0, 2.0] {
+        series.write(time, &mesh, &[], &[]).expect("a step");
+    }
+    let path = folder.join("cut_0001.vtu");
+    let whole = std::fs::read(&path).expect("a file");
+    for length in [whole.len() - 1, whole.len() / 2, 5, 0] {
+        std::fs::write(&path, &whole[..length]).expect("a short file");
+        for opened in [
+            PvdSeries::open(folder, "cut"),
+            PvdSeries::open_before(folder, "cut", 2.0),
+        ] {
+            let error = opened.expect_err("short");
+            assert!(
+                matches!(&error, OutputError::ShortFile { path: p } if *p == path),
+                "{error}"
+            );
+            assert!(error.to_string().contains("cut_0001.vtu is cut short; put a copy"));
+        }
+        let series = PvdSeries::open_before(folder, "cut", 1.0).expect("written again");
+        assert_eq!(series.times(), [0.0]);
+    }
+    std::fs::remove_file(&path).expect("elsewhere");
+    assert_eq!(
+        PvdSeries::open(folder, "cut").expect("a series").times(),
+        [0.0, 1.0, 2.0]
+    );
+}
+
 /// Cells of type 24, whose mid-nodes VTK has on the edges 01, 12, 20, 03, 13, 23.
 #[test]
 fn meshes_of_order_two_are_quadratic_cells() {

@@ -1,14 +1,16 @@
-//! The dual operator `F = B K+ B^T`.
+//! The dual operator `F = B K+ B^T`, with what springs add.
 
 use crate::dual::boundary::{BoundaryMap, PanelScratch};
 use crate::dual::inverses::ClassInverse;
 use crate::linalg::dense;
+use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::PRODUCT;
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
-/// `F = B K+ B^T`, applied without forming it.
+/// `F = B K+ B^T`, applied without forming it; where there are springs, with their compliance on the diagonal of their
+/// rows.
 ///
 /// Each product gathers the multipliers of every subdomain into the columns of one matrix per class, multiplies it by
 /// the class's boundary inverse (or solves with its sparse factor) and gathers the rows of `B` from the result.
@@ -17,6 +19,7 @@ pub struct DualOperator {
     pub(crate) map: Arc<BoundaryMap>,
     pub(crate) subdomains: Arc<Subdomains>,
     pub(crate) inverses: Arc<Vec<ClassInverse>>,
+    gluing: Arc<Gluing>,
     parallel: bool,
 }
 
@@ -25,12 +28,18 @@ pub struct DualOperator {
 pub struct DualScratch(PanelScratch);
 
 impl DualOperator {
-    pub(crate) fn new(map: Arc<BoundaryMap>, subdomains: Arc<Subdomains>, inverses: Arc<Vec<ClassInverse>>) -> Self {
+    pub(crate) fn new(
+        map: Arc<BoundaryMap>,
+        subdomains: Arc<Subdomains>,
+        inverses: Arc<Vec<ClassInverse>>,
+        gluing: Arc<Gluing>,
+    ) -> Self {
         let parallel = product_flops(&map, &inverses) > PRODUCT;
         Self {
             map,
             subdomains,
             inverses,
+            gluing,
             parallel,
         }
     }
@@ -121,5 +130,6 @@ impl SymmetricOperator for DualOperator {
                     restrict(nodes, full, y, dim);
                 }
             });
+        self.gluing.add_compliance(x, y);
     }
 }

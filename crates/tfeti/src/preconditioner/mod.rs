@@ -6,3 +6,4 @@
 pub(crate) mod joined;
 pub(crate) mod operator;
 pub(crate) mod scaling;
+mod springs;

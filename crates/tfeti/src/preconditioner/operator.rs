@@ -11,6 +11,7 @@ use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
+use crate::preconditioner::springs::Springs;
 use crate::subdomain::matrices::ClassBase;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
@@ -31,6 +32,7 @@ pub struct DualPreconditioner {
     map: Arc<BoundaryMap>,
     classes: Vec<BoundaryStiffness>,
     scaling: Option<Scaling>,
+    springs: Springs,
 }
 
 /// Stiffness on the boundary nodes of a class.
@@ -57,6 +59,8 @@ struct Coupling {
 pub struct DualPreconditionerScratch {
     panels: PanelScratch,
     dual: Vec<f64>,
+    /// What springs leave of a vector; empty without.
+    scaled: Vec<f64>,
     scaling: Option<ScalingScratch>,
 }
 
@@ -89,7 +93,13 @@ impl DualPreconditioner {
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
         let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
-        Ok(Self { map, classes, scaling })
+        let springs = Springs::new(system, needs_scaling);
+        Ok(Self {
+            map,
+            classes,
+            scaling,
+            springs,
+        })
     }
 
     fn stiffness_product(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {
@@ -129,11 +139,27 @@ impl SymmetricOperator for DualPreconditioner {
         DualPreconditionerScratch {
             panels,
             dual: vec![0.0; dual],
+            scaled: vec![0.0; if self.springs.factors.is_empty() { 0 } else { self.dim() }],
             scaling: self.scaling.as_ref().map(Scaling::scratch),
         }
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
+        if self.springs.factors.is_empty() {
+            return self.apply_without_springs(x, y, s);
+        }
+        let mut scaled = std::mem::take(&mut s.scaled);
+        scaled.copy_from_slice(x);
+        self.springs.scale(&mut scaled);
+        self.apply_without_springs(&scaled, y, s);
+        self.springs.scale(y);
+        self.springs.add_alone(x, y);
+        s.scaled = scaled;
+    }
+}
+
+impl DualPreconditioner {
+    fn apply_without_springs(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
         let (Some(scaling), Some(scratch)) = (&self.scaling, &mut s.scaling) else {
             self.stiffness_product(x, y, &mut s.panels);
             return;

@@ -1,13 +1,15 @@
 //! Building the rows: contact rows, interface blocks glob by glob, support rows.
 
-use super::gluing::{BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, TangentialRows, TiedRows};
+use super::gluing::{
+    BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, SpringRow, TangentialRows, TiedRows,
+};
 use crate::error::TfetiError;
 use crate::rows::contact::{AllRows, ContactRow, PointRows, contact_rows};
 use crate::rows::dependencies::{are_independent, not_alone};
 use crate::rows::side::ContactConstraint;
-use crate::rows::supports::{MergedSupports, NodeSupport};
+use crate::rows::supports::{MergedSupports, NodalSpring, NodeSupport, check_node};
 use crate::subdomain::copy_stiffness::CopyStiffness;
-use crate::tolerances::SAME;
+use crate::tolerances::{SAME, SOFTEST};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::decomposition::NodeCopy;
 use signorini_fem_mesh::vec3::dot;
@@ -23,6 +25,21 @@ impl Gluing {
         supports: &[NodeSupport],
         contact: &[ContactConstraint],
         stiffness: &CopyStiffness,
+    ) -> Result<Self, TfetiError> {
+        Self::with_springs(decomposition, supports, contact, stiffness, (&[], stiffness))
+    }
+
+    /// The same with springs to the ground, whose rows are the last of the support rows, and the stiffness of all copies,
+    /// with which springs are compared: the row of a soft one is as much smaller as it is softer.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); springs at unknown nodes, or without a stiffness.
+    pub fn with_springs(
+        decomposition: &Decomposition,
+        supports: &[NodeSupport],
+        contact: &[ContactConstraint],
+        stiffness: &CopyStiffness,
+        springs: (&[NodalSpring], &CopyStiffness),
     ) -> Result<Self, TfetiError> {
         let nodes = decomposition.nodes();
         stiffness.check(decomposition)?;
@@ -49,6 +66,7 @@ impl Gluing {
         builder.tied(contact, &found.tied);
         let tied = builder.gluing.nodal_rows() - builder.gluing.ranges.contact().len();
         builder.dirichlet(&merged);
+        builder.springs(springs)?;
         let behind = gluing.nodal_rows() - gluing.ranges.contact().len();
         let interface = gluing.ranges.interface.start;
         let supports = interface + 3 * gluing.blocks();
@@ -243,6 +261,32 @@ impl Builder<'_> {
         entries.push(entry(j, -(j as f64) * scale));
         self.gluing.block_pointers.push(entries.len() as u32);
         self.gluing.block_nodes.push(node);
+    }
+
+    /// A spring is a support that gives way. With a row of length one its compliance is `c`, and that of the body
+    /// about the inverse of the stiffness `k` of the copies; the row is scaled by the root of `1 / (1 + c k)`, so that
+    /// both together are `1 / k` as for other rows.
+    fn springs(&mut self, (springs, all): (&[NodalSpring], &CopyStiffness)) -> Result<(), TfetiError> {
+        for (k, spring) in springs.iter().enumerate() {
+            let NodalSpring { node, stiffness, .. } = *spring;
+            check_node(node, self.decomposition.nodes(), || format!("spring {k}"))?;
+            let copies = self.decomposition.copies(node as usize);
+            let compliance = 1.0 / (self.stiffness.squares(copies) * stiffness);
+            if !(compliance.is_finite() && compliance > 0.0) {
+                return Err(TfetiError::Spring { node, stiffness });
+            }
+            self.stiffness.unit_shares(copies, &mut self.shares);
+            let shares = copies.iter().zip(&self.shares);
+            let own: f64 = shares.map(|(copy, share)| share * share * all.of(copy)).sum();
+            let scale = (1.0 + compliance * own).sqrt().recip().max(SOFTEST);
+            self.spread(node, spring.direction.map(|c| scale * c));
+            self.close(node);
+            self.gluing.springs.push(SpringRow {
+                compliance: scale * scale * compliance,
+                scale,
+            });
+        }
+        Ok(())
     }
 
     fn dirichlet(&mut self, merged: &MergedSupports) {

@@ -47,6 +47,15 @@ pub struct ContactRows {
     pub tangential: TangentialRows,
 }
 
+/// The row of a spring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpringRow {
+    /// `B u = -compliance * lambda`, in row units, m/N.
+    pub compliance: f64,
+    /// Length of the row.
+    pub scale: f64,
+}
+
 /// The rows of a tied constraint.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TiedRows {
@@ -104,6 +113,8 @@ pub struct Gluing {
     pub(super) tied: Vec<TiedRows>,
     pub(super) removed: Vec<RemovedRow>,
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
+    /// The rows of springs, which are the last ones.
+    pub(super) springs: Vec<SpringRow>,
     /// Mesh nodes that contact points join.
     pub(super) groups: NodeGroups,
     pub(super) paper_rows: usize,
@@ -186,6 +197,26 @@ impl Gluing {
         } else {
             self.row_nodes.get(self.nodal_of(row)).copied()
         }
+    }
+
+    /// The rows of springs, which are the last ones.
+    pub fn springs(&self) -> &[SpringRow] {
+        &self.springs
+    }
+
+    /// By how much a spring gives way, in row units, under this multiplier; 0 for all other rows.
+    pub fn gives_way(&self, row: usize, multiplier: f64) -> f64 {
+        let first = self.ranges.total() - self.springs.len();
+        let own = row.checked_sub(first).and_then(|k| self.springs.get(k));
+        own.map_or(0.0, |spring| spring.compliance * multiplier)
+    }
+
+    /// Adds what springs give way to `B u`: `y += C x`, for whole dual vectors.
+    pub fn add_compliance(&self, x: &[f64], y: &mut [f64]) {
+        let first = self.ranges.total() - self.springs.len();
+        let rows = x.iter().zip(y).skip(first);
+        rows.zip(&self.springs)
+            .for_each(|((x, y), spring)| *y += spring.compliance * x);
     }
 
     /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.

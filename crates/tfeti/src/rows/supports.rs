@@ -105,6 +105,18 @@ impl NodeSupport {
     }
 }
 
+/// A spring between a node and the ground: it pushes the body by `-stiffness` times its displacement along the
+/// direction. Springs of a node stand at right angles to one another and to what supports fix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodalSpring {
+    /// Mesh node.
+    pub node: u32,
+    /// Unit direction.
+    pub direction: [f64; 3],
+    /// N/m, positive.
+    pub stiffness: f64,
+}
+
 /// One orthonormal fixed direction of a node.
 #[derive(Debug, Clone)]
 pub(super) struct FixedDirection {

@@ -88,7 +88,7 @@ impl CopyStiffness {
         self.values.get(k).copied().unwrap_or(1.0)
     }
 
-    fn of(&self, copy: &NodeCopy) -> f64 {
+    pub(crate) fn of(&self, copy: &NodeCopy) -> f64 {
         self.weight(self.first[copy.subdomain as usize] + copy.local as usize)
     }
 

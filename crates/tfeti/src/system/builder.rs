@@ -7,7 +7,7 @@ use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::rows::gluing::Gluing;
 use crate::rows::side::ContactConstraint;
-use crate::rows::supports::NodeSupport;
+use crate::rows::supports::{NodalSpring, NodeSupport};
 use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::cost::InverseSettings;
@@ -28,6 +28,7 @@ pub struct TfetiBuilder<'a> {
     materials: &'a Materials,
     supports: &'a [NodeSupport],
     contact: &'a [ContactConstraint],
+    springs: &'a [NodalSpring],
     share_translates: bool,
     inverse: InverseSettings,
     forecast: Option<&'a Forecast<'a>>,
@@ -43,6 +44,7 @@ impl<'a> TfetiBuilder<'a> {
             materials,
             supports: &[],
             contact: &[],
+            springs: &[],
             share_translates: true,
             inverse: InverseSettings::default(),
             forecast: None,
@@ -73,6 +75,13 @@ impl<'a> TfetiBuilder<'a> {
     #[must_use]
     pub fn with_contact(mut self, contact: &'a [ContactConstraint]) -> Self {
         self.contact = contact;
+        self
+    }
+
+    /// Sets the springs to the ground.
+    #[must_use]
+    pub fn with_springs(mut self, springs: &'a [NodalSpring]) -> Self {
+        self.springs = springs;
         self
     }
 
@@ -115,10 +124,20 @@ impl<'a> TfetiBuilder<'a> {
         let subdomains = Arc::new(subdomains);
         let assembly_seconds = clock.lap();
         let mut stiffness = CopyStiffness::new(&subdomains);
+        let all = match self.springs {
+            [] => CopyStiffness::default(),
+            _ => stiffness.clone(),
+        };
         if !has_several_laws(mesh, self.materials) {
             stiffness = stiffness.unless_alike(decomposition);
         }
-        let gluing = Gluing::new(decomposition, self.supports, self.contact, &stiffness)?;
+        let gluing = Gluing::with_springs(
+            decomposition,
+            self.supports,
+            self.contact,
+            &stiffness,
+            (self.springs, &all),
+        )?;
         let gluing = Arc::new(gluing);
         let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing));
         let gluing_seconds = clock.lap();
@@ -163,7 +182,7 @@ impl<'a> TfetiBuilder<'a> {
             inverse_seconds,
             coarse_seconds,
         };
-        let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone());
+        let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone(), gluing.clone());
         let parts = Parts {
             subdomains,
             gluing,

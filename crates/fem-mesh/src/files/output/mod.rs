@@ -106,6 +106,12 @@ errors! {
         BrokenSeries { path: PathBuf, line: usize, found: String, expected: String } =
             "line {line} of {} is {found:?}, but {expected} is needed; only lists written by PvdSeries under their \
             name can be continued, so restore the file or start a new series with PvdSeries::create", path.display();
-        Io { path: PathBuf, source: std::io::Error } = "cannot write {}: {source}", path.display();
+        Read { path: PathBuf, source: std::io::Error } =
+            "cannot read {}: {source}; make it readable, or start a new series with PvdSeries::create", path.display();
+        ShortFile { path: PathBuf } =
+            "{} is cut short; put a copy of it back, remove it, or continue from a time before it", path.display();
+        Io { path: PathBuf, source: std::io::Error } =
+            "cannot write {}: {source}; what was complete there stays: make room or give another folder, then go on",
+            path.display();
     }
 }

@@ -1,7 +1,8 @@
 //! A time series: one VTU file a step and a PVD file that lists them.
 
 use std::fmt::Write as _;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
@@ -17,6 +18,8 @@ const HEAD: [&str; 3] = [
     "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">",
     "  <Collection>",
 ];
+/// What a complete file of a step ends with.
+const END_OF_FILE: &[u8] = b"</VTKFile>\n";
 const FOOT: [&str; 2] = ["  </Collection>", "</VTKFile>"];
 
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
@@ -73,9 +76,16 @@ impl PvdSeries {
     ///
     /// # Errors
     /// [`OutputError`] if the name is not a plain file name, or the list is missing or not as this
-    /// type writes it.
+    /// type writes it, or one of its files is cut short.
     pub fn open(folder: impl AsRef<Path>, name: &str) -> Result<Self, OutputError> {
-        let mut series = Self::new(folder.as_ref(), name)?;
+        let series = Self::listed(folder.as_ref(), name)?;
+        series.check_files()?;
+        Ok(series)
+    }
+
+    /// What the list says.
+    fn listed(folder: &Path, name: &str) -> Result<Self, OutputError> {
+        let mut series = Self::new(folder, name)?;
         let path = series.path();
         let list = fs::read_to_string(&path).map_err(|source| OutputError::NoSeries { path, source })?;
         series.read(&list)?;
@@ -90,14 +100,34 @@ impl PvdSeries {
     /// # Errors
     /// [`OutputError`] as [`PvdSeries::open`], and if `time` is not finite.
     pub fn open_before(folder: impl AsRef<Path>, name: &str, time: f64) -> Result<Self, OutputError> {
-        let mut series = Self::open(folder, name)?;
+        let mut series = Self::listed(folder.as_ref(), name)?;
         if !time.is_finite() {
             let before = series.last();
             return Err(OutputError::Time { time, before });
         }
         let limit = time - SAME_TIME * time.abs();
         series.times.retain(|&t| t < limit);
+        series.check_files()?;
         Ok(series)
+    }
+
+    /// No file is cut short. One that is not there is not missed: its owner has put it elsewhere.
+    fn check_files(&self) -> Result<(), OutputError> {
+        for step in 0..self.times.len() {
+            let path = self.folder.join(self.file_name(step));
+            let end = match File::open(&path) {
+                Ok(file) => last_bytes(file).map_err(|source| OutputError::Read {
+                    path: path.clone(),
+                    source,
+                })?,
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
+                Err(source) => return Err(OutputError::Read { path, source }),
+            };
+            if end != END_OF_FILE {
+                return Err(OutputError::ShortFile { path });
+            }
+        }
+        Ok(())
     }
 
     fn new(folder: &Path, name: &str) -> Result<Self, OutputError> {
@@ -280,6 +310,15 @@ impl PvdSeries {
         self.times = times;
         Ok(())
     }
+}
+
+/// As many bytes as a complete file ends with; fewer of a shorter one.
+fn last_bytes(mut file: File) -> std::io::Result<Vec<u8>> {
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(END_OF_FILE.len() as u64)))?;
+    let mut end = Vec::new();
+    file.take(END_OF_FILE.len() as u64).read_to_end(&mut end)?;
+    Ok(end)
 }
 
 /// The characters that XML reserves inside an attribute.

@@ -1,0 +1,69 @@
+//! Springs at the nodes of the mesh.
+
+use super::creases::area_vector;
+use super::supports::Supports;
+use crate::error::ContactError;
+use crate::scene::Scene;
+use crate::tolerances::NO_SPRING;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use signorini_fem_mesh::{Surface, vec3};
+use signorini_tfeti::NodalSpring;
+use std::collections::BTreeMap;
+
+/// The springs of a scene, node by node.
+#[derive(Debug, Default)]
+pub(crate) struct Springs {
+    /// Those of all foundations together, along their principal directions.
+    pub(crate) nodal: Vec<NodalSpring>,
+    /// Of each foundation of the scene the stiffness at its nodes, N/m, without what supports fix.
+    pub(crate) by_spring: Vec<BTreeMap<u32, Matrix3<f64>>>,
+}
+
+impl Springs {
+    pub(super) fn new(scene: &Scene, supports: &Supports) -> Result<Self, ContactError> {
+        let mut springs = Self::default();
+        let mut sum: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
+        for spring in &scene.springs {
+            let surface = Surface::new(&scene.mesh, &[spring.tag])?;
+            let mut own: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
+            for triangle in surface.triangles() {
+                let vector = area_vector(&scene.mesh, &surface, triangle);
+                let area = vec3::norm(vector);
+                let stiffness = spring.matrix(vector.map(|c| c / area));
+                let share = Matrix3::from_fn(|i, j| stiffness[i][j]) * (area / 3.0);
+                for local in triangle {
+                    *own.entry(surface.nodes()[*local as usize]).or_default() += share;
+                }
+            }
+            for (node, stiffness) in &mut own {
+                let free = free_part(supports, *node);
+                *stiffness = free * *stiffness * free;
+                *sum.entry(*node).or_default() += *stiffness;
+            }
+            springs.by_spring.push(own);
+        }
+        let largest = sum.values().map(|k| k.amax()).fold(0.0, f64::max);
+        for (node, stiffness) in sum {
+            let eigen = SymmetricEigen::new(stiffness);
+            for (k, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+                if *k > NO_SPRING * largest {
+                    springs.nodal.push(NodalSpring {
+                        node,
+                        direction: [direction[0], direction[1], direction[2]],
+                        stiffness: *k,
+                    });
+                }
+            }
+        }
+        Ok(springs)
+    }
+}
+
+/// The projection of a node on the directions that no support fixes.
+fn free_part(supports: &Supports, node: u32) -> Matrix3<f64> {
+    let fixed = supports.directions.get(&node).into_iter().flatten();
+    fixed.fold(Matrix3::identity(), |free, fixed| {
+        let direction = Vector3::from(fixed.direction);
+        free - direction * direction.transpose()
+    })
+}

@@ -1,0 +1,88 @@
+//! Springs: an elastic ground under a part of the boundary.
+
+use crate::error::ContactError;
+use signorini_fem_mesh::FacetTag;
+
+/// An elastic foundation (Winkler) under the facets with a tag: the ground pushes back with a stress in proportion to the
+/// displacement, everywhere on its own, in both directions. The body stands on it: it holds rigid motions as a support
+/// does.
+///
+/// Stiffness is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` that cannot widen has
+/// `E (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas of its facets.
+/// Where a support fixes a direction of a node the spring acts at right angles to it. Nodes that are contact nodes as well
+/// (edges) may be; where springs are very soft or stiff against the body they cost many products there.
+///
+/// ```
+/// use signorini_contact::{Load, Scene, Settings, Simulation, Spring};
+/// use signorini_fem_mesh::{brick, Brick, Hooke};
+///
+/// let mesh = Brick::new([1.0; 3], [3; 3]).build()?;
+/// let scene = Scene::new(mesh, Hooke::isotropic(2.1e11, 0.3)?.into())
+///     .with_spring(Spring::components(brick::Z_MIN, [1e7, 1e7, 1e8]))
+///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
+/// let result = Simulation::new(scene, Settings::default())?.step()?;
+/// // 1 MPa on 100 MPa/m: down by a centimetre
+/// assert!(result.displacement().iter().all(|u| (u[2] + 0.01).abs() < 1e-4));
+/// let ground = result.reactions().springs[0].resultant.force;
+/// assert!((ground[2] - 1e6).abs() < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spring {
+    pub(crate) tag: FacetTag,
+    pub(crate) stiffness: Stiffness,
+}
+
+/// N/m³.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Stiffness {
+    Normal(f64),
+    Components([f64; 3]),
+}
+
+impl Spring {
+    /// Along the normal of each facet.
+    #[must_use]
+    pub fn normal(tag: FacetTag, stiffness: f64) -> Self {
+        Self {
+            tag,
+            stiffness: Stiffness::Normal(stiffness),
+        }
+    }
+
+    /// Along x, y and z; zero for none.
+    #[must_use]
+    pub fn components(tag: FacetTag, stiffness: [f64; 3]) -> Self {
+        Self {
+            tag,
+            stiffness: Stiffness::Components(stiffness),
+        }
+    }
+
+    /// The tag of its facets.
+    #[must_use]
+    pub fn tag(&self) -> FacetTag {
+        self.tag
+    }
+
+    /// Stiffness at a facet with this unit normal, as the rows of a matrix, N/m³.
+    pub(crate) fn matrix(&self, normal: [f64; 3]) -> [[f64; 3]; 3] {
+        match self.stiffness {
+            Stiffness::Normal(k) => normal.map(|a| normal.map(|b| k * a * b)),
+            Stiffness::Components([x, y, z]) => [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]],
+        }
+    }
+
+    pub(crate) fn validate(&self, index: usize) -> Result<(), ContactError> {
+        let values = match self.stiffness {
+            Stiffness::Normal(k) => [k; 3],
+            Stiffness::Components(k) => k,
+        };
+        let bad = values.iter().find(|k| !(k.is_finite() && **k >= 0.0));
+        let none = values.iter().all(|k| *k == 0.0).then_some(&0.0);
+        match bad.or(none) {
+            Some(&value) => Err(ContactError::SpringStiffness { spring: index, value }),
+            None => Ok(()),
+        }
+    }
+}
