@@ -1,6 +1,6 @@
 //! Input decks of CalculiX and Abaqus as meshes and whole contact scenes.
 //!
-//! [`Deck::read`] reads a deck of linear tetrahedra and what it says about materials, supports, loads, contact
+//! [`Deck::read`] reads a deck of tetrahedra and what it says about materials, supports, loads, contact
 //! and steps. [`Deck::scene`] is the same scene as the one a program would build, bit for bit. **A keyword,
 //! parameter or entry that is not understood or cannot be had is an error with file, line and word**; nothing
 //! is skipped but requests for output and settings of other solvers, which [`Deck::ignored`] lists.

@@ -41,7 +41,7 @@ impl SharedNodes {
             }
             sums.into_iter().collect()
         };
-        let of_points = model.points.iter().flat_map(|p| p.directions());
+        let of_points = (model.points.iter()).flat_map(|p| p.directions().take(1).chain(p.isotropic()));
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
         rows.extend(tied.clone().map(|number| row(number, 1.0)));
         let mut stiffness = vec![0.0; discrete.decomposition.nodes()];

@@ -13,7 +13,7 @@ errors! {
         Young(f64) = "Young's modulus is {0}; it must be positive and finite";
         Poisson(f64) =
             "Poisson's ratio is {0}; it must lie between -1 and 1/2, both excluded and not closer than about 1e-12 \
-            (nearly incompressible bodies need another element)";
+            (with linear elements bodies lock long before; raise_order)";
         NotFinite { row: usize, column: usize, value: f64 } =
             "entry ({row}, {column}) of the elasticity matrix is {value}; all entries must be finite";
         NotSymmetric { left: [usize; 4], left_value: f64, right: [usize; 4], right_value: f64 } =
