@@ -114,7 +114,7 @@ fn scene(choice: MeshChoice) -> Result<Scene, Failure> {
     let mut mesh = block.mesh()?;
     // subdomains of whole cells, about 5 an edge, of quadratic elements 3
     let wanted = choice.cells as f64 / if choice.order == 2 { 3.0 } else { 5.0 };
-    let divisors = (1..=choice.cells).filter(|b| choice.cells % b == 0);
+    let divisors = (1..=choice.cells).filter(|b| choice.cells.is_multiple_of(*b));
     let off = |b: &usize| (*b as f64 / wanted).ln().abs();
     let edge = divisors.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1);
     let parts = Decomposition::boxes(&mesh, [3 * edge, edge, edge])?.parts().to_vec();
