@@ -149,7 +149,7 @@ fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
 fn the_plan_is_a_table_of_effects() -> Result<(), Error> {
     let plan = Plan::new(&scene(4)?, &Settings::default())?;
     let text = plan.to_string();
-    for part in ["Coulomb", "gaps 1.000e-1 to 1.000e-1 m", "4 steps", "active-set"] {
+    for part in ["Coulomb", "gaps 1.000e-1 to 1.000e-1", "4 steps", "active-set"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
     Ok(())
