@@ -80,6 +80,8 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
     for &ratio in ratios {
         for [a, b] in [
             [n, n],
+            [2 * n, 2 * n],
+            [3 * n, 3 * n],
             [n, n + 1],
             [n, 3 * n / 2],
             [n, 2 * n],

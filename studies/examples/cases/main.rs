@@ -193,6 +193,7 @@ fn page(findings: &[Finding], options: &CasesOptions) -> String {
          The error is relative to the target, or the value itself where the target is 0. Meshes of both sides do not match.\n\n"
     );
     let heads = HEADS.map(|[a, b]| format!("{a} {b}").trim().replace("- ", ""));
+    text += "In the rows *pulled* each block is cut into 2 x 2 x 2 boxes, whatever its cells: compare with the matching meshes of the finer side.\n\n";
     text += &format!("| {} |\n|{}\n", heads.join(" | "), "---|".repeat(heads.len()));
     for finding in findings {
         text += &format!("| {} |\n", row(finding).join(" | "));

@@ -269,13 +269,18 @@ fn quadratic_bodies_meshed_apart_pass_uniform_pressure() {
         ([2, 2, 2], [2, 3, 1], [1, 1, 1]),
     ] {
         for tied in [false, true] {
-            for (a, b) in [(second(brick::Z_MIN), brick::Z_MAX), (brick::Z_MAX, second(brick::Z_MIN))] {
+            for (a, b) in [
+                (second(brick::Z_MIN), brick::Z_MAX),
+                (brick::Z_MAX, second(brick::Z_MIN)),
+            ] {
                 let mesh = blocks(lower, upper, 1.0).raise_order().expect("order 2");
                 let contact = match tied {
                     true => Contact::tied(a, b),
                     false => Contact::between(a, b).with_friction(Friction::coulomb(0.3)),
                 };
-                let scene = pressed_blocks(mesh.clone(), 1.0).with_contact(contact).with_boxes(boxes);
+                let scene = pressed_blocks(mesh.clone(), 1.0)
+                    .with_contact(contact)
+                    .with_boxes(boxes);
                 let mut simulation = Simulation::new(scene, tight()).expect("set-up");
                 let what = format!("{lower:?} {upper:?} {tied} {a}");
                 let result = step(&mut simulation);
