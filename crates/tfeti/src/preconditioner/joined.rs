@@ -53,10 +53,10 @@ impl JoinedGroups {
         }
         let mut pairs = HashMap::new();
         for contact in gluing.contact() {
-            if let TangentialRows::Disc { row, .. } = contact.tangential {
-                if let [Some(&a), Some(&b)] = [row, row + 1].map(|r| places.get(&(r as u32))) {
-                    pairs.extend([(a, b), (b, a)]);
-                }
+            if let TangentialRows::Disc { row, .. } = contact.tangential
+                && let [Some(&a), Some(&b)] = [row, row + 1].map(|r| places.get(&(r as u32)))
+            {
+                pairs.extend([(a, b), (b, a)]);
             }
         }
         let mut matrix = Columns::empty(rows.len());
