@@ -2,8 +2,9 @@
 
 use crate::check::Judge;
 use crate::generate;
+use crate::generate::apart::{Apart, Shape};
 use crate::recipe::{Clock, Course, Distance, Elastic, Law, Recipe};
-use crate::run::{LIMIT, each_level};
+use crate::run::{LIMIT, Outcome, each_level, run_apart};
 
 /// Share by which a datum is changed.
 const MORE: f64 = 1.02;
@@ -114,4 +115,55 @@ fn other_recipes_do_not_fit() {
     }
     let list: Vec<_> = CHANGES.iter().map(|c| c.0).zip(found).collect();
     assert!(found.iter().all(|f| *f >= 4), "of {ran} scenes: {list:?}");
+}
+
+type ApartChange = (&'static str, fn(&mut Apart));
+
+/// What only bodies meshed apart and obstacles of any shape have.
+const APART_CHANGES: [ApartChange; 5] = [
+    ("stiffness of the upper body", |a| {
+        if let Elastic::Isotropic(young, _) = &mut a.recipe.elastic[1] {
+            *young *= MORE;
+        }
+    }),
+    ("friction between bodies", |a| {
+        for pair in &mut a.pairs {
+            if let Law::Given(value) | Law::Coulomb(value) = &mut pair.law {
+                *value *= MORE;
+            }
+        }
+    }),
+    ("friction across the axis", |a| {
+        let axes = a.pairs.iter_mut().filter_map(|p| p.axis.as_mut());
+        axes.for_each(|axis| axis.1 *= MORE);
+    }),
+    ("radius", |a| {
+        for rock in &mut a.rocks {
+            if let Shape::Ball(_, radius) | Shape::Roll(.., radius) = &mut rock.shape {
+                *radius *= MORE;
+            }
+        }
+    }),
+    ("common area", |a| a.pairs.iter_mut().for_each(|p| p.common /= MORE)),
+];
+
+#[test]
+fn other_bodies_meshed_apart_do_not_fit() {
+    let mut found = [0; APART_CHANGES.len()];
+    for number in 0..100 {
+        let scene = generate::apart::apart(crate::SEED, number);
+        let mut other: Vec<Apart> = vec![scene.clone(); APART_CHANGES.len()];
+        other
+            .iter_mut()
+            .zip(APART_CHANGES)
+            .for_each(|(other, change)| change.1(other));
+        for (found, other) in found.iter_mut().zip(&other) {
+            let Outcome::Solved(levels) = run_apart(&scene, other) else {
+                continue;
+            };
+            *found += usize::from(levels.iter().any(|l| l.is_solved() && l.worst().1 > 3.0 * LIMIT));
+        }
+    }
+    let list: Vec<_> = APART_CHANGES.iter().map(|c| c.0).zip(found).collect();
+    assert!(found.iter().all(|f| *f >= 4), "{list:?}");
 }

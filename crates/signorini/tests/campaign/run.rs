@@ -63,10 +63,10 @@ pub(crate) fn run(recipe: &Recipe) -> Outcome {
     })
 }
 
-/// The same of bodies meshed apart.
-pub(crate) fn run_apart(apart: &Apart) -> Outcome {
+/// The same of bodies meshed apart, judged by what `told` says of them.
+pub(crate) fn run_apart(apart: &Apart, told: &Apart) -> Outcome {
     guarded(|| {
-        let mut judge = ApartJudge::new(apart);
+        let mut judge = ApartJudge::new(told);
         let scene = apart.scene(say::scene(&apart.recipe)?)?;
         levels(|see| {
             levels_of(scene, &apart.recipe, |simulation, frame| {
