@@ -52,8 +52,11 @@ impl DiscretisationError {
         let each = (target * target * self.elastic_energy() / parts).powf(2.5);
         let mut logs = vec![(0.0, 0.0); mesh.points().len()];
         for (tet, (nodes, energy)) in mesh.tets().iter().zip(self.energies()).enumerate() {
-            // without any error the quotient is none or infinite
-            let factor = (each / energy).powf(0.2).min(COARSENED).max(1.0 / REFINED);
+            let factor = if *energy > 0.0 {
+                (each / energy).powf(0.2).clamp(1.0 / REFINED, COARSENED)
+            } else {
+                COARSENED
+            };
             let edge = factor * (REGULAR * mesh.volume(tet)).cbrt();
             for &node in nodes {
                 logs[node as usize].0 += edge.ln();

@@ -63,17 +63,24 @@ pub(crate) fn run(recipe: &Recipe) -> Outcome {
     })
 }
 
-/// The same of bodies meshed apart, judged by what `told` says of them.
-pub(crate) fn run_apart(apart: &Apart, told: &Apart) -> Outcome {
+/// The same of bodies meshed apart.
+pub(crate) fn run_apart(apart: &Apart) -> Outcome {
     guarded(|| {
-        let mut judge = ApartJudge::new(told);
-        let scene = apart.scene(say::scene(&apart.recipe)?)?;
+        let mut judge = ApartJudge::new(apart);
         levels(|see| {
-            levels_of(scene, &apart.recipe, |simulation, frame| {
+            each_apart_level(apart, |simulation, frame| {
                 see(frame, judge.step(simulation.constrained_points(), frame)?)
             })
         })
     })
+}
+
+/// Shows all levels of bodies meshed apart; says what refuses them.
+pub(crate) fn each_apart_level(
+    apart: &Apart,
+    see: impl FnMut(&Simulation, &StepResult) -> Result<(), Error>,
+) -> Result<Option<Refusal>, Error> {
+    levels_of(apart.scene(say::scene(&apart.recipe)?)?, &apart.recipe, see)
 }
 
 /// An outcome, or how it broke.
