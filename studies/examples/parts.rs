@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Parser;
-use signorini::fem_mesh::gmsh::{GroupNames, read_named_gmsh};
+use signorini::fem_mesh::gmsh::{GroupNames, read_named_gmsh, write_sizes};
 use signorini::fem_mesh::{Surface, TetMesh};
 use signorini::prelude::*;
 use signorini_studies::chart::{Chart, Curve, page};
@@ -43,6 +43,13 @@ pub struct PartsOptions {
     /// Draws the pressure under the balls beside the formula into this SVG.
     #[arg(long)]
     pub plot: Option<PathBuf>,
+    /// Writes the edge lengths that an error of `target` asks for into this folder, as `PART-SIZE.pos` for Gmsh, and
+    /// prints the estimated error; studies/meshes/refine.py goes round with them.
+    #[arg(long)]
+    pub sizes: Option<PathBuf>,
+    /// Error that `sizes` asks for, relative, in the energy norm.
+    #[arg(long, default_value_t = 0.1)]
+    pub target: f64,
     /// Draws each part at its end, by von Mises stress, into this folder.
     #[arg(long)]
     pub pictures: Option<PathBuf>,
@@ -81,6 +88,17 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
         let (mesh, names) = read_named_gmsh(&path)?;
         for &count in &options.subdomains {
             let (run, last) = pool.install(|| run(&part, &mesh, &names, count, out))?;
+            if let (Some(folder), Some(last)) = (&options.sizes, &last) {
+                let error = last.discretisation_error()?;
+                std::fs::create_dir_all(folder)?;
+                write_sizes(
+                    folder.join(format!("{stem}.pos")),
+                    &mesh,
+                    &error.wanted_sizes(&mesh, options.target)?,
+                )?;
+                let (tets, relative) = (mesh.tets().len(), 100.0 * error.relative());
+                writeln!(out, "{stem}: {tets} tetrahedra, estimated error {relative:.2} %")?;
+            }
             if let (Some(folder), Some(last)) = (&options.pictures, last) {
                 let text = draw::result(&last, Shown::VonMises, EYE);
                 save(&folder.join(format!("{stem}.svg")), &text)?;

@@ -1,8 +1,9 @@
 """Meshes of real parts by Gmsh's Python package (pip install gmsh).
 
-    python3 studies/meshes/parts.py FOLDER [PART[:SIZE] ...]
+    python3 studies/meshes/parts.py FOLDER [PART[:SIZE[:SIZES.pos]] ...]
 
-writes FOLDER/PART-SIZE.msh, by default each part at its default size. Lengths in mm; SIZE is the edge of a tetrahedron (of the finest ones
+writes FOLDER/PART-SIZE.msh, by default each part at its default size; with edge lengths from SIZES.pos, which the study `parts` writes
+(`--sizes`), where there is one. Lengths in mm; SIZE is the edge of a tetrahedron (of the finest ones
 in graded meshes). The groups are named; the study `parts` reads them.
 """
 
@@ -46,6 +47,18 @@ def graded(size, far, centre, radius, thickness):
     field.setAsBackgroundMesh(ball)
     for name in ["ExtendFromBoundary", "FromPoints", "FromCurvature"]:
         gmsh.option.setNumber("Mesh.MeshSize" + name, 0)
+
+
+def background(path):
+    """Edge lengths from a file that the library has written."""
+    gmsh.merge(str(path))
+    view = field.add("PostView")
+    field.setNumber(view, "ViewIndex", 0)
+    field.setAsBackgroundMesh(view)
+    for name in ["ExtendFromBoundary", "FromPoints", "FromCurvature"]:
+        gmsh.option.setNumber("Mesh.MeshSize" + name, 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 1e22)
 
 
 def bracket(size):
@@ -142,28 +155,35 @@ def tooth(size):
 PARTS = {bracket: 1.9, sphere: 0.0625, punch: 1.5, plates: 1.5, tooth: 1.2}
 
 
+def write(path, part, size, sizes=None):
+    """Meshes a part; the number of its tetrahedra."""
+    gmsh.initialize()
+    for option, value in [("General.Verbosity", 2), ("General.NumThreads", 1), ("Mesh.Algorithm3D", 1)]:
+        gmsh.option.setNumber(option, value)
+    gmsh.model.add(part.__name__)
+    part(size)
+    if sizes:
+        background(sizes)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.optimize("")
+    gmsh.write(str(path))
+    tets = len(gmsh.model.mesh.getElementsByType(4)[0])
+    print(f"{path}: {tets} tetrahedra", flush=True)
+    gmsh.finalize()
+    return tets
+
+
 def main(folder, wanted):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     names = {part.__name__: part for part in PARTS}
     for word in wanted or names:
-        name, _, size = word.partition(":")
+        name, size, sizes, *_ = word.split(":") + ["", ""]
         if name not in names:
             sys.exit(f"no part {name}; there are {', '.join(names)}")
         part = names[name]
         size = float(size or PARTS[part])
-        path = folder / f"{name}-{size:g}.msh"
-        gmsh.initialize()
-        for option, value in [("General.Verbosity", 2), ("General.NumThreads", 1), ("Mesh.Algorithm3D", 1)]:
-            gmsh.option.setNumber(option, value)
-        gmsh.model.add(name)
-        part(size)
-        gmsh.model.mesh.generate(3)
-        gmsh.model.mesh.optimize("")
-        gmsh.write(str(path))
-        tets = len(gmsh.model.mesh.getElementsByType(4)[0])
-        print(f"{path}: {tets} tetrahedra")
-        gmsh.finalize()
+        write(folder / f"{name}-{size:g}.msh", part, size, sizes)
 
 
 if __name__ == "__main__":

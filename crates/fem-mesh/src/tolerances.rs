@@ -51,6 +51,14 @@ pub(crate) const SMALL_PATCH: usize = 8;
 /// Smallest over largest pivot below which a fit is not trusted.
 pub(crate) const PIVOT: f64 = 1e-6;
 
+// Wanted sizes
+
+/// Most by which one estimate makes tetrahedra smaller, and larger. Farther the estimate of a coarse mesh does not reach.
+pub(crate) const REFINED: f64 = 4.0;
+pub(crate) const COARSENED: f64 = 2.0;
+/// Most by which wanted edges grow over a distance, relative to it. Tetrahedra twice as large as their neighbours are slivers.
+pub(crate) const GROWTH: f64 = 0.5;
+
 // Series of files
 
 /// Difference of times over the time below which a step of a series is the one asked for.

@@ -17,7 +17,7 @@ use crate::settings::Settings;
 use crate::status::StepStatus;
 use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
-use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, active_set, vector};
+use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, SymmetricOperator, active_set, vector};
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
 /// Solves of a step with contradicting points released.
@@ -73,11 +73,16 @@ impl ActiveSetSolver {
             return self.fall_back(task, iterate, start, report);
         }
         iterate.known = true;
+        self.amplitudes(task, iterate);
+        Ok(report)
+    }
+
+    /// Rigid amplitudes that go with an iterate of which `F lambda` is known.
+    fn amplitudes(&mut self, task: Task<'_>, iterate: &mut Iterate) {
         iterate.alpha.resize(task.problem.rhs.len(), 0.0);
         let mut residual = iterate.f_lambda.clone();
         vector::axpy(-1.0, &task.problem.linear, &mut residual);
         self.space.amplitudes(&residual, &mut iterate.alpha);
-        Ok(report)
     }
 
     /// Active sets with slip bounds that follow, again as long as rows of one node contradict each other.
@@ -167,9 +172,22 @@ impl ActiveSetSolver {
         {
             iterate.lambda = start;
         }
-        let mut paper = match self.paper.take() {
-            Some(paper) => paper,
-            None => Box::new(SmalseSolver::new(task.model, task.settings)?),
+        let paper = self
+            .paper
+            .take()
+            .map_or_else(|| SmalseSolver::new(task.model, task.settings).map(Box::new), Ok);
+        let mut paper = match paper {
+            Ok(paper) => paper,
+            // the paper's method needs rows that stop every motion: what was reached stands, with its status
+            Err(ContactError::NotDetermined { .. }) => {
+                let dual = task.model.tfeti.dual();
+                dual.apply(&iterate.lambda, &mut iterate.f_lambda, &mut dual.scratch());
+                report.counters.products += 1;
+                iterate.known = true;
+                self.amplitudes(task, iterate);
+                return Ok(report);
+            }
+            Err(error) => return Err(error),
         };
         iterate.multiplier.clear();
         // other normal forces may hold the body yet

@@ -1,6 +1,7 @@
 //! Bodies that nothing holds: what the messages say, and with which numbers.
 
 use crate::common::*;
+use signorini_qp::ActiveSetSettings;
 
 fn free(mesh: TetMesh) -> Scene {
     Scene::new(mesh, steel())
@@ -158,6 +159,23 @@ fn without_forces_or_in_balance_the_motions_are_free() {
         assert!(text.contains(&format!("{expected} rigid motion")), "{text}");
         assert!(!text.contains("cannot be in equilibrium"), "{text}");
     }
+}
+
+/// Where the default method ends at a limit and the paper's cannot go on, since motions are free, the step has a status.
+/// It was an error in the middle of the run.
+#[test]
+fn without_a_second_method_the_step_ends_with_its_status() {
+    let scene = cube()
+        .with_load(Load::pressure(brick::Z_MAX, 1e7))
+        .with_load(Load::body([0.0, 0.0, -1e6]))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_gap_field(|x| 1e-4 * (x[0] - 0.3).powi(2)));
+    let few = Method::ActiveSet(ActiveSetSettings::default().with_max_products(1));
+    let mut simulation = Simulation::new(scene.clone(), by(few)).expect("set-up");
+    let frame = simulation.step().expect("step");
+    assert_eq!(frame.report().status, StepStatus::IterationLimit);
+    assert!(!frame.report().fallback && frame.displacement().iter().flatten().all(|u| u.is_finite()));
+    // with products enough it is solved
+    assert!(solve(scene, Settings::default()).report.status.converged());
 }
 
 /// Given friction holds bounds times area whatever the pressure, and no more.

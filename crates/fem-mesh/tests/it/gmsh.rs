@@ -4,7 +4,7 @@ use allocation_counter::measure;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_fem_mesh::gmsh::{GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh};
+use signorini_fem_mesh::gmsh::{GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh, write_sizes};
 use signorini_fem_mesh::{FacetTag, MeshError};
 
 /// Two tetrahedra in two volumes (groups 7 and 8) with a tagged face (group 3) of surface 1 and an
@@ -483,4 +483,37 @@ fn elements_of_second_order_keep_their_nodes() {
         Err(GmshError::MixedOrder { linear: 1, quadratic }) => assert_eq!(quadratic + 1, count),
         other => panic!("{other:?}"),
     }
+}
+
+/// One scalar tetrahedron a line: twelve coordinates, four lengths.
+#[test]
+fn sizes_are_a_view_of_scalar_tetrahedra() {
+    let mesh = parse_gmsh(TEXT.as_bytes()).expect("mesh");
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("sizes.pos");
+    let sizes: Vec<f64> = (1..=mesh.points().len()).map(|k| k as f64 / 3.0).collect();
+    write_sizes(&path, &mesh, &sizes).expect("file");
+    let text = std::fs::read_to_string(&path).expect("text");
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        (lines[0], lines[lines.len() - 1]),
+        ("View \"wanted edge length\" {", "};")
+    );
+    assert_eq!(lines.len(), mesh.tets().len() + 2);
+    for (line, tet) in lines[1..].iter().zip(mesh.tets()) {
+        let numbers = line.replace("SS(", "").replace("){", ",").replace("};", "");
+        let numbers: Vec<f64> = numbers.split(',').map(|n| n.parse().expect(n)).collect();
+        let places: Vec<f64> = tet.iter().flat_map(|n| mesh.points()[*n as usize]).collect();
+        assert_eq!(numbers[..12], places);
+        for (found, n) in numbers[12..].iter().zip(tet) {
+            assert_abs_diff_eq!(*found, sizes[*n as usize], epsilon = 1e-5);
+        }
+    }
+    for bad in [&sizes[1..], &[0.0; 5], &[f64::NAN; 5]] {
+        let message = write_sizes(&path, &mesh, bad).expect_err("sizes").to_string();
+        assert!(message.contains("one positive length a node"), "{message}");
+    }
+    let nowhere = folder.path().join("no/such/folder.pos");
+    let message = write_sizes(&nowhere, &mesh, &sizes).expect_err("folder").to_string();
+    assert!(message.contains("folder.pos"), "{message}");
 }

@@ -225,3 +225,66 @@ fn two_meshes_of_the_same_linear_field_do_not_differ() {
     let own = signorini_fem_mesh::fields::strain_energy(&a, &material(), &u).expect("energy");
     assert!(zero < 1e-20 * own && (all - own).abs() < 1e-9 * own);
 }
+
+/// Along all edges wanted lengths grow by at most half the distance; the error that they predict is the target; where the
+/// error is, tetrahedra are smaller.
+#[test]
+fn wanted_sizes_have_the_target_and_grow_slowly() {
+    let mesh = Brick::new([1.0; 3], [8; 3]).perturbed(0.1, 3).build().expect("mesh");
+    // strain that changes ever faster along x
+    let u: Vec<f64> = (mesh.points().iter()).flat_map(|p| [p[0].powi(3), 0.0, 0.0]).collect();
+    let error = discretisation_error(&mesh, &material(), &u).expect("estimate");
+    let edge = |tet: usize| (72.0_f64.sqrt() * mesh.volume(tet)).cbrt();
+    for factor in [0.4, 0.7, 1.0, 1.3] {
+        let target = factor * error.relative();
+        let sizes = error.wanted_sizes(&mesh, target).expect("sizes");
+        let mean = |tet: usize| mesh.tets()[tet].iter().map(|n| sizes[*n as usize].ln()).sum::<f64>() / 4.0;
+        let part = |(tet, e): (usize, &f64)| e * (mean(tet).exp() / edge(tet)).powi(2);
+        let predicted: f64 = error.energies().iter().enumerate().map(part).sum();
+        let predicted = (predicted / error.elastic_energy()).sqrt();
+        assert!((predicted / target - 1.0).abs() < 0.1, "{factor}: {predicted} {target}");
+        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        for tet in mesh.tets() {
+            for (a, b) in
+                [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)].map(|(a, b)| (tet[a] as usize, tet[b] as usize))
+            {
+                let [x, y] = [a, b].map(|n| mesh.points()[n]);
+                let way = (0..3).map(|c| (x[c] - y[c]).powi(2)).sum::<f64>().sqrt();
+                assert!((sizes[a] - sizes[b]).abs() <= 0.5 * way * (1.0 + 1e-12));
+            }
+            let middle = tet.iter().map(|n| mesh.points()[*n as usize][0]).sum::<f64>() / 4.0;
+            let size = tet.iter().map(|n| sizes[*n as usize]).sum::<f64>() / 4.0;
+            low = if middle < 0.2 { low.min(size) } else { low };
+            high = if middle > 0.8 { high.max(size) } else { high };
+        }
+        assert!(high < low, "{factor}: {high} where the error is, {low} elsewhere");
+    }
+    // limits: four times smaller, twice larger
+    for (target, most) in [(1e-9, 0.25), (1e9, 2.0)] {
+        let sizes = error.wanted_sizes(&mesh, target).expect("sizes");
+        let edges = || (0..mesh.tets().len()).map(edge);
+        let (least, largest) = (edges().fold(f64::MAX, f64::min), edges().fold(0.0, f64::max));
+        assert!(
+            sizes
+                .iter()
+                .all(|s| *s >= 0.999 * most * least && *s <= 1.001 * most * largest)
+        );
+    }
+}
+
+#[test]
+fn a_target_is_positive_and_the_mesh_its_own() {
+    let mesh = Brick::new([1.0; 3], [2; 3]).build().expect("mesh");
+    let still = vec![0.0; 3 * mesh.points().len()];
+    let error = discretisation_error(&mesh, &material(), &still).expect("estimate");
+    // nothing strained: as large as may be
+    let sizes = error.wanted_sizes(&mesh, 0.1).expect("sizes");
+    assert!(sizes.iter().all(|s| s.is_finite() && *s > 0.5));
+    for value in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let message = error.wanted_sizes(&mesh, value).expect_err("target").to_string();
+        assert!(message.contains("must be positive"), "{message}");
+    }
+    let other = Brick::new([1.0; 3], [3; 3]).build().expect("mesh");
+    let message = error.wanted_sizes(&other, 0.1).expect_err("mesh").to_string();
+    assert!(message.contains("table of tetrahedra"), "{message}");
+}

@@ -1,9 +1,11 @@
 //! The check bites: judged by a recipe that differs by a few per cent in one thing, solved levels violate something.
 
 use crate::check::Judge;
+use crate::check::apart::ApartJudge;
 use crate::generate;
+use crate::generate::apart::{Apart, Shape};
 use crate::recipe::{Clock, Course, Distance, Elastic, Law, Recipe};
-use crate::run::{LIMIT, each_level};
+use crate::run::{LIMIT, each_apart_level, each_level};
 
 /// Share by which a datum is changed.
 const MORE: f64 = 1.02;
@@ -114,4 +116,68 @@ fn other_recipes_do_not_fit() {
     }
     let list: Vec<_> = CHANGES.iter().map(|c| c.0).zip(found).collect();
     assert!(found.iter().all(|f| *f >= 4), "of {ran} scenes: {list:?}");
+}
+
+type ApartChange = (&'static str, fn(&mut Apart));
+
+/// What only bodies meshed apart and obstacles of any shape have.
+const APART_CHANGES: [ApartChange; 5] = [
+    ("stiffness of the upper body", |a| {
+        if let Elastic::Isotropic(young, _) = &mut a.recipe.elastic[1] {
+            *young *= MORE;
+        }
+    }),
+    ("friction between bodies", |a| {
+        for pair in &mut a.pairs {
+            if let Law::Given(value) | Law::Coulomb(value) = &mut pair.law {
+                *value *= MORE;
+            }
+        }
+    }),
+    ("friction across the axis", |a| {
+        let axes = a.pairs.iter_mut().filter_map(|p| p.axis.as_mut());
+        axes.for_each(|axis| axis.1 *= 1.1);
+    }),
+    ("radius", |a| {
+        for rock in &mut a.rocks {
+            if let Shape::Ball(_, radius) | Shape::Roll(.., radius) = &mut rock.shape {
+                *radius *= MORE;
+            }
+        }
+    }),
+    ("common area", |a| a.pairs.iter_mut().for_each(|p| p.common /= MORE)),
+];
+
+#[test]
+fn other_pairs_do_not_fit() {
+    let mut found = [0; APART_CHANGES.len()];
+    for number in 0..250 {
+        let scene = generate::apart::apart(crate::SEED, number);
+        if !scene.recipe.how.is_default() {
+            continue;
+        }
+        let mut other: Vec<Apart> = vec![scene.clone(); APART_CHANGES.len()];
+        other
+            .iter_mut()
+            .zip(APART_CHANGES)
+            .for_each(|(other, change)| change.1(other));
+        let mut judges: Vec<ApartJudge<'_>> = other.iter().map(ApartJudge::new).collect();
+        let mut worst = [0.0_f64; APART_CHANGES.len()];
+        let outcome = each_apart_level(&scene, |simulation, frame| {
+            let solved = frame.report().status.converged() && frame.unconverged_history().is_none();
+            for (judge, worst) in judges.iter_mut().zip(&mut worst) {
+                let violations = judge.step(simulation.constrained_points(), frame)?;
+                if solved {
+                    *worst = violations.iter().map(|v| v.1).fold(*worst, f64::max);
+                }
+            }
+            Ok(())
+        });
+        outcome.expect("scene");
+        for (found, worst) in found.iter_mut().zip(worst) {
+            *found += usize::from(worst > 3.0 * LIMIT);
+        }
+    }
+    let list: Vec<_> = APART_CHANGES.iter().map(|c| c.0).zip(found).collect();
+    assert!(found.iter().all(|f| *f >= 4), "{list:?}");
 }

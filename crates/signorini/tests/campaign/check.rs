@@ -13,6 +13,7 @@
 //! with all others held, the contact force at least 1e-4 of all forces, and both at least a thousandth of those at earlier
 //! levels; forces are at least 1e-8 of displacements times stiffness, below which they are rounding.
 
+pub(crate) mod apart;
 mod contact;
 
 use crate::mechanics::{Mechanics, groups};
@@ -70,10 +71,10 @@ struct Report<'f> {
 
 /// Collects the worst of each condition.
 #[derive(Default)]
-struct Worst(Vec<Violation>);
+pub(crate) struct Worst(pub(crate) Vec<Violation>);
 
 impl Worst {
-    fn add(&mut self, name: &'static str, value: f64, size: f64) {
+    pub(crate) fn add(&mut self, name: &'static str, value: f64, size: f64) {
         let relative = if value <= 0.0 { 0.0 } else { value / size };
         match self.0.iter_mut().find(|v| v.0 == name) {
             Some(v) if relative > v.1 || relative.is_nan() => v.1 = relative,
@@ -119,8 +120,8 @@ impl<'a> Judge<'a> {
             time: frame.time(),
         };
         let mut worst = Worst::default();
-        let load = self.load(report.time);
-        let torn = self.torn(frame);
+        let load = self.mechanics.load_at(self.recipe, report.time);
+        let torn = self.mechanics.torn(frame);
         let sizes = self.sizes(&report, &load, &torn);
         self.copies(frame, &report.u, &sizes, &mut worst);
         self.equilibrium(&report, &load, &torn.0, &sizes, &mut worst);
@@ -139,48 +140,20 @@ impl<'a> Judge<'a> {
             .collect();
         self.ways.swap(0, 1);
         self.ways[0] = slips.iter().map(|s| s.way).collect();
+        self.remember(&report, frame, &sizes);
+        Ok(worst.0)
+    }
+
+    /// Sizes of a level count at later ones.
+    fn remember(&mut self, report: &Report<'_>, frame: &StepResult, sizes: &[Size]) {
         self.before = report.time;
         if frame.report().status.converged() {
-            for (peak, size) in self.peaks.iter_mut().zip(&sizes) {
+            for (peak, size) in self.peaks.iter_mut().zip(sizes) {
                 peak.displacement = peak.displacement.max(size.displacement);
                 peak.contact = peak.contact.max(size.contact);
                 peak.forces = peak.forces.max(size.forces);
             }
         }
-        Ok(worst.0)
-    }
-
-    fn load(&self, time: f64) -> Vec<f64> {
-        let mut sum = vec![0.0; 3 * self.mechanics.points.len()];
-        for (push, load) in self.recipe.pushes.iter().zip(&self.mechanics.loads) {
-            let factor = push.course.value(time);
-            sum.iter_mut().zip(load).for_each(|(s, l)| *s += factor * l);
-        }
-        sum
-    }
-
-    /// Nodal forces of the strained tetrahedra: at the nodes, and their squares summed over the copies of each node.
-    fn torn(&self, frame: &StepResult) -> (Vec<f64>, Vec<f64>) {
-        let nodes = self.mechanics.points.len();
-        let (mut whole, mut squares) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
-        let mut start = 0;
-        for subdomain in frame.decomposition().subdomains() {
-            let own = &frame.torn_displacement()[start..start + 3 * subdomain.nodes.len()];
-            let mut force = vec![0.0; own.len()];
-            for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
-                let forces = self.mechanics.strain(element as usize, tet.map(|n| at(own, n)));
-                for (n, f) in tet.iter().zip(forces) {
-                    (0..3).for_each(|c| force[3 * *n as usize + c] += f[c]);
-                }
-            }
-            for (local, &node) in (0..).zip(&subdomain.nodes) {
-                let f = at(&force, local);
-                squares[node as usize] += dot(f, f);
-                (0..3).for_each(|c| whole[3 * node as usize + c] += f[c]);
-            }
-            start += own.len();
-        }
-        (whole, squares)
     }
 
     fn sizes(&self, report: &Report<'_>, load: &[f64], torn: &(Vec<f64>, Vec<f64>)) -> Vec<Size> {

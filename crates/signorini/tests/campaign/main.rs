@@ -5,6 +5,7 @@
 //! cargo test --release -p signorini --test campaign                              # a few hundred scenes
 //! SIGNORINI_SCENES=2000 cargo test --release -p signorini --test campaign        # any number, from SIGNORINI_SEED, _FROM
 //! SIGNORINI_SCENE=137 cargo test --release -p signorini --test campaign -- --nocapture    # one, with its levels
+//! SIGNORINI_APART=17, SIGNORINI_APARTS=500 ...                                    # the same of bodies meshed apart
 //! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
 //! ```
 
@@ -25,6 +26,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Scenes of an ordinary run, and the seed of all numbers.
 const SCENES: u64 = 240;
+const APART: u64 = 120;
 const SEED: u64 = 20_240_229;
 
 fn number(name: &str, default: u64) -> u64 {
@@ -35,17 +37,35 @@ fn number(name: &str, default: u64) -> u64 {
 
 #[test]
 fn what_is_said_to_be_solved_is_solved() {
-    let seed = number("SIGNORINI_SEED", SEED);
-    if std::env::var("SIGNORINI_SCENE").is_ok() {
-        let number = number("SIGNORINI_SCENE", 0);
+    campaign("SIGNORINI_SCENE", SCENES, |seed, number| {
         let recipe = generate::recipe(seed, number);
         let outcome = run::run(&recipe);
+        (recipe, outcome)
+    });
+}
+
+/// The same for bodies meshed apart, ties, obstacles of any shape and friction by direction.
+#[test]
+fn bodies_meshed_apart_are_solved() {
+    campaign("SIGNORINI_APART", APART, |seed, number| {
+        let scene = generate::apart::apart(seed, number);
+        let outcome = run::run_apart(&scene);
+        (scene.recipe, outcome)
+    });
+}
+
+/// Runs many scenes, or the one that `name` gives the number of; `name` with an S is their number.
+fn campaign(name: &str, scenes: u64, run: impl Fn(u64, u64) -> (recipe::Recipe, run::Outcome) + Sync) {
+    let seed = number("SIGNORINI_SEED", SEED);
+    if std::env::var(name).is_ok() {
+        let number = number(name, 0);
+        let (recipe, outcome) = run(seed, number);
         report::print(number, &recipe, &outcome);
         assert!(!report::is_wrong(&outcome));
         return;
     }
     let from = number("SIGNORINI_FROM", 0);
-    let to = from + number("SIGNORINI_SCENES", SCENES);
+    let to = from + number(&format!("{name}S"), scenes);
     let next = AtomicU64::new(from);
     let tally = Mutex::new(report::Tally::default());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -57,8 +77,7 @@ fn what_is_said_to_be_solved_is_solved() {
                     if number >= to {
                         break;
                     }
-                    let recipe = generate::recipe(seed, number);
-                    let outcome = run::run(&recipe);
+                    let (recipe, outcome) = run(seed, number);
                     let mut tally = tally.lock().expect("no panic while it is held");
                     tally.add(number, recipe, outcome);
                 }
@@ -69,7 +88,8 @@ fn what_is_said_to_be_solved_is_solved() {
     tally.sort();
     println!("{tally}");
     if let Ok(folder) = std::env::var("SIGNORINI_REPORT") {
+        let folder = format!("{folder}/{}", name.to_lowercase());
         tally.write(&folder).expect("report");
     }
-    tally.assert(seed);
+    tally.assert(seed, name);
 }

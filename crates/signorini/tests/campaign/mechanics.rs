@@ -1,7 +1,8 @@
 //! Linear tetrahedra and loads, computed anew: no formula, table or rule is the library's.
 
 use crate::recipe::{Density, Elastic, Poly, Recipe};
-use crate::vec3::{Vec3, add, cross, dot, norm, scale, sub};
+use crate::vec3::{Vec3, add, at, cross, dot, norm, scale, sub};
+use signorini::contact::StepResult;
 use signorini::fem_mesh::FacetTag;
 use std::collections::HashMap;
 
@@ -86,6 +87,40 @@ impl Mechanics {
         let s: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| c[i][j] * strain[j]).sum());
         let stress = [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]];
         e.gradients.map(|g| stress.map(|row| e.volume * dot(row, g)))
+    }
+
+    /// Nodal forces of the strained tetrahedra: at the nodes, and their squares summed over the copies of each node.
+    pub(crate) fn torn(&self, frame: &StepResult) -> (Vec<f64>, Vec<f64>) {
+        let nodes = self.points.len();
+        let (mut whole, mut squares) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
+        let mut start = 0;
+        for subdomain in frame.decomposition().subdomains() {
+            let own = &frame.torn_displacement()[start..start + 3 * subdomain.nodes.len()];
+            let mut force = vec![0.0; own.len()];
+            for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
+                let forces = self.strain(element as usize, tet.map(|n| at(own, n)));
+                for (n, f) in tet.iter().zip(forces) {
+                    (0..3).for_each(|c| force[3 * *n as usize + c] += f[c]);
+                }
+            }
+            for (local, &node) in (0..).zip(&subdomain.nodes) {
+                let f = at(&force, local);
+                squares[node as usize] += dot(f, f);
+                (0..3).for_each(|c| whole[3 * node as usize + c] += f[c]);
+            }
+            start += own.len();
+        }
+        (whole, squares)
+    }
+
+    /// Nodal forces of all loads.
+    pub(crate) fn load_at(&self, recipe: &Recipe, time: f64) -> Vec<f64> {
+        let mut sum = vec![0.0; 3 * self.points.len()];
+        for (push, load) in recipe.pushes.iter().zip(&self.loads) {
+            let factor = push.course.value(time);
+            sum.iter_mut().zip(load).for_each(|(s, l)| *s += factor * l);
+        }
+        sum
     }
 
     fn diagonal(&self) -> Vec<f64> {

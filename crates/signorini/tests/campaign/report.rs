@@ -93,7 +93,7 @@ impl Tally {
     }
 
     /// Fails with what reproduces the first scenes that are wrong.
-    pub(crate) fn assert(&self, seed: u64) {
+    pub(crate) fn assert(&self, seed: u64, name: &str) {
         let wrong: Vec<String> = self
             .entries
             .iter()
@@ -103,7 +103,7 @@ impl Tally {
         let first = self.entries.iter().find(|e| is_wrong(&e.outcome));
         assert!(
             wrong.is_empty(),
-            "{} of {} scenes are wrong; one of them alone: SIGNORINI_SEED={seed} SIGNORINI_SCENE={} cargo test --release -p signorini \
+            "{} of {} scenes are wrong; one of them alone: SIGNORINI_SEED={seed} {name}={} cargo test --release -p signorini \
              --test campaign -- --nocapture\n{}",
             wrong.len(),
             self.entries.len(),

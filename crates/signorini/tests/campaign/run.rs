@@ -1,6 +1,8 @@
 //! Runs a scene and judges its levels.
 
+use crate::check::apart::ApartJudge;
 use crate::check::{Judge, Violation};
+use crate::generate::apart::Apart;
 use crate::recipe::Recipe;
 use crate::say;
 use signorini::prelude::*;
@@ -55,7 +57,35 @@ pub(crate) enum Outcome {
 pub(crate) const LIMIT: f64 = 1e-4;
 
 pub(crate) fn run(recipe: &Recipe) -> Outcome {
-    match catch_unwind(AssertUnwindSafe(|| levels(recipe))) {
+    guarded(|| {
+        let mut judge = Judge::new(recipe);
+        levels(|see| each_level(recipe, |frame| see(frame, judge.step(frame)?)))
+    })
+}
+
+/// The same of bodies meshed apart.
+pub(crate) fn run_apart(apart: &Apart) -> Outcome {
+    guarded(|| {
+        let mut judge = ApartJudge::new(apart);
+        levels(|see| {
+            each_apart_level(apart, |simulation, frame| {
+                see(frame, judge.step(simulation.constrained_points(), frame)?)
+            })
+        })
+    })
+}
+
+/// Shows all levels of bodies meshed apart; says what refuses them.
+pub(crate) fn each_apart_level(
+    apart: &Apart,
+    see: impl FnMut(&Simulation, &StepResult) -> Result<(), Error>,
+) -> Result<Option<Refusal>, Error> {
+    levels_of(apart.scene(say::scene(&apart.recipe)?)?, &apart.recipe, see)
+}
+
+/// An outcome, or how it broke.
+fn guarded(run: impl FnOnce() -> Result<Outcome, Error>) -> Outcome {
+    match catch_unwind(AssertUnwindSafe(run)) {
         Ok(Ok(outcome)) => outcome,
         Ok(Err(error)) => Outcome::Broken(error.to_string()),
         Err(panic) => {
@@ -74,7 +104,15 @@ pub(crate) fn each_level(
     recipe: &Recipe,
     mut see: impl FnMut(&StepResult) -> Result<(), Error>,
 ) -> Result<Option<Refusal>, Error> {
-    let scene = say::scene(recipe)?;
+    levels_of(say::scene(recipe)?, recipe, |_, frame| see(frame))
+}
+
+/// The same of a scene that says more than its recipe.
+fn levels_of(
+    scene: Scene,
+    recipe: &Recipe,
+    mut see: impl FnMut(&Simulation, &StepResult) -> Result<(), Error>,
+) -> Result<Option<Refusal>, Error> {
     let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
         Ok(simulation) => simulation,
         Err(error) => {
@@ -96,17 +134,19 @@ pub(crate) fn each_level(
             simulation.resume(state)?;
         }
         let result = simulation.step()?;
-        see(&result)?;
+        see(&simulation, &result)?;
         solved += 1;
     }
     Ok(None)
 }
 
-fn levels(recipe: &Recipe) -> Result<Outcome, Error> {
-    let mut judge = Judge::new(recipe);
+/// Takes a level with its violations.
+type Take<'t> = dyn FnMut(&StepResult, Vec<Violation>) -> Result<(), Error> + 't;
+
+/// The levels that a run shows.
+fn levels(run: impl FnOnce(&mut Take<'_>) -> Result<Option<Refusal>, Error>) -> Result<Outcome, Error> {
     let mut out = Vec::new();
-    let refused = each_level(recipe, |frame| {
-        let violations = judge.step(frame)?;
+    let refused = run(&mut |frame, violations| {
         let report = frame.report();
         let certified = report.accuracy.map_or(0.0, |a| a.certificate_limit);
         out.push(Level {

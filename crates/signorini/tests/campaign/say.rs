@@ -6,7 +6,7 @@ use crate::recipe::{
 use crate::vec3::{Vec3, add, scale};
 use signorini::prelude::*;
 
-fn history(course: &Course) -> Result<History, Error> {
+pub(crate) fn history(course: &Course) -> Result<History, Error> {
     Ok(match course {
         Course::Constant(value) => History::constant(*value),
         Course::Table(points) => History::table(points.clone())?,
@@ -30,7 +30,7 @@ fn density(density: &Density) -> LoadDensity {
     }
 }
 
-fn friction(law: &Law) -> Friction {
+pub(crate) fn friction(law: &Law) -> Friction {
     match law.clone() {
         Law::None => Friction::None,
         Law::Given(stress) => Friction::tresca(stress),

@@ -1,4 +1,4 @@
-//! Mesh files of Gmsh, format 4.1, text or binary (feature `gmsh`).
+//! Mesh files of Gmsh, format 4.1, text or binary, and edge lengths for its next mesh (feature `gmsh`).
 //!
 //! Triangles become tagged facets, tetrahedra the mesh, of order 2 if they have ten nodes; points and lines are skipped, and nodes that no
 //! tetrahedron uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron
@@ -6,22 +6,28 @@
 //! are used, and surfaces between two volumes are skipped. Entities outside of the groups, if there are any groups,
 //! leave triangles untagged and give region 0.
 //!
-//! `reader` takes the file apart, `names` has the names of the groups.
+//! `reader` takes the file apart, `names` has the names of the groups, `sizes` writes.
 
 mod names;
 mod reader;
+mod sizes;
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 pub use names::GroupNames;
+pub use sizes::write_sizes;
 
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
 
 errors! {
-    /// A Gmsh file that cannot be read.
+    /// A Gmsh file that cannot be read or written.
     GmshError {
         Io { path: PathBuf, source: std::io::Error } = "cannot read {}: {source}", path.display();
+        Write { path: PathBuf, source: std::io::Error } = "cannot write {}: {source}", path.display();
+        Sizes { nodes: usize, found: usize, good: usize } =
+            "the mesh has {nodes} nodes and there are {found} edge lengths, the first {good} of them positive; give one positive \
+            length a node";
         NotGmsh = "this is no Gmsh mesh: it does not start with a $MeshFormat section";
         Version { found: String } =
             "the file has Gmsh format {found:?}; only 4.1 is read, so save it with Mesh.MshFileVersion = 4.1 (gmsh \

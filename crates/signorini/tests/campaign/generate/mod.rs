@@ -2,6 +2,7 @@
 //!
 //! What is known to go wrong, and is not said for that reason, stands in [`KNOWN`].
 
+pub(crate) mod apart;
 mod bodies;
 mod contacts;
 mod laws;

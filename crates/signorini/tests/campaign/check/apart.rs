@@ -1,0 +1,330 @@
+//! The same check for bodies meshed apart. Of a contact point it takes from the library which nodes it is made of, and judges
+//! these, too: weights of either side sum to one, leave no moment where sides are flat, and areas are those of the sides where
+//! they face each other.
+//!
+//! | condition | relative to |
+//! |---|---|
+//! | equilibrium at nodes that no tie has: strained tetrahedra = loads + contact forces times weights + reactions | forces |
+//! | the rest at tied sides: no force and no moment in all, and no work | forces; forces times displacements |
+//! | gap, sign, complementarity, cone (an ellipse), direction (its normal), as for matching meshes | as there |
+
+use super::{Judge, Report, SAME, Size, Violation, Worst};
+use crate::generate::apart::{Apart, Pair, Rock};
+use crate::mechanics::groups;
+use crate::recipe::{Clock, Law};
+use crate::vec3::{Vec3, across, add, at, cross, dot, norm, scale, sub, unit};
+use signorini::contact::ConstrainedPoint;
+use signorini::prelude::*;
+
+/// The judge of a run.
+pub(crate) struct ApartJudge<'a> {
+    base: Judge<'a>,
+    scene: &'a Apart,
+    /// As in the other judge, for the points of the library.
+    ways: [Vec<Vec3>; 2],
+    rates: Vec<f64>,
+}
+
+/// A point at a level.
+struct At {
+    way: Vec3,
+    gap: f64,
+    slip: Vec3,
+}
+
+impl<'a> ApartJudge<'a> {
+    pub(crate) fn new(scene: &'a Apart) -> Self {
+        let mut base = Judge::new(&scene.recipe);
+        let nodes = base.mechanics.points.len();
+        let node = |tag: FacetTag| base.mechanics.sides.iter().find(|s| s.tag == tag).map(|s| s.nodes[0]);
+        let bodies = (0..).zip(&base.mechanics.body).map(|(n, b)| (n, *b as u32));
+        let pairs = scene
+            .pairs
+            .iter()
+            .filter_map(|p| Some((node(p.sides[0])?, node(p.sides[1])?)));
+        base.group = groups(nodes, bodies.chain(pairs));
+        Self {
+            base,
+            scene,
+            ways: [Vec::new(), Vec::new()],
+            rates: Vec::new(),
+        }
+    }
+
+    /// Judges a level and takes it into the history.
+    pub(crate) fn step(&mut self, points: &[ConstrainedPoint], frame: &StepResult) -> Result<Vec<Violation>, Error> {
+        let report = Report {
+            points: frame.points(),
+            u: frame.displacement().into_flattened(),
+            reactions: frame.reactions(),
+            time: frame.time(),
+        };
+        if self.rates.is_empty() {
+            self.rates = vec![0.0; points.len()];
+            self.ways = [vec![[0.0; 3]; points.len()], vec![[0.0; 3]; points.len()]];
+        }
+        let mut worst = Worst::default();
+        let load = self.base.mechanics.load_at(self.base.recipe, report.time);
+        let torn = self.base.mechanics.torn(frame);
+        let sizes = self.base.sizes(&report, &load, &torn);
+        self.base.copies(frame, &report.u, &sizes, &mut worst);
+        self.base.supports(&report, &sizes, &mut worst);
+        self.equilibrium(points, &report, (&load, &torn.0), &sizes, &mut worst);
+        self.balance(&report, &load, &sizes, &mut worst);
+        self.weights(points, &mut worst);
+        let now: Vec<At> = points.iter().enumerate().map(|(k, p)| self.at(k, p, &report)).collect();
+        worst.add("points", (points.len() as f64 - report.points.len() as f64).abs(), 1.0);
+        for (k, (point, state)) in points.iter().zip(report.points).enumerate() {
+            let size = self.base.size(&sizes, point.node());
+            self.point((k, point), state, &now[k], size, &mut worst);
+        }
+        let step = report.time - self.base.before;
+        let quasistatic = matches!(self.base.recipe.clock, Clock::Steps { .. });
+        self.rates = now
+            .iter()
+            .map(|a| if quasistatic { norm(a.slip) / step } else { 0.0 })
+            .collect();
+        self.ways.swap(0, 1);
+        self.ways[0] = now.iter().map(|a| a.way).collect();
+        self.base.remember(&report, frame, &sizes);
+        Ok(worst.0)
+    }
+
+    fn rock(&self, point: &ConstrainedPoint) -> Option<&Rock> {
+        let place = point.surface().checked_sub(self.scene.pairs.len())?;
+        self.scene.rocks.get(place)
+    }
+
+    fn law(&self, point: &ConstrainedPoint) -> (&Law, Option<(Vec3, f64)>) {
+        match (self.rock(point), self.scene.pairs.get(point.surface())) {
+            (Some(rock), _) => (&rock.law, rock.axis),
+            (_, Some(pair)) => (&pair.law, pair.axis),
+            _ => (&Law::None, None),
+        }
+    }
+
+    /// What ties do is left at the nodes; it is nothing elsewhere.
+    fn equilibrium(
+        &self,
+        points: &[ConstrainedPoint],
+        report: &Report<'_>,
+        (load, strained): (&[f64], &[f64]),
+        sizes: &[Size],
+        worst: &mut Worst,
+    ) {
+        let mechanics = &self.base.mechanics;
+        let mut rest: Vec<Vec3> = (0..mechanics.points.len() as u32)
+            .map(|n| sub(at(strained, n), at(load, n)))
+            .collect();
+        for (point, state) in points.iter().zip(report.points) {
+            for (node, weight) in point.nodes() {
+                let own = &mut rest[node as usize];
+                *own = sub(*own, scale(weight, state.force()));
+            }
+        }
+        for reaction in report.reactions.supports.iter().flat_map(|s| &s.nodes) {
+            let own = &mut rest[reaction.node as usize];
+            *own = sub(*own, reaction.force);
+        }
+        for (index, pair) in self.scene.pairs.iter().enumerate().filter(|p| p.1.tied) {
+            let first = self.tied(index, pair, &rest, report, sizes, worst);
+            let said = &report.reactions.contacts[index];
+            worst.add("reported tie", norm(sub(first[0], said.force)), first[2][0]);
+            worst.add("reported tie", norm(sub(first[1], said.moment)), first[2][1]);
+        }
+        let tied = |n: u32| {
+            let of = |p: &&Pair| {
+                p.tied
+                    && mechanics
+                        .sides
+                        .iter()
+                        .any(|s| p.sides.contains(&s.tag) && s.nodes.contains(&n))
+            };
+            self.scene.pairs.iter().any(|p| of(&p))
+        };
+        let mut squares = vec![0.0; rest.len()];
+        for (node, rest) in (0..).zip(&rest).filter(|r| !tied(r.0)) {
+            squares[self.base.group[node as usize]] += dot(*rest, *rest);
+        }
+        for (group, square) in squares.iter().enumerate() {
+            worst.add("equilibrium", square.sqrt(), sizes[group].forces);
+        }
+    }
+
+    /// Force and moment of a tie on its first side, and the sizes they are relative to. Sides that two ties share are
+    /// judged together.
+    fn tied(
+        &self,
+        index: usize,
+        pair: &Pair,
+        rest: &[Vec3],
+        report: &Report<'_>,
+        sizes: &[Size],
+        worst: &mut Worst,
+    ) -> [Vec3; 3] {
+        let mechanics = &self.base.mechanics;
+        let nodes = |tags: &[FacetTag]| {
+            let of = mechanics.sides.iter().filter(|s| tags.contains(&s.tag));
+            let mut nodes: Vec<u32> = of.flat_map(|s| s.nodes).collect();
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes
+        };
+        let sum = |nodes: &[u32]| {
+            let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+            for n in nodes {
+                let f = rest[*n as usize];
+                force = add(force, f);
+                moment = add(moment, cross(mechanics.points[*n as usize], f));
+            }
+            (force, moment)
+        };
+        let size = self.base.size(sizes, nodes(&pair.sides)[0]);
+        let far = mechanics
+            .points
+            .iter()
+            .map(|x| norm(*x))
+            .fold(self.base.extent, f64::max);
+        // all sides that hang together by ties
+        let mut tags = pair.sides.to_vec();
+        let ties = self.scene.pairs.iter().filter(|p| p.tied);
+        for other in ties.clone() {
+            if other.sides.iter().any(|t| pair.sides.contains(t)) {
+                tags.extend(other.sides);
+            }
+        }
+        let all = nodes(&tags);
+        let (force, moment) = sum(&all);
+        worst.add("force of ties", norm(force), size.forces);
+        worst.add("moment of ties", norm(moment), far * size.forces);
+        let work: f64 = all.iter().map(|n| dot(rest[*n as usize], at(&report.u, *n))).sum();
+        worst.add("work of ties", work.abs(), size.forces * size.displacement);
+        // the side that only this tie has
+        let shared = |tag: FacetTag| ties.clone().filter(|p| p.sides.contains(&tag)).count() > 1;
+        let (own, sign) = if shared(pair.sides[0]) { (1, -1.0) } else { (0, 1.0) };
+        let (force, moment) = sum(&nodes(&pair.sides[own..=own]));
+        let whole = [size.forces, far * size.forces, index as f64];
+        [scale(sign, force), scale(sign, moment), whole]
+    }
+
+    /// Loads, supports and obstacles: forces between bodies cancel.
+    fn balance(&self, report: &Report<'_>, load: &[f64], sizes: &[Size], worst: &mut Worst) {
+        let places = &self.base.mechanics.points;
+        let forces = sizes.iter().map(|s| s.forces.powi(2)).sum::<f64>().sqrt();
+        let far = places.iter().map(|x| norm(*x)).fold(self.base.extent, f64::max);
+        let mut sum = [[0.0; 3]; 2];
+        let mut put = |node: u32, force: Vec3| {
+            sum[0] = add(sum[0], force);
+            sum[1] = add(sum[1], cross(places[node as usize], force));
+        };
+        (0..places.len() as u32).for_each(|n| put(n, at(load, n)));
+        let obstacles = report.points.iter().filter(|p| p.partner.is_none());
+        obstacles.for_each(|p| put(p.node, p.force()));
+        let supports = report.reactions.supports.iter().flat_map(|s| &s.nodes);
+        supports.for_each(|n| put(n.node, n.force));
+        worst.add("balance", norm(sum[0]), forces);
+        worst.add("balance", norm(sum[1]), far * forces);
+        let said = report.reactions.imbalance();
+        worst.add("reported imbalance", norm(said.force), forces);
+        worst.add("reported imbalance", norm(said.moment), far * forces);
+    }
+
+    /// Weights and areas.
+    fn weights(&self, points: &[ConstrainedPoint], worst: &mut Worst) {
+        let places = &self.base.mechanics.points;
+        let mut areas = vec![0.0; self.scene.pairs.len()];
+        for point in points {
+            let (mut own, mut other, mut arm) = (0.0, 0.0, [0.0; 3]);
+            let mine = self.base.mechanics.body[point.node() as usize];
+            for (node, weight) in point.nodes() {
+                let same = self.base.mechanics.body[node as usize] == mine;
+                *(if same { &mut own } else { &mut other }) += weight;
+                arm = add(arm, scale(weight, sub(places[node as usize], point.position())));
+            }
+            worst.add("weights", (own - 1.0).abs(), 1e-6);
+            let Some(area) = areas.get_mut(point.surface()) else {
+                continue;
+            };
+            *area += point.area();
+            worst.add("weights", (other + 1.0).abs(), 1e-6);
+            // of a node that is covered by little only, weights are rounding over that part
+            worst.add("moment of weights", norm(arm), 1e-5 * self.base.extent);
+        }
+        for (pair, area) in self.scene.pairs.iter().zip(areas).filter(|p| !p.0.tied) {
+            worst.add("area", area - pair.common, 1e-4 * pair.common);
+        }
+    }
+
+    fn at(&self, k: usize, point: &ConstrainedPoint, report: &Report<'_>) -> At {
+        let [a, b, c] = match self.base.recipe.clock {
+            Clock::Static(_) => [1.0, 0.0, 0.0],
+            Clock::Steps { weights, .. } => weights,
+        };
+        let moved = (point.nodes()).fold([0.0; 3], |s, (n, w)| add(s, scale(w, at(&report.u, n))));
+        let normal = point.frame().normal;
+        let (way, gap) = match self.rock(point) {
+            Some(rock) => {
+                let carried =
+                    (rock.motion.as_ref()).map_or([0.0; 3], |(v, course)| scale(course.value(report.time), *v));
+                let distance = rock.shape.distance(sub(point.position(), carried)).0;
+                (sub(moved, carried), distance - dot(normal, moved))
+            }
+            // sides touch at rest
+            None => (moved, -dot(normal, moved)),
+        };
+        let sum = add(scale(a, way), add(scale(b, self.ways[0][k]), scale(c, self.ways[1][k])));
+        At {
+            way,
+            gap,
+            slip: across(sum, normal),
+        }
+    }
+
+    fn point(
+        &self,
+        (k, point): (usize, &ConstrainedPoint),
+        state: &PointState,
+        now: &At,
+        size: &Size,
+        worst: &mut Worst,
+    ) {
+        let (f, u) = (size.contact, size.displacement);
+        let normal = point.frame().normal;
+        let expected = match self.rock(point) {
+            Some(rock) => scale(-1.0, rock.shape.distance(point.position()).1),
+            None => {
+                let own =
+                    |s: &&crate::mechanics::Side| s.nodes.contains(&point.node()) && dot(unit(s.vector), normal) > SAME;
+                self.base
+                    .mechanics
+                    .sides
+                    .iter()
+                    .find(own)
+                    .map_or([0.0; 3], |s| unit(s.vector))
+            }
+        };
+        worst.add("normal", f64::from(u8::from(dot(expected, normal) < SAME)), 1.0);
+        let (force, friction) = (state.normal_force, state.friction_force);
+        worst.add("gap", -now.gap, u);
+        worst.add("reported gap", (state.gap - now.gap).abs(), u.max(point.gap().abs()));
+        worst.add("sign", force, f);
+        worst.add("complementarity", (force * now.gap.max(0.0)).abs(), f * u);
+        worst.add("friction off the surface", dot(friction, normal).abs(), f);
+        let (law, axis) = self.law(point);
+        let bound = law.bound(point.position(), point.area(), (-force).max(0.0), self.rates[k]);
+        // lengths in which the ellipse is a disc
+        let (along, ratio) = axis.map_or((point.frame().tangents[0], 1.0), |(a, r)| (unit(across(a, normal)), r));
+        let other = cross(normal, along);
+        let g = [dot(friction, along), dot(friction, other) / ratio];
+        let s = [dot(now.slip, along), dot(now.slip, other) * ratio];
+        let (push, slide) = (g[0].hypot(g[1]), s[0].hypot(s[1]));
+        worst.add("cone", push - bound, f);
+        let stuck = law.is_some() && state.slip_bound == 0.0;
+        if law.is_some() && force != 0.0 && !stuck {
+            let off = [0, 1].map(|c| bound * s[c] + slide * g[c]);
+            worst.add("direction", off[0].hypot(off[1]), f.max(bound) * u * ratio.max(1.0));
+            worst.add("reported bound", (state.slip_bound - bound).abs(), f.max(bound));
+            worst.add("reported slip", norm(sub(state.difference, now.slip)), u);
+        }
+    }
+}

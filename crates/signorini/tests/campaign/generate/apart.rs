@@ -1,0 +1,395 @@
+//! Scenes of two or three bricks meshed apart, one on the other: partly covered, turned, tied or touching in either order of
+//! sides, of any ratio of meshes and stiffness, on obstacles of any shape, with friction by direction.
+
+use super::bodies::side;
+use super::{Shaft, settings};
+use crate::dice::Dice;
+use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
+use crate::vec3::{Vec3, add, cross, dot, norm, scale, sub, unit};
+use signorini::prelude::*;
+
+/// Two sides that face each other.
+#[derive(Debug, Clone)]
+pub(crate) struct Pair {
+    pub(crate) sides: [FacetTag; 2],
+    pub(crate) tied: bool,
+    pub(crate) law: Law,
+    /// Direction of the law, and friction across it over that along it.
+    pub(crate) axis: Option<(Vec3, f64)>,
+    /// Area where both sides face each other, m².
+    pub(crate) common: f64,
+}
+
+/// The shape of a rigid obstacle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Shape {
+    /// A point and the normal out of it, of length one.
+    Plane(Vec3, Vec3),
+    /// Centre and radius.
+    Ball(Vec3, f64),
+    /// A point and the direction of the axis, of length one, and the radius.
+    Roll(Vec3, Vec3, f64),
+}
+
+/// A rigid obstacle.
+#[derive(Debug, Clone)]
+pub(crate) struct Rock {
+    pub(crate) side: FacetTag,
+    pub(crate) shape: Shape,
+    pub(crate) motion: Option<(Vec3, Course)>,
+    pub(crate) law: Law,
+    pub(crate) axis: Option<(Vec3, f64)>,
+}
+
+/// What a recipe does not say.
+#[derive(Debug, Clone)]
+pub(crate) struct Apart {
+    /// Mesh, elasticity, supports, loads, times and settings.
+    pub(crate) recipe: Recipe,
+    /// In the order of the scene's contacts.
+    pub(crate) pairs: Vec<Pair>,
+    /// Behind the pairs.
+    pub(crate) rocks: Vec<Rock>,
+}
+
+/// A rotation and a translation of the whole.
+struct Turn {
+    axes: [Vec3; 3],
+    by: Vec3,
+}
+
+impl Turn {
+    fn way(&self, v: Vec3) -> Vec3 {
+        (0..3).fold([0.0; 3], |s, k| add(s, scale(v[k], self.axes[k])))
+    }
+
+    fn place(&self, x: Vec3) -> Vec3 {
+        add(self.way(x), self.by)
+    }
+}
+
+/// A rectangle of a body seen from above: centre, angle, lengths.
+#[derive(Clone, Copy)]
+struct Foot {
+    centre: [f64; 2],
+    angle: f64,
+    lengths: [f64; 2],
+}
+
+impl Foot {
+    fn corners(&self) -> Vec<[f64; 2]> {
+        let (sin, cos) = self.angle.sin_cos();
+        let corner = |[a, b]: [f64; 2]| {
+            let (x, y) = (0.5 * a * self.lengths[0], 0.5 * b * self.lengths[1]);
+            [self.centre[0] + cos * x - sin * y, self.centre[1] + sin * x + cos * y]
+        };
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(corner)
+            .to_vec()
+    }
+
+    /// Area that two rectangles share: one is cut by the sides of the other.
+    fn common(&self, other: &Self) -> f64 {
+        let (mut left, knife) = (self.corners(), other.corners());
+        for k in 0..4 {
+            let (a, b) = (knife[k], knife[(k + 1) % 4]);
+            let inside = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+            let mut kept = Vec::new();
+            for i in 0..left.len() {
+                let (p, q) = (left[i], left[(i + 1) % left.len()]);
+                let (s, t) = (inside(p), inside(q));
+                if s >= 0.0 {
+                    kept.push(p);
+                }
+                if (s > 0.0 && t < 0.0) || (s < 0.0 && t > 0.0) {
+                    kept.push([0, 1].map(|c| p[c] + s / (s - t) * (q[c] - p[c])));
+                }
+            }
+            left = kept;
+        }
+        let next = |k: usize| left[(k + 1) % left.len()];
+        let twice = |(k, p): (usize, &[f64; 2])| p[0] * next(k)[1] - p[1] * next(k)[0];
+        0.5 * left.iter().enumerate().map(twice).sum::<f64>()
+    }
+}
+
+fn law(dice: &mut Dice, stress: f64, way: f64, duration: f64) -> Law {
+    match dice.whole(0, 9) {
+        0..=1 => Law::None,
+        2 => Law::Given(dice.between(0.05, 0.5) * stress),
+        3 => Law::Exponential {
+            fixed: dice.between(0.3, 0.6),
+            kinetic: dice.between(0.1, 0.3),
+            decay: dice.decades(0.1, 10.0) * way / duration,
+        },
+        _ => Law::Coulomb(dice.between(0.05, 0.8)),
+    }
+}
+
+/// The scene with a number.
+pub(crate) fn apart(seed: u64, number: u64) -> Apart {
+    let mut dice = Dice::new(seed ^ 0xa9a7, number);
+    let dice = &mut dice;
+    let length = if dice.chance(0.7) { 1.0 } else { dice.decades(1e-3, 1e2) };
+    let young = if dice.chance(0.5) { 1e9 } else { dice.decades(1e4, 1e12) };
+    let strain = dice.decades(1e-4, 1e-2);
+    let (stress, way) = (young * strain, strain * length);
+    let clock = settings::clock(dice);
+    let duration = clock.times().last().copied().unwrap_or(1.0);
+    let shaft = Shaft {
+        duration,
+        static_: clock.times().len() == 1,
+    };
+    let turn = if dice.chance(0.4) {
+        let z = unit(add([0.0, 0.0, 1.5], dice.vector()));
+        let x = unit(cross([0.3, 1.0, 0.0], z));
+        Turn {
+            axes: [x, cross(z, x), z],
+            by: scale(length, dice.vector()),
+        }
+    } else {
+        Turn {
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            by: [0.0; 3],
+        }
+    };
+    let count = if dice.chance(0.7) { 2 } else { 3 };
+    let mut words = vec![format!("apart={count}")];
+
+    // the bodies: one on the other, or two on the first
+    let cells = [dice.whole(2, 5), dice.whole(2, 4), dice.whole(1, 3)];
+    let lengths = [dice.between(0.8, 2.5), dice.between(0.7, 1.5), dice.between(0.4, 1.2)].map(|l| l * length);
+    let twins = count == 3 && dice.chance(0.5);
+    let mut feet = vec![Foot {
+        centre: [0.0; 2],
+        angle: 0.0,
+        lengths: [lengths[0], lengths[1]],
+    }];
+    let (mut top, mut mesh, mut elastic) = (vec![lengths[2]], None::<TetMesh>, Vec::new());
+    let mut pairs: Vec<Pair> = Vec::new();
+    for body in 0..count {
+        let (mut sizes, mut own, mut origin, mut below) = (lengths, cells, 0.0, 0);
+        let ratio = if body == 0 { 1.0 } else { dice.decades(1.0 / 3.0, 3.0) };
+        if body > 0 {
+            below = if twins { 0 } else { body - 1 };
+            let under = feet[below];
+            let kind = dice.whole(0, 3);
+            let mut foot = under;
+            // the whole side, a smaller part of it, one that hangs over, one that is turned
+            if twins {
+                foot.lengths[0] *= 0.4;
+                foot.centre[0] += (body as f64 - 1.5) * 0.5 * under.lengths[0];
+            }
+            if kind > 0 {
+                foot.lengths = foot.lengths.map(|l| l * dice.between(0.4, 0.9));
+            }
+            if kind == 2 {
+                (0..2).for_each(|c| foot.centre[c] += 0.4 * dice.either() * under.lengths[c]);
+            }
+            if kind == 3 {
+                foot.angle += dice.either();
+            }
+            words.push(["whole", "part", "over", "turned"][kind].into());
+            words.push(format!("ratio {ratio:.2}"));
+            sizes = [foot.lengths[0], foot.lengths[1], lengths[2] * dice.between(0.4, 1.0)];
+            let edge = |c: usize| lengths[c] / cells[c] as f64 * ratio;
+            own = [0, 1, 2].map(|c| ((sizes[c] / edge(c)).round() as usize).clamp(1, 9));
+            origin = top[below];
+            top.push(origin + sizes[2]);
+            feet.push(foot);
+        }
+        let mut brick = Brick::new(sizes, own).with_origin([-0.5 * sizes[0], -0.5 * sizes[1], origin]);
+        if dice.chance(0.3) {
+            brick = brick.perturbed(dice.between(0.02, 0.15), dice.seed());
+        }
+        let foot = feet[body];
+        let (sin, cos) = foot.angle.sin_cos();
+        let place = |[x, y, z]: Vec3| {
+            turn.place([
+                foot.centre[0] + cos * x - sin * y,
+                foot.centre[1] + sin * x + cos * y,
+                z,
+            ])
+        };
+        let brick = brick.build().expect("brick").map_tags(|t| side(body, t));
+        let tets = brick.tets().len();
+        let brick = brick.with_regions(vec![body as u32; tets]).expect("regions");
+        let brick = brick.map_points(place).expect("places");
+        mesh = Some(mesh.map_or_else(|| brick.clone(), |m| m.append(&brick).expect("bodies")));
+        let stiff = match dice.whole(0, 3) {
+            _ if body == 0 => 1.0,
+            0 | 1 => 1.0,
+            2 => dice.decades(0.1, 10.0),
+            _ => dice.decades(1e-3, 1e3),
+        };
+        words.push(format!("stiffness {stiff:.1e}"));
+        elastic.push(Elastic::Isotropic(stiff * young, dice.between(0.0, 0.45)));
+        if body == 0 {
+            continue;
+        }
+        let mut sides = [side(body, brick::Z_MIN), side(below, brick::Z_MAX)];
+        if dice.chance(0.5) {
+            sides.swap(0, 1);
+        }
+        let tied = dice.chance(0.25);
+        let law = if tied {
+            Law::None
+        } else {
+            law(dice, stress, way, duration)
+        };
+        let axis = (law.is_some() && dice.chance(0.3)).then(|| {
+            let angle = dice.between(0.0, 3.0);
+            (turn.way([angle.cos(), angle.sin(), 0.0]), dice.decades(0.3, 3.0))
+        });
+        words.push(if tied { "tied" } else { "touching" }.into());
+        if axis.is_some() {
+            words.push("axis".into());
+        }
+        pairs.push(Pair {
+            sides,
+            tied,
+            law,
+            axis,
+            common: foot.common(&feet[below]),
+        });
+    }
+    let mesh = mesh.expect("a body");
+
+    // the first body is held below, or lies on a plane or in a hollow of its own
+    let mut recipe = Recipe {
+        pieces: settings::pieces(dice, &mesh),
+        mesh,
+        elastic,
+        holds: Vec::new(),
+        pushes: Vec::new(),
+        touches: Vec::new(),
+        how: settings::how(dice, clock.times().len()),
+        clock,
+        words,
+    };
+    let mut rocks = Vec::new();
+    let tag = |body: usize, tag: FacetTag| Where::Tag(side(body, tag));
+    let rough = |dice: &mut Dice, law: Law| {
+        let angle = dice.between(0.0, 3.0);
+        let axis = (turn.way([angle.cos(), angle.sin(), 0.0]), dice.decades(0.3, 3.0));
+        (law.is_some() && dice.chance(0.3)).then_some(axis)
+    };
+    if dice.chance(0.7) {
+        recipe.holds.push(Hold {
+            place: tag(0, if dice.chance(0.8) { brick::Z_MIN } else { brick::X_MIN }),
+            fixed: Fixed::All,
+            motion: None,
+        });
+    } else {
+        let law = Law::Coulomb(dice.between(0.2, 0.8));
+        rocks.push(Rock {
+            side: side(0, brick::Z_MIN),
+            shape: Shape::Plane(turn.place([0.0; 3]), turn.way([0.0, 0.0, 1.0])),
+            motion: None,
+            axis: rough(dice, law.clone()),
+            law,
+        });
+        recipe.words.push("on a plane".into());
+    }
+    // bodies with nothing on them: moved, loaded, or pressed by a ball or a roll
+    for body in 1..count {
+        if !twins && body + 1 < count {
+            continue;
+        }
+        let sides = side(body, brick::Z_MAX);
+        let down = turn.way([0.6 * dice.either(), 0.6 * dice.either(), -1.0]);
+        match dice.whole(0, 9) {
+            0..=3 => {
+                recipe.words.push("moved".into());
+                recipe.holds.push(Hold {
+                    place: Where::Tag(sides),
+                    fixed: Fixed::All,
+                    motion: Some((vec![scale(way, down)], shaft.course(dice))),
+                });
+            }
+            4..=6 => {
+                recipe.words.push("loose, loaded".into());
+                let course = if dice.chance(0.5) {
+                    Course::Constant(1.0)
+                } else {
+                    shaft.course(dice)
+                };
+                let density = Density::Traction(sides, scale(dice.between(0.2, 1.0) * stress, down));
+                recipe.pushes.push(Push { density, course });
+            }
+            _ => {
+                recipe.words.push("loose, obstacle".into());
+                let radius = length * dice.decades(0.5, 10.0);
+                let foot = feet[body].centre;
+                let over = turn.place([foot[0], foot[1], top[body] + radius]);
+                let shape = if dice.chance(0.5) {
+                    Shape::Ball(over, radius)
+                } else {
+                    Shape::Roll(over, turn.way(unit([1.0, dice.either(), 0.0])), radius)
+                };
+                let law = law(dice, stress, way, duration);
+                rocks.push(Rock {
+                    side: sides,
+                    shape,
+                    motion: Some((scale(3.0 * way, down), shaft.course(dice))),
+                    axis: rough(dice, law.clone()),
+                    law,
+                });
+            }
+        }
+        if dice.chance(0.25) {
+            recipe.words.push("pull".into());
+            let density = Density::Traction(side(body, brick::X_MAX), scale(0.3 * stress, dice.vector()));
+            let course = shaft.course(dice);
+            recipe.pushes.push(Push { density, course });
+        }
+    }
+    settings::describe(&mut recipe);
+    Apart { recipe, pairs, rocks }
+}
+
+impl Shape {
+    /// Distance and gradient.
+    pub(crate) fn distance(&self, x: Vec3) -> (f64, Vec3) {
+        let from = |arm: Vec3, radius: f64| (norm(arm) - radius, unit(arm));
+        match *self {
+            Self::Plane(point, outward) => (dot(sub(x, point), outward), outward),
+            Self::Ball(centre, radius) => from(sub(x, centre), radius),
+            Self::Roll(point, axis, radius) => {
+                let arm = sub(x, point);
+                from(sub(arm, scale(dot(arm, axis), axis)), radius)
+            }
+        }
+    }
+}
+
+impl Apart {
+    /// The contacts in the words of the library.
+    pub(crate) fn scene(&self, mut scene: Scene) -> Result<Scene, Error> {
+        let rough = |contact: Contact, law: &Law, axis: &Option<(Vec3, f64)>| {
+            let contact = contact.with_friction(crate::say::friction(law));
+            axis.map_or(contact.clone(), |(axis, ratio)| contact.with_friction_axis(axis, ratio))
+        };
+        for pair in &self.pairs {
+            let [a, b] = pair.sides;
+            scene = scene.with_contact(if pair.tied {
+                Contact::tied(a, b)
+            } else {
+                rough(Contact::between(a, b), &pair.law, &pair.axis)
+            });
+        }
+        for rock in &self.rocks {
+            let shape = match rock.shape {
+                Shape::Plane(point, outward) => Obstacle::half_space(point, outward),
+                Shape::Ball(centre, radius) => Obstacle::sphere(centre, radius),
+                Shape::Roll(point, axis, radius) => Obstacle::cylinder(point, axis, radius),
+            };
+            let mut contact = Contact::obstacle(rock.side, shape);
+            if let Some((way, course)) = &rock.motion {
+                contact = contact.with_motion(*way, crate::say::history(course)?);
+            }
+            scene = scene.with_contact(rough(contact, &rock.law, &rock.axis));
+        }
+        Ok(scene)
+    }
+}
