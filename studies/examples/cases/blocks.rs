@@ -47,18 +47,21 @@ fn patch([lower, upper]: [usize; 2]) -> Result<Finding, Failure> {
 }
 
 /// Pressed and pulled, with friction 0.2: products with F, beside those of matching meshes.
-fn pulled([lower, upper]: [usize; 2], ratio: f64) -> Result<Finding, Failure> {
+fn pulled([lower, upper]: [usize; 2], ratio: f64, boxes: usize) -> Result<Finding, Failure> {
     let scene = Scene::new(cubes(lower, upper)?, materials([1e9, 1e9 * ratio])?)
         .with_support(Support::fixed(brick::Z_MIN))
         .with_load(Load::traction(second(brick::Z_MAX), [1e5, 0.0, -1e6]))
         .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.2)))
-        .with_boxes([2, 2, 4]);
+        .with_boxes([boxes, boxes, 2 * boxes]);
     let mut force = 0.0;
     let run = solve(scene, Settings::default(), |result| {
         force = result.summary().resultant[0]
     })?;
     Ok(Finding {
-        case: format!("pulled, {lower} below {upper} cells, stiffness 1 : {ratio}"),
+        case: format!(
+            "pulled, {lower} below {upper} cells, stiffness 1 : {ratio}, {} subdomains",
+            run.subdomains
+        ),
         quantity: "friction force, N",
         value: force,
         target: -1e5,
@@ -91,8 +94,14 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
             [3 * n, n],
         ] {
             if !short || a.max(b) < 3 * n {
-                all.push(pulled([a, b], ratio)?);
+                all.push(pulled([a, b], ratio, 2)?);
             }
+        }
+    }
+    // cells a subdomain stay, subdomains grow
+    for boxes in if short { 1..2 } else { 1..9 }.filter(|b| usize::is_power_of_two(*b)) {
+        for [a, b] in [[4, 4], [4, 6], [6, 4]] {
+            all.push(pulled([a * boxes, b * boxes], 1.0, boxes)?);
         }
     }
     Ok(all)

@@ -85,7 +85,11 @@ pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) ->
             .filter(|&k| out[k].is_none())
             .filter_map(|k| {
                 let plane = planes[k].as_ref()?;
-                let pieces = other.pieces(plane, reach);
+                let mut pieces = other.pieces(plane, reach);
+                if !pieces.is_empty() {
+                    // a steep facet may go on beyond
+                    pieces = other.pieces(plane, reach + FARTHER * plane.size);
+                }
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
                 let cover = match triangles[k].quadratic() {
