@@ -6,6 +6,7 @@
 pub mod blocks;
 pub mod crack;
 pub mod press_fit;
+pub mod rigid_sphere;
 pub mod spheres;
 pub mod wedge;
 
@@ -25,7 +26,7 @@ use signorini_studies::{Failure, aligned, exit, save};
     about = "Published problems with known answers, on meshes that do not match"
 )]
 pub struct CasesOptions {
-    /// Only these: blocks, press-fit, wedge, crack, spheres.
+    /// Only these: blocks, press-fit, wedge, crack, spheres, rigid-sphere.
     #[arg(long, value_delimiter = ',')]
     pub case: Vec<String>,
     /// Coarse meshes: seconds in place of minutes, and larger errors.
@@ -112,12 +113,13 @@ fn main() -> ExitCode {
 }
 
 type Case = fn(bool) -> Result<Vec<Finding>, Failure>;
-const CASES: [(&str, Case); 5] = [
+const CASES: [(&str, Case); 6] = [
     ("blocks", blocks::findings),
     ("press-fit", press_fit::findings),
     ("wedge", wedge::findings),
     ("crack", crack::findings),
     ("spheres", spheres::findings),
+    ("rigid-sphere", rigid_sphere::findings),
 ];
 
 /// Runs the cases and prints their table.

@@ -32,6 +32,16 @@ fn short_cases_come_near_their_targets() {
             assert!(finding.run.products <= 19, "{finding:?}");
         }
     }
+    // no locking, and products that do not explode
+    let spheres: Vec<&Finding> = findings.iter().filter(|f| f.case.starts_with("rigid")).collect();
+    assert!(
+        spheres.len() == 2 && spheres.iter().all(|f| f.error() < 0.04),
+        "{spheres:?}"
+    );
+    assert!(
+        2 * spheres[1].run.products <= 5 * spheres[0].run.products,
+        "{spheres:?}"
+    );
     let mean = findings
         .iter()
         .find(|f| f.quantity == "pressure, mean, MPa")
