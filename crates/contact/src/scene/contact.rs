@@ -1,41 +1,13 @@
 //! The contact surface of a scene: where it is, how far the obstacle or the other body, and with which friction.
 
-use super::friction::{Friction, PlaceField};
+use super::friction::Friction;
+use super::gap::Gap;
 use super::obstacle::Obstacle;
 use super::pose::{Pose, Rotation};
 use crate::error::ContactError;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
-use std::fmt;
 use std::sync::Arc;
-
-/// The distance between the contact surface and the obstacle, measured along the outward normal.
-#[derive(Clone)]
-#[non_exhaustive]
-pub enum Gap {
-    /// The surfaces touch: the offset vector stays zero.
-    None,
-    /// The same distance at every node, m.
-    Constant(f64),
-    /// Distance at a point, m; negative values mean that the body starts inside the obstacle.
-    Field(PlaceField),
-    /// The distance between the nodes of two bodies, along the normal: what coordinates say.
-    Measured,
-    /// The distance to an [`Obstacle`] along the normal: what its shape says.
-    Obstacle,
-}
-
-impl fmt::Debug for Gap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::None => f.write_str("None"),
-            Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
-            Self::Field(_) => f.write_str("Field(..)"),
-            Self::Measured => f.write_str("Measured"),
-            Self::Obstacle => f.write_str("Obstacle"),
-        }
-    }
-}
 
 /// Direction in which the contact surface meets the obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,6 +10,7 @@
 mod contact;
 mod facets;
 mod friction;
+mod gap;
 mod load;
 mod obstacle;
 mod partition;
@@ -20,9 +21,10 @@ mod support;
 mod time;
 mod validate;
 
-pub use contact::{Contact, ContactNormal, Gap};
+pub use contact::{Contact, ContactNormal};
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, PlaceField, RateField, SlipBound};
+pub use gap::Gap;
 pub use load::Load;
 pub use obstacle::Obstacle;
 pub use partition::Partition;

@@ -1,7 +1,8 @@
 //! What can be said against a scene without nodes and rows.
 
-use super::contact::{Contact, ContactNormal, Gap};
+use super::contact::{Contact, ContactNormal};
 use super::friction::Friction;
+use super::gap::Gap;
 use super::obstacle::Obstacle;
 use super::pose::Rotation;
 use super::scene::Scene;
