@@ -26,13 +26,18 @@ impl Springs {
         for spring in &scene.springs {
             let surface = Surface::new(&scene.mesh, &[spring.tag])?;
             let mut own: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
-            for triangle in surface.triangles() {
+            for (triangle, &facet) in surface.triangles().iter().zip(surface.facets()) {
                 let vector = area_vector(&scene.mesh, &surface, triangle);
                 let area = vec3::norm(vector);
                 let stiffness = spring.matrix(vector.map(|c| c / area));
                 let share = Matrix3::from_fn(|i, j| stiffness[i][j]) * (area / 3.0);
-                for local in triangle {
-                    *own.entry(surface.nodes()[*local as usize]).or_default() += share;
+                // what a uniform stress does to nodes: nothing to the corners of a quadratic facet
+                let nodes = match scene.mesh.order() {
+                    1 => scene.mesh.facets()[facet as usize].nodes,
+                    _ => scene.mesh.facet_mids(facet as usize),
+                };
+                for node in nodes {
+                    *own.entry(node).or_default() += share;
                 }
             }
             for (node, stiffness) in &mut own {

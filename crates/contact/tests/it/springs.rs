@@ -292,3 +292,21 @@ fn wrong_springs_are_refused() {
         .expect_err("not held");
     assert!(matches!(error, ContactError::NotHeld { .. }), "{error}");
 }
+
+/// Uniform stress passes into the ground exactly, in meshes of either order.
+#[test]
+fn a_column_stands_evenly() {
+    let linear = block([1.0, 1.0, 2.0], [3, 2, 2]);
+    let quadratic = linear.raise_order().expect("order 2");
+    for mesh in [linear, quadratic] {
+        let scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.0))
+            .with_spring(Spring::components(brick::Z_MIN, [GROUND; 3]))
+            .with_load(Load::pressure(brick::Z_MAX, PRESSURE))
+            .with_boxes([1, 1, 2]);
+        let result = solve(scene, tight());
+        for (place, u) in mesh.points().iter().zip(result.displacement.chunks(3)) {
+            let exact = -PRESSURE / GROUND - PRESSURE / YOUNG * place[2];
+            assert!((u[2] - exact).abs() < 1e-8 * exact.abs(), "{} {exact}", u[2]);
+        }
+    }
+}
