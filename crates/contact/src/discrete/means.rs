@@ -10,6 +10,7 @@ use super::partners::{Partner, Partners};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::scene::Contact;
+use signorini_fem_mesh::vec3::sub;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -68,16 +69,14 @@ impl<'a> Means<'a> {
         let own = self.surface.mean(local, triangles.iter().map(|&t| t as usize));
         let other = |&(node, weight): &(u32, f64)| Some((*self.partners.get(&node)?, weight));
         let partner: Option<Vec<(u32, f64)>> = own.iter().map(other).collect();
-        let mut gap = 0.0;
-        for &(node, weight) in &own {
-            let place = self.mesh.points()[node as usize];
-            let measured = self.partners.get(&node).map_or(0.0, |&to| {
-                let way = vector_between(place, self.mesh.points()[to as usize]);
-                let gap = vector::dot(&way, &frame.normal);
+        let place = |node: u32| self.mesh.points()[node as usize];
+        let measured = |node: u32| {
+            self.partners.get(&node).map_or(0.0, |&to| {
+                let gap = vector::dot(&sub(place(to), place(node)), &frame.normal);
                 if gap.abs() <= self.rounding { 0.0 } else { gap }
-            });
-            gap += weight * contact.gap_at(index, node, place, &frame.normal, measured)?;
-        }
+            })
+        };
+        let gap = mean_gap(self.mesh, (index, contact), &own, &frame.normal, measured)?;
         let sides = Sides {
             own: Side::new(own),
             partner: partner.map(Side::new),
@@ -87,8 +86,19 @@ impl<'a> Means<'a> {
     }
 }
 
-fn vector_between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|c| to[c] - from[c])
+/// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do.
+pub(super) fn mean_gap(
+    mesh: &TetMesh,
+    (index, contact): (usize, &Contact),
+    side: &[(u32, f64)],
+    normal: &[f64; 3],
+    measured: impl Fn(u32) -> f64,
+) -> Result<f64, ContactError> {
+    let gap = |&(node, weight): &(u32, f64)| {
+        let place = mesh.points()[node as usize];
+        Ok(weight * contact.gap_at(index, node, place, normal, measured(node))?)
+    };
+    side.iter().map(gap).sum()
 }
 
 /// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.

@@ -9,7 +9,7 @@
 //! judges the former.
 
 use super::creases::{SurfaceSide, creases};
-use super::means::Means;
+use super::means::{Means, mean_gap};
 use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners};
 use super::side::Sides;
@@ -52,16 +52,11 @@ impl ContactPoint {
     pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
-        let own = self.sides.own.nodes();
-        if own.len() > 1 {
-            let at = |&(node, weight): &(u32, f64)| {
-                let place = scene.mesh.points()[node as usize];
-                let gap = contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))?;
-                Ok(weight * gap)
-            };
-            return own.iter().map(at).sum();
-        }
-        contact.gap_brought(self.surface, self.node(), self.position, normal, (self.gap, pose))
+        let at = |&(node, weight): &(u32, f64)| {
+            let place = scene.mesh.points()[node as usize];
+            Ok(weight * contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))?)
+        };
+        self.sides.own.nodes().iter().map(at).sum()
     }
 
     /// The gap where the obstacle has moved, m.
@@ -129,11 +124,8 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                             partner: partner.clone(),
                             swapped: paired.swapped,
                         };
-                        let gap = |&(node, weight): &(u32, f64)| {
-                            let place = scene.mesh.points()[node as usize];
-                            Ok(weight * contact.gap_at(index, node, place, &frame.normal, measured)?)
-                        };
-                        (sides, mean.iter().map(gap).sum::<Result<f64, ContactError>>()?)
+                        let gap = mean_gap(&scene.mesh, (index, contact), &mean, &frame.normal, |_| measured)?;
+                        (sides, gap)
                     }
                     Some(means) => means.point((local, &side.triangles), &frame)?,
                 };
@@ -167,10 +159,8 @@ fn mortar_gap(
         let way = vec3::sub(scene.mesh.points()[other as usize], from);
         weight * vector::dot(&way, normal)
     };
-    let mut gap: f64 = seen.partner.iter().map(along).sum();
-    if seen.own.len() > 1 {
-        gap -= seen.own.iter().map(along).sum::<f64>();
-    }
+    let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
+    let gap = partner - own;
     let size = surface.areas()[local].sqrt();
     if matches!(scene.contacts[contact].gap, Gap::Measured) && -gap > size {
         return Err(ContactError::Overlap {

@@ -52,12 +52,13 @@ impl DiscreteScene {
         let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let rounding = rounding(&scene.mesh);
-        let tied = |c: &ContactPoint| scene.contacts[c.surface].tied;
-        let (ties, mut conditions): (Vec<_>, Vec<_>) =
-            conditions(scene, &paired, rounding)?.into_iter().partition(tied);
-        // a bonded node does not move against the other body
-        let bonded: HashSet<u32> = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0).collect();
-        conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
+        let mut conditions = conditions(scene, &paired, rounding)?;
+        let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
+        if !ties.is_empty() {
+            // a bonded node does not move against the other body
+            let bonded: HashSet<u32> = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0).collect();
+            conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
+        }
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();

@@ -27,11 +27,14 @@ impl Sides {
     /// Nodes of the body that the scene names first, with weights, negative where forces on it are opposite to those of
     /// the point.
     pub(crate) fn first(&self) -> impl Iterator<Item = (u32, f64)> {
-        let (side, sign) = match &self.partner {
-            Some(partner) if self.swapped => (partner, -1.0),
-            _ => (&self.own, 1.0),
-        };
+        let partner = self.partner.as_ref().filter(|_| self.swapped);
+        let (side, sign) = (partner.unwrap_or(&self.own), self.sign());
         side.nodes().iter().map(move |&(node, weight)| (node, sign * weight))
+    }
+
+    /// Sign of forces on the body that the scene names first.
+    pub(crate) fn sign(&self) -> f64 {
+        if self.swapped { -1.0 } else { 1.0 }
     }
 
     /// The displacement of one side relative to the other as a sum: nodes with weights, those of the partner negative.

@@ -247,20 +247,6 @@ impl Correction {
         moved
     }
 
-    /// The best place of a point, of which nothing is moved yet.
-    pub(crate) fn planned(
-        node: &AdmissibleNode,
-        state: &PointState,
-        problem: &StepProblem,
-        stiffness: &[f64],
-        v: &mut [f64],
-    ) -> Self {
-        let before: [f64; 3] = std::array::from_fn(|c| node.value(v)[c]);
-        let planned = Self::new(node, state, problem, stiffness, v);
-        node.value(v).copy_from_slice(&before);
-        planned
-    }
-
     /// Whether the node is at the obstacle.
     pub(crate) fn touches(&self) -> bool {
         self.open == 0.0

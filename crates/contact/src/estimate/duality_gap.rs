@@ -15,7 +15,7 @@ use super::admissible::{AdmissibleNode, Correction};
 use super::shared::SharedNodes;
 use crate::model::Model;
 use crate::report::AlgebraicError;
-use crate::result::{Lengths, Recovered};
+use crate::result::{Lengths, PointState, Recovered};
 use crate::step::StepProblem;
 use crate::tolerances::{FREEDOM_TAKEN, NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
@@ -100,7 +100,12 @@ impl Solved<'_> {
                 .collect(),
             Some(shared) => {
                 self.support(&mut v);
-                let planned = |(state, node)| Correction::planned(node, state, self.problem, &weights.rows, &mut v);
+                let planned = |(state, node): (&PointState, &AdmissibleNode)| {
+                    let before: [f64; 3] = std::array::from_fn(|c| node.value(&mut v)[c]);
+                    let planned = Correction::new(node, state, self.problem, &weights.rows, &mut v);
+                    node.value(&mut v).copy_from_slice(&before);
+                    planned
+                };
                 let planned: Vec<Correction> = points().map(planned).collect();
                 let targets = weights.nodes.iter().zip(&planned);
                 let targets = targets.flat_map(|(node, planned)| node.targets(self.problem, planned));

@@ -6,7 +6,7 @@
 
 use crate::model::Model;
 use crate::tolerances::{SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
-use signorini_qp::vector;
+use signorini_qp::{CgWorkspace, DenseEquality, SymmetricOperator, Tolerance, projected_cg, vector};
 use std::collections::BTreeMap;
 
 /// The rows of points that share nodes.
@@ -65,18 +65,36 @@ impl SharedNodes {
         targets.extend_from_slice(&offset[self.tied.clone()]);
         let value = |row: &Vec<(usize, f64)>, v: &[f64]| row.iter().map(|&(at, c)| c * v[at]).sum::<f64>();
         let size = vector::max_abs(&targets).max(vector::max_abs(v));
+        let diagonal = Diagonal(&self.diagonal);
+        // no equality
+        let Ok(free) = DenseEquality::orthonormal(0, self.dim(), &[]) else {
+            return;
+        };
+        let mut work = CgWorkspace::new(self, &free, &diagonal);
         let mut moved = vec![0.0; v.len()];
         for _ in 0..SHARED_ROUNDS {
-            let missing = self
-                .rows
-                .iter()
-                .zip(&targets)
-                .map(|(row, target)| target - value(row, v));
-            let missing: Vec<f64> = missing.collect();
+            let rows = self.rows.iter().zip(&targets);
+            let missing: Vec<f64> = rows.map(|(row, target)| target - value(row, v)).collect();
             if vector::max_abs(&missing) <= SHARED_STOP * size {
                 return;
             }
-            let y = self.solve(missing, &mut moved);
+            let mut y = vec![0.0; self.dim()];
+            let stop = Tolerance::Relative(SHARED_STOP);
+            // as far as rows depend on one another the result is one of many
+            let solved = projected_cg(
+                self,
+                &missing,
+                &free,
+                &[],
+                &diagonal,
+                stop,
+                SHARED_MOVES,
+                &mut y,
+                &mut work,
+            );
+            if solved.is_err() {
+                return;
+            }
             self.spread(&y, &mut moved);
             vector::axpy(1.0, &moved, v);
         }
@@ -89,31 +107,43 @@ impl SharedNodes {
             row.iter().for_each(|&(at, c)| out[at] += c * y * self.compliance[at]);
         }
     }
+}
 
-    /// Conjugate gradients, scaled by the diagonal; as far as rows depend on one another the result is one of many.
-    fn solve(&self, mut r: Vec<f64>, work: &mut [f64]) -> Vec<f64> {
-        let n = r.len();
-        let scaled = |r: &[f64]| -> Vec<f64> { r.iter().zip(&self.diagonal).map(|(r, d)| r / d).collect() };
-        let (mut y, mut z, mut image) = (vec![0.0; n], scaled(&r), vec![0.0; n]);
-        let (mut p, mut rz) = (z.clone(), vector::dot(&r, &z));
-        let stop = SHARED_STOP * SHARED_STOP * rz;
-        for _ in 0..SHARED_MOVES {
-            if rz <= stop || rz.is_nan() {
-                break;
-            }
-            self.spread(&p, work);
-            for (row, image) in self.rows.iter().zip(&mut image) {
-                *image = row.iter().map(|&(at, c)| c * work[at]).sum();
-            }
-            let step = rz / vector::dot(&p, &image);
-            vector::axpy(step, &p, &mut y);
-            vector::axpy(-step, &image, &mut r);
-            z = scaled(&r);
-            let next = vector::dot(&r, &z);
-            let turn = next / rz;
-            p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + turn * *p);
-            rz = next;
+/// `P C Pᵀ`
+impl SymmetricOperator for SharedNodes {
+    type Scratch = Vec<f64>;
+
+    fn dim(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn scratch(&self) -> Vec<f64> {
+        vec![0.0; self.compliance.len()]
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], moved: &mut Vec<f64>) {
+        self.spread(x, moved);
+        for (row, y) in self.rows.iter().zip(y) {
+            *y = row.iter().map(|&(at, c)| c * moved[at]).sum();
         }
-        y
+    }
+}
+
+/// The inverse of a diagonal matrix.
+struct Diagonal<'a>(&'a [f64]);
+
+impl SymmetricOperator for Diagonal<'_> {
+    type Scratch = ();
+
+    fn dim(&self) -> usize {
+        self.0.len()
+    }
+
+    fn scratch(&self) {}
+
+    fn apply(&self, x: &[f64], y: &mut [f64], (): &mut ()) {
+        for ((y, x), diagonal) in y.iter_mut().zip(x).zip(self.0) {
+            *y = x / diagonal;
+        }
     }
 }

@@ -112,7 +112,11 @@ impl Reactions {
 ///
 /// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it;
 /// it is taken out here.
-pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<u32, [f64; 3]> {
+pub(crate) fn nodal_reactions(
+    model: &Model,
+    recovered: &Recovered,
+    ties: &[(&ContactPoint, [f64; 3])],
+) -> BTreeMap<u32, [f64; 3]> {
     let (points, lambda) = (&recovered.points, &recovered.support_multipliers);
     let gluing = model.tfeti.gluing();
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
@@ -139,12 +143,12 @@ pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<
             }
         }
     }
-    for (tie, whole) in tied_forces(model, recovered) {
+    for (tie, whole) in ties {
         for (node, weight) in tie.sides.nodes() {
             if let Some(force) = forces.get_mut(&node) {
                 let held = model.discrete.supports.directions.get(&node);
                 for PrescribedDirection { direction, .. } in held.into_iter().flatten() {
-                    let along = weight * dot(&whole, direction);
+                    let along = weight * dot(whole, direction);
                     (0..3).for_each(|c| force[c] -= along * direction[c]);
                 }
             }
@@ -155,7 +159,7 @@ pub(crate) fn nodal_reactions(model: &Model, recovered: &Recovered) -> BTreeMap<
 
 /// The force on each point of tied contacts, N: what its rows do to a node that no support holds, over the weight of
 /// the node.
-fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&'a ContactPoint, [f64; 3])> {
+pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&'a ContactPoint, [f64; 3])> {
     let gluing = model.tfeti.gluing();
     let subdomains = model.discrete.decomposition.subdomains();
     let supported = |node: u32| model.discrete.supports.directions.contains_key(&node);
@@ -213,7 +217,8 @@ pub(crate) fn reactions_about(
             contacts[state.surface].add(arm(node), state.force().map(|f| weight * f));
         }
     }
-    for (tie, force) in tied_forces(model, recovered) {
+    let ties = tied_forces(model, recovered);
+    for (tie, force) in &ties {
         for (node, weight) in tie.sides.first() {
             contacts[tie.surface].add(arm(node), force.map(|f| weight * f));
         }
@@ -226,7 +231,7 @@ pub(crate) fn reactions_about(
             loads.add(arm(node), force.map(|f| factor * f));
         }
     }
-    let forces = nodal_reactions(model, recovered);
+    let forces = nodal_reactions(model, recovered, &ties);
     Reactions {
         point: about,
         supports: by_support(&model.discrete.supports, &forces, arm),

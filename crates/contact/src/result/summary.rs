@@ -61,7 +61,7 @@ pub(crate) fn summarise(
         s.normal_force -= point.normal_force;
         s.normal_norm += point.normal_force.powi(2);
         let force = point.force();
-        let sign = if touch.contact.sides.swapped { -1.0 } else { 1.0 };
+        let sign = touch.contact.sides.sign();
         for c in 0..3 {
             s.friction_force[c] += sign * point.friction_force[c];
             s.resultant[c] += sign * force[c];

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
 use crate::result::{
     Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
-    nodal_reactions, points_at_nodes, reactions_about, warnings,
+    nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
 use crate::scene::Scene;
 use crate::status::StepFailure;
@@ -233,7 +233,8 @@ impl StepResult {
     #[must_use]
     pub fn reaction_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
-        for (node, force) in nodal_reactions(&self.model, &self.recovered) {
+        let ties = tied_forces(&self.model, &self.recovered);
+        for (node, force) in nodal_reactions(&self.model, &self.recovered, &ties) {
             field[node as usize] = force;
         }
         field

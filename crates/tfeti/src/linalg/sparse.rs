@@ -11,6 +11,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Par, Side};
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -32,6 +33,33 @@ impl Columns {
             rows: Vec::new(),
             values: Vec::new(),
         }
+    }
+
+    /// The Gram matrix of sparse rows of `(unknown, coefficient)`, with a weight for each unknown. In column `k` also the
+    /// entry of row `stored(k)` is there, if only as a zero.
+    pub(crate) fn gram(
+        rows: &[Vec<(usize, f64)>],
+        weight: impl Fn(usize) -> f64,
+        stored: impl Fn(usize) -> Option<usize>,
+    ) -> Self {
+        let mut users: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
+        for (k, row) in rows.iter().enumerate() {
+            row.iter()
+                .for_each(|&(at, v)| users.entry(at).or_default().push((k, v)));
+        }
+        let mut gram = Self::empty(rows.len());
+        for (k, row) in rows.iter().enumerate() {
+            let mut column: BTreeMap<usize, f64> = stored(k).map(|other| (other, 0.0)).into_iter().collect();
+            for &(at, v) in row {
+                for &(other, w) in &users[&at] {
+                    *column.entry(other).or_insert(0.0) += v * weight(at) * w;
+                }
+            }
+            gram.rows.extend(column.keys());
+            gram.values.extend(column.values());
+            gram.pointers.push(gram.rows.len());
+        }
+        gram
     }
 
     /// Copies a sparse matrix that is stored by columns (or is symmetric).

@@ -10,7 +10,7 @@ use crate::rows::gluing::TangentialRows;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{DEPENDENT, HELD_ROWS};
 use signorini_qp::active_set::{ActiveSetView, Freedom};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 /// The rows of all such groups and their matrix.
 #[derive(Debug)]
@@ -46,11 +46,6 @@ impl JoinedGroups {
         let gluing = system.gluing();
         let places: HashMap<u32, usize> = rows.iter().enumerate().map(|(k, &row)| (row, k)).collect();
         let entries: Vec<_> = rows.iter().map(|&row| torn_entries(system, row as usize)).collect();
-        let mut users: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
-        for (k, row) in entries.iter().enumerate() {
-            row.iter()
-                .for_each(|&(dof, v)| users.entry(dof).or_default().push((k, v)));
-        }
         let mut pairs = HashMap::new();
         for contact in gluing.contact() {
             if let TangentialRows::Disc { row, .. } = contact.tangential
@@ -59,23 +54,13 @@ impl JoinedGroups {
                 pairs.extend([(a, b), (b, a)]);
             }
         }
-        let mut matrix = Columns::empty(rows.len());
-        for (k, row) in entries.iter().enumerate() {
-            // the other row of a disc, even where they do not meet: an active set couples them
-            let mut column: BTreeMap<usize, f64> = pairs.get(&k).map(|&other| (other, 0.0)).into_iter().collect();
-            for &(dof, v) in row {
-                for &(other, w) in &users[&dof] {
-                    *column.entry(other).or_insert(0.0) += v * compliance[dof / 3] * w;
-                }
+        // the other row of a disc, even where they do not meet: an active set couples them
+        let mut matrix = Columns::gram(&entries, |dof| compliance[dof / 3], |k| pairs.get(&k).copied());
+        for (k, &row) in rows.iter().enumerate() {
+            let dependent = gluing.node(row as usize).is_some_and(|n| gluing.is_dependent(n));
+            if let Some(diagonal) = matrix.find(k, k).filter(|_| dependent) {
+                matrix.values[diagonal] *= 1.0 + DEPENDENT;
             }
-            if gluing.node(rows[k] as usize).is_some_and(|n| gluing.is_dependent(n)) {
-                column.entry(k).and_modify(|v| *v *= 1.0 + DEPENDENT);
-            }
-            for (other, value) in column {
-                matrix.rows.push(other);
-                matrix.values.push(value);
-            }
-            matrix.pointers.push(matrix.rows.len());
         }
         let node = |k: usize| gluing.node(rows[k.min(rows.len() - 1)] as usize).unwrap_or_default();
         let dependent = |error| match error {

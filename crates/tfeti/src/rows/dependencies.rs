@@ -7,7 +7,6 @@ use crate::rows::side::ContactConstraint;
 use crate::rows::supports::MergedSupports;
 use crate::tolerances::{EXCHANGED_ROWS, INDEPENDENT, PIVOT};
 use nalgebra::{DMatrix, SymmetricEigen};
-use signorini_fem_mesh::vec3::dot;
 use std::collections::{BTreeMap, HashMap};
 
 /// The contact and support rows of a node, or of nodes that contact points join, with the null space of their `Bᵀ`.
@@ -91,31 +90,17 @@ pub(super) fn not_alone(contact: &[ContactConstraint], points: &[&PointRows], su
 /// Whether the rows of points are linearly independent for certain: from their Gram matrix. What supports fix is in
 /// none of them, unless it is dragged.
 pub(super) fn are_independent<'a>(points: impl Iterator<Item = (&'a ContactConstraint, &'a PointRows)>) -> bool {
-    let mut rows: Vec<Vec<(u32, [f64; 3])>> = Vec::new();
+    let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
     for (constraint, point) in points {
-        let row = |r: &ContactRow| constraint.nodes().map(|n| n.0).zip(r.parts.iter().copied()).collect();
+        let row = |r: &ContactRow| {
+            let parts = constraint.nodes().zip(&r.parts);
+            let parts = parts.flat_map(|((node, _), v)| [0, 1, 2].map(|c| (3 * node as usize + c, v[c])));
+            parts.collect()
+        };
         rows.push(row(&point.normal));
         rows.extend(point.tangential.iter().map(row));
     }
-    let mut users: HashMap<u32, Vec<(usize, [f64; 3])>> = HashMap::new();
-    for (k, row) in rows.iter().enumerate() {
-        row.iter()
-            .for_each(|&(node, v)| users.entry(node).or_default().push((k, v)));
-    }
-    let mut gram = Columns::empty(rows.len());
-    for row in &rows {
-        let mut column: BTreeMap<usize, f64> = BTreeMap::new();
-        for &(node, v) in row {
-            for &(other, w) in &users[&node] {
-                *column.entry(other).or_insert(0.0) += dot(v, w);
-            }
-        }
-        for (other, value) in column {
-            gram.rows.push(other);
-            gram.values.push(value);
-        }
-        gram.pointers.push(gram.rows.len());
-    }
+    let gram = Columns::gram(&rows, |_| 1.0, |_| None);
     let factor = Symbolic::new(&gram, 1).and_then(|symbolic| SparseCholesky::new(&symbolic, &gram));
     factor.is_ok_and(|factor| {
         let (smallest, _, largest) = factor.pivots();

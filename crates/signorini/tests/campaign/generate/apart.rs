@@ -2,7 +2,7 @@
 //! sides, of any ratio of meshes and stiffness, on obstacles of any shape, with friction by direction.
 
 use super::bodies::side;
-use super::{Shaft, settings};
+use super::{Shaft, bare, settings};
 use crate::dice::Dice;
 use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
 use crate::vec3::{Vec3, add, cross, dot, norm, scale, sub, unit};
@@ -256,17 +256,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     let mesh = mesh.expect("a body");
 
     // the first body is held below, or lies on a plane or in a hollow of its own
-    let mut recipe = Recipe {
-        pieces: settings::pieces(dice, &mesh),
-        mesh,
-        elastic,
-        holds: Vec::new(),
-        pushes: Vec::new(),
-        touches: Vec::new(),
-        how: settings::how(dice, clock.times().len()),
-        clock,
-        words,
-    };
+    let mut recipe = bare(dice, (mesh, elastic), clock, words);
     let mut rocks = Vec::new();
     let tag = |body: usize, tag: FacetTag| Where::Tag(side(body, tag));
     let rough = |dice: &mut Dice, law: Law| {

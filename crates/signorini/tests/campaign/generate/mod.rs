@@ -12,7 +12,8 @@ mod settings;
 mod supports;
 
 use crate::dice::Dice;
-use crate::recipe::{Course, Recipe};
+use crate::recipe::{Clock, Course, Elastic, Recipe};
+use signorini::prelude::TetMesh;
 
 /// Known faults and limits that the generator stays clear of. An entry goes when its fault is mended.
 pub(crate) const KNOWN: [(&str, &str); 3] = [
@@ -31,15 +32,9 @@ pub(crate) const KNOWN: [(&str, &str); 3] = [
     ),
 ];
 
-/// The scene with a number.
-pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
-    let mut dice = Dice::new(seed, number);
-    let dice = &mut dice;
-    let world = bodies::world(dice);
-    let clock = settings::clock(dice);
-    let duration = clock.times().last().copied().unwrap_or(1.0);
-    let (mesh, elastic, material) = material::materials(dice, &world);
-    let mut recipe = Recipe {
+/// Bodies without supports, loads and contact.
+fn bare(dice: &mut Dice, (mesh, elastic): (TetMesh, Vec<Elastic>), clock: Clock, words: Vec<String>) -> Recipe {
+    Recipe {
         pieces: settings::pieces(dice, &mesh),
         mesh,
         elastic,
@@ -48,8 +43,19 @@ pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
         touches: Vec::new(),
         how: settings::how(dice, clock.times().len()),
         clock,
-        words: world.words.clone(),
-    };
+        words,
+    }
+}
+
+/// The scene with a number.
+pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
+    let mut dice = Dice::new(seed, number);
+    let dice = &mut dice;
+    let world = bodies::world(dice);
+    let clock = settings::clock(dice);
+    let duration = clock.times().last().copied().unwrap_or(1.0);
+    let (mesh, elastic, material) = material::materials(dice, &world);
+    let mut recipe = bare(dice, (mesh, elastic), clock, world.words.clone());
     recipe.words.push(material);
     let shaft = Shaft {
         duration,
