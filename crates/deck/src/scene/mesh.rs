@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use signorini_fem_mesh::internal::EDGES;
 use signorini_fem_mesh::vec3::tet_volume;
 use signorini_fem_mesh::{Facet, TetMesh};
 
@@ -153,8 +154,7 @@ impl Raw {
             return face;
         };
         let corners = self.tets[tet as usize];
-        let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
-        let on_face = edges
+        let on_face = EDGES
             .iter()
             .zip(mids)
             .filter(|(edge, _)| edge.iter().all(|&k| face.contains(&corners[k])));

@@ -2,7 +2,7 @@
 
 use crate::element::{Element, Piece, over_quadratic};
 use crate::material::{Hooke, MaterialError, Materials};
-use crate::mesh::{EDGES, TetMesh};
+use crate::mesh::{NODES, TetMesh};
 use crate::quadrature::FOUR_POINTS;
 use rayon::prelude::*;
 
@@ -125,22 +125,6 @@ pub fn nodal_stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Resul
     let values: Vec<[[f64; 6]; 10]> = (0..mesh.tets().len()).into_par_iter().map(at_nodes).collect();
     Ok(average(mesh, |tet, k| values[tet][k]))
 }
-
-/// Barycentric coordinates of the ten nodes.
-const NODES: [[f64; 4]; 10] = {
-    let mut out = [[0.0; 4]; 10];
-    let mut k = 0;
-    while k < 10 {
-        if k < 4 {
-            out[k][k] = 1.0;
-        } else {
-            out[k][EDGES[k - 4][0]] = 0.5;
-            out[k][EDGES[k - 4][1]] = 0.5;
-        }
-        k += 1;
-    }
-    out
-};
 
 /// Recovers values at the nodes as the mean of the tetrahedra around each, weighted by volume.
 /// Where two materials meet the mean blurs the jump of the stress.

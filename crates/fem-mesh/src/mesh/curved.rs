@@ -9,7 +9,23 @@ use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume};
 use super::error::MeshError;
 
 /// Ends of the edges of a tetrahedron on which its mid-nodes lie.
-pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+
+/// Barycentric coordinates of the ten nodes.
+pub(crate) const NODES: [[f64; 4]; 10] = {
+    let mut out = [[0.0; 4]; 10];
+    let mut k = 0;
+    while k < 10 {
+        if k < 4 {
+            out[k][k] = 1.0;
+        } else {
+            out[k][EDGES[k - 4][0]] = 0.5;
+            out[k][EDGES[k - 4][1]] = 0.5;
+        }
+        k += 1;
+    }
+    out
+};
 
 /// The same of a facet.
 const FACET_EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
@@ -101,11 +117,8 @@ pub(super) fn check(points: &[Vec3], tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Re
 
 /// Least volume of the tangent tetrahedra at nodes and points of quadrature.
 fn least_volume(points: &[Vec3; 10]) -> f64 {
-    let corner = |i: usize| std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 });
-    let mid = |[a, b]: [usize; 2]| std::array::from_fn(|k| if k == a || k == b { 0.5 } else { 0.0 });
-    let nodes = (0..4).map(corner).chain(EDGES.map(mid));
     let inside = quadrature::tetrahedron().into_iter().map(|(l, _)| l);
-    let all = nodes.chain(inside).chain(quadrature::FOUR_POINTS);
+    let all = NODES.into_iter().chain(inside).chain(quadrature::FOUR_POINTS);
     all.map(|l| tet_volume(&tangents(points, &l)))
         .fold(f64::INFINITY, f64::min)
 }

@@ -21,8 +21,9 @@ pub use error::MeshError;
 pub use surface::{Surface, SurfaceError, SurfaceFrame};
 pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 
-pub use curved::facet_shape;
-pub(crate) use curved::{EDGES, curved_facet, shape, tangents};
+#[doc(hidden)]
+pub use curved::{EDGES, facet_shape};
+pub(crate) use curved::{NODES, curved_facet, shape, tangents};
 pub(crate) use faces::{NONE, connected_sets};
 pub(crate) use quadratic::quadratic_tets;
 pub(crate) use tet_mesh::{facet_area_vector, tag_list};

@@ -129,24 +129,21 @@ pub fn parse_named_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError
 
 fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshError> {
     let file = reader::read(bytes)?;
-    let mut points = file.points;
     let mut number = HashMap::with_capacity(file.tags.len());
     for (place, &tag) in file.tags.iter().enumerate() {
         if number.insert(tag, place as u32).is_some() {
             return Err(GmshError::RepeatedNode { tag });
         }
     }
+    let number_of = |element: u64, node: u64| {
+        let found = number.get(&node).copied();
+        found.ok_or(GmshError::UnknownNode { element, node })
+    };
     let surfaces = Tags::new("surface", &file.entities[0])?;
     let volumes = Tags::new("volume", &file.entities[1])?;
     let (mut tets, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new());
     for element in &file.elements {
-        let node = |place: usize| {
-            let (element, node) = (element.tag, element.nodes[place]);
-            number
-                .get(&node)
-                .copied()
-                .ok_or(GmshError::UnknownNode { element, node })
-        };
+        let node = |place: usize| number_of(element.tag, element.nodes[place]);
         if element.is_tet {
             tets.push([node(0)?, node(1)?, node(2)?, node(3)?]);
             regions.push(volumes.of(element.entity).unwrap_or(0));
@@ -171,30 +168,31 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshErro
             let mut tet = [0; 10];
             tet[..4].copy_from_slice(corners);
             for (place, &node) in tet[4..].iter_mut().zip(mids) {
-                let element = owner.tag;
-                *place = number
-                    .get(&node)
-                    .copied()
-                    .ok_or(GmshError::UnknownNode { element, node })?;
+                *place = number_of(owner.tag, node)?;
             }
             whole.push(tet);
         }
-        orient_tets(&points, &mut whole);
-        drop_unused_nodes(&mut points, &mut whole, &mut facets);
-        if !surfaces.grouped {
-            facets = on_boundary(&TetMesh::quadratic(points.clone(), whole.clone(), Vec::new())?, facets);
-        }
-        let mesh = TetMesh::quadratic(points, whole, facets)?.with_regions(regions)?;
-        return Ok((mesh, file.names));
+        let mesh = mesh(TetMesh::quadratic, file.points, whole, (facets, surfaces.grouped))?;
+        return Ok((mesh.with_regions(regions)?, file.names));
     }
+    let mesh = mesh(TetMesh::new, file.points, tets, (facets, surfaces.grouped))?;
+    Ok((mesh.with_regions(regions)?, file.names))
+}
+
+/// The mesh of tetrahedra of either order; `grouped`: whether the facets are those of named groups.
+fn mesh<const N: usize>(
+    build: impl Fn(Vec<[f64; 3]>, Vec<[u32; N]>, Vec<Facet>) -> Result<TetMesh, MeshError>,
+    mut points: Vec<[f64; 3]>,
+    mut tets: Vec<[u32; N]>,
+    (mut facets, grouped): (Vec<Facet>, bool),
+) -> Result<TetMesh, MeshError> {
     orient_tets(&points, &mut tets);
     drop_unused_nodes(&mut points, &mut tets, &mut facets);
-    if !surfaces.grouped {
+    if !grouped {
         // Nobody asked for these surfaces by name, and some may lie between two volumes.
-        facets = on_boundary(&TetMesh::new(points.clone(), tets.clone(), Vec::new())?, facets);
+        facets = on_boundary(&build(points.clone(), tets.clone(), Vec::new())?, facets);
     }
-    let mesh = TetMesh::new(points, tets, facets)?.with_regions(regions)?;
-    Ok((mesh, file.names))
+    build(points, tets, facets)
 }
 
 /// The facets that lie on the boundary of the mesh.
