@@ -1,11 +1,12 @@
 //! What can go wrong while a T-FETI system is built.
 
 use crate::linalg::sparse::FactorError;
+use crate::processes::communicator::CommunicationError;
 
 signorini_fem_mesh::errors! {
     /// Errors of the set-up. Every message names the place and, where there is one, the remedy.
     #[derive(Clone, PartialEq)]
-    TfetiError {
+    TfetiError from { Communication(CommunicationError) } {
         Singular { subdomain: usize, pivot: usize } =
             "subdomain {subdomain}: the stiffness matrix is singular beyond its six rigid motions (pivot {pivot}); a \
             part of it hangs on a single node or edge, or its elements are degenerate: use another decomposition";

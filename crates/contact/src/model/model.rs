@@ -71,11 +71,13 @@ impl Model {
             .with_supports(&discrete.supports.nodes)
             .with_springs(&discrete.springs.nodal)
             .with_contact(&discrete.constraints)
+            .with_communicator(&settings.communicator)
             .build()?;
         let loads = std::mem::take(&mut discrete.loads).into_iter();
         let loads = loads
             .map(|local| tfeti.load_response(&local))
             .collect::<Result<_, _>>()?;
+        tfeti.check_processes()?;
         let points = constrained_points(&discrete.points, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let zeros = |count: usize| vec![0.0; count];

@@ -42,6 +42,11 @@ pub struct Plan {
     pub dirichlet_rows: usize,
     /// Rows of tied contacts.
     pub tied_rows: usize,
+    /// Number of this process among those that solve the scene together, from 0; see
+    /// [`Settings::with_communicator`].
+    pub rank: usize,
+    /// How many they are.
+    pub ranks: usize,
     /// Unknowns of the coarse problem.
     pub coarse: usize,
     /// Time steps.
@@ -119,6 +124,8 @@ impl Plan {
             interface_rows: primal - 3 * nodes,
             dirichlet_rows: fixed.values().copied().sum::<usize>() + discrete.springs.nodal.len(),
             tied_rows: discrete.ties.iter().map(free).sum(),
+            rank: settings.communicator.rank(),
+            ranks: settings.communicator.size(),
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
             method: if effects.contact {

@@ -40,6 +40,7 @@ impl Simulation {
         let mut before = Before::default();
         loop {
             let solved = self.solve_after(&state, &way);
+            self.model.tfeti.check_processes()?;
             let converged = matches!(&solved, Ok(result) if result.report.status.converged());
             if !converged && way.halve() {
                 before.enter_halved(solved.ok().map(|result| result.report));
@@ -92,8 +93,12 @@ impl Simulation {
             problem,
             settings: &settings,
         };
-        let mut report = self.solver.solve(task, iterate)?;
-        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha)?;
+        let solved = self.solver.solve(task, iterate);
+        model.tfeti.check_processes()?;
+        let mut report = solved?;
+        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha);
+        model.tfeti.check_processes()?;
+        let recovered = recovered?;
         report.counters.products += 1;
         Ok((report, recovered))
     }

@@ -69,6 +69,7 @@ impl ActiveSetSolver {
         let start = iterate.lambda.clone();
         let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
+        task.model.tfeti.check_processes()?;
         if !report.status.converged() {
             return self.fall_back(task, iterate, start, report);
         }

@@ -26,6 +26,7 @@ mod pairs_supported;
 mod partitions;
 mod patch;
 mod plan;
+mod processes;
 mod quadratic;
 mod reactions;
 mod refusals;

@@ -8,9 +8,11 @@
 
 use crate::linalg::both;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory};
+use crate::processes::exchange::Exchange;
 use crate::tolerances::{BLOCKS, LARGE, PARTS};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Boundary of one class.
 #[derive(Debug, Clone)]
@@ -45,7 +47,11 @@ pub(crate) struct Lane {
 pub(crate) struct BoundaryMap {
     pub(crate) classes: Vec<BoundaryClass>,
     pub(crate) panels: Vec<Panel>,
+    /// Panels of this rank, in lanes.
     pub(crate) lanes: Vec<Lane>,
+    pub(super) exchange: Arc<Exchange>,
+    /// Parts of boundary vectors that the ranks set.
+    pub(super) parts: Vec<Range<usize>>,
     pub(super) copies: usize,
     pub(crate) interface: Range<usize>,
     pub(super) rows: usize,
@@ -105,6 +111,14 @@ impl BoundaryMap {
     /// Length of dual vectors.
     pub(crate) fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// Panels of this rank.
+    pub(crate) fn own_panels(&self) -> &[Panel] {
+        match (self.lanes.first(), self.lanes.last()) {
+            (Some(first), Some(last)) => &self.panels[first.panels.start..last.panels.end],
+            _ => &[],
+        }
     }
 
     pub(crate) fn bytes(&self) -> u64 {
@@ -236,7 +250,8 @@ impl BoundaryMap {
         }
     }
 
-    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does.
+    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does. Each rank
+    /// does its panels, one exchange brings those of the others.
     pub(crate) fn by_panels(
         &self,
         x: &[f64],
@@ -256,7 +271,16 @@ impl BoundaryMap {
             }
         };
         let offset = |lane: &Lane| 3 * lane.copy;
-        over_lanes(&self.lanes, &mut s.lanes, &mut s.boundary, &offset, parallel, &task);
+        let own = self.parts[self.exchange.rank()].clone();
+        over_lanes(
+            &self.lanes,
+            &mut s.lanes,
+            &mut s.boundary[own],
+            &offset,
+            parallel,
+            &task,
+        );
+        self.exchange.gather(&mut s.boundary, &self.parts);
         self.collect(&s.boundary, y);
     }
 

@@ -3,7 +3,7 @@
 use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
-use crate::tolerances::PANEL;
+use crate::subdomain::ownership::Ownership;
 use signorini_fem_mesh::internal::buckets;
 use std::ops::Range;
 
@@ -32,7 +32,7 @@ impl Numbering<'_> {
 }
 
 impl BoundaryMap {
-    pub(crate) fn new(classes: &Classes, gluing: &Gluing) -> Self {
+    pub(crate) fn new(classes: &Classes, gluing: &Gluing, ownership: &Ownership) -> Self {
         let mut map = Self {
             classes: boundaries(classes, gluing),
             interface: gluing.ranges().interface.clone(),
@@ -40,9 +40,10 @@ impl BoundaryMap {
             nodal_pointers: vec![0],
             block_pointers: vec![0],
             row_pointers: vec![0],
+            exchange: ownership.exchange.clone(),
             ..Self::default()
         };
-        map.fill_panels();
+        map.fill_panels(ownership);
         let copies = map.fill_collect(gluing, &map.numbering(classes));
         map.fill_spread(gluing, &copies);
         let place = |copy: usize| map.nodal_copies.partition_point(|&c| (c as usize) < copy);
@@ -52,18 +53,21 @@ impl BoundaryMap {
         map
     }
 
-    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work.
-    fn fill_panels(&mut self) {
+    /// Takes the panels of the ranks, and cuts those of this one into lanes of about equal work.
+    fn fill_panels(&mut self, ownership: &Ownership) {
         let mut work = Vec::new();
-        let touched = self.classes.iter().enumerate().filter(|(_, b)| !b.nodes.is_empty());
-        for (class, boundary) in touched {
-            let (members, nodes) = (boundary.members.len(), boundary.nodes.len());
-            let count = members.div_ceil(PANEL);
-            for k in 0..count {
-                let columns = members * k / count..members * (k + 1) / count;
+        for (rank, share) in ownership.shares.iter().enumerate() {
+            let first = (self.panels.len(), self.copies);
+            for (class, columns) in ownership.panels[share.clone()].iter().cloned() {
+                let nodes = self.classes[class].nodes.len();
+                if nodes == 0 {
+                    continue;
+                }
                 let copies = self.copies..self.copies + columns.len() * nodes;
                 self.copies = copies.end;
-                work.push((columns.len() * nodes * (nodes + 64)) as u64);
+                if rank == ownership.exchange.rank() {
+                    work.push((columns.len() * nodes * (nodes + 64)) as u64);
+                }
                 let nodal = 0..0;
                 self.panels.push(Panel {
                     class,
@@ -72,12 +76,16 @@ impl BoundaryMap {
                     nodal,
                 });
             }
+            self.parts.push(3 * first.1..3 * self.copies);
+            if rank == ownership.exchange.rank() {
+                let panels = &self.panels;
+                let lane = |own: Range<usize>| Lane {
+                    copy: panels[first.0 + own.start].copies.start,
+                    panels: first.0 + own.start..first.0 + own.end,
+                };
+                self.lanes = shares(&work, 1, work.len()).into_iter().map(lane).collect();
+            }
         }
-        let lane = |panels: Range<usize>| Lane {
-            copy: self.panels[panels.start].copies.start,
-            panels,
-        };
-        self.lanes = shares(&work, 1, self.panels.len()).into_iter().map(lane).collect();
     }
 
     fn numbering<'a>(&self, classes: &'a Classes) -> Numbering<'a> {
