@@ -3,7 +3,7 @@
 //! `mpirun -n 2 target/release/examples/brick_mpi --n 5 --threads 1`
 
 #[path = "../../../studies/examples/brick/main.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, unreachable_pub)]
 mod brick;
 
 use clap::Parser;
