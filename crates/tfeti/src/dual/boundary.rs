@@ -6,6 +6,7 @@
 //! nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather (each
 //! result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
+use super::cut::Cut;
 use crate::linalg::both;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory};
 use crate::processes::exchange::Exchange;
@@ -52,6 +53,7 @@ pub(crate) struct BoundaryMap {
     pub(super) exchange: Arc<Exchange>,
     /// Parts of boundary vectors that the ranks set.
     pub(super) parts: Vec<Range<usize>>,
+    pub(super) cut: Cut,
     pub(super) copies: usize,
     pub(crate) interface: Range<usize>,
     pub(super) rows: usize,
@@ -83,9 +85,14 @@ pub(super) struct Place {
 
 impl Place {
     #[inline]
-    fn read(self, y: &[f64]) -> [f64; 3] {
+    pub(super) fn read(self, y: &[f64]) -> [f64; 3] {
         let (first, stride) = (self.first as usize, self.stride as usize);
         [y[first], y[first + stride], y[first + 2 * stride]]
+    }
+
+    pub(super) fn write(self, values: [f64; 3], y: &mut [f64]) {
+        let (first, stride) = (self.first as usize, self.stride as usize);
+        (0..3).for_each(|c| y[first + c * stride] = values[c]);
     }
 }
 
@@ -93,6 +100,8 @@ impl Place {
 #[derive(Debug)]
 pub(crate) struct PanelScratch {
     boundary: Vec<f64>,
+    /// To and from other ranks; empty without.
+    message: Vec<f64>,
     lanes: Vec<LaneScratch>,
 }
 
@@ -127,7 +136,7 @@ impl BoundaryMap {
             + self.block_pointers.len()
             + 2 * self.block_places.len();
         let numbers = self.spread_weights.len() + self.block_weights.len();
-        (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
+        (4 * words + 8 * numbers + 56 * self.row_places.len() + self.cut.bytes()) as u64
     }
 
     /// A number for each boundary copy, from its subdomain and local node.
@@ -197,6 +206,20 @@ impl BoundaryMap {
         both(self.is_large(), blocks, others);
     }
 
+    /// Some consecutive rows of one kind of `B y`.
+    pub(super) fn collect_some(&self, y: &[f64], rows: Range<usize>, out: &mut [f64]) {
+        if self.interface.contains(&rows.start) {
+            self.collect_blocks(y, (rows.start - self.interface.start) / 3, out);
+        } else {
+            let before = if rows.start < self.interface.start {
+                0
+            } else {
+                self.interface.len()
+            };
+            self.collect_rows(y, rows.start - before, out);
+        }
+    }
+
     fn collect_blocks(&self, y: &[f64], first: usize, out: &mut [f64]) {
         let pointers = &self.block_pointers[first..=first + out.len() / 3];
         for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
@@ -246,6 +269,7 @@ impl BoundaryMap {
         };
         PanelScratch {
             boundary: vec![0.0; 3 * self.copies],
+            message: vec![0.0; self.cut.message()],
             lanes: self.lanes.iter().map(lane).collect(),
         }
     }
@@ -280,8 +304,10 @@ impl BoundaryMap {
             parallel,
             &task,
         );
-        self.exchange.gather(&mut s.boundary, &self.parts);
-        self.collect(&s.boundary, y);
+        match self.exchange.ranks() {
+            1 => self.collect(&s.boundary, y),
+            _ => self.collect_with_others(&mut s.boundary, &mut s.message, y),
+        }
     }
 
     /// Whether loops over all copies are worth several threads.
@@ -327,8 +353,9 @@ pub(crate) fn over_tasks<L: Sync, T: Send>(
     parallel: bool,
     task: &(impl Fn(&L, &mut [T]) + Sync),
 ) {
-    let work = &mut [(); PARTS][..tasks.len()];
-    over_lanes(tasks, work, y, offset, parallel, &|one, (), y| task(one, y));
+    // takes no memory
+    let mut work = vec![(); tasks.len()];
+    over_lanes(tasks, &mut work, y, offset, parallel, &|one, (), y| task(one, y));
 }
 
 /// Consecutive items in ranges of about equal work, of which no one is below `least` and there are no more than `most`.

@@ -1,6 +1,7 @@
 //! Building the gather tables.
 
 use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
+use super::cut::{Cut, CutBuilder};
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
 use crate::subdomain::ownership::Ownership;
@@ -109,14 +110,22 @@ impl BoundaryMap {
     }
 
     /// Fills the tables by row; returns the copies of the blocks' entries and of the other rows' entries.
+    /// Of several ranks, each has those entries of blocks with which it computes.
     fn fill_collect(&mut self, gluing: &Gluing, numbering: &Numbering<'_>) -> [Vec<u32>; 2] {
         let mut copies = [Vec::new(), Vec::new()];
+        self.cut = self.fill_cut(gluing, numbering);
+        let mine = self.cut.computed(self.exchange.rank(), &self.interface);
+        let mut mine = mine.into_iter().peekable();
         for block in 0..gluing.blocks() {
-            for e in gluing.block(block) {
-                let (copy, place) = numbering.copy(e.subdomain, e.local);
-                copies[0].push(copy);
-                self.block_places.push(place);
-                self.block_weights.push(e.coefficient);
+            let row = self.interface.start + 3 * block;
+            while mine.next_if(|rows| rows.end <= row).is_some() {}
+            if self.exchange.ranks() == 1 || mine.peek().is_some_and(|rows| rows.contains(&row)) {
+                for e in gluing.block(block) {
+                    let (copy, place) = numbering.copy(e.subdomain, e.local);
+                    copies[0].push(copy);
+                    self.block_places.push(place);
+                    self.block_weights.push(e.coefficient);
+                }
             }
             self.block_pointers.push(self.block_places.len() as u32);
         }
@@ -130,6 +139,33 @@ impl BoundaryMap {
             self.row_pointers.push(self.row_places.len() as u32);
         }
         copies
+    }
+
+    /// What the ranks compute alone and tell one another.
+    fn fill_cut(&self, gluing: &Gluing, numbering: &Numbering<'_>) -> Cut {
+        let ranks = self.exchange.ranks();
+        if ranks == 1 {
+            return Cut::default();
+        }
+        let mut cut = CutBuilder::new(ranks);
+        let copy = |subdomain: u32, local: u32| {
+            let (copy, place) = numbering.copy(subdomain, local);
+            let rank = self.parts.partition_point(|part| part.end <= 3 * copy as usize);
+            (rank, copy, place)
+        };
+        let mut nodal = |nodal: usize| {
+            let copies = gluing.nodal(nodal).iter().map(|e| copy(e.subdomain, e.local));
+            let row = gluing.nodal_row(nodal);
+            cut.enter(row..row + 1, &copies.collect::<Vec<_>>());
+        };
+        (0..self.interface.start).for_each(&mut nodal);
+        (self.interface.start..gluing.nodal_rows()).for_each(nodal);
+        for block in 0..gluing.blocks() {
+            let copies = gluing.block(block).iter().map(|e| copy(e.subdomain, e.local));
+            let row = self.interface.start + 3 * block;
+            cut.enter(row..row + 3, &copies.collect::<Vec<_>>());
+        }
+        cut.build(&self.interface)
     }
 
     /// Fills the tables by copy: the transposes of the tables by row.

@@ -117,6 +117,15 @@ impl Tfeti {
         &self.report
     }
 
+    /// The process that works with the matrices of a subdomain, by its rank.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
+    pub fn rank_of(&self, subdomain: usize) -> usize {
+        let (class, member) = self.classes().place(subdomain);
+        self.parts.subdomains.ownership.rank_of(class, member)
+    }
+
     /// What this process has exchanged with those that solve the problem with it.
     pub fn traffic(&self) -> Traffic {
         self.exchange().traffic()
