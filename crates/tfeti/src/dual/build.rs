@@ -57,9 +57,9 @@ impl BoundaryMap {
     /// Takes the panels of the ranks, and cuts those of this one into lanes of about equal work.
     fn fill_panels(&mut self, ownership: &Ownership) {
         let mut work = Vec::new();
-        for (rank, share) in ownership.shares.iter().enumerate() {
+        for (rank, panels) in ownership.panels.iter().enumerate() {
             let first = (self.panels.len(), self.copies);
-            for (class, columns) in ownership.panels[share.clone()].iter().cloned() {
+            for (class, columns) in panels.iter().cloned() {
                 let nodes = self.classes[class].nodes.len();
                 if nodes == 0 {
                     continue;
