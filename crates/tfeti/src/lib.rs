@@ -45,7 +45,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each of which uses those before it: `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
+//! Several processes build one system together, each with the matrices of its subdomains: see [`Communicator`].
+//!
+//! Rooms, each of which uses those before it: `processes`, `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
 //! `preconditioner`.
 
 mod coarse;
