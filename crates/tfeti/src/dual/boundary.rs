@@ -6,7 +6,7 @@
 //! nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather (each
 //! result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
-use super::cut::Cut;
+use super::cut::{Cut, Place, Run};
 use crate::linalg::both;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory};
 use crate::processes::exchange::Exchange;
@@ -74,26 +74,6 @@ pub(crate) struct BoundaryMap {
     pub(super) row_pointers: Vec<u32>,
     pub(super) row_places: Vec<Place>,
     pub(super) row_vectors: Vec<[f64; 3]>,
-}
-
-/// Where the three components of a copy stand in a boundary vector.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
-    pub(super) first: u32,
-    pub(super) stride: u32,
-}
-
-impl Place {
-    #[inline]
-    pub(super) fn read(self, y: &[f64]) -> [f64; 3] {
-        let (first, stride) = (self.first as usize, self.stride as usize);
-        [y[first], y[first + stride], y[first + 2 * stride]]
-    }
-
-    pub(super) fn write(self, values: [f64; 3], y: &mut [f64]) {
-        let (first, stride) = (self.first as usize, self.stride as usize);
-        (0..3).for_each(|c| y[first + c * stride] = values[c]);
-    }
 }
 
 /// Work memory of products by panels: a boundary vector, and what each lane needs.
@@ -204,6 +184,33 @@ impl BoundaryMap {
             self.collect_rows(y, self.interface.start, dirichlet);
         };
         both(self.is_large(), blocks, others);
+    }
+
+    /// `out = B y` for a boundary vector of which this rank has its part; one exchange.
+    pub(super) fn collect_with_others(&self, y: &mut [f64], message: &mut [f64], out: &mut [f64]) {
+        let (cut, rank) = (&self.cut, self.exchange.rank());
+        let part = cut.parts[rank].clone();
+        let (rows, copies) = message[part.clone()].split_at_mut(part.len() - 3 * cut.copies[rank].len());
+        let offset = |run: &Run| run.at - part.start;
+        over_tasks(&cut.runs[rank], rows, &offset, self.is_large(), &|run, out| {
+            self.collect_some(y, run.rows.clone(), &mut out[..run.rows.len()]);
+        });
+        for (place, values) in cut.copies[rank].iter().zip(copies.as_chunks_mut().0) {
+            *values = place.read(y);
+        }
+        self.exchange.gather(message, &cut.parts);
+        for (k, (runs, copies)) in cut.runs.iter().zip(&cut.copies).enumerate() {
+            for run in runs {
+                out[run.rows.clone()].copy_from_slice(&message[run.at..][..run.rows.len()]);
+            }
+            let values = &message[cut.parts[k].end - 3 * copies.len()..cut.parts[k].end];
+            for (place, values) in copies.iter().zip(values.as_chunks().0) {
+                place.write(*values, y);
+            }
+        }
+        for rows in &cut.shared {
+            self.collect_some(y, rows.clone(), &mut out[rows.clone()]);
+        }
     }
 
     /// Some consecutive rows of one kind of `B y`.

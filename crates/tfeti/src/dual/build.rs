@@ -1,7 +1,7 @@
 //! Building the gather tables.
 
-use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
-use super::cut::{Cut, CutBuilder};
+use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, shares};
+use super::cut::{Cut, CutBuilder, Place};
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
 use crate::subdomain::ownership::Ownership;

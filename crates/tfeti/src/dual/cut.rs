@@ -1,14 +1,33 @@
 //! Which rows of `B` a rank computes alone, and what it tells the others.
 
-use super::boundary::{BoundaryMap, Place, over_tasks};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+/// Where the three components of a copy stand in a boundary vector.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) first: u32,
+    pub(super) stride: u32,
+}
+
+impl Place {
+    #[inline]
+    pub(super) fn read(self, y: &[f64]) -> [f64; 3] {
+        let (first, stride) = (self.first as usize, self.stride as usize);
+        [y[first], y[first + stride], y[first + 2 * stride]]
+    }
+
+    pub(super) fn write(self, values: [f64; 3], y: &mut [f64]) {
+        let (first, stride) = (self.first as usize, self.stride as usize);
+        (0..3).for_each(|c| y[first + c * stride] = values[c]);
+    }
+}
+
 /// Consecutive rows that a rank computes alone, and where they stand in a message.
 #[derive(Debug)]
-struct Run {
-    rows: Range<usize>,
-    at: usize,
+pub(super) struct Run {
+    pub(super) rows: Range<usize>,
+    pub(super) at: usize,
 }
 
 /// A message of a rank: the rows whose copies are all its own, then three components at each of its copies in rows that
@@ -16,11 +35,11 @@ struct Run {
 #[derive(Debug, Default)]
 pub(crate) struct Cut {
     /// By rank: its runs, and the copies.
-    runs: Vec<Vec<Run>>,
-    copies: Vec<Vec<Place>>,
+    pub(super) runs: Vec<Vec<Run>>,
+    pub(super) copies: Vec<Vec<Place>>,
     /// Part of each rank in the message of all.
-    parts: Vec<Range<usize>>,
-    shared: Vec<Range<usize>>,
+    pub(super) parts: Vec<Range<usize>>,
+    pub(super) shared: Vec<Range<usize>>,
 }
 
 /// Rows and copies of the ranks as they are found.
@@ -109,34 +128,5 @@ impl Cut {
         let runs: usize = self.runs.iter().map(Vec::len).sum();
         let copies: usize = self.copies.iter().map(Vec::len).sum();
         24 * runs + 8 * copies + 16 * self.shared.len()
-    }
-}
-
-impl BoundaryMap {
-    /// `out = B y` for a boundary vector of which this rank has its part; one exchange.
-    pub(super) fn collect_with_others(&self, y: &mut [f64], message: &mut [f64], out: &mut [f64]) {
-        let (cut, rank) = (&self.cut, self.exchange.rank());
-        let part = cut.parts[rank].clone();
-        let (rows, copies) = message[part.clone()].split_at_mut(part.len() - 3 * cut.copies[rank].len());
-        let offset = |run: &Run| run.at - part.start;
-        over_tasks(&cut.runs[rank], rows, &offset, self.is_large(), &|run, out| {
-            self.collect_some(y, run.rows.clone(), &mut out[..run.rows.len()]);
-        });
-        for (place, values) in cut.copies[rank].iter().zip(copies.as_chunks_mut().0) {
-            *values = place.read(y);
-        }
-        self.exchange.gather(message, &cut.parts);
-        for (k, (runs, copies)) in cut.runs.iter().zip(&cut.copies).enumerate() {
-            for run in runs {
-                out[run.rows.clone()].copy_from_slice(&message[run.at..][..run.rows.len()]);
-            }
-            let values = &message[cut.parts[k].end - 3 * copies.len()..cut.parts[k].end];
-            for (place, values) in copies.iter().zip(values.as_chunks().0) {
-                place.write(*values, y);
-            }
-        }
-        for rows in &cut.shared {
-            self.collect_some(y, rows.clone(), &mut out[rows.clone()]);
-        }
     }
 }
