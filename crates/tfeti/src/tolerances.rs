@@ -12,6 +12,8 @@ pub(crate) const SAME: f64 = 1e-12;
 pub(crate) const TRANSLATE: f64 = 1e-12;
 /// Directions: the share that is left of one that depends on others, or that supports fix.
 pub(crate) const FIXED: f64 = 1e-8;
+/// Share of the mean of a side of several nodes from which on supports hold that side.
+pub const HELD: f64 = 0.25;
 /// Prescribed displacements in one direction: relative difference that supports may have.
 pub(crate) const AGREEING: f64 = 1e-7;
 /// Sine of an angle that counts as none: a direction in a plane, nodes on a line.
@@ -47,7 +49,7 @@ pub(crate) const EXCHANGED_ROWS: usize = 1000;
 /// Rows of one group up to which its matrix is dense; beyond, where contact points share nodes, it is sparse.
 pub(crate) const GROUP_ROWS: usize = 120;
 /// Weight of the rows that an active set holds in the matrix of such a group, relative to their own entry.
-pub(crate) const HELD_ROWS: f64 = 1e8;
+pub const HELD_ROWS: f64 = 1e8;
 
 // ---- what is worth a table, a cut or a thread; seconds are those of one core ----
 
