@@ -49,7 +49,7 @@ pub(crate) const EXCHANGED_ROWS: usize = 1000;
 /// Rows of one group up to which its matrix is dense; beyond, where contact points share nodes, it is sparse.
 pub(crate) const GROUP_ROWS: usize = 120;
 /// Weight of the rows that an active set holds in the matrix of such a group, relative to their own entry.
-pub const HELD_ROWS: f64 = 1e8;
+pub(crate) const HELD_ROWS: f64 = 1e8;
 
 // ---- what is worth a table, a cut or a thread; seconds are those of one core ----
 
