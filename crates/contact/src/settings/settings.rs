@@ -146,7 +146,7 @@ impl Settings {
     /// The same program runs as every *rank* with the same scene and settings, makes the same calls in the same order,
     /// and has the same results, bit for bit, as one process. The matrices of the subdomains and the work with them are
     /// spread over the ranks. Observers are told on every rank; a run ends where any of them ends it. The library's own
-    /// files ([`ResultWriter`](crate::ResultWriter), checkpoints) and lines ([`Progress`](crate::Progress)) are those of
+    /// files (`ResultWriter`, checkpoints) and lines ([`Progress`](crate::Progress)) are those of
     /// rank 0; checkpoints are read by all.
     #[must_use]
     pub fn with_communicator(mut self, communicator: Arc<dyn Communicator>) -> Self {
