@@ -184,7 +184,11 @@ impl ContactConstraint {
         }
         if let Some(&compliance) = self.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
             let node = self.side.first();
-            return Err(TfetiError::BadCompliance { point, node, compliance });
+            return Err(TfetiError::BadCompliance {
+                point,
+                node,
+                compliance,
+            });
         }
         let [t1, t2] = self.frame.tangents;
         let axes = [self.frame.normal, t1, t2];
