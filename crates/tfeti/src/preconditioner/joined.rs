@@ -46,7 +46,7 @@ impl JoinedGroups {
         system: &Tfeti,
         rows: Vec<u32>,
         compliance: &[f64],
-        gives_way: &[f64],
+        gives_way: &HashMap<usize, f64>,
     ) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
         let places: HashMap<u32, usize> = rows.iter().enumerate().map(|(k, &row)| (row, k)).collect();
@@ -66,7 +66,7 @@ impl JoinedGroups {
             if let Some(diagonal) = matrix.find(k, k).filter(|_| dependent) {
                 matrix.values[diagonal] *= 1.0 + DEPENDENT;
             }
-            if let (Some(own), Some(diagonal)) = (gives_way.get(row as usize), matrix.find(k, k)) {
+            if let (Some(own), Some(diagonal)) = (gives_way.get(&(row as usize)), matrix.find(k, k)) {
                 matrix.values[diagonal] += own;
             }
         }

@@ -216,14 +216,16 @@ impl Gluing {
         !(self.springs.is_empty() && self.contact_compliance.is_empty())
     }
 
+    /// Rows that give way, contact rows and springs, with `C` of them in row units, m/N.
+    pub(crate) fn compliance(&self) -> impl Iterator<Item = (usize, f64)> {
+        let first = self.ranges.total() - self.springs.len();
+        let contact = self.contact_compliance.iter().copied().enumerate();
+        contact.chain((first..).zip(self.springs.iter().map(|s| s.compliance)))
+    }
+
     /// Adds what springs and contact rows give way to `B u`: `y += C x`, for whole dual vectors.
     pub fn add_compliance(&self, x: &[f64], y: &mut [f64]) {
-        let contact = x.iter().zip(&mut *y).zip(&self.contact_compliance);
-        contact.for_each(|((x, y), compliance)| *y += compliance * x);
-        let first = self.ranges.total() - self.springs.len();
-        let rows = x.iter().zip(y).skip(first);
-        rows.zip(&self.springs)
-            .for_each(|((x, y), spring)| *y += spring.compliance * x);
+        self.compliance().for_each(|(row, c)| y[row] += c * x[row]);
     }
 
     /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.
