@@ -40,6 +40,8 @@ signorini_fem_mesh::errors! {
             finite weights that sum to one";
         BadFrame { point: usize, node: u32 } =
             "contact point {point} (node {node}): normal and tangents are not orthonormal";
+        BadCompliance { point: usize, node: u32, compliance: f64 } =
+            "contact point {point} (node {node}): its compliance is {compliance}; it must be finite and not negative";
         BadStretch { point: usize, node: u32, stretch: f64 } =
             "contact point {point} (node {node}): friction along the second tangent is {stretch} times that along the \
             first; this must be finite and positive";

@@ -10,6 +10,7 @@ use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TiedRows};
+use std::collections::HashMap;
 use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
@@ -118,6 +119,18 @@ impl Model {
     /// Whether the law of some contact surface is such.
     pub(crate) fn any_law(&self, such: impl Fn(&Friction) -> bool) -> bool {
         self.scene.contacts.iter().any(|c| such(c.friction()))
+    }
+
+    /// How deep points are let into their obstacles or partners by normal compliance, m: by node their places and depths.
+    pub(crate) fn given_way(&self, lambda: &[f64]) -> HashMap<u32, Vec<(usize, f64)>> {
+        let mut out: HashMap<u32, Vec<(usize, f64)>> = HashMap::new();
+        let compliant = self.points.iter().enumerate();
+        for (k, point) in compliant.filter(|(_, p)| p.contact.compliance[0] > 0.0) {
+            let pressure = -point.scale * lambda[point.row] / point.area();
+            let depth = point.contact.compliance[0] * pressure;
+            out.entry(point.node()).or_default().push((k, depth));
+        }
+        out
     }
 
     /// Tangential rows.

@@ -47,6 +47,8 @@ pub struct Effects {
     pub moving_obstacle: bool,
     /// Gaps that change in time.
     pub gap_history: bool,
+    /// Contact that gives way along the normal or along the surface.
+    pub compliance: bool,
 }
 
 impl FrictionKind {
@@ -85,6 +87,7 @@ impl Effects {
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
             moving_obstacle: contacts.iter().any(|c| !c.tied && c.moves()),
             moving_ties: contacts.iter().any(|c| c.tied && c.moves()),
+            compliance: contacts.iter().any(|c| c.compliance != [0.0; 2]),
             gap_history: (0..contacts.len()).any(|k| has_gap(k) && contacts[k].gap_history.is_some()),
         }
     }

@@ -104,7 +104,8 @@ impl Plan {
         };
         let moving = if e.moving_obstacle { ", moving obstacle" } else { "" };
         let partners = if e.partners { ", between bodies" } else { "" };
-        format!("{} nodes, {gap}{moving}{partners}", self.normal_rows)
+        let compliant = if e.compliance { ", gives way" } else { "" };
+        format!("{} nodes, {gap}{moving}{partners}{compliant}", self.normal_rows)
     }
 
     fn friction_text(&self) -> String {

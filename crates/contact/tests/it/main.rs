@@ -5,6 +5,7 @@ mod bar;
 mod bodies;
 mod column;
 mod common;
+mod compliance;
 mod contact_stress;
 mod determinism;
 mod edges;

@@ -1,4 +1,4 @@
-//! The dual operator `F = B K+ B^T`, with what springs add.
+//! The dual operator `F = B K+ B^T`, with what springs and compliant contact add.
 
 use crate::dual::boundary::{BoundaryMap, Panel, PanelScratch};
 use crate::dual::inverses::ClassInverse;
@@ -9,8 +9,8 @@ use crate::tolerances::PRODUCT;
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
-/// `F = B K+ B^T`, applied without forming it; where there are springs, with their compliance on the diagonal of their
-/// rows.
+/// `F = B K+ B^T`, applied without forming it; where springs or contact rows give way, with their compliance on the
+/// diagonal.
 ///
 /// Each product gathers the multipliers of every subdomain into the columns of one matrix per class, multiplies it by
 /// the class's boundary inverse (or solves with its sparse factor) and gathers the rows of `B` from the result.

@@ -95,7 +95,9 @@ impl DualPreconditioner {
             })
             .collect::<Result<_, _>>()?;
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
-        let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
+        let gluing = system.gluing();
+        let plain = gluing.is_aligned() && gluing.contact_compliance().is_empty();
+        let needs_scaling = !plain || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
         let springs = Springs::new(system, needs_scaling);
         Ok(Self {
@@ -172,6 +174,7 @@ impl DualPreconditioner {
         };
         scaling.solve(x, y, scratch);
         self.stiffness_product(y, &mut s.dual, &mut s.panels);
+        scaling.add_compliance(y, &mut s.dual);
         scaling.solve(&s.dual, y, scratch);
     }
 }

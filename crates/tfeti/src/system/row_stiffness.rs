@@ -122,10 +122,12 @@ impl Tfeti {
     }
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one. `None` where all
-    /// copies [count alike](Self::copy_stiffness).
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a contact row that
+    /// gives way in proportion to both together. `None` where all copies [count alike](Self::copy_stiffness) and no
+    /// contact row gives way.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
-        if self.copy_stiffness().is_plain() {
+        let (plain, given) = (self.copy_stiffness().is_plain(), self.gluing().contact_compliance());
+        if plain && given.is_empty() {
             return None;
         }
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
@@ -136,7 +138,15 @@ impl Tfeti {
             let sum: f64 = self.gluing().row(row).into_iter().map(compliance).sum();
             if sum > 0.0 { 1.0 / sum } else { 0.0 }
         };
+        if plain {
+            let soft = given.iter().enumerate().map(|(row, c)| 1.0 / (1.0 + c * weight(row)));
+            let rest = self.dual_dim() - given.len();
+            return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
+        }
         let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
+        for (weight, compliance) in weights.iter_mut().zip(given) {
+            *weight /= 1.0 + compliance * *weight;
+        }
         let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for w in &mut weights {
             *w = if *w > 0.0 { *w / largest } else { 1.0 };
