@@ -87,9 +87,9 @@ pub(crate) const CUT: usize = 36;
 /// Most subdomains of a cluster. What products grow by with clusters, and seconds of a product and what belongs to it a
 /// row.
 pub(crate) const CLUSTER: usize = 12;
-pub(crate) const GROWTH: f64 = 0.5;
+pub(crate) const GROWTH: f64 = 1.0;
 pub(crate) const ROW: f64 = 2e-8;
-/// Cuts of a grid of blocks stand in every so-manieth layer, so that the pieces between them are equal.
+/// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
 pub(crate) const PERIOD: u32 = 4;
 /// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.
 pub(crate) const NODE: usize = 90;
