@@ -96,8 +96,8 @@ signorini_fem_mesh::errors! {
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart)";
         Tied { contact: usize } =
-            "contact {contact} is tied: its sides move alike, and friction, gap and direction mean nothing; leave them \
-            out, or use Contact::between";
+            "contact {contact} is tied: its sides move alike, and friction, gap, direction and rotation mean nothing; leave \
+            them out, or use Contact::between";
         MovedPartner { contact: usize } =
             "contact {contact} is between two bodies, and has no obstacle that could move or have a shape; move a body by \
             its supports instead, and give the obstacle a contact of its own";

@@ -94,4 +94,5 @@ pub mod internal {
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
     pub use crate::subdomain::forecast::{Forecast, Rate};
     pub use crate::subdomain::kernel::Kernel;
+    pub use crate::tolerances::HELD;
 }

@@ -124,7 +124,7 @@ fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) ->
         ContactConstraint::new(p.sides.own.clone(), p.frame)
             .with_partner(p.sides.partner.clone())
             .with_friction(contact.friction().is_some())
-            .with_moving_obstacle(contact.moves())
+            .with_moving_obstacle(contact.moves() && !contact.tied)
             .with_tied(contact.tied)
             .with_stretch(p.stretch)
     };

@@ -9,7 +9,7 @@ use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
-use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder};
+use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TiedRows};
 use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
@@ -56,6 +56,13 @@ impl Model {
         }
         out.iter_mut().for_each(|v| *v = v.sqrt());
         out
+    }
+
+    /// The rows of tied contacts, each with its point.
+    pub(crate) fn tied(&self) -> impl Iterator<Item = (&TiedRows, &ContactPoint)> {
+        let points = self.discrete.points.len();
+        let tied = self.tfeti.gluing().tied().iter();
+        tied.filter_map(move |t| Some((t, self.discrete.ties.get(t.point.checked_sub(points)?)?)))
     }
 
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales

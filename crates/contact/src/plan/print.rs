@@ -37,7 +37,8 @@ impl fmt::Display for Plan {
         line("gluing", self.gluing_text())?;
         line("supports", self.supports_text())?;
         if self.effects.ties {
-            line("ties", format!("{} rows", self.tied_rows))?;
+            let moving = if self.effects.moving_ties { ", moving" } else { "" };
+            line("ties", format!("{} rows{moving}", self.tied_rows))?;
         }
         line("contact", self.contact_text())?;
         line("friction", self.friction_text())?;

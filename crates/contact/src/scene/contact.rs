@@ -151,7 +151,8 @@ impl Contact {
     }
 
     /// Bonds two bodies, or parts of one that are meshed apart: both sides move alike where they face each other, as
-    /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is.
+    /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is, or
+    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts are tied.
     #[must_use]
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
@@ -262,6 +263,8 @@ impl Contact {
     /// sides, with [`with_normal`](Self::with_normal), and along sides that the motion maps onto themselves; elsewhere
     /// ways that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
     /// Friction laws that depend on the place stay with the nodes of the body.
+    ///
+    /// Of [tied](Self::tied) sides the first one moves against the other.
     #[must_use]
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));

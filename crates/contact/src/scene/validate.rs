@@ -105,10 +105,11 @@ impl Scene {
             }
         }
         let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
-        if contact.tied && (loose || contact.normal != ContactNormal::Body) {
+        let turned = contact.normal != ContactNormal::Body || contact.rotation.is_some();
+        if contact.tied && (loose || turned) {
             return Err(ContactError::Tied { contact: index });
         }
-        if (contact.moves() || contact.shape().is_some()) && !contact.partner.is_empty() {
+        if (contact.moves() && !contact.tied || contact.shape().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion

@@ -188,8 +188,13 @@ impl Builder<'_> {
             for row in std::iter::once(&p.normal).chain(&p.tangential) {
                 self.contact_row(of, row, &p.prescribed);
             }
-            let (point, rows) = (p.point, first..first + 1 + p.tangential.len());
-            self.gluing.tied.push(TiedRows { point, rows });
+            let rows = first..first + 1 + p.tangential.len();
+            let all = std::iter::once(&p.normal).chain(&p.tangential);
+            self.gluing.tied.push(TiedRows {
+                point: p.point,
+                rows,
+                directions: all.map(|row| (row.direction, row.scale)).collect(),
+            });
             self.gluing.aligned &= is_aligned(of, p);
         }
     }

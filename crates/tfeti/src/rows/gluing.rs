@@ -57,12 +57,15 @@ pub struct SpringRow {
 }
 
 /// The rows of a tied constraint.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TiedRows {
     /// Position in the list of contact points given.
     pub point: usize,
     /// Its rows: one for each direction that supports leave free.
     pub rows: std::ops::Range<usize>,
+    /// Their directions with their lengths: a row is the length times what the first side moves along the direction
+    /// against the other.
+    pub directions: Vec<([f64; 3], f64)>,
 }
 
 /// An entry of a row that is no interface row: a copy and the vector that multiplies its displacement.
