@@ -97,7 +97,7 @@ impl Clusters {
     /// The matrix of the clusters for these `values` of that of the subdomains.
     pub(crate) fn matrix(&self, fine: &CoarseMatrix, values: &[f64]) -> (CoarseMatrix, Vec<f64>) {
         let mut lower: Vec<Vec<u32>> = (0..self.count() as u32).map(|c| vec![c]).collect();
-        fine.for_blocks(values, &mut |a, b, _| {
+        fine.for_blocks(values, |a, b, _| {
             let (a, b) = (self.of[a as usize], self.of[b as usize]);
             lower[a.min(b) as usize].push(a.max(b));
         });
@@ -111,7 +111,7 @@ impl Clusters {
         });
         let matrix = CoarseMatrix::of_columns(columns);
         let mut sums = vec![0.0; matrix.pattern().values.len()];
-        fine.for_blocks(values, &mut |a, b, block| {
+        fine.for_blocks(values, |a, b, block| {
             let [p, q] = [a, b].map(|s| self.of[s as usize]);
             let both = times(&self.maps[a as usize], block, &self.maps[b as usize]);
             matrix.add_block(p, q, &both, &mut sums);

@@ -161,7 +161,7 @@ impl CoarseMatrix {
     }
 
     /// Hands each stored block of a matrix with these values to `each(row, column, block)`.
-    pub(crate) fn for_blocks(&self, values: &[f64], each: &mut dyn FnMut(u32, u32, &[[f64; 6]; 6])) {
+    pub(crate) fn for_blocks(&self, values: &[f64], mut each: impl FnMut(u32, u32, &[[f64; 6]; 6])) {
         for (j, pair) in self.pointers.windows(2).enumerate() {
             let list = &self.neighbours[pair[0]..pair[1]];
             for (k, &i) in list.iter().enumerate() {

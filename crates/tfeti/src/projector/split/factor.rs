@@ -92,7 +92,8 @@ impl SplitBase {
             tree,
         };
         if !out.tree.changes() {
-            let tiles = shared_tiles(&out.tree, &out.pieces, matrix, graph, values, &first)?;
+            let steady: Vec<_> = out.pieces.iter().map(|p| p.steady.clone()).collect();
+            let tiles = shared_tiles(&out.tree, &steady, matrix, graph, values, &first)?;
             for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
                 piece.tiles = tiles;
             }

@@ -6,7 +6,7 @@
 
 use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::dense;
-use crate::projector::split::factor::Piece;
+use crate::linalg::supernodes::Supernodes;
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
@@ -17,10 +17,10 @@ use std::sync::Arc;
 /// What a region leaves: its tiles, and for the later unknowns the update of each of its nodes.
 type Grown = (Tiles, Vec<Vec<f64>>);
 
-/// The tiles of each region, of which `first` is the first equal one; equal ones share theirs. `Err(pivot)` if the matrix is not positive definite.
+/// The tiles of each region, of which `first` is the first equal one; equal ones share theirs. `steady` are the patterns of the regions. `Err(pivot)` if the matrix is not positive definite.
 pub(super) fn shared_tiles(
     tree: &CoarseTree,
-    pieces: &[Piece],
+    steady: &[Arc<Supernodes>],
     matrix: &CoarseMatrix,
     graph: &[Vec<u32>],
     values: &[f64],
@@ -51,7 +51,7 @@ pub(super) fn shared_tiles(
     for height in 0..=heights.iter().copied().max().unwrap_or(0) {
         let now = || grown.iter().copied().filter(|&r| heights[r] == height);
         let load = |k: usize, columns: &mut [f64]| load_columns(matrix, tree, graph, k, values, columns);
-        let grow = |r: usize| grow(tree, r, &pieces[r], &node, &updates, &load);
+        let grow = |r: usize| grow(tree, r, &steady[r], &node, &updates, &load);
         let all: Vec<Grown> = now()
             .collect::<Vec<_>>()
             .into_par_iter()
@@ -75,7 +75,7 @@ pub(super) fn shared_tiles(
 fn grow(
     tree: &CoarseTree,
     r: usize,
-    piece: &Piece,
+    pattern: &Supernodes,
     node: &[usize],
     before: &[Vec<f64>],
     load: &(dyn Fn(usize, &mut [f64]) + Sync),
@@ -100,7 +100,7 @@ fn grow(
         dense::cholesky_columns(&mut front.columns, height, width, 0.0)
             .map_err(|pivot| 6 * this.columns.start + pivot)?;
         dense::subtract_columns(&mut front.update, &front.columns, height, width);
-        piece.steady.pack(k - own.start, &front.columns, &mut tiles.exact);
+        pattern.pack(k - own.start, &front.columns, &mut tiles.exact);
         updates.push(front.update);
     }
     tiles.round();
