@@ -70,7 +70,7 @@ fn coarse(c: &mut Criterion) -> Result<(), Failure> {
         let system = Body::new(n)?.system(true, InverseKind::Auto)?;
         let mut x = wave(system.dual_dim());
         let mut alpha = wave(system.coarse().rows());
-        let factor = system.coarse_factor();
+        let factor = system.coarse_factor()?;
         let mut scratch = factor.scratch();
         group.bench_function(BenchmarkId::new("solve", n), |b| {
             b.iter(|| factor.solve(black_box(&mut alpha), &mut scratch));

@@ -34,7 +34,7 @@
 //!
 //! let load = LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -1.0e6]);
 //! let response = system.load_response(&assemble_load(&mesh, &decomposition, &load)?)?;
-//! let factor = system.coarse_factor();
+//! let factor = system.coarse_factor()?;
 //! let mut scratch = factor.scratch();
 //! let mut lambda = vec![0.0; system.dual_dim()];
 //! factor.particular(&response.coarse, &mut lambda, &mut scratch);

@@ -86,6 +86,13 @@ pub(crate) const SPARSE: f64 = 0.1e-9;
 /// Most levels of cuts through coarse blocks that change, and fewest blocks worth a cut.
 pub(crate) const CUTS: usize = 4;
 pub(crate) const CUT: usize = 36;
+/// Most subdomains of a cluster. What products grow by with clusters, and seconds of a product and what belongs to it a
+/// row.
+pub(crate) const CLUSTER: usize = 12;
+pub(crate) const GROWTH: f64 = 1.0;
+pub(crate) const ROW: f64 = 2e-8;
+/// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
+pub(crate) const PERIOD: u32 = 4;
 /// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.
 pub(crate) const NODE: usize = 90;
 pub(crate) const BORDER: usize = 12;

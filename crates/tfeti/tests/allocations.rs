@@ -28,7 +28,7 @@ fn products_and_projectors_allocate_nothing() {
             let mut s = m.scratch();
             assert_eq!(measure(|| m.apply(&x, &mut y, &mut s)).count_total, 0);
         }
-        let c = system.coarse_factor().orthonormal().unwrap();
+        let c = system.coarse_factor().unwrap().orthonormal().unwrap();
         let (mut s, mut beta) = (c.scratch(), noise(c.rows(), 2));
         let count = measure(|| {
             c.apply(&x, &mut beta, &mut s);

@@ -18,7 +18,7 @@ impl OrthonormalRows {
     /// [`ContactError::NotDetermined`] if no row stops some rigid motion. The check of equilibrium has found before
     /// that the loads do not push along it.
     pub(super) fn new(model: &Model) -> Result<Self, ContactError> {
-        let factor = model.tfeti.coarse_factor();
+        let factor = model.tfeti.coarse_factor()?;
         let coarse = factor.orthonormal().ok_or_else(|| {
             let motions = factor.free_motions();
             let words: Vec<String> = motions.iter().map(ToString::to_string).collect();

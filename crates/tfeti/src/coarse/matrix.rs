@@ -103,10 +103,15 @@ impl CoarseMatrix {
             .into_par_iter()
             .map(|s| block_column(gluing, modes, &touching, s))
             .collect();
+        Self::of_columns(columns.into_iter())
+    }
+
+    /// From the block rows of each block column, ascending, the diagonal first, and its values.
+    pub(crate) fn of_columns(columns: impl ExactSizeIterator<Item = (Vec<u32>, Vec<f64>)>) -> Self {
         let mut matrix = Self {
             pointers: vec![0],
             neighbours: Vec::new(),
-            interface: Columns::empty(6 * subdomains),
+            interface: Columns::empty(6 * columns.len()),
         };
         for (list, values) in columns {
             for _ in 0..6 {
@@ -153,6 +158,28 @@ impl CoarseMatrix {
         let list = &self.neighbours[self.pointers[j as usize]..self.pointers[j as usize + 1]];
         let k = list.partition_point(|&n| n < i);
         (36 * self.pointers[j as usize] + 6 * k, 6 * list.len())
+    }
+
+    /// Hands each stored block of a matrix with these values to `each(row, column, block)`.
+    pub(crate) fn for_blocks(&self, values: &[f64], mut each: impl FnMut(u32, u32, &[[f64; 6]; 6])) {
+        for (j, pair) in self.pointers.windows(2).enumerate() {
+            let list = &self.neighbours[pair[0]..pair[1]];
+            for (k, &i) in list.iter().enumerate() {
+                let start = 36 * pair[0] + 6 * k;
+                let at = |r: usize, c: usize| values[start + 6 * list.len() * c + r];
+                each(i, j as u32, &std::array::from_fn(|r| std::array::from_fn(|c| at(r, c))));
+            }
+        }
+    }
+
+    /// Adds a block with rows of `i` and columns of `j`, or its transpose where that is stored.
+    pub(crate) fn add_block(&self, i: u32, j: u32, block: &[[f64; 6]; 6], values: &mut [f64]) {
+        let (start, stride) = self.place(i.max(j), i.min(j));
+        for r in 0..6 {
+            for c in 0..6 {
+                values[start + c * stride + r] += if i >= j { block[r][c] } else { block[c][r] };
+            }
+        }
     }
 
     /// Adds `weight g g^T`.

@@ -147,6 +147,11 @@ impl Mobility {
         &self.centres
     }
 
+    /// Rigid part of each subdomain.
+    pub(crate) fn part_of(&self) -> &[u32] {
+        &self.part_of
+    }
+
     pub(crate) fn bodies(&self) -> usize {
         self.body_of.iter().max().map_or(0, |b| *b as usize + 1)
     }

@@ -172,6 +172,12 @@ impl CoarseData {
         self.tables.contact_wrenches(contact, out);
     }
 
+    /// `out = G^T y` on the contact rows alone.
+    pub(crate) fn contact_transpose(&self, y: &[f64], out: &mut [f64], motions: &mut [[f64; 6]]) {
+        self.motions(y, motions);
+        self.tables.contact_motions(motions, out);
+    }
+
     /// Whether work on all interface rows is worth several threads.
     pub(crate) fn is_large(&self) -> bool {
         self.map.is_large()

@@ -1,10 +1,12 @@
 //! The projector of the active set method of `signorini-qp`: `G` weighted by the rows that are free.
 
+use crate::coarse::clusters::Clusters;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::error::TfetiError;
 use crate::linalg::tiles::Digits;
 use crate::projector::factor::{CoarseFactor, Factor};
+use crate::projector::levels::Bases;
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
 use crate::tolerances::{ROUNDED_STEP, WORK};
@@ -25,6 +27,8 @@ pub enum ActiveSetFactor {
     Sparse,
     /// What no subdomain with contact rows leads to is eliminated once; the rest of the tree is factored each time.
     Split,
+    /// A factor that stays, and one of clusters of subdomains that is made each time.
+    Levels,
 }
 
 /// `G x = e` with projectors weighted by the free rows of the current active set, see [`EqualityProjector`].
@@ -59,6 +63,8 @@ pub struct ActiveSetProjector {
 #[derive(Debug)]
 struct SplitParts {
     base: Option<Arc<SplitBase>>,
+    /// If the basis is one of clusters.
+    clusters: Option<Arc<Clusters>>,
     /// Leading rows with constraints.
     contact_rows: usize,
     fronts: Fronts,
@@ -101,19 +107,32 @@ impl ActiveSetProjector {
         }
         let mut weights = vec![1.0; coarse.dim()];
         weights[..contact_rows].fill(0.0);
-        let base = match kind {
+        let bases = match kind {
             ActiveSetFactor::Sparse => None,
-            _ => coarse.split(contact_rows, metric.as_deref()),
+            ActiveSetFactor::Auto => coarse.bases(contact_rows, metric.as_deref(), None),
+            _ => coarse.bases(contact_rows, metric.as_deref(), Some(kind == ActiveSetFactor::Levels)),
         };
-        let pays = |base: &SplitBase| kind == ActiveSetFactor::Split || base.pays(coarse.rows(), coarse.factor_size());
+        let pays = |bases: &Bases| {
+            let any = kind != ActiveSetFactor::Auto || bases.levels.is_some();
+            any || bases.changing.pays(coarse.rows(), coarse.factor_size())
+        };
+        let (base, levels) = bases
+            .filter(pays)
+            .map_or((None, None), |b| (Some(b.changing), b.levels));
+        let (clusters, fixed) = levels.map_or((None, None), |l| (Some(l.clusters), Some(l.always)));
         let mut parts = SplitParts {
-            base: base.filter(pays).map(Arc::new),
+            base: base.map(Arc::new),
+            clusters,
             contact_rows,
             fronts: Fronts::default(),
             contact: ContactWeights::default(),
         };
         let diagonal = weighted(&weights, metric.as_deref());
-        let factor = parts.factor(coarse, RowWeights::diagonal(diagonal), None)?;
+        let weighted = RowWeights::diagonal(diagonal);
+        let factor = match fixed {
+            Some(base) => parts.steady(coarse, Arc::new(base), weighted)?,
+            None => parts.factor(coarse, weighted, None)?,
+        };
         let mut scratch = factor.scratch();
         let motions = factor.free_motions().iter();
         let loose: Vec<_> = motions
@@ -154,7 +173,12 @@ impl ActiveSetProjector {
 
     /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
     pub fn amplitudes(&mut self, residual: &[f64], alpha: &mut [f64]) {
-        self.active.amplitudes(residual, alpha, &mut self.scratch);
+        match self.active.is_clustered() {
+            true => self
+                .active
+                .amplitudes_with(&self.always, residual, alpha, &mut self.scratch),
+            false => self.active.amplitudes(residual, alpha, &mut self.scratch),
+        }
     }
 
     /// An error if the right side does work on a free motion of a factor.
@@ -169,15 +193,39 @@ impl ActiveSetProjector {
         }
     }
 
-    /// Work of a step on the factor of the last active set, with its digits.
-    fn step(&mut self, work: impl FnOnce(&CoarseFactor, &mut [f64], &mut CoarseScratch)) {
+    /// Changes rows that are free on the last active set such that `G x = e`, zero if `None`.
+    fn restore(&mut self, x: &mut [f64], e: Option<&[f64]>) {
+        match self.active.is_clustered() {
+            true => self.active.project_with(&self.always, x, e, &mut self.scratch),
+            false => self.active.project(x, e, &mut self.scratch),
+        }
+    }
+
+    /// Work of a step, with its digits.
+    fn step(&mut self, work: impl FnOnce(&mut Self)) {
         self.scratch.digits = self.digits;
-        work(&self.active, &mut self.alpha, &mut self.scratch);
+        work(self);
         self.scratch.digits = Digits::Double;
     }
 }
 
 impl SplitParts {
+    /// The factor of a basis in which nothing changes.
+    fn steady(
+        &mut self,
+        coarse: &Coarse,
+        base: Arc<SplitBase>,
+        weights: RowWeights,
+    ) -> Result<CoarseFactor, TfetiError> {
+        match base.factor(&ContactWeights::default(), None, &mut Fronts::default()) {
+            Ok(factor) => {
+                let factor = Factor::Split(base, factor);
+                Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()))
+            }
+            Err(_) => coarse.factor_weighted(weights),
+        }
+    }
+
     /// The factor for `weights` on this basis; of the whole matrix if there is no basis, if free motions ask for a
     /// generalised inverse, or if the matrix is singular to working precision.
     fn factor(
@@ -192,7 +240,10 @@ impl SplitParts {
         if let Some(base) = self.base.as_ref().filter(usable) {
             self.contact.set(&weights.diagonal[..self.contact_rows], &weights.lines);
             if let Ok(factor) = base.factor(&self.contact, spare, &mut self.fronts) {
-                let factor = Factor::Split(base.clone(), factor);
+                let factor = match &self.clusters {
+                    Some(clusters) => Factor::Clusters(clusters.clone(), base.clone(), factor),
+                    None => Factor::Split(base.clone(), factor),
+                };
                 return Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()));
             }
         }
@@ -271,11 +322,15 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn project(&mut self, x: &mut [f64]) {
-        self.active.project(x, None, &mut self.scratch);
+        self.restore(x, None);
     }
 
     fn project_transpose(&mut self, g: &mut [f64]) {
-        self.active.project_transpose(g, &mut self.alpha, &mut self.scratch);
+        let (alpha, scratch) = (&mut self.alpha, &mut self.scratch);
+        match self.active.is_clustered() {
+            true => self.active.project_transpose_with(&self.always, g, alpha, scratch),
+            false => self.active.project_transpose(g, alpha, scratch),
+        }
     }
 
     fn rounds_steps(&self) -> bool {
@@ -283,11 +338,11 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn project_step(&mut self, x: &mut [f64]) {
-        self.step(|factor, _, scratch| factor.project(x, None, scratch));
+        self.step(|space| space.project(x));
     }
 
     fn project_step_transpose(&mut self, g: &mut [f64]) {
-        self.step(|factor, alpha, scratch| factor.project_transpose(g, alpha, scratch));
+        self.step(|space| space.project_transpose(g));
     }
 
     fn loose(&self) -> &[LooseMode] {
@@ -295,7 +350,7 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn balance(&mut self, x: &mut [f64], e: &[f64]) {
-        self.active.project(x, Some(e), &mut self.scratch);
+        self.restore(x, Some(e));
     }
 
     fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {

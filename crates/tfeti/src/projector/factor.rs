@@ -1,5 +1,6 @@
 //! Factors of `G W G^T` and their projectors.
 
+use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
 use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
@@ -9,7 +10,6 @@ use crate::linalg::both;
 use crate::linalg::sparse::{FactorError, SparseCholesky};
 use crate::linalg::tiles::Digits;
 use crate::projector::split::factor::{SplitBase, SplitFactor};
-use crate::projector::split::tree::cheapest_tree;
 use signorini_qp::internal::LineWeight;
 use std::ops::Range;
 use std::sync::Arc;
@@ -39,6 +39,8 @@ struct FactorData {
 pub(super) enum Factor {
     Sparse(Arc<SparseCholesky>),
     Split(Arc<SplitBase>, SplitFactor),
+    /// An approximation: that of the clusters.
+    Clusters(Arc<Clusters>, Arc<SplitBase>, SplitFactor),
 }
 
 impl Coarse {
@@ -85,29 +87,6 @@ impl Coarse {
         let factor = Factor::Sparse(Arc::new(factor));
         Ok(CoarseFactor::new(self.clone(), factor, weights, free))
     }
-
-    /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
-    /// factor can be split. `metric` is the weight of each row where it counts, one if `None`.
-    pub(super) fn split(&self, rows: usize, metric: Option<&[f64]>) -> Option<SplitBase> {
-        let data = &self.0;
-        let gluing = &data.gluing;
-        let ones = || vec![1.0; self.dim()];
-        let mut weights = RowWeights::diagonal(metric.map_or_else(ones, <[f64]>::to_vec));
-        let all = metric.is_some().then_some(&weights);
-        if rows > gluing.ranges().interface.start || !data.free_motions(all).is_empty() {
-            return None;
-        }
-        let mut changing = vec![false; data.subdomains.count()];
-        for e in (0..rows).flat_map(|row| gluing.nodal(row)) {
-            changing[e.subdomain as usize] = true;
-        }
-        let graph = data.matrix.graph();
-        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
-        let modes = ModeTable::new(&data.subdomains);
-        weights.diagonal[..rows].fill(0.0);
-        let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
-        SplitBase::new(tree, &data.matrix, &graph, &values, gluing, &modes, rows).ok()
-    }
 }
 
 impl CoarseFactor {
@@ -137,7 +116,7 @@ impl CoarseFactor {
     /// The memory of a split factor that nobody else uses.
     pub(super) fn into_split(self) -> Option<SplitFactor> {
         match Arc::into_inner(self.0)?.factor {
-            Factor::Split(_, factor) => Some(factor),
+            Factor::Split(_, factor) | Factor::Clusters(_, _, factor) => Some(factor),
             Factor::Sparse(_) => None,
         }
     }
@@ -146,7 +125,7 @@ impl CoarseFactor {
     pub fn stored(&self) -> usize {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.stored(),
-            Factor::Split(base, _) => base.stored(),
+            Factor::Split(base, _) | Factor::Clusters(_, base, _) => base.stored(),
         }
     }
 
@@ -168,9 +147,12 @@ impl CoarseFactor {
     /// Creates the work memory.
     pub fn scratch(&self) -> CoarseScratch {
         let mut scratch = self.0.coarse.scratch();
-        if let Factor::Split(base, _) = &self.0.factor {
-            scratch.split.resize(base.work(), 0.0);
-        }
+        let work = match &self.0.factor {
+            Factor::Sparse(_) => 0,
+            Factor::Split(base, _) => base.work(),
+            Factor::Clusters(clusters, base, _) => 6 * clusters.count() + base.work(),
+        };
+        scratch.split.resize(work, 0.0);
         scratch
     }
 
@@ -189,14 +171,29 @@ impl CoarseFactor {
                 }
                 base.solve(factor, y, &mut s.split, changing, s.digits);
             }
+            Factor::Clusters(clusters, base, factor) => {
+                let own = 6 * clusters.count();
+                if s.split.len() < own + base.work() {
+                    s.split.resize(own + base.work(), 0.0);
+                }
+                let (sums, work) = s.split.split_at_mut(own);
+                clusters.restrict(y, sums);
+                base.solve(factor, sums, work, changing, s.digits);
+                clusters.prolong(sums, y);
+            }
         }
     }
 
     /// Replaces the first vector of the memory by the solution for it.
-    fn solve_first(&self, s: &mut CoarseScratch, changing: bool) {
+    pub(super) fn solve_first(&self, s: &mut CoarseScratch, changing: bool) {
         let mut first = std::mem::take(&mut s.first);
         self.solve_some(&mut first, s, changing);
         s.first = first;
+    }
+
+    /// Whether it approximates only, by clusters.
+    pub(super) fn is_clustered(&self) -> bool {
+        matches!(self.0.factor, Factor::Clusters(..))
     }
 
     /// Whether the factor is stored in single precision, too.
@@ -265,7 +262,7 @@ impl CoarseFactor {
     }
 
     /// `x = x - W G^T y`, `y` the first vector of the memory.
-    fn subtract_weighted(&self, x: &mut [f64], s: &mut CoarseScratch) {
+    pub(super) fn subtract_weighted(&self, x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
         if !self.0.plain {
             data.product_transpose(&s.first, &mut s.dual, &mut s.motions);

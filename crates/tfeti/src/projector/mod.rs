@@ -2,9 +2,11 @@
 //!
 //! Uses `coarse` and what it uses. In go the coarse space and weights of the rows; out come the projectors `P`, `Q` and
 //! particular solutions (`factor`), rows with `C C^T = I` (`orthonormal`), and projectors for weights that change at
-//! every active set (`active_set`), with a factor of which only a part is done anew (`split`).
+//! every active set (`active_set`), with a factor of which only a part is done anew (`split`), or with one that stays
+//! and a small model that follows (`levels`).
 
 pub(crate) mod active_set;
 pub(crate) mod factor;
+pub(crate) mod levels;
 pub(crate) mod orthonormal;
 pub(crate) mod split;

@@ -114,7 +114,7 @@ impl<'a> TfetiBuilder<'a> {
         self
     }
 
-    /// Builds the system. A body that nothing holds is no error: see [`Tfeti::coarse_factor`] and its free motions.
+    /// Builds the system. A body that nothing holds is no error: see [`Coarse::free_motions`].
     ///
     /// # Errors
     /// Any of [`TfetiError`]: bad supports or contact constraints, unknown materials, subdomains whose stiffness is
@@ -169,16 +169,14 @@ impl<'a> TfetiBuilder<'a> {
             },
             || {
                 let (map, gluing) = (map.clone(), gluing.clone());
-                let coarse = Coarse::new(map, subdomains.clone(), gluing, centres)?;
-                let factor = coarse.factor()?;
-                Ok::<_, TfetiError>((coarse, factor))
+                Coarse::new(map, subdomains.clone(), gluing, centres)
             },
         );
         let inverses = inverses?;
-        let (coarse, factor) = coarse?;
+        let coarse = coarse?;
         exchange.check()?;
         let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
-        let motions = factor.free_motions().iter();
+        let free = coarse.free_motions(None)?;
         let report = SetupReport {
             subdomains: subdomains.count(),
             classes: class_reports(&subdomains.classes, &map, &inverses),
@@ -191,7 +189,7 @@ impl<'a> TfetiBuilder<'a> {
             table_bytes: map.bytes(),
             factorisations: 1 + inverses.0.iter().flatten().count(),
             analysed: known.map_or(inverses.0.iter().flatten().count(), |_| 0),
-            free_motions: motions.map(ToString::to_string).collect(),
+            free_motions: free.iter().map(ToString::to_string).collect(),
             classes_seconds,
             gluing_seconds,
             assembly_seconds,
@@ -206,15 +204,7 @@ impl<'a> TfetiBuilder<'a> {
             map,
             inverses,
         };
-        Ok(Tfeti::new(
-            parts,
-            dual,
-            coarse,
-            factor,
-            report,
-            decomposition,
-            stiffness,
-        ))
+        Ok(Tfeti::new(parts, dual, coarse, report, decomposition, stiffness))
     }
 }
 

@@ -25,11 +25,11 @@ pub struct SetupReport {
     pub removed: Vec<(RowKind, RemovalReason, usize)>,
     /// Bytes of the inverses and factors of subdomains, of several processes those that this one holds.
     pub inverse_bytes: u64,
-    /// Bytes of the coarse factor.
+    /// Bytes of a factor of the whole coarse matrix.
     pub coarse_bytes: u64,
     /// Bytes of the gather tables.
     pub table_bytes: u64,
-    /// Numeric factorisations, the coarse one included.
+    /// Numeric factorisations, with that of the coarse matrix, which the first solver makes.
     pub factorisations: usize,
     /// Patterns of subdomains that were analysed: one a class, none where a forecast had done it.
     pub analysed: usize,
@@ -43,7 +43,7 @@ pub struct SetupReport {
     pub assembly_seconds: f64,
     /// Seconds for the generalised inverses.
     pub inverse_seconds: f64,
-    /// Seconds for the coarse matrix and its factor beyond those for the inverses, which run beside it.
+    /// Seconds for the coarse matrix beyond those for the inverses, which run beside it.
     pub coarse_seconds: f64,
 }
 

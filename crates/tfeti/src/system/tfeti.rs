@@ -15,7 +15,7 @@ use crate::subdomain::matrices::Subdomains;
 use crate::system::report::SetupReport;
 use signorini_fem_mesh::Decomposition;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What operators share.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub struct Tfeti {
     pub(crate) parts: Parts,
     dual: DualOperator,
     coarse: Coarse,
-    factor: CoarseFactor,
+    factor: OnceLock<CoarseFactor>,
     report: SetupReport,
     stiffness: CopyStiffness,
     /// First unknown of each subdomain in torn vectors, and their length.
@@ -51,7 +51,6 @@ impl Tfeti {
         parts: Parts,
         dual: DualOperator,
         coarse: Coarse,
-        factor: CoarseFactor,
         report: SetupReport,
         decomposition: &Decomposition,
         stiffness: CopyStiffness,
@@ -66,7 +65,7 @@ impl Tfeti {
             parts,
             dual,
             coarse,
-            factor,
+            factor: OnceLock::new(),
             report,
             stiffness,
             offsets,
@@ -107,9 +106,17 @@ impl Tfeti {
         &self.coarse
     }
 
-    /// The factor of `G G^T`. If its free motions are not empty, no row stops the body from moving that way.
-    pub fn coarse_factor(&self) -> &CoarseFactor {
-        &self.factor
+    /// The factor of `G G^T`, made when it is first asked for. If its free motions are not empty, no row stops the body
+    /// from moving that way.
+    ///
+    /// # Errors
+    /// Those of [`Coarse::factor`].
+    pub fn coarse_factor(&self) -> Result<&CoarseFactor, TfetiError> {
+        if let Some(factor) = self.factor.get() {
+            return Ok(factor);
+        }
+        let factor = self.coarse.factor()?;
+        Ok(self.factor.get_or_init(|| factor))
     }
 
     /// What was built, how large it is and how long it took.

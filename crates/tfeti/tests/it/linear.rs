@@ -8,7 +8,7 @@ use signorini_tfeti::{Motion, NodeSupport, Tfeti, TfetiBuilder};
 /// Solves the linear problem (no contact) by projected conjugate gradients and returns the nodal displacement.
 fn solve(decomposition: &Decomposition, system: &Tfeti, loads: &[Vec<f64>], offsets: &[f64]) -> (Vec<f64>, usize) {
     let response = system.load_response(loads).unwrap();
-    let (f, factor) = (system.dual(), system.coarse_factor());
+    let (f, factor) = (system.dual(), system.coarse_factor().unwrap());
     let (mut fs, mut cs) = (f.scratch(), factor.scratch());
     let dim = f.dim();
     let d: Vec<f64> = offsets.iter().zip(&response.dual).map(|(c, b)| c - b).collect();

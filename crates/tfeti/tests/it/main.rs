@@ -6,6 +6,7 @@ mod coarse;
 mod common;
 mod forecast;
 mod kernel;
+mod levels;
 mod linear;
 mod operators;
 mod preconditioners;

@@ -133,7 +133,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
                 assert!(boundary >= 3 * 8000, "{boundary}");
                 let x = noise(system.dual_dim(), 1);
                 let y = product(&system, &x);
-                let c = system.coarse_factor().orthonormal().unwrap();
+                let c = system.coarse_factor().unwrap().orthonormal().unwrap();
                 let (mut s, mut beta, mut q) = (c.scratch(), vec![0.0; c.rows()], vec![0.0; c.dim()]);
                 c.apply(&x, &mut beta, &mut s);
                 c.apply_transpose(&beta, &mut q, &mut s);

@@ -8,7 +8,7 @@ use signorini_tfeti::{DualPreconditioner, Tfeti};
 
 /// Iterations of preconditioned projected conjugate gradients to a relative residual of 1e-8.
 fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&DualPreconditioner>) -> usize {
-    let (f, factor) = (system.dual(), system.coarse_factor());
+    let (f, factor) = (system.dual(), system.coarse_factor().unwrap());
     let (mut fs, mut cs) = (f.scratch(), factor.scratch());
     let dim = f.dim();
     let mut r = noise(dim, 17);

@@ -18,7 +18,7 @@ fn scratch_is_reused() {
         f.apply(&noise(f.dim(), 2), &mut z, &mut s);
         f.apply(&x, &mut z, &mut s);
         assert_eq!(y, z);
-        let c = system.coarse_factor().orthonormal().unwrap();
+        let c = system.coarse_factor().unwrap().orthonormal().unwrap();
         let (mut cs, mut a, mut again) = (c.scratch(), vec![0.0; c.rows()], vec![0.0; c.rows()]);
         c.apply(&x, &mut a, &mut cs);
         c.apply_transpose(&a, &mut z, &mut cs);

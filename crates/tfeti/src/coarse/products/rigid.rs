@@ -137,6 +137,11 @@ impl RigidTables {
         }
     }
 
+    /// `B R alpha` on the contact rows, from the motions of the subdomains.
+    pub(crate) fn contact_motions(&self, motions: &[[f64; 6]], x: &mut [f64]) {
+        self.contact.motions(motions, &self.arms, x, &|_, x, v| *x = v);
+    }
+
     /// Hands `B R alpha` to `interface(x, value)` and `other(row, x, value)`, row by row, with the entries of `x`;
     /// contact rows are left out on demand.
     /// `motions` are those of the subdomains, about their means, rotations in radians.

@@ -5,17 +5,19 @@
 //! new active set adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut run
 //! on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
 
-use crate::coarse::matrix::{CoarseMatrix, ModeTable};
+use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::both;
 use crate::linalg::dense;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
-use crate::projector::split::fronts::{ContactFronts, ContactWeights};
+use crate::projector::split::front::{Front, extend, load_columns};
+use crate::projector::split::fronts::{ContactFronts, ContactRow, ContactWeights};
+use crate::projector::split::shared::{share, shared_tiles};
 use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
-use crate::rows::gluing::Gluing;
 use crate::tolerances::{OPERATIONS, READ, SINGULAR, SOLVES, SPARSE};
 use signorini_qp::internal::LineWeight;
+use std::sync::Arc;
 
 /// What does not depend on the weights of contact rows.
 #[derive(Debug)]
@@ -33,10 +35,10 @@ pub(crate) struct SplitBase {
 }
 
 /// Storage of one region.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Piece {
-    pub(crate) steady: Supernodes,
-    pub(crate) tiles: Tiles,
+    pub(crate) steady: Arc<Supernodes>,
+    pub(crate) tiles: Arc<Tiles>,
     pub(crate) changing: Supernodes,
     /// Whether nothing changes in the region and those within.
     pub(crate) is_steady: bool,
@@ -60,36 +62,43 @@ pub(crate) struct SplitFactor {
 #[derive(Debug, Default)]
 pub(crate) struct Fronts(Vec<Front>);
 
-/// Columns of a node, and what is subtracted from the later unknowns of its border: lower triangles.
-#[derive(Debug, Clone, Default)]
-struct Front {
-    columns: Vec<f64>,
-    update: Vec<f64>,
-}
-
 impl SplitBase {
-    /// From the `values` of the matrix without its first `contact` rows, which are contact rows.
+    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells.
     pub(crate) fn new(
-        tree: CoarseTree,
+        mut tree: CoarseTree,
         matrix: &CoarseMatrix,
         graph: &[Vec<u32>],
         values: &[f64],
-        gluing: &Gluing,
-        modes: &ModeTable<'_>,
         contact: usize,
+        write: &ContactRow<'_>,
     ) -> Result<Self, usize> {
-        let mut pieces = Vec::with_capacity(tree.regions.len());
-        for region in &tree.regions {
-            pieces.push(Piece::new(&tree, region, &pieces));
+        let first = match tree.changes() {
+            true => (0..tree.regions.len()).collect(),
+            false => share(&mut tree, matrix, graph, values),
+        };
+        let mut pieces: Vec<Piece> = Vec::with_capacity(tree.regions.len());
+        for (r, region) in tree.regions.iter().enumerate() {
+            pieces.push(match pieces.get(first[r]) {
+                Some(equal) => equal.clone(),
+                None => Piece::new(&tree, region, &pieces),
+            });
         }
         let mut out = Self {
             threshold: 0.0,
             base: Vec::new(),
             pieces,
-            contact: ContactFronts::new(&tree, gluing, modes, contact),
+            contact: ContactFronts::new(&tree, contact, write),
             rows: contact,
             tree,
         };
+        if !out.tree.changes() {
+            let steady: Vec<_> = out.pieces.iter().map(|p| p.steady.clone()).collect();
+            let tiles = shared_tiles(&out.tree, &steady, matrix, graph, values, &first)?;
+            for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
+                piece.tiles = tiles;
+            }
+            return Ok(out);
+        }
         let mut fronts = vec![Front::default(); out.tree.nodes.len()];
         let mut tiles = vec![Tiles::default(); out.pieces.len()];
         let load = |k: usize, front: &mut Front| {
@@ -107,7 +116,7 @@ impl SplitBase {
         work.grow(out.pieces.len().wrapping_sub(1), &mut fronts, &mut tiles)?;
         out.base = fronts.into_iter().map(|f| f.columns).collect();
         for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
-            piece.tiles = tiles;
+            piece.tiles = Arc::new(tiles);
         }
         let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
@@ -127,8 +136,16 @@ impl SplitBase {
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
         // a rounded tile is half a tile
-        let tiles = |p: &Piece| Tile::NUMBERS * (p.steady.tiles() + p.changing.tiles()) * 3 / 2;
-        self.pieces.iter().map(tiles).sum::<usize>() + self.base.iter().map(Vec::len).sum::<usize>()
+        let tiles = |count: usize| Tile::NUMBERS * count * 3 / 2;
+        // equal regions share theirs
+        let mut steady: Vec<(*const Tiles, usize)> = (self.pieces.iter())
+            .map(|p| (Arc::as_ptr(&p.tiles), p.steady.tiles()))
+            .collect();
+        steady.sort_unstable();
+        steady.dedup_by_key(|s| s.0);
+        let steady: usize = steady.iter().map(|s| tiles(s.1)).sum();
+        let changing: usize = self.pieces.iter().map(|p| tiles(p.changing.tiles())).sum();
+        steady + changing + self.base.iter().map(Vec::len).sum::<usize>()
     }
 
     /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows`
@@ -194,8 +211,8 @@ impl Piece {
             work: slot + children().map(|c| c.work).sum::<usize>(),
             reads: Tile::NUMBERS * (steady.tiles() + changing.tiles()) + children().map(|c| c.reads).sum::<usize>(),
             operations: own.map(|n| n.operations()).sum::<f64>() + children().map(|c| c.operations).sum::<f64>(),
-            tiles: Tiles::default(),
-            steady,
+            tiles: Arc::default(),
+            steady: Arc::new(steady),
             changing,
         }
     }
@@ -255,7 +272,7 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
             dense::subtract_columns(&mut front.update, &front.columns, height, width);
             let (group, first) = match self.changing {
                 true => (&pieces[r].changing, region.changing.start),
-                false => (&pieces[r].steady, region.steady.start),
+                false => (&*pieces[r].steady, region.steady.start),
             };
             let tiles = &mut tiles[r - region.first_region];
             group.pack(k - first, &front.columns, &mut tiles.exact);
@@ -265,62 +282,5 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
         }
         tiles[r - region.first_region].round();
         Ok(())
-    }
-}
-
-/// Adds the entries of the columns of node `k` of a tree of this `graph`.
-fn load_columns(
-    matrix: &CoarseMatrix,
-    tree: &CoarseTree,
-    graph: &[Vec<u32>],
-    k: usize,
-    values: &[f64],
-    columns: &mut [f64],
-) {
-    let node = &tree.nodes[k];
-    for q in node.columns.clone() {
-        let a = tree.blocks[q];
-        for &b in graph[a as usize].iter().chain([&a]) {
-            let p = tree.place[b as usize];
-            if (p as usize) < q {
-                continue;
-            }
-            let target = &mut columns[node.place(p, q as u32)..];
-            let (start, stride) = matrix.place(a.max(b), a.min(b));
-            for c in 0..6 {
-                for r in 0..6 {
-                    let (row, column) = if a <= b { (r, c) } else { (c, r) };
-                    target[c * node.height() + r] += values[start + column * stride + row];
-                }
-            }
-        }
-    }
-}
-
-/// Adds the update of a child, whose border blocks stand at the places `into`, to a front.
-fn extend(update: &[f64], into: &[u32], front: &mut Front, width: usize, height: usize) {
-    let (size, behind) = (6 * into.len(), height - width);
-    for (j, &column) in into.iter().enumerate() {
-        for c in 0..6 {
-            let source = &update[(6 * j + c) * size..][..size];
-            let start = 6 * column as usize + c;
-            let target = match start < width {
-                true => &mut front.columns[start * height..][..height],
-                false => &mut front.update[(start - width) * behind..][..behind],
-            };
-            let skip = if start < width { 0 } else { width };
-            let mut i = j;
-            while i < into.len() {
-                let first = i;
-                i += 1;
-                while i < into.len() && into[i] == into[i - 1] + 1 {
-                    i += 1;
-                }
-                let target = &mut target[6 * into[first] as usize - skip..][..6 * (i - first)];
-                for (t, s) in target.iter_mut().zip(&source[6 * first..6 * i]) {
-                    *t += s;
-                }
-            }
-        }
     }
 }

@@ -1,8 +1,6 @@
 //! What the contact rows add to the fronts of the coarse matrix.
 
-use crate::coarse::matrix::ModeTable;
 use crate::projector::split::tree::CoarseTree;
-use crate::rows::gluing::Gluing;
 use signorini_qp::internal::LineWeight;
 
 /// The terms `w_r g_r g_r^T` of the contact rows `r`, by the node to whose columns they belong.
@@ -53,15 +51,19 @@ struct Term {
     place: usize,
 }
 
+/// Appends the entries of a contact row: six coefficients a block.
+pub(crate) type ContactRow<'a> = dyn Fn(usize, &mut Vec<(u32, [f64; 6])>) + 'a;
+
 impl ContactFronts {
-    pub(crate) fn new(tree: &CoarseTree, gluing: &Gluing, modes: &ModeTable<'_>, rows: usize) -> Self {
+    /// `write` appends the entries of one of the leading `rows` of `G^T`.
+    pub(crate) fn new(tree: &CoarseTree, rows: usize, write: &ContactRow<'_>) -> Self {
         let mut vectors: Vec<[f64; 6]> = Vec::new();
         let mut terms: Vec<(usize, Term)> = Vec::new();
         let (mut row, mut before) = (Vec::new(), Vec::new());
         let mut paired = vec![false; rows];
         for nodal in 0..rows {
             row.clear();
-            modes.row(gluing, nodal, 1.0, &mut row);
+            write(nodal, &mut row);
             let subdomains: Vec<u32> = row.iter().map(|(s, _)| *s).collect();
             if nodal > 0 {
                 paired[nodal - 1] = subdomains == before;

@@ -5,7 +5,7 @@
 //! eliminates its steady blocks before the changing ones.
 
 use crate::linalg::sparse::{FactorError, minimum_degree};
-use crate::tolerances::CUT;
+use crate::tolerances::{CUT, PERIOD};
 use std::ops::Range;
 
 /// Blocks in the order of elimination and the regions of the cuts.
@@ -29,12 +29,13 @@ pub(crate) struct Region {
 
 impl Dissection {
     /// For the `graph` of the blocks (neighbours of each, without itself) at `centres`; `cuts` levels of cuts go
-    /// through the blocks that are `changing`.
+    /// through the blocks that are `changing`. In a `grid` the pieces are alike.
     pub(crate) fn new(
         graph: &[Vec<u32>],
         centres: &[[f64; 3]],
         changing: &[bool],
         cuts: usize,
+        grid: Option<&[[u32; 3]]>,
     ) -> Result<Self, FactorError> {
         let mut out = Self {
             blocks: Vec::with_capacity(graph.len()),
@@ -44,6 +45,7 @@ impl Dissection {
             graph,
             centres,
             changing,
+            grid,
             mark: vec![ELSEWHERE; graph.len()],
         };
         out.region(work, (0..graph.len() as u32).collect(), cuts)?;
@@ -81,6 +83,8 @@ struct Cutter<'a> {
     graph: &'a [Vec<u32>],
     centres: &'a [[f64; 3]],
     changing: &'a [bool],
+    /// Layers of the blocks in a grid, if they stand in one.
+    grid: Option<&'a [[u32; 3]]>,
     /// Sides of the blocks of a cut.
     mark: Vec<u8>,
 }
@@ -96,7 +100,13 @@ impl Cutter<'_> {
         }
         let mut best: Option<[Vec<u32>; 3]> = None;
         for axis in 0..3 {
-            let sides = self.halves(blocks, axis);
+            let sides = match self.grid {
+                Some(grid) => match self.layer(blocks, grid, axis) {
+                    Some(sides) => sides,
+                    None => continue,
+                },
+                None => self.halves(blocks, axis),
+            };
             let balanced = sides[0].len().min(sides[2].len()) * 5 >= blocks.len();
             let thinner = best.as_ref().is_none_or(|b| sides[1].len() < b[1].len());
             if balanced && thinner {
@@ -104,6 +114,20 @@ impl Cutter<'_> {
             }
         }
         best
+    }
+
+    /// Left, layer and right of the layer of a grid that divides most evenly, among those with the largest power of two.
+    fn layer(&self, blocks: &[u32], grid: &[[u32; 3]], axis: usize) -> Option<[Vec<u32>; 3]> {
+        let at = |b: u32| grid[b as usize][axis];
+        let all = blocks.iter().map(|&b| at(b));
+        let (first, last) = (all.clone().min()?, all.max()?);
+        let even = |&c: &u32| 3 * (c - first).min(last - c) > last - first;
+        let layers = (first..last).filter(|c| (c + 1).is_multiple_of(PERIOD)).filter(even);
+        let cut = layers.max_by_key(|c| ((c + 1).trailing_zeros(), (c - first).min(last - c)))?;
+        let side = |keep: fn(&u32, &u32) -> bool| blocks.iter().copied().filter(|&b| keep(&at(b), &cut)).collect();
+        let sides: [Vec<u32>; 3] = [side(u32::lt), side(u32::eq), side(u32::gt)];
+        let crosses = |b: &u32| self.graph[*b as usize].iter().any(|&n| at(n) > cut && at(n) <= last);
+        (!sides[0].iter().any(crosses)).then_some(sides)
     }
 
     /// Left, layer and right of the median along an axis.
@@ -132,6 +156,26 @@ impl Cutter<'_> {
         }
         sides
     }
+}
+
+/// The layers of points that stand in a grid, along each axis; `None` if most places of the grid are empty.
+pub(crate) fn grid_of(points: &[[f64; 3]]) -> Option<Vec<[u32; 3]>> {
+    let mut out = vec![[0; 3]; points.len()];
+    let mut places = 1_usize;
+    for axis in 0..3 {
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by(|&a, &b| points[a][axis].total_cmp(&points[b][axis]));
+        let (first, last) = (*order.first()?, *order.last()?);
+        let gap = 1e-6 * (points[last][axis] - points[first][axis]);
+        let (mut layer, mut before) = (0, points[first][axis]);
+        for k in order {
+            layer += u32::from(points[k][axis] - before > gap);
+            before = points[k][axis];
+            out[k][axis] = layer;
+        }
+        places = places.saturating_mul(layer as usize + 1);
+    }
+    (places <= 2 * points.len()).then_some(out)
 }
 
 /// Order of a part: minimum degree among the part and the blocks around it, which come later and are then all coupled.
@@ -202,7 +246,7 @@ pub(crate) mod tests {
         let (graph, centres) = grid([20, 4, 3]);
         let bottom: Vec<bool> = centres.iter().map(|c| c[2] == 0.0).collect();
         for (changing, cuts) in [(vec![false; 240], 0), (bottom.clone(), 0), (bottom, 2)] {
-            let d = Dissection::new(&graph, &centres, &changing, cuts).unwrap();
+            let d = Dissection::new(&graph, &centres, &changing, cuts, None).unwrap();
             let mut sorted = d.blocks.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq(0..240), "a permutation");
@@ -231,7 +275,7 @@ pub(crate) mod tests {
     #[test]
     fn blocks_at_one_point_are_one_region() {
         let graph: Vec<Vec<u32>> = (0..50).map(|a| if a > 0 { vec![a - 1] } else { vec![] }).collect();
-        let d = Dissection::new(&graph, &[[1.0; 3]; 50], &[true; 50], 3).unwrap();
+        let d = Dissection::new(&graph, &[[1.0; 3]; 50], &[true; 50], 3, None).unwrap();
         assert_eq!((d.regions.len(), d.blocks.len()), (1, 50));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::linalg::elimination::{grouped, patterns};
 use crate::linalg::sparse::FactorError;
-use crate::projector::split::order::{Dissection, Region};
+use crate::projector::split::order::{Dissection, Region, grid_of};
 use crate::tolerances::{BORDER, CUTS, NODE, OPERATION, READ, SOLVES};
 use std::ops::Range;
 
@@ -122,7 +122,18 @@ impl CoarseTree {
         changing: &[bool],
         cuts: usize,
     ) -> Result<Self, FactorError> {
-        let Dissection { blocks, regions } = Dissection::new(graph, centres, changing, cuts)?;
+        Self::cut(graph, changing, Dissection::new(graph, centres, changing, cuts, None)?)
+    }
+
+    /// For blocks none of which changes; where they stand in a grid, most regions are equal to others.
+    pub(crate) fn regular(graph: &[Vec<u32>], centres: &[[f64; 3]]) -> Result<Self, FactorError> {
+        let (changing, grid) = (vec![false; graph.len()], grid_of(centres));
+        let cuts = Dissection::new(graph, centres, &changing, 0, grid.as_deref())?;
+        Self::cut(graph, &changing, cuts)
+    }
+
+    fn cut(graph: &[Vec<u32>], changing: &[bool], cuts: Dissection) -> Result<Self, FactorError> {
+        let Dissection { blocks, regions } = cuts;
         let blocks = postorder(&blocks, &patterns(graph, &blocks), &regions, changing);
         let patterns = patterns(graph, &blocks);
         let mut place = vec![0; blocks.len()];
@@ -157,6 +168,35 @@ impl CoarseTree {
         let own = root.steady.start..root.changing.end;
         let middle = (root.region.children).map_or(0, |[_, right]| self.regions[right].first_node);
         sum(own.clone()) + sum(0..middle).max(sum(middle..own.start))
+    }
+
+    /// Whether anything changes.
+    pub(crate) fn changes(&self) -> bool {
+        self.nodes.iter().any(|n| n.changing)
+    }
+
+    /// Places in a region of what is behind the regions within and in the borders that lead to it, for lists in any
+    /// order; those of the `equal` region are taken over, if that is another one.
+    pub(crate) fn place_children(&mut self, r: usize, equal: usize) {
+        let children = |r: usize| self.regions[r].region.children.into_iter().flatten();
+        let pairs: Vec<(usize, usize)> = children(r).zip(children(equal)).collect();
+        for (child, other) in pairs {
+            let region = &self.regions[r];
+            let lift = match equal == r {
+                true => self.regions[child].behind.iter().map(|&p| region.local(p)).collect(),
+                false => self.regions[other].lift.clone(),
+            };
+            self.regions[child].lift = lift;
+        }
+        for k in self.regions[r].steady.start..self.regions[r].changing.end {
+            for child in self.nodes[k].children.clone() {
+                if equal == r {
+                    let above = &self.nodes[k];
+                    let into = self.nodes[child].border.iter().map(|&p| above.local(p)).collect();
+                    self.nodes[child].into = into;
+                }
+            }
+        }
     }
 
     /// The node that holds a position.

@@ -1,0 +1,175 @@
+//! Clusters of about eight subdomains that move as one: a small model of `G W G^T`.
+
+use crate::coarse::matrix::CoarseMatrix;
+use crate::coarse::mobility::Mobility;
+use crate::linalg::entry;
+use crate::subdomain::kernel::{Kernel, displacement, mean};
+use crate::subdomain::matrices::Subdomains;
+use crate::tolerances::CLUSTER;
+use signorini_fem_mesh::vec3::sub;
+
+type Block = [[f64; 6]; 6];
+
+/// Which subdomains move together, and how.
+#[derive(Debug)]
+pub(crate) struct Clusters {
+    of: Vec<u32>,
+    /// Amplitudes of each subdomain from the motion of its cluster, row-major.
+    maps: Vec<Block>,
+    centres: Vec<[f64; 3]>,
+}
+
+impl Clusters {
+    /// Clusters of these subdomains, each within one rigid part.
+    pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains) -> Self {
+        let (at, parts) = (mobility.centres(), mobility.part_of());
+        let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
+        let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
+        (0_u32..)
+            .zip(parts)
+            .for_each(|(s, &part)| groups[part as usize].push(s));
+        let mut members: Vec<Vec<u32>> = Vec::new();
+        groups.into_iter().for_each(|group| halve(group, at, &mut members));
+        let mut of = vec![0; at.len()];
+        for (k, list) in members.iter().enumerate() {
+            list.iter().for_each(|&s| of[s as usize] = k as u32);
+        }
+        let count = at.len().max(1) as f64;
+        let length = (0..at.len()).map(|s| subdomains.kernel(s).radius()).sum::<f64>() / count;
+        let centre = |list: &Vec<u32>| mean(list.iter().map(|&s| at[s as usize]));
+        let mut out = Self {
+            of,
+            maps: Vec::new(),
+            centres: members.iter().map(centre).collect(),
+        };
+        let each = out.of.iter().enumerate();
+        out.maps = each
+            .map(|(s, &cluster)| {
+                let arm = sub(at[s], out.centres[cluster as usize]).map(|d| d / length);
+                rigid_map(subdomains.kernel(s), &arm, length)
+            })
+            .collect();
+        out
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.centres.len()
+    }
+
+    pub(crate) fn centres(&self) -> &[[f64; 3]] {
+        &self.centres
+    }
+
+    /// Clusters with subdomains that are marked.
+    pub(crate) fn marks(&self, marked: &[bool]) -> Vec<bool> {
+        let mut out = vec![false; self.count()];
+        let both = self.of.iter().zip(marked);
+        both.for_each(|(&c, marked)| out[c as usize] |= marked);
+        out
+    }
+
+    /// A row of `G^T` on the clusters.
+    pub(crate) fn join(&self, row: &[(u32, [f64; 6])], out: &mut Vec<(u32, [f64; 6])>) {
+        for (s, g) in row {
+            let sum = entry(out, self.of[*s as usize], [0.0; 6]);
+            add_restricted(&self.maps[*s as usize], g, sum);
+        }
+    }
+
+    /// Wrenches on the clusters from those on the subdomains.
+    pub(crate) fn restrict(&self, y: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        let (out, _) = out.as_chunks_mut::<6>();
+        let each = y.as_chunks::<6>().0.iter().zip(&self.maps).zip(&self.of);
+        each.for_each(|((y, map), &cluster)| add_restricted(map, y, &mut out[cluster as usize]));
+    }
+
+    /// Amplitudes of the subdomains from the motions of the clusters.
+    pub(crate) fn prolong(&self, motions: &[f64], y: &mut [f64]) {
+        let (motions, _) = motions.as_chunks::<6>();
+        let each = y.as_chunks_mut::<6>().0.iter_mut().zip(&self.maps).zip(&self.of);
+        for ((y, map), &cluster) in each {
+            let motion = &motions[cluster as usize];
+            *y = std::array::from_fn(|i| (0..6).map(|j| map[i][j] * motion[j]).sum());
+        }
+    }
+
+    /// The matrix of the clusters for these `values` of that of the subdomains.
+    pub(crate) fn matrix(&self, fine: &CoarseMatrix, values: &[f64]) -> (CoarseMatrix, Vec<f64>) {
+        let mut lower: Vec<Vec<u32>> = (0..self.count() as u32).map(|c| vec![c]).collect();
+        fine.for_blocks(values, |a, b, _| {
+            let (a, b) = (self.of[a as usize], self.of[b as usize]);
+            lower[a.min(b) as usize].push(a.max(b));
+        });
+        lower.iter_mut().for_each(|list| {
+            list.sort_unstable();
+            list.dedup();
+        });
+        let columns = lower.into_iter().map(|list| {
+            let values = vec![0.0; 36 * list.len()];
+            (list, values)
+        });
+        let matrix = CoarseMatrix::of_columns(columns);
+        let mut sums = vec![0.0; matrix.pattern().values.len()];
+        fine.for_blocks(values, |a, b, block| {
+            let [p, q] = [a, b].map(|s| self.of[s as usize]);
+            let both = times(&self.maps[a as usize], block, &self.maps[b as usize]);
+            matrix.add_block(p, q, &both, &mut sums);
+            if p == q && a != b {
+                matrix.add_block(p, p, &transposed(&both), &mut sums);
+            }
+        });
+        (matrix, sums)
+    }
+}
+
+/// Halves a group along its longest extent, between layers, until each part is a cluster.
+fn halve(mut group: Vec<u32>, at: &[[f64; 3]], out: &mut Vec<Vec<u32>>) {
+    let range = |axis: usize| {
+        let all = group.iter().map(|&s| at[s as usize][axis]);
+        all.clone().fold(f64::NEG_INFINITY, f64::max) - all.fold(f64::INFINITY, f64::min)
+    };
+    let extents = [0, 1, 2].map(range);
+    let axis = (1..3).fold(0, |best, axis| if extents[axis] > extents[best] { axis } else { best });
+    if group.len() <= CLUSTER || extents[axis] <= 0.0 {
+        return out.push(group);
+    }
+    let coordinate = |s: u32| at[s as usize][axis];
+    group.sort_by(|&a, &b| coordinate(a).total_cmp(&coordinate(b)).then(a.cmp(&b)));
+    let between = |k: &usize| coordinate(group[*k]) - coordinate(group[*k - 1]) > 1e-6 * extents[axis];
+    let middle = group.len() / 2;
+    let cut = (1..group.len()).filter(between).min_by_key(|k| k.abs_diff(middle));
+    let right = group.split_off(cut.unwrap_or(middle));
+    halve(group, at, out);
+    halve(right, at, out);
+}
+
+/// Amplitudes of a subdomain from motions about a point at minus `arm`, which like rotations is in units of `length`.
+fn rigid_map(kernel: &Kernel, arm: &[f64; 3], length: f64) -> Block {
+    let ratio = kernel.radius() / length;
+    let mut out = [[0.0; 6]; 6];
+    for mode in 0..6 {
+        let motion: [f64; 6] = std::array::from_fn(|k| f64::from(u8::from(k == mode)));
+        let [x, y, z] = displacement(&motion, arm);
+        let [.., a, b, c] = motion.map(|m| m * ratio);
+        let amplitudes = kernel.amplitudes(&[x, y, z, a, b, c]);
+        (0..6).for_each(|k| out[k][mode] = amplitudes[k]);
+    }
+    out
+}
+
+fn add_restricted(map: &Block, y: &[f64; 6], sum: &mut [f64; 6]) {
+    for (row, y) in map.iter().zip(y) {
+        (0..6).for_each(|j| sum[j] += row[j] * y);
+    }
+}
+
+fn transposed(a: &Block) -> Block {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+}
+
+/// `a^T b c`.
+fn times(a: &Block, b: &Block, c: &Block) -> Block {
+    let right: Block = std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| b[i][k] * c[k][j]).sum()));
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[k][i] * right[k][j]).sum()))
+}

@@ -1,0 +1,157 @@
+//! The projector of an active set by two levels: what changes is a small model, what is exact does not change.
+//!
+//! The factor of `G W G^T` that follows the contact rows grows with the third power of the number of subdomains that
+//! touch. Here it is that of [`Clusters`], an approximation `N` of the inverse: contact rows take `W G^T N g`, and the
+//! rows that are always free, with a factor `A^-1` that never changes, what is left of the equality:
+//! `P x = x - W_c G^T N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact
+//! whatever `N` is; iterations need the more steps the worse it is.
+
+use crate::coarse::clusters::Clusters;
+use crate::coarse::matrix::ModeTable;
+use crate::coarse::space::{Coarse, CoarseScratch};
+use crate::coarse::weights::{RowWeights, along};
+use crate::projector::factor::CoarseFactor;
+use crate::projector::split::factor::SplitBase;
+use crate::projector::split::tree::{CoarseTree, cheapest_tree};
+use crate::tolerances::{GROWTH, ROW, SOLVES};
+use std::sync::Arc;
+
+/// What the factors of all active sets have in common.
+pub(super) struct Bases {
+    /// Of what changes: the subdomains, or their clusters.
+    pub(super) changing: SplitBase,
+    pub(super) levels: Option<Levels>,
+}
+
+/// The parts of a projector by two levels.
+pub(super) struct Levels {
+    pub(super) clusters: Arc<Clusters>,
+    /// Of the rows that are always free.
+    pub(super) always: SplitBase,
+}
+
+impl Coarse {
+    /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
+    /// factor can be split; by `levels` if that is told, or worth it. `metric` is the weight of each row where it
+    /// counts, one if `None`.
+    pub(super) fn bases(&self, rows: usize, metric: Option<&[f64]>, levels: Option<bool>) -> Option<Bases> {
+        let data = &self.0;
+        let gluing = &data.gluing;
+        let ones = || vec![1.0; self.dim()];
+        let mut weights = RowWeights::diagonal(metric.map_or_else(ones, <[f64]>::to_vec));
+        let all = metric.is_some().then_some(&weights);
+        if rows > gluing.ranges().interface.start || !data.free_motions(all).is_empty() {
+            return None;
+        }
+        let mut changing = vec![false; data.subdomains.count()];
+        for e in (0..rows).flat_map(|row| gluing.nodal(row)) {
+            changing[e.subdomain as usize] = true;
+        }
+        let graph = data.matrix.graph();
+        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
+        let modes = ModeTable::new(&data.subdomains);
+        weights.diagonal[..rows].fill(0.0);
+        let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
+        let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
+        let possible = levels != Some(false) && rows == gluing.ranges().contact().end && tree.changes();
+        if possible && data.free_motions(Some(&weights)).is_empty() {
+            let pays = |other: f64| {
+                let slower = GROWTH * 0.5 * SOLVES * ROW * self.dim() as f64;
+                levels == Some(true) || other + slower < tree.cost()
+            };
+            if let Some(bases) = self.two_levels(rows, &graph, &changing, &values, &modes, &pays) {
+                return Some(bases);
+            }
+        }
+        let changing = SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write).ok()?;
+        let levels = None;
+        Some(Bases { changing, levels })
+    }
+
+    /// The bases by two levels, if they exist and their seconds `pay`.
+    fn two_levels(
+        &self,
+        rows: usize,
+        graph: &[Vec<u32>],
+        changing: &[bool],
+        values: &[f64],
+        modes: &ModeTable<'_>,
+        pays: &dyn Fn(f64) -> bool,
+    ) -> Option<Bases> {
+        let data = &self.0;
+        let (mobility, subdomains) = (&data.mobility, &data.subdomains);
+        let fixed = CoarseTree::regular(graph, mobility.centres()).ok()?;
+        let clusters = Clusters::new(mobility, subdomains);
+        let (matrix, sums) = clusters.matrix(&data.matrix, values);
+        let links = matrix.graph();
+        let tree = cheapest_tree(&links, clusters.centres(), &clusters.marks(changing))?;
+        if !pays(fixed.cost() + tree.cost()) {
+            return None;
+        }
+        let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| {
+            let mut row = Vec::new();
+            modes.row(&data.gluing, nodal, 1.0, &mut row);
+            clusters.join(&row, out);
+        };
+        let changing = SplitBase::new(tree, &matrix, &links, &sums, rows, &write).ok()?;
+        let always = SplitBase::new(fixed, &data.matrix, graph, values, 0, &|_, _| {}).ok()?;
+        let clusters = Arc::new(clusters);
+        let levels = Some(Levels { clusters, always });
+        Some(Bases { changing, levels })
+    }
+}
+
+/// Methods of a factor of clusters; `exact` is that of the rows that are always free.
+impl CoarseFactor {
+    /// `x = P x`, or the point with `G x = e` that is reached that way.
+    pub(super) fn project_with(&self, exact: &Self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
+        let data = &self.coarse().0;
+        data.product(x, None, &mut s.first, &mut s.sides);
+        if let Some(e) = e {
+            s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
+        }
+        s.second.copy_from_slice(&s.first);
+        self.solve_first(s, false);
+        let contact = data.gluing.ranges().contact().end;
+        data.contact_transpose(&s.first, &mut s.dual[..contact], &mut s.motions);
+        self.weigh_contact(&mut s.dual[..contact]);
+        x.iter_mut().zip(&s.dual[..contact]).for_each(|(x, c)| *x -= c);
+        data.contact_product(&s.dual[..contact], &mut s.first);
+        s.first.iter_mut().zip(&s.second).for_each(|(v, g)| *v = g - *v);
+        exact.solve_first(s, false);
+        exact.subtract_weighted(x, s);
+    }
+
+    /// `r = P^T r = r + G^T alpha`.
+    pub(super) fn project_transpose_with(&self, exact: &Self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        self.amplitudes_with(exact, r, alpha, s);
+        let data = &self.coarse().0;
+        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
+        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
+    }
+
+    /// These amplitudes `alpha`.
+    pub(super) fn amplitudes_with(&self, exact: &Self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.coarse().0;
+        exact.amplitudes(r, alpha, s);
+        let contact = data.gluing.ranges().contact().end;
+        data.contact_transpose(alpha, &mut s.dual[..contact], &mut s.motions);
+        s.dual.iter_mut().zip(&r[..contact]).for_each(|(v, r)| *v += r);
+        self.weigh_contact(&mut s.dual[..contact]);
+        data.contact_product(&s.dual[..contact], &mut s.first);
+        self.solve_first(s, false);
+        alpha.iter_mut().zip(&s.first).for_each(|(a, v)| *a -= v);
+    }
+
+    /// `x = W x` for the contact rows.
+    fn weigh_contact(&self, x: &mut [f64]) {
+        let Some(weights) = self.weights() else {
+            return;
+        };
+        x.iter_mut().zip(&weights.diagonal).for_each(|(x, w)| *x *= w);
+        for line in &weights.lines {
+            let pair = along(line, [x[line.row], x[line.row + 1]]);
+            x[line.row..line.row + 2].copy_from_slice(&pair);
+        }
+    }
+}
