@@ -117,7 +117,11 @@ fn scene(choice: MeshChoice) -> Result<Scene, Failure> {
     let divisors = (1..=choice.cells).filter(|b| choice.cells.is_multiple_of(*b));
     let off = |b: &usize| (*b as f64 / wanted).ln().abs();
     let edge = divisors.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(1);
-    let parts = Decomposition::boxes(&mesh, [3 * edge, edge, edge])?.parts().to_vec();
+    // where cells divide badly the library cuts
+    let parts = match off(&edge) < 0.5 {
+        true => Some(Decomposition::boxes(&mesh, [3 * edge, edge, edge])?.parts().to_vec()),
+        false => None,
+    };
     if choice.grading > 1.0 {
         mesh = mesh.map_points(|[x, y, z]| [3.0 * towards(x / 3.0), towards(y), towards(z)])?;
     }
@@ -125,7 +129,10 @@ fn scene(choice: MeshChoice) -> Result<Scene, Failure> {
         mesh = mesh.raise_order()?;
     }
     let scene = block.scene_on(mesh, Materials::uniform(block.material()?))?;
-    Ok(scene.with_parts(parts))
+    Ok(match parts {
+        Some(parts) => scene.with_parts(parts),
+        None => scene,
+    })
 }
 
 /// Solves on all meshes in turn, some rounds, and prints the table.

@@ -37,6 +37,9 @@ pub struct PartsOptions {
     /// Numbers of subdomains; 0 leaves it to the library.
     #[arg(long, value_delimiter = ',', default_value = "0")]
     pub subdomains: Vec<usize>,
+    /// Order of the elements, 1 or 2; 2 puts nodes on the middles of the edges of linear ones.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub order: u8,
     /// Threads; 0 takes all cores.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
@@ -78,14 +81,17 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
     let pool = pool(options.threads)?;
     writeln!(
         out,
-        "| part | tetrahedra | subdomains (tetrahedra) | rows | products a step (dearest) | set-up s | solve s | matrices MB | certificate |"
+        "| part | tetrahedra | subdomains (tetrahedra) | rows | products a step (dearest) | set-up s | solve s | matrices MB | certificate | moves mm |"
     )?;
-    writeln!(out, "|---|---|---|---|---|---|---|---|---|")?;
+    writeln!(out, "|---|---|---|---|---|---|---|---|---|---|")?;
     let mut runs = Vec::new();
     for path in files(&options.meshes)? {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let part = stem.split('-').next().unwrap_or_default().to_owned();
-        let (mesh, names) = read_named_gmsh(&path)?;
+        let (mut mesh, names) = read_named_gmsh(&path)?;
+        if options.order > mesh.order() as u8 {
+            mesh = mesh.raise_order()?;
+        }
         for &count in &options.subdomains {
             let (run, last) = pool.install(|| run(&part, &mesh, &names, count, out))?;
             if let (Some(folder), Some(last)) = (&options.sizes, &last) {
@@ -158,9 +164,12 @@ fn run(
     let bytes = report.inverse_bytes + report.coarse_bytes + report.table_bytes;
     let certificate = steps.iter().map(|s| s.certificate).fold(0.0, f64::max);
     let unconverged = steps.iter().filter(|s| !s.converged()).count();
+    let displacement = simulation.result().map(|result| result.displacement());
+    let lengths = displacement.iter().flatten().map(|[x, y, z]| x.hypot(*y).hypot(*z));
+    let farthest = lengths.fold(0.0, f64::max);
     writeln!(
         out,
-        "| {part} | {} | {}{} ({} to {}) | {} | {:.1} ({}) | {:.2} | {:.2} | {:.0} | {certificate:.1e}{} |",
+        "| {part} | {} | {}{} ({} to {}) | {} | {:.1} ({}) | {:.2} | {:.2} | {:.0} | {certificate:.1e}{} | {farthest:.5} |",
         mesh.tets().len(),
         subdomains.len(),
         if count == 0 { ", automatic" } else { "" },

@@ -44,6 +44,9 @@ signorini_fem_mesh::errors! {
         Coefficient { contact: usize, what: &'static str, value: f64 } =
             "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate \
             positive)";
+        Compliance { contact: usize, value: f64 } =
+            "contact {contact}: its compliance is {value}; it must be finite and not negative, a length over a stress, \
+            0 for the exact law";
         EmptyTable { contact: usize } =
             "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate \
             with its coefficient";
@@ -96,8 +99,8 @@ signorini_fem_mesh::errors! {
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart)";
         Tied { contact: usize } =
-            "contact {contact} is tied: its sides move alike, and friction, gap and direction mean nothing; leave them \
-            out, or use Contact::between";
+            "contact {contact} is tied: its sides move alike, and friction, gap, compliance, direction and rotation mean \
+            nothing; leave them out, or use Contact::between";
         MovedPartner { contact: usize } =
             "contact {contact} is between two bodies, and has no obstacle that could move or have a shape; move a body by \
             its supports instead, and give the obstacle a contact of its own";
@@ -122,8 +125,8 @@ signorini_fem_mesh::errors! {
             with_body_normals), along which any gap is measured";
         SharedNode { node: u32, first: usize, second: usize } =
             "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move \
-            differently or bring other gaps, so that either may become the nearer one; leave the facets around it \
-            out of one of the surfaces, or give both the same motion";
+            differently, give way differently or bring other gaps, so that either may become the nearer one; leave the \
+            facets around it out of one of the surfaces, or give both the same motion, compliance and gap";
         HistoryValue { what: &'static str, index: usize, time: f64, value: f64 } =
             "{what} {index}: its history gives {value} at time {time} s";
         TooLarge { place: String, value: f64, unit: &'static str, most: f64 } =

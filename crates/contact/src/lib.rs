@@ -105,8 +105,8 @@ pub use scene::{
     Rotation, Scene, SlipBound, Spring, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
-pub use signorini_tfeti::Directions;
 pub use signorini_tfeti::internal::Rate;
+pub use signorini_tfeti::{Communicator, Directions};
 #[cfg(feature = "checkpoint")]
 pub use simulation::Every;
 pub use simulation::{Flow, Observer, Progress, Silent, Simulation, StepDoubling, StepResult, TimeError};

@@ -7,6 +7,7 @@ use signorini_contact::{
     RunReport, Scene, Settings, Silent, Simulation, State, StepResult, Support, Warning,
 };
 use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+use signorini_tfeti::internal::on_ranks;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -170,6 +171,44 @@ fn a_run_in_a_folder_goes_on_with_the_same_bits() {
         let (third, report) = run_until(4, &folder.0).expect("third");
         assert_eq!(report.steps, 0);
         assert!(third.is_finished() && third.state() == second.state());
+    }
+}
+
+/// Two ranks store what one process reads, and the other way round; ranks that see different folders are told.
+#[test]
+fn checkpoints_of_several_ranks_are_those_of_one_process() {
+    let settings = Settings::default().with_share_translates(false);
+    let until = |steps: usize, folder: &Path, settings: &Settings| {
+        let mut simulation = simulation(&Friction::coulomb(0.3), settings);
+        let mut observer = |result: &StepResult| match result.step() + 1 == steps {
+            true => Flow::Stop,
+            false => Flow::Continue,
+        };
+        let report = simulation.run_or_resume(folder, 1, &mut observer);
+        report.map(|report| (report.steps, simulation.state().to_bytes().expect("encode")))
+    };
+    let on_ranks = |count: usize, steps: usize, folder: &(dyn Fn(usize) -> PathBuf + Sync)| {
+        let found = on_ranks(count, |c| {
+            until(steps, &folder(c.rank()), &settings.clone().with_communicator(c))
+        });
+        found.into_iter().map(|run| run.expect("no panic")).collect::<Vec<_>>()
+    };
+    let folder = Folder::new("whole-of-ranks");
+    let (_, whole) = until(4, &folder.0, &settings).expect("one process");
+    let folder = Folder::new("ranks");
+    for run in on_ranks(2, 1, &|_| folder.0.clone()) {
+        assert_eq!(run.expect("two ranks").0, 1);
+    }
+    assert_eq!(folder.names(), ["step-00000001.state"]);
+    assert_eq!(until(2, &folder.0, &settings).expect("one process").0, 1);
+    for run in on_ranks(3, 4, &|_| folder.0.clone()) {
+        assert_eq!(run.expect("three ranks"), (2, whole.clone()));
+    }
+    let other = Folder::new("ranks-elsewhere");
+    until(1, &other.0, &settings).expect("one process");
+    for run in on_ranks(2, 4, &|rank| [&folder, &other][rank].0.clone()) {
+        let error = run.expect_err("different ones").to_string();
+        assert!(error.contains("a folder that all of them see"), "{error}");
     }
 }
 

@@ -2,11 +2,12 @@
 //! Stands alone, so that it runs with the feature `vtu` and no other.
 
 use signorini_contact::{
-    Analysis, Contact, ContactError, ContactState, DifferenceFormula, Flow, Friction, Load, Observer, ResultField,
-    ResultWriter, Scene, Settings, Silent, Simulation, StepResult, Support,
+    Analysis, Contact, ContactError, ContactState, DifferenceFormula, Flow, Friction, Load, Observer, Progress,
+    ResultField, ResultWriter, Scene, Settings, Silent, Simulation, StepResult, Support,
 };
 use signorini_fem_mesh::output::OutputError;
 use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+use signorini_tfeti::internal::on_ranks;
 use std::fs::{self, read, read_to_string};
 use std::path::Path;
 
@@ -15,7 +16,7 @@ const STEPS: usize = 4;
 const CORNER: u32 = 20;
 
 /// A beam above a floor, pressed down and pulled, with a wall that it never reaches.
-fn simulation() -> Simulation {
+fn simulation_with(settings: Settings) -> Simulation {
     let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
     assert_eq!(mesh.points()[CORNER as usize], [3.0, 1.0, 0.0]);
     let steel = Hooke::isotropic(211.9e9, 0.277).expect("steel");
@@ -32,7 +33,11 @@ fn simulation() -> Simulation {
         .with_contact(Contact::rigid(brick::Y_MAX).with_gap(0.5))
         .with_boxes([3, 1, 1])
         .with_analysis(Analysis::quasistatic(1.0, STEPS).with_formula(DifferenceFormula::BACKWARD_EULER));
-    Simulation::new(scene, Settings::default()).expect("set-up")
+    Simulation::new(scene, settings).expect("set-up")
+}
+
+fn simulation() -> Simulation {
+    simulation_with(Settings::default())
 }
 
 fn writer(folder: &Path) -> ResultWriter {
@@ -50,6 +55,47 @@ fn has(path: &Path, field: &str) -> bool {
     let text = read_to_string(path).expect("a file");
     assert!(text.ends_with("</VTKFile>\n"), "{}", path.display());
     text.contains(&format!("Name=\"{field}\""))
+}
+
+/// Of several ranks one writes, and it writes what one process does; a failure of it is one of all.
+#[test]
+fn one_of_several_ranks_writes() {
+    let [alone, together] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+    let _ = simulation().run(&mut writer(alone.path())).expect("run");
+    let runs = |folder: &Path| {
+        on_ranks(2, |c| {
+            let rank = c.rank();
+            let mut simulation = simulation_with(Settings::default().with_communicator(c));
+            let mut lines = Vec::new();
+            let run = simulation.run(&mut (writer(folder), Progress::new(&mut lines)));
+            (
+                rank,
+                run.map(|report| report.steps).map_err(|e| e.to_string()),
+                lines.len(),
+            )
+        })
+    };
+    for run in runs(together.path()) {
+        let (rank, steps, told) = run.expect("no panic");
+        assert_eq!((steps, told > 0), (Ok(STEPS), rank == 0));
+    }
+    let names = |folder: &Path| {
+        let entries = fs::read_dir(folder).expect("a folder");
+        let mut names: Vec<_> = entries.map(|entry| entry.expect("an entry").file_name()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(alone.path()), names(together.path()));
+    for name in names(alone.path()) {
+        let [one, two] = [&alone, &together].map(|folder| read(folder.path().join(&name)).expect("a file"));
+        assert!(one == two, "{}", name.display());
+    }
+    // a file where the folder should be
+    for run in runs(&together.path().join("beam.csv")) {
+        let (rank, error, _) = run.expect("no panic");
+        let error = error.expect_err("cannot write");
+        assert_eq!(error.contains("rank 0 failed"), rank > 0, "{error}");
+    }
 }
 
 #[test]

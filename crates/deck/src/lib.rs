@@ -69,8 +69,8 @@
 //! | `*SOLID SECTION` | `ELSET`, `MATERIAL` | a region of the mesh; each element has one |
 //! | `*AMPLITUDE` | `NAME`, `TIME=STEP TIME` or `TOTAL TIME`, `VALUE=RELATIVE`, `DEFINITION=TABULAR` | straight lines, constant outside; times ascend |
 //! | `*SURFACE INTERACTION` | `NAME` | |
-//! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD` | contact is hard and exact; other laws are refused |
-//! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient; stick slope and both parameters are ignored: friction is exact |
+//! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |
+//! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient, and elastic slip where a stick slope stands beside it; both parameters are ignored: friction is exact |
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small |
 //! | `*TIE` | `NAME`, `ADJUST=NO`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, the tolerance is ignored |
 //! | `*RIGID BODY` | `ELSET`, `REF NODE`, `ROT NODE` | an obstacle, see below |

@@ -44,6 +44,11 @@ pub(crate) const SNAP: f64 = 0.15;
 pub(crate) const FILLED: f64 = 0.98;
 pub(crate) const REACH: i32 = 6;
 
+// Means on surfaces
+
+/// Weight of a node in a mean that counts as none.
+pub(crate) const NO_WEIGHT: f64 = 1e-13;
+
 // Recovered strains
 
 /// Tetrahedra below which a patch is joined with those of the neighbours: a linear polynomial has four coefficients.

@@ -41,7 +41,7 @@ const CRATES: [(&str, &[&str]); 6] = [
             "subdomain",
             "error",
             "linalg",
-            "tolerances",
+            "processes tolerances",
         ],
     ),
     (

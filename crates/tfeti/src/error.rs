@@ -1,11 +1,12 @@
 //! What can go wrong while a T-FETI system is built.
 
 use crate::linalg::sparse::FactorError;
+use crate::processes::communicator::CommunicationError;
 
 signorini_fem_mesh::errors! {
     /// Errors of the set-up. Every message names the place and, where there is one, the remedy.
     #[derive(Clone, PartialEq)]
-    TfetiError {
+    TfetiError from { Communication(CommunicationError) } {
         Singular { subdomain: usize, pivot: usize } =
             "subdomain {subdomain}: the stiffness matrix is singular beyond its six rigid motions (pivot {pivot}); a \
             part of it hangs on a single node or edge, or its elements are degenerate: use another decomposition";
@@ -39,6 +40,8 @@ signorini_fem_mesh::errors! {
             finite weights that sum to one";
         BadFrame { point: usize, node: u32 } =
             "contact point {point} (node {node}): normal and tangents are not orthonormal";
+        BadCompliance { point: usize, node: u32, compliance: f64 } =
+            "contact point {point} (node {node}): its compliance is {compliance}; it must be finite and not negative";
         BadStretch { point: usize, node: u32, stretch: f64 } =
             "contact point {point} (node {node}): friction along the second tangent is {stretch} times that along the \
             first; this must be finite and positive";

@@ -45,7 +45,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Rooms, each of which uses those before it: `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
+//! Several processes build one system together, each with the matrices of its subdomains: see [`Communicator`].
+//!
+//! Rooms, each of which uses those before it: `processes`, `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
 //! `preconditioner`.
 
 mod coarse;
@@ -53,6 +55,7 @@ mod dual;
 mod error;
 mod linalg;
 mod preconditioner;
+mod processes;
 mod projector;
 mod rows;
 mod subdomain;
@@ -65,6 +68,8 @@ pub use coarse::weights::RowWeights;
 pub use dual::operator::DualOperator;
 pub use error::TfetiError;
 pub use preconditioner::operator::DualPreconditioner;
+pub use processes::communicator::{Alone, CommunicationError, Communicator};
+pub use processes::exchange::Traffic;
 pub use projector::active_set::ActiveSetProjector;
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
@@ -84,6 +89,7 @@ pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
     pub use crate::dual::operator::DualScratch;
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
+    pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
@@ -94,4 +100,5 @@ pub mod internal {
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
     pub use crate::subdomain::forecast::{Forecast, Rate};
     pub use crate::subdomain::kernel::Kernel;
+    pub use crate::tolerances::HELD;
 }

@@ -12,6 +12,8 @@ pub(crate) const SAME: f64 = 1e-12;
 pub(crate) const TRANSLATE: f64 = 1e-12;
 /// Directions: the share that is left of one that depends on others, or that supports fix.
 pub(crate) const FIXED: f64 = 1e-8;
+/// Share of the mean of a side of several nodes from which on supports hold that side.
+pub const HELD: f64 = 0.25;
 /// Prescribed displacements in one direction: relative difference that supports may have.
 pub(crate) const AGREEING: f64 = 1e-7;
 /// Sine of an angle that counts as none: a direction in a plane, nodes on a line.

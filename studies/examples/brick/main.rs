@@ -9,11 +9,13 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 use signorini::contact::Plan;
 use signorini::contact::result::Resultant;
-use signorini::prelude::{Scene, Simulation};
+use signorini::prelude::{Communicator, Scene, Simulation};
+use signorini::tfeti::Alone;
 use signorini_studies::brick::{Block, CELLS, Loading, STEPS, sizes};
 use signorini_studies::files::RunFiles;
 use signorini_studies::options::{Common, FormulaName, LoadingChoice, positive};
@@ -107,6 +109,19 @@ fn main() -> ExitCode {
 
 /// Runs all sizes and loadings and prints what they show. With `--plan`, nothing is run and nothing returned.
 pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outcome>, Failure> {
+    execute_on(options, Arc::new(Alone), out)
+}
+
+/// The same on several processes, of which rank 0 prints and writes.
+pub fn execute_on(
+    options: &BrickOptions,
+    communicator: Arc<dyn Communicator>,
+    out: &mut impl Write,
+) -> Result<Vec<Outcome>, Failure> {
+    let root = communicator.rank() == 0;
+    if options.plan && !root {
+        return Ok(Vec::new());
+    }
     if options.plan {
         plan(options, out)?;
         return Ok(Vec::new());
@@ -120,7 +135,8 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
     for &n in &options.n {
         for &loading in options.loading.loadings() {
             let scene = options.scene(n, loading)?;
-            let header = common.header(n, loading.name(), options.formula.formula().1);
+            let mut header = common.header(n, loading.name(), options.formula.formula().1);
+            header.progress &= root;
             let own = folder.join(header.label());
             let mut files = RunFiles::new(&own, every, options.reactions);
             let mut on_step = |simulation: &Simulation, _: &_| {
@@ -129,12 +145,17 @@ pub fn execute(options: &BrickOptions, out: &mut impl Write) -> Result<Vec<Outco
                 }
                 files.write(simulation)
             };
-            let settings = common.settings();
+            let settings = common.settings().with_communicator(communicator.clone());
             let outcome = pool.install(|| run_with(scene, settings, &header, &mut on_step))?;
-            save(&own.join("steps.csv"), &csv(&outcome.record)?)?;
-            save(&own.join("steps.svg"), &steps_chart(&outcome.record)?)?;
+            if root {
+                save(&own.join("steps.csv"), &csv(&outcome.record)?)?;
+                save(&own.join("steps.svg"), &steps_chart(&outcome.record)?)?;
+            }
             outcomes.push(outcome);
         }
+    }
+    if !root {
+        return Ok(outcomes);
     }
     report(options, &outcomes, out)?;
     write!(out, "{forces}")?;

@@ -5,6 +5,7 @@
 //! `tan theta` times that; the slip is `4 (1 - nu^2) / E s sin psi (cos psi - sin psi tan theta) sqrt(b^2 - x^2)`. Elements
 //! are quadratic: at the tips strains are singular.
 
+use super::meshes::series;
 use super::{Failure, Finding, second, solve};
 use signorini::prelude::*;
 
@@ -23,27 +24,17 @@ fn half(cells: usize, outside: usize, size: f64, thick: f64) -> Result<TetMesh, 
     let brick = Brick::new([all, outside as f64, thick], [cells + 2 * outside, outside, 1]).build()?;
     // outside a geometric series from the size of the cells at the tips
     let first = 2.0 / inner;
-    let sum = |q: f64, k: f64| first * (q.powf(k) - 1.0) / (q - 1.0);
-    let (mut low, mut high) = (1.0 + 1e-9, 4.0);
-    for _ in 0..60 {
-        let q = 0.5 * (low + high);
-        if sum(q, outside as f64) < size {
-            low = q
-        } else {
-            high = q
-        }
-    }
+    let beyond = series(first, outside, size);
     let along = move |x: f64| {
         let x = x - 0.5 * all;
         let over = x.abs() - 0.5 * inner;
         if over > 0.0 {
-            x.signum() * (1.0 + sum(low, over))
+            x.signum() * (1.0 + beyond(over))
         } else {
             x * first
         }
     };
-    let graded = move |k: f64| sum(low, k);
-    let mesh = brick.map_points(|[x, y, z]| [along(x), graded(y), z])?;
+    let mesh = brick.map_points(|[x, y, z]| [along(x), beyond(y), z])?;
     // the part of the lower side that is the crack
     let points: Vec<[f64; 3]> = mesh.points().to_vec();
     let facets = mesh.facets().iter().map(|f| {

@@ -1,63 +1,44 @@
 //! A rigid sphere pressed into an elastic half-space, up to nearly incompressible material.
 //!
 //! R 100, E 1000, approach 0.01: force `4/3 E / (1 - nu^2) sqrt(R) d^(3/2)`: 14.6520, 17.5462, 17.7541, 17.7754 for
-//! nu = 0.3, 0.49, 0.499, 0.4999. A quarter of a block of 150 contact radii, graded, with quadratic elements.
+//! nu = 0.3, 0.49, 0.499, 0.4999. A slice of a block of 150 contact radii, graded, with quadratic elements.
 
+use super::meshes::{graded, slice, symmetric};
 use super::{Failure, Finding, solve};
 use signorini::prelude::*;
+use std::f64::consts::PI;
 
 const RADIUS: f64 = 100.0;
 const YOUNG: f64 = 1000.0;
 const APPROACH: f64 = 0.01;
-/// Edge of the block, and of the part with cells of one size.
-const SIZE: [f64; 2] = [150.0, 1.4];
+/// Size of the block.
+const SIZE: f64 = 150.0;
+/// Of the slice, degrees.
+const ANGLE: f64 = 15.0;
 
-/// Cells of one size near the origin, then in a geometric series.
-fn mesh(near: usize, far: usize) -> Result<TetMesh, Failure> {
-    let brick = Brick::new([(near + far) as f64; 3], [near + far; 3]).build()?;
-    let [whole, part] = SIZE;
-    let first = part / near as f64;
-    let sum = |q: f64, k: f64| first * q * (q.powf(k) - 1.0) / (q - 1.0);
-    let (mut low, mut high) = (1.0 + 1e-9, 10.0);
-    for _ in 0..60 {
-        let q = 0.5 * (low + high);
-        if sum(q, far as f64) < whole - part {
-            low = q;
-        } else {
-            high = q;
-        }
-    }
-    let graded = |k: f64| {
-        let over = k - near as f64;
-        if over > 0.0 { part + sum(low, over) } else { k * first }
-    };
-    Ok(brick.map_points(|p| p.map(graded))?.raise_order()?)
-}
-
-/// The force for four Poisson's ratios.
+/// The force for four Poisson's ratios, with cells of one size in 1.4 contact radii, then in a geometric series.
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
-    let mesh = mesh(4, 5)?;
-    let ratios: &[f64] = if short {
-        &[0.3, 0.4999]
-    } else {
-        &[0.3, 0.49, 0.499, 0.4999]
+    let ([near, far], ratios): (_, &[f64]) = match short {
+        true => ([4, 8], &[0.3, 0.4999]),
+        false => ([6, 12], &[0.3, 0.49, 0.499, 0.4999]),
     };
-    let axis = |c: usize| [c == 0, c == 1, c == 2];
+    let angle = ANGLE.to_radians();
+    let places = graded([1.4, SIZE], [near, far]);
+    let column = |i: usize| (0..=near + far).map(|j| [places(i as f64), places(j as f64)]).collect();
+    let grid: Vec<Vec<[f64; 2]>> = (0..=near + far).map(column).collect();
+    let mesh = slice(&grid, angle)?.raise_order()?;
     let mut all = Vec::new();
     for &poisson in ratios {
         // the half-space is above the plane z = 0, the sphere below
         let sphere = Obstacle::sphere([0.0, 0.0, APPROACH - RADIUS], RADIUS);
-        let mut scene = Scene::new(mesh.clone(), Materials::uniform(Hooke::isotropic(YOUNG, poisson)?))
-            .with_contact(Contact::obstacle(brick::Z_MIN, sphere));
-        for (tag, c) in [(brick::X_MIN, 0), (brick::Y_MIN, 1)] {
-            scene = scene.with_support(Support::components(tag, axis(c)));
-        }
-        scene = scene
-            .with_support(Support::components(brick::Z_MAX, axis(2)))
+        let scene = Scene::new(mesh.clone(), Hooke::isotropic(YOUNG, poisson)?.into())
+            .with_contact(Contact::obstacle(brick::Z_MIN, sphere))
+            .with_support(Support::components(brick::Z_MAX, [false, false, true]))
             .with_subdomains(1);
+        let settings = Settings::default().with_preconditioner(Preconditioner::Dirichlet);
         let mut force = 0.0;
-        let run = solve(scene, Settings::default(), |result| {
-            force = 4.0 * result.summary().resultant[2];
+        let run = solve(symmetric(scene, angle, |tag| tag), settings, |result| {
+            force = 2.0 * PI / angle * result.summary().resultant[2];
         })?;
         let target = 4.0 / 3.0 * YOUNG / (1.0 - poisson * poisson) * RADIUS.sqrt() * APPROACH.powf(1.5);
         all.push(Finding {

@@ -4,7 +4,8 @@
 //! `p0 sqrt(1 - r^2/a^2)` with `p0 = 3 P / (2 pi a^2)`. A quarter of a block with a paraboloid on either side is meshed,
 //! graded towards the contact.
 
-use super::{Failure, Finding, second, solve};
+use super::meshes::graded;
+use super::{Failure, Finding, RunFacts, below, second, solve};
 use signorini::prelude::*;
 use std::f64::consts::PI;
 
@@ -15,32 +16,37 @@ const FORCE: f64 = 10.0;
 /// Edge of the blocks.
 const SIZE: f64 = 7.0;
 
-/// A quarter of a body above z = 0 whose lower side is a paraboloid; half of the cells within 1.5 of the axis.
-fn body(cells: usize) -> Result<TetMesh, Failure> {
-    let brick = Brick::new([1.0; 3], [cells, cells, cells]).build()?;
-    // linear at first, then a cubic with the same slope
-    let (inner, part) = (1.3, 0.6);
-    let graded = |t: f64| {
-        let s = ((t - part) / (1.0 - part)).max(0.0);
-        let slope = inner * (1.0 - part) / part;
-        inner * t.min(part) / part + slope * s + (SIZE - inner - slope) * s.powi(3)
-    };
+/// A quarter of a body above z = 0 whose lower side is a paraboloid; cells of one size around the contact.
+fn body(near: usize, far: usize) -> Result<TetMesh, Failure> {
+    let cells = near + far;
+    let brick = Brick::new([cells as f64; 3], [cells; 3]).build()?;
+    let places = graded([0.9, SIZE], [near, far]);
     Ok(brick.map_points(|p| {
-        let [x, y, z] = p.map(graded);
+        let [x, y, z] = p.map(places);
         let lift = (x * x + y * y) / (2.0 * RADIUS);
         [x, y, 1.5 * z + lift * (1.0 - z / SIZE)]
     })?)
 }
 
-/// Force against approach, the largest pressure, and how far pressures are from the formula.
-pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
-    let [upper, lower] = if short { [10, 8] } else { [24, 19] };
-    let above = body(upper)?;
-    let below = body(lower)?;
-    let points = below.points().iter().map(|[x, y, z]| [*x, *y, -z]).collect();
-    let tets = below.tets().iter().map(|[a, b, c, d]| [*b, *a, *c, *d]).collect();
-    let below = TetMesh::new(points, tets, below.facets().to_vec())?;
-    let mesh = above.append(&below.map_tags(second))?;
+/// What a pair of meshes gives.
+struct Found {
+    /// Largest pressure, radius of contact, and way of the upper body.
+    values: [f64; 3],
+    /// Largest error of the pressure within 0.8 contact radii over the largest pressure, and its root mean square.
+    errors: [f64; 2],
+    run: RunFacts,
+}
+
+/// Largest pressure and contact radius of the formula.
+fn formula() -> [f64; 2] {
+    let modulus = YOUNG / (2.0 * (1.0 - POISSON * POISSON));
+    let radius = (0.75 * FORCE * 0.5 * RADIUS / modulus).cbrt();
+    [1.5 * FORCE / (PI * radius * radius), radius]
+}
+
+/// Pressed together, with so many cells around the contact above and below, and outside.
+fn pressed([upper, lower]: [usize; 2], far: usize) -> Result<Found, Failure> {
+    let mesh = body(upper, far)?.append(&below(&body(lower, far)?)?)?;
     let axis = |c: usize| [c == 0, c == 1, c == 2];
     let gap = |[x, y, _]: [f64; 3]| (x * x + y * y) / RADIUS;
     let mut scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(YOUNG, POISSON)?))
@@ -56,15 +62,13 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
             scene = scene.with_support(Support::components(tag, axis(c)));
         }
     }
-    let modulus = YOUNG / (2.0 * (1.0 - POISSON * POISSON));
-    let radius = (0.75 * FORCE * 0.5 * RADIUS / modulus).cbrt();
-    let peak = 1.5 * FORCE / (PI * radius * radius);
-    let (mut largest, mut worst, mut squares, mut touching) = (0.0_f64, 0.0_f64, [0.0; 2], 0.0);
+    let [peak, radius] = formula();
+    let (mut largest, mut worst, mut squares, mut touching, mut way) = (0.0_f64, 0.0_f64, [0.0; 2], 0.0, 0.0);
     let run = solve(scene, Settings::default(), |result| {
         let field = result.contact_pressure(0).unwrap_or_default();
-        let surface = &result.surfaces()[0];
+        let (surface, mesh) = (&result.surfaces()[0], result.scene().mesh());
         for p in result.points() {
-            let [x, y, _] = result.scene().mesh().points()[p.node as usize];
+            let [x, y, _] = mesh.points()[p.node as usize];
             let r = x.hypot(y) / radius;
             if p.normal_force < 0.0 {
                 touching += p.area;
@@ -79,8 +83,25 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
                 squares = [squares[0] + off * off, squares[1] + 1.0];
             }
         }
+        let top = mesh.nodes_on(brick::Z_MAX);
+        let displacement = result.displacement();
+        way = -top.iter().map(|&n| displacement[n as usize][2]).sum::<f64>() / top.len() as f64;
     })?;
-    let of = |quantity, value, target, asked| Finding {
+    Ok(Found {
+        values: [largest, (4.0 * touching / PI).sqrt(), way],
+        errors: [worst, (squares[0] / squares[1]).sqrt() / peak],
+        run,
+    })
+}
+
+/// The largest pressure, and how far pressures are from the formula; orders of convergence where all cells are halved.
+pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
+    let finest = if short {
+        pressed([6, 5], 5)?
+    } else {
+        pressed([22, 17], 9)?
+    };
+    let of = |quantity, value, target, asked, run| Finding {
         case: "two spheres".to_owned(),
         quantity,
         value,
@@ -88,15 +109,40 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
         asked,
         run,
     };
-    Ok(vec![
-        of("largest pressure", largest, peak, 2e-2),
-        of("pressure within 0.8 a, largest error over p0", worst, 0.0, 2e-2),
+    let ([peak, radius], run) = (formula(), finest.run);
+    let mut all = vec![
+        of("largest pressure", finest.values[0], peak, 2e-2, run),
         of(
-            "the same, root mean square",
-            (squares[0] / squares[1]).sqrt() / peak,
+            "pressure within 0.8 a, largest error over p0",
+            finest.errors[0],
             0.0,
-            0.0,
+            2e-2,
+            run,
         ),
-        of("radius of contact", (4.0 * touching / PI).sqrt(), radius, 0.0),
-    ])
+        of("the same, root mean square", finest.errors[1], 0.0, 0.0, run),
+        of("radius of contact", finest.values[1], radius, 0.0, run),
+    ];
+    if !short {
+        let series = [1, 2, 4].map(|k| pressed([4 * k, 3 * k], 4 * k));
+        let [coarse, middle, fine] = series;
+        let (coarse, middle, fine) = (coarse?, middle?, fine?);
+        let way = [&coarse, &middle, &fine].map(|f| f.values[2]);
+        let order = ((way[0] - way[1]) / (way[1] - way[2])).abs().log2();
+        all.push(of(
+            "order of the way under the force, 8/6 to 32/24 cells",
+            order,
+            2.0,
+            0.0,
+            fine.run,
+        ));
+        let order = (coarse.errors[1] / fine.errors[1]).log2() / 2.0;
+        all.push(of(
+            "order of the pressure (root mean square)",
+            order,
+            2.0,
+            0.0,
+            fine.run,
+        ));
+    }
+    Ok(all)
 }

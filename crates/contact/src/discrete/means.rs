@@ -1,9 +1,8 @@
 //! The sides of contact points in a mesh of order 2.
 //!
 //! Under a constant pressure the corners of a quadratic facet carry no force, so that conditions at single nodes fail.
-//! A contact point is a corner all the same; what counts is the mean of the displacement weighted by the linear hat
-//! function of the corner ([`Surface::mean`]), and the same mean of the gap. Forces of the points over their areas are
-//! then a pressure that is linear on each facet.
+//! A contact point is a corner all the same; what counts is a mean of the displacement around it ([`Surface::mean`]),
+//! and the same mean of the gap. The force of a point over its area is then the pressure there.
 
 use super::creases::around;
 use super::partners::{Partner, Partners};

@@ -43,6 +43,7 @@ pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
 /// What numbers count, in words: scenes have units of their own.
 const LENGTH: &str = "units of length";
 const FORCE: &str = "units of force";
+const COMPLIANCE: &str = "units of length over force";
 
 /// Refuses what is too large; what is not a number is left to others.
 fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
@@ -105,6 +106,17 @@ pub(super) fn nodal_loads(
         out.push(local);
     }
     Ok(out)
+}
+
+/// Refuses compliances that are too large for the area of a point.
+pub(super) fn check_compliance(points: &[ContactPoint]) -> Result<(), ContactError> {
+    for point in points.iter().filter(|p| p.compliance != [0.0; 2]) {
+        let place = || format!("contact {} at node {}: its compliance", point.surface, point.node());
+        for value in point.compliance {
+            expect(value / point.area, COMPLIANCE, place)?;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses gaps as given, and what becomes of them at the steps.

@@ -40,6 +40,8 @@ pub(crate) struct ContactPoint {
     pub(crate) gap: f64,
     /// Friction along the second tangent over that along the first.
     pub(crate) stretch: f64,
+    /// How far it gives way along the normal and along the surface, m/Pa.
+    pub(crate) compliance: [f64; 2],
 }
 
 impl ContactPoint {
@@ -138,6 +140,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     area: side.area,
                     gap,
                     stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
+                    compliance: contact.compliance,
                 });
             }
         }
@@ -213,6 +216,8 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
     if x.motion != y.motion
         || x.rotation != y.rotation
         || x.gap_history != y.gap_history
+        || x.compliance != y.compliance
+        || x.compliance[0] > 0.0 && nearer != Ordering::Equal
         || !stays(scene, rounding, point, other, nearer)?
     {
         return Err(ContactError::SharedNode {

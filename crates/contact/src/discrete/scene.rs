@@ -1,6 +1,6 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
-use super::overflow::{check_gaps, check_materials, check_motions, nodal_loads};
+use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, points};
@@ -71,6 +71,7 @@ impl DiscreteScene {
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions, &poses)?;
+        check_compliance(&points)?;
         let constraints = constraints(scene, &points, &ties);
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
@@ -124,9 +125,10 @@ fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) ->
         ContactConstraint::new(p.sides.own.clone(), p.frame)
             .with_partner(p.sides.partner.clone())
             .with_friction(contact.friction().is_some())
-            .with_moving_obstacle(contact.moves())
+            .with_moving_obstacle(contact.moves() && !contact.tied)
             .with_tied(contact.tied)
             .with_stretch(p.stretch)
+            .with_compliance(p.compliance.map(|c| c / p.area))
     };
     points.iter().chain(ties).map(point).collect()
 }

@@ -6,7 +6,6 @@
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
-use crate::step::StepProblem;
 use crate::tolerances::{FREEDOM_TAKEN, NEAR_BOUND, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, Vector3};
@@ -112,15 +111,15 @@ impl AdmissibleNode {
 
     /// What the rows measure where the point is moved to its best place, m: the normal one, then those along the
     /// surface.
-    pub(crate) fn targets(&self, problem: &StepProblem, moved: &Correction) -> impl Iterator<Item = f64> {
+    pub(crate) fn targets(&self, offset: &[f64], moved: &Correction) -> impl Iterator<Item = f64> {
         let values = [moved.open, moved.slip[0], moved.slip[1]];
         let rows = self.rows.iter().zip(values);
-        rows.map(|(&(_, row, scale), value)| problem.offset[row] / scale + value)
+        rows.map(|(&(_, row, scale), value)| offset[row] / scale + value)
     }
 
     /// Moves the node out of the obstacle, if it is inside.
-    pub(crate) fn push_out(&self, problem: &StepProblem, v: &mut [f64]) {
-        let depth = self.conditions(problem, v).depth(self.value(v)).max(0.0);
+    pub(crate) fn push_out(&self, offset: &[f64], v: &mut [f64]) {
+        let depth = self.conditions(offset, v).depth(self.value(v)).max(0.0);
         self.shift(v, 0, -depth);
     }
 
@@ -130,15 +129,15 @@ impl AdmissibleNode {
     }
 
     /// The conditions on the node that moves, with the others at their displacements `v`.
-    pub(crate) fn conditions(&self, problem: &StepProblem, v: &[f64]) -> Conditions {
+    pub(crate) fn conditions(&self, offset: &[f64], v: &[f64]) -> Conditions {
         let mut planes = [([0.0; 3], 0.0); 3];
         for (k, &(_, row, scale)) in self.rows.iter().enumerate() {
             // the offset of a row has the motion that supports prescribe along it already
-            let mut offset = problem.offset[row] / scale;
+            let mut plane = offset[row] / scale;
             for (node, part) in &self.still {
-                offset -= dot(&part[k], &v[3 * *node as usize..][..3]);
+                plane -= dot(&part[k], &v[3 * *node as usize..][..3]);
             }
-            planes[k] = (self.own[k], offset);
+            planes[k] = (self.own[k], plane);
         }
         Conditions {
             planes,
@@ -193,12 +192,12 @@ impl Correction {
     pub(crate) fn new(
         node: &AdmissibleNode,
         state: &PointState,
-        problem: &StepProblem,
+        offset: &[f64],
         stiffness: &[f64],
         v: &mut [f64],
     ) -> Self {
         let of_row = |k: usize| node.rows[k].2.powi(2) * stiffness[node.rows[k].1];
-        let open = node.conditions(problem, v).depth(node.value(v));
+        let open = node.conditions(offset, v).depth(node.value(v));
         let target = (open - state.normal_force / of_row(0)).min(0.0);
         node.shift(v, 0, target - open);
         let mut moved = Self {
@@ -208,7 +207,7 @@ impl Correction {
             bound: state.slip_bound,
             change: 0.0,
         };
-        let conditions = node.conditions(problem, v);
+        let conditions = node.conditions(offset, v);
         if conditions.along().is_empty() {
             return moved;
         }

@@ -23,6 +23,7 @@ use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::recovery::StrainRecovery;
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -91,36 +92,37 @@ impl Solved<'_> {
     pub(crate) fn algebraic_error(&self) -> AlgebraicError {
         let (model, tfeti) = (self.model, &self.model.tfeti);
         let weights = self.caches.weights.get_or_init(|| Weights::new(model));
+        let offset = &*self.offset();
         let mut v = self.mean();
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
         let points = || self.recovered.points.iter().zip(&weights.nodes);
         let moved: Vec<Correction> = match &weights.shared {
             None => points()
-                .map(|(state, node)| Correction::new(node, state, self.problem, &weights.rows, &mut v))
+                .map(|(state, node)| Correction::new(node, state, offset, &weights.rows, &mut v))
                 .collect(),
             Some(shared) => {
-                self.support(&mut v);
+                self.support(offset, &mut v);
                 let planned = |(state, node): (&PointState, &AdmissibleNode)| {
                     let before: [f64; 3] = std::array::from_fn(|c| node.value(&mut v)[c]);
-                    let planned = Correction::new(node, state, self.problem, &weights.rows, &mut v);
+                    let planned = Correction::new(node, state, offset, &weights.rows, &mut v);
                     node.value(&mut v).copy_from_slice(&before);
                     planned
                 };
                 let planned: Vec<Correction> = points().map(planned).collect();
                 let targets = weights.nodes.iter().zip(&planned);
-                let targets = targets.flat_map(|(node, planned)| node.targets(self.problem, planned));
-                shared.reach(targets.collect(), &self.problem.offset, &mut v);
+                let targets = targets.flat_map(|(node, planned)| node.targets(offset, planned));
+                shared.reach(targets.collect(), offset, &mut v);
                 planned
             }
         };
-        self.support(&mut v);
+        self.support(offset, &mut v);
         if weights.shared.is_none() {
-            self.agree(&moved, &weights.nodes, &mut v);
+            self.agree(&moved, &weights.nodes, offset, &mut v);
             self.tie(&mut v);
         }
         let (mut terms, mut change) = (0.0, 0.0);
         for ((state, node), moved) in points().zip(&moved) {
-            let conditions = node.conditions(self.problem, &v);
+            let conditions = node.conditions(offset, &v);
             terms += moved.gap(state, &conditions, node.value(&mut v));
             change += moved.change;
         }
@@ -223,7 +225,7 @@ impl Solved<'_> {
 
     /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one
     /// may undo another. Points that touch stay at their obstacles, others are moved out of theirs.
-    fn agree(&self, moved: &[Correction], nodes: &[AdmissibleNode], v: &mut [f64]) {
+    fn agree(&self, moved: &[Correction], nodes: &[AdmissibleNode], offset: &[f64], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         if gluing.dependent_nodes().is_empty() {
             return;
@@ -231,7 +233,7 @@ impl Solved<'_> {
         let mut planes: BTreeMap<u32, Vec<([f64; 3], f64)>> = BTreeMap::new();
         for row in gluing.ranges().dirichlet.clone() {
             if let Some(node) = gluing.node(row).filter(|n| gluing.is_dependent(*n)) {
-                let plane = (gluing.direction(row), self.prescribed(row));
+                let plane = (gluing.direction(row), offset[row]);
                 planes.entry(node).or_default().push(plane);
             }
         }
@@ -239,7 +241,7 @@ impl Solved<'_> {
         let dependent = points.filter(|((point, _), _)| gluing.is_dependent(point.node()));
         let dependent: Vec<_> = dependent.map(|((_, node), moved)| (node, moved)).collect();
         for (node, moved) in &dependent {
-            let conditions = node.conditions(self.problem, v);
+            let conditions = node.conditions(offset, v);
             let planes = planes.entry(node.node).or_default();
             if moved.touches() {
                 planes.push(conditions.obstacle());
@@ -256,16 +258,19 @@ impl Solved<'_> {
         };
         on_planes(v);
         for _ in 0..SWEEPS {
-            dependent.iter().for_each(|(node, _)| node.push_out(self.problem, v));
+            dependent.iter().for_each(|(node, _)| node.push_out(offset, v));
         }
         on_planes(v);
     }
 
-    /// Prescribed value of a support row. A spring is held where its multiplier puts it: it then adds nothing to the gap.
-    fn prescribed(&self, row: usize) -> f64 {
-        let gluing = self.model.tfeti.gluing();
-        let multiplier = self.recovered.support_multipliers[row - gluing.ranges().dirichlet.start];
-        self.problem.offset[row] - gluing.gives_way(row, multiplier)
+    /// What rows have to measure of an admissible displacement, in row units. Springs and compliant contact are held where
+    /// their multipliers put them: they then add nothing to the gap.
+    fn offset(&self) -> Cow<'_, [f64]> {
+        let (offset, gives_way) = (&self.problem.offset, &self.recovered.gives_way);
+        match &gives_way[..] {
+            [] => offset.into(),
+            _ => offset.iter().zip(gives_way).map(|(c, given)| c - given).collect(),
+        }
     }
 
     /// Moves the nodes of tied contacts to where their partners want them.
@@ -293,7 +298,7 @@ impl Solved<'_> {
     }
 
     /// Sets supported directions to their prescribed values.
-    fn support(&self, v: &mut [f64]) {
+    fn support(&self, offset: &[f64], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         for row in gluing.ranges().dirichlet.clone() {
             let Some(node) = gluing.node(row) else {
@@ -301,7 +306,7 @@ impl Solved<'_> {
             };
             let direction = gluing.direction(row);
             let value = &mut v[3 * node as usize..][..3];
-            let missing = self.prescribed(row) - dot(&direction, value);
+            let missing = offset[row] - dot(&direction, value);
             let off = missing / dot(&direction, &direction);
             for c in 0..3 {
                 value[c] += off * direction[c];

@@ -9,7 +9,8 @@ use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
-use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder};
+use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TiedRows};
+use std::collections::HashMap;
 use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
@@ -58,6 +59,13 @@ impl Model {
         out
     }
 
+    /// The rows of tied contacts, each with its point.
+    pub(crate) fn tied(&self) -> impl Iterator<Item = (&TiedRows, &ContactPoint)> {
+        let points = self.discrete.points.len();
+        let tied = self.tfeti.gluing().tied().iter();
+        tied.filter_map(move |t| Some((t, self.discrete.ties.get(t.point.checked_sub(points)?)?)))
+    }
+
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
     /// certificates.
     pub(crate) fn copies(&self) -> &CopyStiffness {
@@ -71,11 +79,13 @@ impl Model {
             .with_supports(&discrete.supports.nodes)
             .with_springs(&discrete.springs.nodal)
             .with_contact(&discrete.constraints)
+            .with_communicator(&settings.communicator)
             .build()?;
         let loads = std::mem::take(&mut discrete.loads).into_iter();
         let loads = loads
             .map(|local| tfeti.load_response(&local))
             .collect::<Result<_, _>>()?;
+        tfeti.check_processes()?;
         let points = constrained_points(&discrete.points, tfeti.gluing());
         let ranges = tfeti.gluing().ranges();
         let zeros = |count: usize| vec![0.0; count];
@@ -109,6 +119,18 @@ impl Model {
     /// Whether the law of some contact surface is such.
     pub(crate) fn any_law(&self, such: impl Fn(&Friction) -> bool) -> bool {
         self.scene.contacts.iter().any(|c| such(c.friction()))
+    }
+
+    /// How deep points are let into their obstacles or partners by normal compliance, m: by node their places and depths.
+    pub(crate) fn given_way(&self, lambda: &[f64]) -> HashMap<u32, Vec<(usize, f64)>> {
+        let mut out: HashMap<u32, Vec<(usize, f64)>> = HashMap::new();
+        let compliant = self.points.iter().enumerate();
+        for (k, point) in compliant.filter(|(_, p)| p.contact.compliance[0] > 0.0) {
+            let pressure = -point.scale * lambda[point.row] / point.area();
+            let depth = point.contact.compliance[0] * pressure;
+            out.entry(point.node()).or_default().push((k, depth));
+        }
+        out
     }
 
     /// Tangential rows.

@@ -7,8 +7,9 @@
 //! functions on `C` then `int_C psi_j f = d_j (P f)(x_j)`: that is what is computed, in coordinates about the centroid
 //! of `C`, so that nothing cancels where `C` is small.
 //!
-//! **Quadratic facets** have multipliers that are linear on a facet, as where meshes match: `psi_j` is `l_j` itself, and
-//! both sides are lists of nodes. They are laid into the plane of their corners.
+//! **Quadratic facets** have half the sum of these and of the shape functions of the corners, as where meshes match
+//! ([`Surface::mean`](signorini_fem_mesh::Surface::mean)), and both sides are lists of nodes. They are laid into the
+//! plane of their corners.
 
 use crate::tolerances::{COVERED, FLAT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
@@ -31,7 +32,7 @@ pub(super) struct Cover {
     pub(super) area: f64,
     /// `d_j`, m², of the three corners.
     pub(super) areas: [f64; 3],
-    /// Of each node of the other side the integrals of its shape function times the three `psi_j`, m².
+    /// Of each node of the other side the integrals of its shape function times the multipliers of the corners, m².
     pub(super) weights: Vec<(u32, [f64; 3])>,
     /// The same of the nodes of the facet in a mesh of order 2.
     pub(super) own: Vec<(u32, [f64; 3])>,
@@ -102,41 +103,9 @@ impl Piece {
 }
 
 impl Cover {
-    /// The cover of a facet of order 2 (its nodes, corners first) by pieces that do not overlap; `None` without pieces.
-    pub(super) fn quadratic(facet: &[Point; 3], nodes: &[u32; 6], pieces: &[Piece]) -> Option<Self> {
-        let rule = triangle();
-        let mut out = Self {
-            area: 0.0,
-            areas: [0.0; 3],
-            weights: Vec::new(),
-            own: nodes.iter().map(|&node| (node, [0.0; 3])).collect(),
-        };
-        for piece in pieces {
-            let [a, b, c] = piece.laid.nodes;
-            let Some([ab, bc, ca]) = piece.laid.mids else {
-                continue;
-            };
-            let mut there = [[0.0; 3]; 6];
-            piece.integrate_fifth(&rule, |p, w| {
-                out.area += w;
-                let hats = barycentric(facet, p).map(|l| w * l);
-                let [own, other] =
-                    [barycentric(facet, p), barycentric(&piece.laid.corners, p)].map(|l| facet_shape(&l));
-                for j in 0..3 {
-                    out.areas[j] += hats[j];
-                    (0..6).for_each(|k| out.own[k].1[j] += hats[j] * own[k]);
-                    (0..6).for_each(|k| there[k][j] += hats[j] * other[k]);
-                }
-            });
-            for (node, values) in [a, b, c, ab, bc, ca].into_iter().zip(there) {
-                add(&mut out.weights, node, values);
-            }
-        }
-        (out.area > 0.0).then_some(out)
-    }
-
-    /// The cover of a facet by pieces that do not overlap; `None` without pieces.
-    pub(super) fn new(facet: &[Point; 3], pieces: &[Piece]) -> Option<Self> {
+    /// The cover of a facet by pieces that do not overlap; `None` without pieces. `own` are the nodes of the facet in a
+    /// mesh of order 2, corners first.
+    pub(super) fn new(facet: &[Point; 3], own: Option<&[u32; 6]>, pieces: &[Piece]) -> Option<Self> {
         let (mut area, mut first) = (0.0, [0.0; 2]);
         for piece in pieces {
             piece.integrate(|p, w| {
@@ -168,31 +137,58 @@ impl Cover {
             ]
         });
         let areas = barycentric(facet, centre).map(|l| area * l);
-        let mut weights: Vec<(u32, [f64; 3])> = Vec::new();
-        for piece in pieces {
-            let mut moments = [[0.0; 3]; 3];
-            piece.integrate(|p, w| {
-                let shape = barycentric(&piece.laid.corners, p);
-                let [x, y] = sub(p, centre);
-                for (moments, shape) in moments.iter_mut().zip(shape) {
-                    let value = w * shape;
-                    moments[0] += value;
-                    moments[1] += value * x;
-                    moments[2] += value * y;
-                }
-            });
-            for (&node, moments) in piece.laid.nodes.iter().zip(&moments) {
-                let projected = |j: usize| kernel[j].iter().zip(moments).map(|(k, m)| k * m).sum::<f64>();
-                add(&mut weights, node, [0, 1, 2].map(|j| areas[j] * projected(j)));
+        let times = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let weights_of = |moments: &[f64; 3]| [0, 1, 2].map(|j| areas[j] * times(&kernel[j], moments));
+        let moments_at = |moments: &mut [[f64; 3]], shape: &[f64], p: Point, w: f64| {
+            let [x, y] = sub(p, centre);
+            for (moments, shape) in moments.iter_mut().zip(shape) {
+                let value = w * shape;
+                moments[0] += value;
+                moments[1] += value * x;
+                moments[2] += value * y;
             }
-        }
-        let own = Vec::new();
-        Some(Self {
+        };
+        let mut out = Self {
             area,
             areas,
-            weights,
-            own,
-        })
+            weights: Vec::new(),
+            own: Vec::new(),
+        };
+        let Some(own) = own else {
+            for piece in pieces {
+                let mut there = [[0.0; 3]; 3];
+                piece.integrate(|p, w| moments_at(&mut there, &barycentric(&piece.laid.corners, p), p, w));
+                for (&node, moments) in piece.laid.nodes.iter().zip(&there) {
+                    add(&mut out.weights, node, weights_of(moments));
+                }
+            }
+            return Some(out);
+        };
+        // shape functions about the centroid
+        let hats = [0, 1, 2].map(|j| {
+            let [from, to] = [facet[(j + 1) % 3], facet[(j + 2) % 3]];
+            let [x, y] = sub(to, from).map(|d| d / cross(sub(to, from), sub(facet[j], from)));
+            [areas[j] / area, -y, x]
+        });
+        let weights_of = |moments: &[f64; 3]| {
+            let dual = weights_of(moments);
+            [0, 1, 2].map(|j| 0.5 * (dual[j] + times(&hats[j], moments)))
+        };
+        let (rule, mut here) = (triangle(), [[0.0; 3]; 6]);
+        for piece in pieces {
+            let [[a, b, c], [ab, bc, ca]] = [piece.laid.nodes, piece.laid.mids?];
+            let mut there = [[0.0; 3]; 6];
+            piece.integrate_fifth(&rule, |p, w| {
+                moments_at(&mut here, &facet_shape(&barycentric(facet, p)), p, w);
+                let other = facet_shape(&barycentric(&piece.laid.corners, p));
+                moments_at(&mut there, &other, p, w);
+            });
+            for (node, moments) in [a, b, c, ab, bc, ca].into_iter().zip(&there) {
+                add(&mut out.weights, node, weights_of(moments));
+            }
+        }
+        out.own = own.iter().copied().zip(here.iter().map(weights_of)).collect();
+        Some(out)
     }
 }
 
@@ -284,7 +280,7 @@ mod tests {
         for laid in covers {
             let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l)).collect();
             assert_eq!(pieces.len(), laid.len());
-            let cover = Cover::new(&facet, &pieces).expect("covered");
+            let cover = Cover::new(&facet, None, &pieces).expect("covered");
             let sum: f64 = pieces.iter().map(|p| p.area).sum();
             assert!((cover.area - sum).abs() < 1e-15 && (cover.areas.iter().sum::<f64>() - sum).abs() < 1e-15);
             for (j, &corner) in facet.iter().enumerate() {

@@ -92,10 +92,7 @@ pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) ->
                 }
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
-                let cover = match triangles[k].quadratic() {
-                    Some(nodes) => Cover::quadratic(&plane.corners, &nodes, &pieces),
-                    None => Cover::new(&plane.corners, &pieces),
-                };
+                let cover = Cover::new(&plane.corners, triangles[k].quadratic().as_ref(), &pieces);
                 Some((k, cover, farthest))
             })
             .collect();

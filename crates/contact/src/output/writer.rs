@@ -129,13 +129,16 @@ impl ResultWriter {
     }
 
     /// Writes a step, for those who take the steps themselves; as an observer it does so unasked. A step that could not
-    /// be written can be written again.
+    /// be written can be written again. Of several processes rank 0 writes, the others do nothing.
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not
     /// finite; [`ContactError::Probe`] if a probe is no node; [`ContactError::ResultTable`] if the table of a run that is
     /// resumed is another one.
     pub fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
+        if result.model.plan.rank > 0 {
+            return Ok(());
+        }
         let files = self.files.take().filter(|files| files.step < result.step());
         let mut files = match files {
             Some(files) => files,

@@ -1,7 +1,7 @@
 //! Which effects a scene has.
 
 use crate::discrete::DiscreteScene;
-use crate::scene::{Analysis, Contact, Friction, Gap, Scene};
+use crate::scene::{Analysis, Friction, Gap, Scene};
 
 /// What kind of friction a scene has; of several the one with the most effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -29,6 +29,8 @@ pub struct Effects {
     pub partners: bool,
     /// Bonded sides.
     pub ties: bool,
+    /// Bonded sides that move against each other.
+    pub moving_ties: bool,
     /// Friction.
     pub friction: FrictionKind,
     /// History: old tangential displacements.
@@ -45,6 +47,8 @@ pub struct Effects {
     pub moving_obstacle: bool,
     /// Gaps that change in time.
     pub gap_history: bool,
+    /// Contact that gives way along the normal or along the surface.
+    pub compliance: bool,
 }
 
 impl FrictionKind {
@@ -81,7 +85,9 @@ impl Effects {
             supports: !scene.supports.is_empty(),
             springs: !scene.springs.is_empty(),
             motion: scene.supports.iter().any(|s| s.motion.is_some()),
-            moving_obstacle: contacts.iter().any(Contact::moves),
+            moving_obstacle: contacts.iter().any(|c| !c.tied && c.moves()),
+            moving_ties: contacts.iter().any(|c| c.tied && c.moves()),
+            compliance: contacts.iter().any(|c| c.compliance != [0.0; 2]),
             gap_history: (0..contacts.len()).any(|k| has_gap(k) && contacts[k].gap_history.is_some()),
         }
     }

@@ -9,7 +9,7 @@ use crate::report::Warning;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::Directions;
-use signorini_tfeti::internal::{Forecast, Rate};
+use signorini_tfeti::internal::{Forecast, HELD, Rate};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes of a scene and the method chosen for it.
@@ -42,6 +42,11 @@ pub struct Plan {
     pub dirichlet_rows: usize,
     /// Rows of tied contacts.
     pub tied_rows: usize,
+    /// Number of this process among those that solve the scene together, from 0; see
+    /// [`Settings::with_communicator`].
+    pub rank: usize,
+    /// How many they are.
+    pub ranks: usize,
     /// Unknowns of the coarse problem.
     pub coarse: usize,
     /// Time steps.
@@ -98,7 +103,18 @@ impl Plan {
         let fixed = fixed_directions(&discrete.supports);
         // an estimate at nodes with one or two fixed directions: the set-up counts exactly
         let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
-        let free = |p: &ContactPoint| 3 - p.sides.nodes().map(held).min().unwrap_or(3);
+        let free = |p: &ContactPoint| match (p.sides.own.nodes(), &p.sides.partner) {
+            // a side of several nodes is held where a good part of it is
+            (&[own], Some(partner)) => {
+                let part = |least: usize| {
+                    let nodes = partner.nodes().iter().filter(|n| held(**n) >= least);
+                    nodes.map(|n| n.1).sum::<f64>()
+                };
+                let partner = (1..=3).rev().find(|&least| part(least) >= HELD);
+                3 - held(own).min(partner.unwrap_or(0))
+            }
+            _ => 3 - p.sides.nodes().map(held).min().unwrap_or(3),
+        };
         let points = discrete.points.iter().filter(|point| free(point) > 0);
         let points: Vec<&ContactPoint> = points.collect();
         let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
@@ -119,6 +135,8 @@ impl Plan {
             interface_rows: primal - 3 * nodes,
             dirichlet_rows: fixed.values().copied().sum::<usize>() + discrete.springs.nodal.len(),
             tied_rows: discrete.ties.iter().map(free).sum(),
+            rank: settings.communicator.rank(),
+            ranks: settings.communicator.size(),
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
             method: if effects.contact {

@@ -37,7 +37,8 @@ impl fmt::Display for Plan {
         line("gluing", self.gluing_text())?;
         line("supports", self.supports_text())?;
         if self.effects.ties {
-            line("ties", format!("{} rows", self.tied_rows))?;
+            let moving = if self.effects.moving_ties { ", moving" } else { "" };
+            line("ties", format!("{} rows{moving}", self.tied_rows))?;
         }
         line("contact", self.contact_text())?;
         line("friction", self.friction_text())?;
@@ -103,7 +104,8 @@ impl Plan {
         };
         let moving = if e.moving_obstacle { ", moving obstacle" } else { "" };
         let partners = if e.partners { ", between bodies" } else { "" };
-        format!("{} nodes, {gap}{moving}{partners}", self.normal_rows)
+        let compliant = if e.compliance { ", gives way" } else { "" };
+        format!("{} nodes, {gap}{moving}{partners}{compliant}", self.normal_rows)
     }
 
     fn friction_text(&self) -> String {

@@ -27,10 +27,9 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     for own in sizes {
         c.equilibrium.worsen(own.residual, own.forces);
     }
-    let gluing = model.tfeti.gluing();
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
-        let jump = (m.rows[row] + gluing.gives_way(row, lambda[row]) - problem.offset[row]).abs();
+        let jump = (m.rows[row] - problem.offset[row]).abs();
         c.continuity.worsen(jump, own.displacement);
     }
     for (k, point) in model.points.iter().enumerate() {
@@ -83,6 +82,7 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         }
         sum / weight
     };
+    let depths = model.given_way(m.lambda);
     for condition in &model.judged {
         let normal = &condition.frame.normal;
         let pose = m.problem.obstacles[0].get(condition.surface);
@@ -91,7 +91,10 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let sides = condition.sides.nodes();
         let way: f64 = sides.map(|(node, weight)| weight * along(node, normal)).sum();
-        let depth = way - open;
+        let same = |(k, _): &&(usize, f64)| model.points[*k].contact.is_same(condition);
+        let own = depths.get(&condition.node());
+        let given = own.and_then(|points| points.iter().find(same)).map_or(0.0, |p| p.1);
+        let depth = way - open - given;
         let copies = model.discrete.decomposition.copies(condition.node() as usize);
         let body = copies
             .first()

@@ -41,12 +41,13 @@ pub struct PointState {
     /// Slip bound, N; 0 without friction. That along the axis where friction [differs by
     /// direction](crate::Contact::with_friction_axis).
     pub slip_bound: f64,
-    /// Distance to the obstacle or the partner, m.
+    /// Distance to the obstacle or the partner, m; negative by what a [compliant](crate::Contact::with_normal_compliance)
+    /// contact gives way.
     pub gap: f64,
     /// Tangential displacement, m, in space; relative to the partner, if there is one.
     pub tangential_displacement: [f64; 3],
     /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static
-    /// scene.
+    /// scene. Without [elastic slip](crate::Contact::with_tangential_compliance).
     pub difference: [f64; 3],
     /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene.
     pub slip_rate: f64,
@@ -62,8 +63,13 @@ impl PointState {
     }
 }
 
-/// Evaluates the contact points: `rows` is `B u` in row units.
-pub(crate) fn point_states(model: &Model, problem: &StepProblem, lambda: &[f64], rows: &[f64]) -> Vec<PointState> {
+/// Evaluates the contact points: in row units what rows measure, and what is compliance in it.
+pub(crate) fn point_states(
+    model: &Model,
+    problem: &StepProblem,
+    lambda: &[f64],
+    rows: (&[f64], &[f64]),
+) -> Vec<PointState> {
     let states = model.points.iter().enumerate();
     states
         .map(|(k, point)| {
@@ -77,7 +83,7 @@ pub(crate) fn point_states(model: &Model, problem: &StepProblem, lambda: &[f64],
 fn point_state(
     problem: &StepProblem,
     point: &ConstrainedPoint,
-    (lambda, rows): (&[f64], &[f64]),
+    (lambda, (rows, gives_way)): (&[f64], (&[f64], &[f64])),
     bound: f64,
 ) -> PointState {
     let alpha = problem.formula.map_or(1.0, |f| f.weights()[0]);
@@ -91,7 +97,8 @@ fn point_state(
     let mut on_bound = false;
     for (j, (_, k, scale)) in point.along().enumerate() {
         friction[j] = scale * lambda[k];
-        displacement[j] = (rows[k] - entry_or_zero(&problem.prescribed, k)) / scale;
+        let elastic = entry_or_zero(gives_way, k);
+        displacement[j] = (rows[k] - elastic - entry_or_zero(&problem.prescribed, k)) / scale;
         difference[j] = alpha * (rows[k] - problem.offset[k]) / scale;
         let [a, b] = point.stretch;
         on_bound = (friction[0] / a).hypot(friction[1] / b) >= bound * ON_BOUND;
@@ -114,7 +121,7 @@ fn point_state(
         normal_force,
         friction_force: space(friction),
         slip_bound: bound,
-        gap: (problem.offset[point.row] - rows[point.row]) / point.scale,
+        gap: (problem.offset[point.row] - rows[point.row] + entry_or_zero(gives_way, point.row)) / point.scale,
         tangential_displacement: space(displacement),
         difference: space(difference),
         slip_rate: problem.step.map_or(0.0, |dt| slip / dt),
@@ -144,7 +151,7 @@ mod tests {
             let mut rows = problem.offset.clone();
             (lambda[point.row], lambda[row]) = (-pressed, friction);
             rows[row] += slip;
-            let states = point_states(&model, &problem, &lambda, &rows);
+            let states = point_states(&model, &problem, &lambda, (&rows, &[]));
             assert_eq!(states[4].state, expected, "{friction} N, {slip} m");
         }
     }

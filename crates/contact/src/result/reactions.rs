@@ -163,9 +163,7 @@ pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&
     let gluing = model.tfeti.gluing();
     let subdomains = model.discrete.decomposition.subdomains();
     let supported = |node: u32| model.discrete.supports.directions.contains_key(&node);
-    let points = model.discrete.points.len();
-    let force = |tied: &TiedRows| {
-        let tie = model.discrete.ties.get(tied.point.checked_sub(points)?)?;
+    let force = |(tied, tie): (&TiedRows, &'a ContactPoint)| {
         let free = tie.sides.nodes().filter(|n| !supported(n.0));
         let (node, weight) = free.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
         let mut force = [0.0; 3];
@@ -179,7 +177,7 @@ pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&
         }
         Some((tie, force))
     };
-    gluing.tied().iter().filter_map(force).collect()
+    model.tied().filter_map(force).collect()
 }
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.

@@ -7,14 +7,17 @@ use super::sizes::{Measured, Sizes, sizes};
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::StepProblem;
+use signorini_qp::vector;
 
 /// Displacement, states of points, and how well all conditions hold.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Recovered {
     /// Displacement of every subdomain, one after another, m.
     pub(crate) torn: Vec<f64>,
-    /// `B u` of it, in row units.
+    /// `B u` of it, and what springs and contact give way, in row units.
     pub(crate) rows: Vec<f64>,
+    /// What they give way of it; empty where nothing does.
+    pub(crate) gives_way: Vec<f64>,
     /// `K u - f - Bᵀ lambda`, torn, N.
     pub(crate) residual: Vec<f64>,
     /// Sizes of the bodies.
@@ -40,6 +43,12 @@ impl Recovered {
         let torn = tfeti.recover(&force, lambda, alpha)?;
         let mut rows = vec![0.0; tfeti.dual_dim()];
         tfeti.rows_times(&torn, &mut rows);
+        let mut gives_way = Vec::new();
+        if tfeti.gluing().is_compliant() {
+            gives_way.resize(rows.len(), 0.0);
+            tfeti.gluing().add_compliance(lambda, &mut gives_way);
+            vector::axpy(1.0, &gives_way, &mut rows);
+        }
         let residual = tfeti.equilibrium_residual(&torn, &force, lambda)?;
         let measured = Measured {
             model,
@@ -53,12 +62,13 @@ impl Recovered {
         let sizes = sizes(&measured);
         Ok(Self {
             certificate: certify(&measured, &sizes),
-            points: point_states(model, problem, lambda, &rows),
+            points: point_states(model, problem, lambda, (&rows, &gives_way)),
             support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
             tied_multipliers: lambda[tfeti.gluing().ranges().tied.clone()].to_vec(),
             sizes,
             torn,
             rows,
+            gives_way,
             residual,
         })
     }

@@ -11,7 +11,7 @@ pub(super) struct Measured<'a> {
     pub(super) model: &'a Model,
     pub(super) problem: &'a StepProblem,
     pub(super) lambda: &'a [f64],
-    /// `B u` in row units.
+    /// `B u`, and what springs and contact give way, in row units.
     pub(super) rows: &'a [f64],
     /// Torn displacement.
     pub(super) u: &'a [f64],

@@ -44,6 +44,8 @@ pub struct Contact {
     pub(crate) shape: Option<Obstacle>,
     /// Whether both sides are bonded.
     pub(crate) tied: bool,
+    /// Along the normal and along the surface, m/Pa.
+    pub(crate) compliance: [f64; 2],
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
@@ -66,6 +68,7 @@ impl Contact {
             rotation: None,
             shape: None,
             tied: false,
+            compliance: [0.0; 2],
         }
     }
 
@@ -151,7 +154,8 @@ impl Contact {
     }
 
     /// Bonds two bodies, or parts of one that are meshed apart: both sides move alike where they face each other, as
-    /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is.
+    /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is, or
+    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts are tied.
     #[must_use]
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
@@ -262,6 +266,8 @@ impl Contact {
     /// sides, with [`with_normal`](Self::with_normal), and along sides that the motion maps onto themselves; elsewhere
     /// ways that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
     /// Friction laws that depend on the place stay with the nodes of the body.
+    ///
+    /// Of [tied](Self::tied) sides the first one moves against the other.
     #[must_use]
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
@@ -322,6 +328,50 @@ impl Contact {
     pub fn with_friction(mut self, friction: Friction) -> Self {
         self.friction = if friction.is_zero() { Friction::None } else { friction };
         self
+    }
+
+    /// Rough surfaces give way under pressure: where they touch, the distance is `-compliance` (m/Pa) times the pressure,
+    /// a negative gap in [`PointState`](crate::PointState). Zero, the default, is the exact law. The inverse is the
+    /// contact stiffness of other codes (N/m³, the slope of a linear pressure-overclosure).
+    ///
+    /// Contacts that meet a node along one direction need the same compliances and gaps. A node that a support holds
+    /// along the normal still may not be inside the obstacle: no pressure is known there.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, Hooke, brick};
+    ///
+    /// // a column on a rough floor: 1 MPa on 100 MPa/mm
+    /// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
+    /// let scene = Scene::new(mesh, Hooke::isotropic(2.1e11, 0.0)?.into())
+    ///     .with_support(Support::components(brick::X_MIN, [true, true, false]))
+    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
+    ///     .with_contact(Contact::rigid(brick::Z_MIN).with_normal_compliance(1e-11));
+    /// let result = Simulation::new(scene, Settings::default())?.step()?;
+    /// assert!(result.points().iter().all(|p| (p.gap + 1e-5).abs() < 1e-10));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_normal_compliance(mut self, compliance: f64) -> Self {
+        self.compliance[0] = compliance;
+        self
+    }
+
+    /// Elastic slip: below the slip bound a point moves along the surface by `compliance` (m/Pa) times the friction
+    /// stress, and goes back with it. The inverse is the stick slope of other codes (N/m³). Zero, the default, is
+    /// Coulomb's law as it stands. Without friction it has no effect.
+    ///
+    /// Differences, slip rates and friction work of results are those of the slip beyond it, which is lost.
+    #[must_use]
+    pub fn with_tangential_compliance(mut self, compliance: f64) -> Self {
+        self.compliance[1] = compliance;
+        self
+    }
+
+    /// Compliance along the normal and along the surface, m/Pa; zero for the exact law.
+    #[must_use]
+    pub fn compliance(&self) -> [f64; 2] {
+        self.compliance
     }
 
     /// Whether both sides are [bonded](Self::tied).

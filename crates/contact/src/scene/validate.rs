@@ -105,10 +105,12 @@ impl Scene {
             }
         }
         let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
-        if contact.tied && (loose || contact.normal != ContactNormal::Body) {
+        let loose = loose || contact.compliance != [0.0; 2];
+        let turned = contact.normal != ContactNormal::Body || contact.rotation.is_some();
+        if contact.tied && (loose || turned) {
             return Err(ContactError::Tied { contact: index });
         }
-        if (contact.moves() || contact.shape().is_some()) && !contact.partner.is_empty() {
+        if (contact.moves() && !contact.tied || contact.shape().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion
@@ -133,6 +135,9 @@ impl Scene {
         if let Some((name, value)) = contact.shape().and_then(Obstacle::flaw) {
             let range = "(0, inf)";
             return Err(ContactError::Setting { name, value, range });
+        }
+        if let Some(&value) = contact.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
+            return Err(ContactError::Compliance { contact: index, value });
         }
         if !(contact.crease > 0.0 && contact.crease <= 180.0) {
             return Err(ContactError::Setting {

@@ -4,7 +4,8 @@ use super::accuracy::Accuracy;
 use super::method::{InnerAccuracy, Method};
 use crate::error::ContactError;
 use crate::tolerances::MOST_HALVINGS;
-use signorini_tfeti::InverseSettings;
+use signorini_tfeti::{Alone, Communicator, InverseSettings};
+use std::sync::Arc;
 
 /// The preconditioner of the default method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -38,6 +39,7 @@ pub struct Settings {
     pub(crate) preconditioner: Preconditioner,
     pub(crate) max_fallback_products: usize,
     pub(crate) step_halving: u32,
+    pub(crate) communicator: Arc<dyn Communicator>,
 }
 
 impl Default for Settings {
@@ -53,6 +55,7 @@ impl Default for Settings {
             preconditioner: Preconditioner::default(),
             max_fallback_products: 20_000,
             step_halving: 0,
+            communicator: Arc::new(Alone),
         }
     }
 }
@@ -135,6 +138,19 @@ impl Settings {
     #[must_use]
     pub fn with_step_halving(mut self, most: u32) -> Self {
         self.step_halving = most;
+        self
+    }
+
+    /// The processes that solve the scene together; this one alone by default.
+    ///
+    /// The same program runs as every *rank* with the same scene and settings, makes the same calls in the same order,
+    /// and has the same results, bit for bit, as one process. The matrices of the subdomains and the work with them are
+    /// spread over the ranks. Observers are told on every rank; a run ends where any of them ends it. The library's own
+    /// files (`ResultWriter`, checkpoints) and lines ([`Progress`](crate::Progress)) are those of
+    /// rank 0; checkpoints are read by all.
+    #[must_use]
+    pub fn with_communicator(mut self, communicator: Arc<dyn Communicator>) -> Self {
+        self.communicator = communicator;
         self
     }
 

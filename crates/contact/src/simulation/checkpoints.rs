@@ -98,8 +98,7 @@ impl Simulation {
                 range: "of at least one step",
             });
         }
-        fs::create_dir_all(folder).map_err(failed("write", folder))?;
-        let warnings = self.resume_newest(folder)?;
+        let warnings = self.resume_in_turn(folder)?;
         let mut stored_at = Instant::now();
         self.run_and_keep(observer, warnings, |simulation, last| {
             let step = simulation.state.step();
@@ -107,7 +106,7 @@ impl Simulation {
                 Every::Steps(steps) => step.is_multiple_of(steps),
                 Every::Time(time) => stored_at.elapsed() >= time,
             };
-            if !last && !due {
+            if (!last && !due) || simulation.plan().rank > 0 {
                 return Ok(());
             }
             simulation.state.save(folder.join(format!("step-{step:08}.state")))?;
@@ -117,6 +116,32 @@ impl Simulation {
             stored_at = Instant::now();
             Ok(())
         })
+    }
+
+    /// [`resume_newest`](Self::resume_newest) on rank 0, which makes the folder and sets damaged files aside, then on the
+    /// others, which must find the same.
+    fn resume_in_turn(&mut self, folder: &Path) -> Result<Option<Warning>, ContactError> {
+        let root = self.plan().rank == 0;
+        if root {
+            fs::create_dir_all(folder).map_err(failed("write", folder))?;
+        } else {
+            self.model.tfeti.gather(0.0)?;
+        }
+        let warning = self.resume_newest(folder)?;
+        if root {
+            self.model.tfeti.gather(0.0)?;
+        }
+        let own = self.state.step() as f64;
+        let steps = self.model.tfeti.gather(own)?;
+        match steps.iter().all(|step| *step == own) {
+            true => Ok(warning),
+            false => Err(ContactError::Checkpoint {
+                reason: format!(
+                    "the ranks find different ones in {}; give them a folder that all of them see",
+                    folder.display()
+                ),
+            }),
+        }
     }
 
     /// Goes on from the newest checkpoint that is not damaged, if there are any, and says which were.

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const RECENT: usize = 10;
 
 /// Writes a line a step: its number, time, products, and how long the run will still take if its steps last as long as
-/// the last ten did. Warnings are lines of their own. A writer that fails ends the run with its error.
+/// the last ten did. Warnings are lines of their own. Of several processes rank 0 writes. A writer that fails ends the run with its error.
 ///
 /// ```
 /// use signorini_contact::{Flow, Load, Progress, Scene, Settings, Simulation, StepResult, Support};
@@ -36,6 +36,8 @@ pub struct Progress<W> {
     /// Steps of the analysis, and those left.
     steps: usize,
     left: usize,
+    /// Whether it is rank 0.
+    speaks: bool,
     before: Instant,
     recent: VecDeque<Duration>,
     /// What could not be written before a step.
@@ -49,6 +51,7 @@ impl<W: Write> Progress<W> {
             out,
             steps: 0,
             left: 0,
+            speaks: true,
             before: Instant::now(),
             recent: VecDeque::with_capacity(RECENT),
             failed: Ok(()),
@@ -69,11 +72,15 @@ impl<W: Write> Progress<W> {
 impl<W: Write> Observer for Progress<W> {
     fn started(&mut self, plan: &Plan, steps: usize) {
         (self.steps, self.left) = (plan.steps, steps);
+        self.speaks = plan.rank == 0;
         self.before = Instant::now();
         self.recent.clear();
     }
 
     fn warning(&mut self, warning: &Warning) {
+        if !self.speaks {
+            return;
+        }
         let written = writeln!(self.out, "warning: {warning}");
         if self.failed.is_ok() {
             self.failed = written;
@@ -81,6 +88,9 @@ impl<W: Write> Observer for Progress<W> {
     }
 
     fn step(&mut self, result: &StepResult) -> Flow {
+        if !self.speaks {
+            return Flow::Continue;
+        }
         let now = Instant::now();
         self.left = self.left.saturating_sub(1);
         let left = self.foretell(now - self.before);

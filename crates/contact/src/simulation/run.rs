@@ -40,7 +40,7 @@ impl Simulation {
             report.enter(result.report(), result.failure(), result.certificate().largest());
             let new = on_pool(|| result.warnings_but(&report.warnings));
             warn(&mut report, observer, new);
-            let flow = observer.step(&result);
+            let flow = self.agreed(observer.step(&result))?;
             if let Flow::Fail(source) = flow {
                 let step = result.step();
                 failed = Some(ContactError::Observer { step, source });
@@ -61,6 +61,29 @@ impl Simulation {
         }
         observer.finished(report.steps);
         failed.map_or(Ok(report), Err)
+    }
+}
+
+impl Simulation {
+    /// What the observers of all processes want: to fail if one fails, else to stop if one stops.
+    fn agreed(&self, flow: Flow) -> Result<Flow, ContactError> {
+        if self.plan().ranks == 1 {
+            return Ok(flow);
+        }
+        let wish = match flow {
+            Flow::Continue => 0.0,
+            Flow::Stop => 1.0,
+            Flow::Fail(_) => 2.0,
+        };
+        let wishes = self.model.tfeti.gather(wish)?;
+        let most = wishes.iter().copied().fold(0.0, f64::max);
+        let rank = wishes.iter().position(|w| *w == most).unwrap_or(0);
+        Ok(match flow {
+            Flow::Fail(_) => flow,
+            _ if most == 2.0 => Flow::Fail(format!("that of rank {rank} failed, see there").into()),
+            _ if most == 1.0 => Flow::Stop,
+            _ => flow,
+        })
     }
 }
 

@@ -40,6 +40,7 @@ impl Simulation {
         let mut before = Before::default();
         loop {
             let solved = self.solve_after(&state, &way);
+            self.model.tfeti.check_processes()?;
             let converged = matches!(&solved, Ok(result) if result.report.status.converged());
             if !converged && way.halve() {
                 before.enter_halved(solved.ok().map(|result| result.report));
@@ -92,8 +93,12 @@ impl Simulation {
             problem,
             settings: &settings,
         };
-        let mut report = self.solver.solve(task, iterate)?;
-        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha)?;
+        let solved = self.solver.solve(task, iterate);
+        model.tfeti.check_processes()?;
+        let mut report = solved?;
+        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha);
+        model.tfeti.check_processes()?;
+        let recovered = recovered?;
         report.counters.products += 1;
         Ok((report, recovered))
     }
@@ -175,7 +180,8 @@ fn start_vector(last: &[f64], before: &[f64], n: usize, along: Option<f64>) -> V
     x
 }
 
-/// Tangential displacements relative to the obstacle or the other body, m, by tangential row.
+/// Tangential displacements relative to the obstacle or the other body, m, by tangential row; without elastic slip, which
+/// comes back.
 fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     let mut trace = vec![0.0; model.tangential_rows()];
     let start = model.tangential_start();
@@ -188,13 +194,11 @@ fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     trace
 }
 
-/// `F lambda` afresh from the recovered displacement: `B u = F lambda + B K+ f + Gᵀ alpha`, with what springs give way.
+/// `F lambda` afresh from the recovered displacement: rows, with what gives way, are `F lambda + B K+ f + Gᵀ alpha`.
 fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &Iterate) -> Vec<f64> {
     let coarse = model.tfeti.coarse();
     let mut rigid = vec![0.0; rows.len()];
     coarse.apply_transpose(&iterate.alpha, &mut rigid, &mut coarse.scratch());
     let parts = rows.iter().zip(&problem.load).zip(&rigid);
-    let mut out: Vec<f64> = parts.map(|((u, load), rigid)| u - (load + rigid)).collect();
-    model.tfeti.gluing().add_compliance(&iterate.lambda, &mut out);
-    out
+    parts.map(|((u, load), rigid)| u - (load + rigid)).collect()
 }

@@ -47,6 +47,9 @@ impl ActiveSetSolver {
             *scale = scale.min(STIFF_ROWS / compliance);
         }
         let gluing = model.tfeti.gluing();
+        for (scale, own) in scale.iter_mut().zip(gluing.contact_compliance()) {
+            *scale /= 1.0 + own * *scale;
+        }
         let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
         for (_, scale) in scale.iter_mut().enumerate().take(contact).filter(|s| shared(s.0)) {
             *scale *= SHARED_ROWS;
@@ -69,6 +72,7 @@ impl ActiveSetSolver {
         let start = iterate.lambda.clone();
         let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
+        task.model.tfeti.check_processes()?;
         if !report.status.converged() {
             return self.fall_back(task, iterate, start, report);
         }

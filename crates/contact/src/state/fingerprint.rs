@@ -140,7 +140,8 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
     let how = format!("{:?}", (settings.share_translates, settings.inverse));
     let words = body.into_iter().chain(laws.map(|x| number(*x)));
     let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
-    let compliance = gluing.springs().iter().map(|s| number(s.compliance));
+    let springs = gluing.springs().iter().map(|s| s.compliance);
+    let compliance = springs.chain(gluing.contact_compliance().iter().copied()).map(number);
     let words = words.chain(entries).chain(compliance).chain(scales);
     hash(words.chain(how.bytes().map(u64::from)))
 }

@@ -73,6 +73,7 @@ impl StepProblem {
         let histories = model.discrete.supports.motions.iter();
         let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
         self.offset = model.tfeti.prescribed_offsets(&cases);
+        self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset);
         self.prescribed.clear();
         if model.plan.effects.motion && model.plan.effects.partners {
@@ -114,6 +115,22 @@ impl StepProblem {
             }
         }
         Ok(())
+    }
+
+    /// Adds to the offsets of tied rows what the first side is to move against the other.
+    fn part_ties(&mut self, model: &Model) {
+        if !model.plan.effects.moving_ties {
+            return;
+        }
+        for (tied, tie) in model.tied() {
+            let Some((displacement, history)) = &model.scene.contacts[tie.surface].motion else {
+                continue;
+            };
+            let way = tie.sides.sign() * history.value(self.time);
+            for (row, (direction, length)) in tied.rows.clone().zip(&tied.directions) {
+                self.offset[row] += length * way * dot(displacement, direction);
+            }
+        }
     }
 
     /// Where the obstacles that move are, and the gaps that change.

@@ -76,9 +76,20 @@ fn a_target_out_of_reach_is_no_success() {
 
 #[test]
 fn balanced_saves_products_and_keeps_the_error() {
-    let fine_scene = pressed(12, Friction::coulomb(0.3));
+    balanced([12, 4].map(|cells| pressed(cells, Friction::coulomb(0.3))));
+}
+
+#[test]
+fn balanced_does_so_with_quadratic_elements() {
+    balanced([6, 2].map(|cells| {
+        let linear = pressed(cells, Friction::coulomb(0.3));
+        let mesh = linear.mesh().raise_order().expect("quadratic");
+        pressed_on(mesh, Friction::coulomb(0.3))
+    }));
+}
+
+fn balanced([fine_scene, scene]: [Scene; 2]) {
     let fine = solve(fine_scene.clone(), at(1e-8));
-    let scene = pressed(4, Friction::coulomb(0.3));
     let error = |settings: Settings| {
         let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
         let result = step(&mut simulation);

@@ -148,7 +148,11 @@ pub(crate) fn loaded_brick(mesh: TetMesh, traction: History) -> Scene {
 
 /// A clamped brick pressed and pulled on a rough floor, one step.
 pub(crate) fn pressed(cells: usize, friction: Friction) -> Scene {
-    Scene::new(block([3.0, 1.0, 1.0], [3 * cells, cells, cells]), steel())
+    pressed_on(block([3.0, 1.0, 1.0], [3 * cells, cells, cells]), friction)
+}
+
+pub(crate) fn pressed_on(mesh: TetMesh, friction: Friction) -> Scene {
+    Scene::new(mesh, steel())
         .with_support(Support::fixed(brick::X_MIN))
         .with_load(Load::pressure(brick::Z_MAX, 1e8))
         .with_load(Load::traction(brick::X_MAX, [2e8, 0.0, 0.0]))

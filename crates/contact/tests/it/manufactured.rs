@@ -130,6 +130,22 @@ fn orders_of_quadratic_elements() {
     assert_orders(&[2, 4, 8].map(|cells| errors(&mesh(cells))), 1.85..2.15, 2.8..3.3);
 }
 
+/// A sector of a hollow ball, its mid-nodes on spheres.
+#[test]
+fn orders_of_quadratic_elements_on_a_ball() {
+    let ball = |[x, y, z]: [f64; 3]| {
+        let (u, v) = (1.4 * (x - 0.5), 1.4 * (y - 0.5));
+        let radius = 0.5 + 0.5 * z;
+        let length = (1.0 + u * u + v * v).sqrt();
+        [radius * u / length, radius * v / length, radius / length]
+    };
+    let mesh = |cells| {
+        let straight = block([1.0; 3], [cells; 3]).raise_order().expect("quadratic");
+        straight.map_points(ball).expect("ball")
+    };
+    assert_orders(&[4, 8].map(|cells| errors(&mesh(cells))), 1.85..2.2, 2.8..3.3);
+}
+
 /// All edges curved: bent by a smooth map.
 #[test]
 fn orders_of_curved_quadratic_elements() {

@@ -221,6 +221,32 @@ fn a_body_that_nothing_loads_yet_continues_bit_for_bit() {
     }
 }
 
+/// Quadratic elements: means over facets, and a state that fits no other order.
+#[test]
+fn quadratic_elements_continue_bit_for_bit() {
+    let quadratic = || {
+        Parts::with(|p| {
+            p.mesh = p.mesh.raise_order().expect("quadratic");
+            p.contact = Contact::rigid(brick::Z_MIN).with_friction(weakening());
+        })
+        .simulation()
+    };
+    let mut whole = quadratic();
+    let all: Vec<_> = rest(&mut whole).iter().map(bits).collect();
+    let mut first = quadratic();
+    for _ in 0..2 {
+        step(&mut first);
+    }
+    let mut again = quadratic();
+    again.resume(first.state().clone()).expect("resume");
+    assert!(rest(&mut again).iter().map(bits).eq(all[2..].iter().cloned()));
+    assert!(again.state() == whole.state());
+    let found = text(quadratic().resume(stored()));
+    assert!(found.contains("other"), "{found}");
+    let found = text(Parts::new().simulation().resume(first.state().clone()));
+    assert!(found.contains("other"), "{found}");
+}
+
 /// Before the first step a state says nothing that another scene could misread.
 #[test]
 fn a_state_before_the_first_step_starts_any_scene() {

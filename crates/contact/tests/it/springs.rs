@@ -233,6 +233,32 @@ fn springs_and_rough_contact() {
     }
 }
 
+/// Bodies meshed apart on a foundation whose nodes contact has, too: any cut gives the same.
+#[test]
+fn springs_beside_bodies_meshed_apart() {
+    for factor in [1.0, 1e3] {
+        let mut known: Option<Vec<f64>> = None;
+        for boxes in [[1, 1, 2], [2, 2, 2]] {
+            let mesh = with_second(&block([1.0; 3], [4; 3]), &lifted(&block([1.0; 3], [3; 3]), 1.0));
+            let scene = Scene::new(mesh, uniform(YOUNG, 0.3))
+                .with_support(Support::fixed(brick::Z_MIN))
+                .with_spring(Spring::components(second(brick::X_MIN), [factor * GROUND; 3]))
+                .with_load(Load::traction(second(brick::Z_MAX), [0.2 * PRESSURE, 0.0, -PRESSURE]))
+                .with_contact(
+                    Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)),
+                )
+                .with_boxes(boxes);
+            let result = solve(scene, at(1e-9));
+            let what = format!("{factor:e} {boxes:?}");
+            let u = &result.displacement;
+            match &known {
+                Some(known) => assert_close(u, known, 1e-6, &what),
+                None => known = Some(u.clone()),
+            }
+        }
+    }
+}
+
 #[test]
 fn stiff_springs_hold_like_supports() {
     let (_, held) = run(rough().with_support(Support::fixed(brick::Z_MAX)), at(1e-9));

@@ -125,6 +125,8 @@ pub(crate) struct Amplitude {
 pub(crate) struct Interaction {
     pub(crate) location: Location,
     pub(crate) friction: Option<f64>,
+    /// Along the normal and along the surface, length over stress.
+    pub(crate) compliance: [f64; 2],
 }
 
 /// Elements that keep their shape and follow a node.

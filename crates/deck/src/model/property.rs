@@ -2,10 +2,10 @@
 
 use super::{Amplitude, Ignored, Interaction, Material, Model, Pair, RigidBody, Section, Target};
 use crate::error::{DeckError, Fault};
-use crate::lexer::{Card, Param, label, name};
+use crate::lexer::{Card, Line, Param, label, name};
 use signorini_fem_mesh::History;
 
-pub(super) const PENALTY: &str = "contact and friction are exact here, without penalty numbers and stick slopes";
+pub(super) const PENALTY: &str = "a number for penalty iterations only: the law is solved exactly here";
 
 fn word(param: Option<&Param>) -> String {
     param.map(|p| p.word.clone()).unwrap_or_default()
@@ -122,6 +122,7 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
     let interaction = Interaction {
         location: card.location.clone(),
         friction: None,
+        compliance: [0.0; 2],
     };
     model.interactions.add(name, interaction);
     Ok(())
@@ -129,19 +130,45 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
 
 pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["PRESSURE-OVERCLOSURE"])?;
-    inside(
+    let interaction = inside(
         model.interactions.last_mut(),
         card,
         "*SURFACE BEHAVIOR belongs to an interaction; put *SURFACE INTERACTION before it",
     )?;
-    if let (Some(law), Some(param)) = (card.value("PRESSURE-OVERCLOSURE")?, card.param("PRESSURE-OVERCLOSURE"))
-        && law != "HARD"
+    let law = card.value("PRESSURE-OVERCLOSURE")?;
+    if let (Some(law), Some(param)) = (&law, card.param("PRESSURE-OVERCLOSURE"))
+        && !["HARD", "LINEAR"].contains(&law.as_str())
     {
-        let why = "contact is hard and exact here, without a stiffness; write PRESSURE-OVERCLOSURE=HARD and \
-        remove the data lines (tied surfaces: merge their nodes)";
+        let why = "contact is hard or has a linear law here; write PRESSURE-OVERCLOSURE=HARD without data lines, or \
+        LINEAR with the slope (tied surfaces: *TIE)";
         return Err(card.param_fault(param, Fault::Unsupported(why)));
     }
-    card.lines_at_most(0, "no data: hard contact has no numbers")
+    if law.is_none_or(|law| law == "HARD") {
+        return card.lines_at_most(0, "no data: hard contact has no numbers");
+    }
+    let wanted = "one line with the slope of pressure over overclosure, a positive number";
+    let line = card.only_line(wanted)?;
+    let fields = line.at_most(3, wanted)?;
+    interaction.compliance[0] = inverse(line, &fields, 0, wanted)?;
+    for at in [1, 2] {
+        if line.optional(&fields, at, "a number")?.is_some() {
+            model.ignored.push(Ignored {
+                location: line.location.clone(),
+                word: fields[at].to_owned(),
+                why: "pulling stress and reach of contact springs: there are none here where sides are apart",
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The inverse of a positive slope.
+fn inverse(line: &Line, fields: &[&str], at: usize, wanted: &'static str) -> Result<f64, DeckError> {
+    let slope = line.real(fields, at, wanted)?;
+    match slope > 0.0 {
+        true => Ok(slope.recip()),
+        false => Err(line.fault(fields[at], Fault::Expected(wanted))),
+    }
 }
 
 pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -163,19 +190,16 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         let why = "the interaction has a coefficient already; keep one of them";
         return Err(card.fault(Fault::Misplaced(why)));
     }
-    let mut ignore = |location: &crate::Location, word: &str| {
-        model.ignored.push(Ignored {
-            location: location.clone(),
-            word: word.to_owned(),
-            why: PENALTY,
-        });
-    };
-    if line.optional(&fields, 1, "the stick slope, a number")?.is_some() {
-        ignore(&line.location, fields[1]);
+    let slope = "the stick slope, a positive number";
+    if line.optional(&fields, 1, slope)?.is_some() {
+        interaction.compliance[1] = inverse(line, &fields, 1, slope)?;
     }
-    for param in &card.params {
-        ignore(&card.location, &param.word);
-    }
+    let ignored = card.params.iter().map(|param| Ignored {
+        location: card.location.clone(),
+        word: param.word.clone(),
+        why: PENALTY,
+    });
+    model.ignored.extend(ignored);
     Ok(())
 }
 

@@ -56,8 +56,14 @@ pub(super) fn contacts(
         for &tag in &slave[1..] {
             contact = contact.with_tag(tag);
         }
-        if let Some(coefficient) = interaction.and_then(|found| model.interactions.at(found).friction) {
-            contact = contact.with_friction(Friction::coulomb(coefficient));
+        if let Some(law) = interaction.map(|found| model.interactions.at(found)) {
+            let [normal, tangential] = law.compliance;
+            contact = contact
+                .with_normal_compliance(normal)
+                .with_tangential_compliance(tangential);
+            if let Some(coefficient) = law.friction {
+                contact = contact.with_friction(Friction::coulomb(coefficient));
+            }
         }
         out.push(contact);
     }

@@ -56,6 +56,25 @@ fn increments_are_times() {
     );
 }
 
+/// Slopes of a linear law and of stick are the inverse of compliances; a hard one without a stick slope is exact.
+#[test]
+fn slopes_of_contact_are_compliances() {
+    let compliance = |law: &str| {
+        let pair = "*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nS6, S5\n";
+        let scene = scene(&format!("*SURFACE INTERACTION, NAME=I\n{law}{pair}{}", step("")));
+        scene.contacts()[0].compliance()
+    };
+    let linear = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n";
+    assert_eq!(
+        compliance(&format!("{linear}4e6\n*FRICTION\n0.3, 5e5\n")),
+        [0.25e-6, 2e-6]
+    );
+    // what CalculiX has for springs that pull
+    assert_eq!(compliance(&format!("{linear}4e6, 10., 0.1\n")), [0.25e-6, 0.0]);
+    let hard = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*FRICTION\n0.3\n";
+    assert_eq!(compliance(hard), [0.0; 2]);
+}
+
 /// A force grows to its value over the step, stays in the next, changes along a line, and goes where the deck removes it.
 #[test]
 fn forces_accumulate_over_steps() {

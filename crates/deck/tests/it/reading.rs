@@ -129,7 +129,6 @@ fn what_is_ignored_is_reported() {
     let words: Vec<&str> = deck.ignored().iter().map(|i| i.word.as_str()).collect();
     let wanted = [
         "1.,",
-        "1e5",
         "SLIP TOLERANCE=0.005",
         "*PREPRINT",
         "UNSYMM=YES",

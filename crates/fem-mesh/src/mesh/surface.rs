@@ -1,7 +1,7 @@
 //! Surfaces with nodal normals, frames and areas, flat or curved.
 
 use crate::quadrature;
-use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL};
+use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL, NO_WEIGHT};
 use crate::vec3::{self, Vec3, add, cross, dot, norm, scale, sub};
 
 use super::curved::{curved_facet, facet_shape};
@@ -111,7 +111,7 @@ struct FacetIntegrals {
     /// Of the hat function of each corner times the normal, and times one.
     normals: [Vec3; 3],
     areas: [f64; 3],
-    /// Of the hat function of each corner times the shape function of each node.
+    /// Of the weight of each corner ([`Surface::mean`]) times the shape function of each node.
     products: [[f64; 6]; 3],
 }
 
@@ -124,14 +124,24 @@ impl FacetIntegrals {
             areas: [0.0; 3],
             products: [[0.0; 6]; 3],
         };
+        let (mut mass, mut hats) = ([[0.0; 3]; 3], [[0.0; 6]; 3]);
         for (l, weight) in quadrature::triangle() {
             let ((_, normal), shape) = (curved_facet(&points, &l), facet_shape(&l));
             for i in 0..3 {
                 let hat = weight * l[i];
                 out.normals[i] = add(out.normals[i], scale(hat, normal));
                 out.areas[i] += hat * norm(normal);
-                (0..6).for_each(|k| out.products[i][k] += hat * norm(normal) * shape[k]);
+                (0..3).for_each(|k| mass[i][k] += hat * norm(normal) * l[k]);
+                (0..6).for_each(|k| hats[i][k] += hat * norm(normal) * shape[k]);
             }
+        }
+        // the dual functions are the rows of diag(areas) mass^-1 times the hat functions
+        let [a, b, c] = mass;
+        let inverse = [cross(b, c), cross(c, a), cross(a, b)].map(|v| scale(1.0 / dot(a, cross(b, c)), v));
+        for i in 0..3 {
+            let dual = inverse.map(|row| out.areas[i] * row[i]);
+            let product = |k: usize| (0..3).map(|j| dual[j] * hats[j][k]).sum::<f64>();
+            out.products[i] = std::array::from_fn(|k| 0.5 * (hats[i][k] + product(k)));
         }
         out
     }
@@ -234,8 +244,9 @@ impl Surface {
 
     /// The mean of a displacement around a node, as mesh nodes with weights that sum to one, over those triangles around
     /// it that are chosen (all of its own side, at a crease): the node alone in a mesh of order 1. In a mesh of order 2
-    /// the displacement is weighted by the linear hat function of the node; the corners around it have negative
-    /// weights. The node comes first, the others ascend.
+    /// the displacement is weighted by half the sum of the linear hat function `l` of the node and the linear function of
+    /// each triangle that is dual to the hat functions, `4 l - 1` where edges are straight. The node comes first, the
+    /// others ascend.
     ///
     /// # Panics
     /// If there is no such node or triangle.
@@ -260,6 +271,7 @@ impl Surface {
         }
         let total: f64 = mean.iter().map(|e| e.1).sum();
         mean.iter_mut().for_each(|e| e.1 /= total);
+        mean.retain(|e| e.1.abs() > NO_WEIGHT);
         if mean.is_empty() { vec![(own, 1.0)] } else { mean }
     }
 

@@ -278,9 +278,11 @@ fn pressure_on_a_closed_curved_surface_has_no_sum() {
     close(force.iter().flatten().sum(), 4.0, 4.0, 1e-13);
 }
 
-/// Area A: the node itself A/30, other corners -A/60, mid-nodes beside it 2A/15, the one opposite A/15; sum A/3.
+/// Area A, half the sum of hat and dual function: the node itself A/12, other corners -A/24, mid-nodes beside it A/6, the
+/// one opposite nothing; sum A/3. On curved facets the dual function is found anew: the mean of a hat function is half of
+/// its mean with the hat function of the node, and half of its value there.
 #[test]
-fn means_have_the_weights_of_hat_times_shape() {
+fn means_have_the_weights_of_hat_and_dual_functions() {
     let mesh = block();
     let surface = Surface::new(&mesh, &[Z_MIN]).unwrap();
     let linear = Brick::new([2.0, 1.0, 1.0], [4, 2, 2])
@@ -312,14 +314,11 @@ fn means_have_the_weights_of_hat_times_shape() {
             let nodes = mesh.facets()[facet as usize].nodes;
             let mids = mesh.facet_mids(facet as usize);
             for k in 0..3 {
-                let corner = if k == own { area / 30.0 } else { -area / 60.0 };
+                let corner = if k == own { area / 12.0 } else { -area / 24.0 };
                 *expected.entry(nodes[k]).or_insert(0.0) += corner / surface.areas()[local];
-                let mid = if k == (own + 1) % 3 {
-                    area / 15.0
-                } else {
-                    2.0 * area / 15.0
-                };
-                *expected.entry(mids[k]).or_insert(0.0) += mid / surface.areas()[local];
+                if k != (own + 1) % 3 {
+                    *expected.entry(mids[k]).or_insert(0.0) += area / 6.0 / surface.areas()[local];
+                }
             }
         }
         assert_eq!(mean.len(), expected.len());
@@ -327,6 +326,24 @@ fn means_have_the_weights_of_hat_times_shape() {
     }
     let bent = bent();
     let surface = Surface::new(&bent, &[Z_MIN]).unwrap();
+    for (t, triangle) in surface.triangles().iter().enumerate() {
+        let facet = surface.facets()[t] as usize;
+        let (nodes, mids) = (bent.facets()[facet].nodes, bent.facet_mids(facet));
+        let areas = [0, 1, 2].map(|corner| surface.corner_area(&bent, t, corner).0);
+        for own in 0..3 {
+            let mean = surface.mean(triangle[own] as usize, std::iter::once(t));
+            let at = |node: u32| mean.iter().filter(|m| m.0 == node).map(|m| m.1).sum::<f64>();
+            // of the hat function of each corner: one there, a half at the mid-nodes beside it
+            let hat = |k: usize| at(nodes[k]) + 0.5 * (at(mids[k]) + at(mids[(k + 2) % 3]));
+            let other = [hat((own + 1) % 3), hat((own + 2) % 3)];
+            close(hat(own) + other[0] + other[1], 1.0, 1.0, 1e-14);
+            // symmetric: int l_i l_j is the same from either side
+            let there = surface.mean(triangle[(own + 1) % 3] as usize, std::iter::once(t));
+            let from = |node: u32| there.iter().filter(|m| m.0 == node).map(|m| m.1).sum::<f64>();
+            let back = from(nodes[own]) + 0.5 * (from(mids[own]) + from(mids[(own + 2) % 3]));
+            close(areas[own] * other[0], areas[(own + 1) % 3] * back, areas[own], 1e-14);
+        }
+    }
     let force = assemble_load(&bent, &Decomposition::whole(&bent), &LoadDensity::pressure(Z_MIN, 1.0)).unwrap();
     // hats sum to one: so do integrals of normals
     let sum = (0..surface.triangles().len()).flat_map(|t| (0..3).map(move |k| (t, k)));

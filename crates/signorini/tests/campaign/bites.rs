@@ -121,7 +121,7 @@ fn other_recipes_do_not_fit() {
 type ApartChange = (&'static str, fn(&mut Apart));
 
 /// What only bodies meshed apart and obstacles of any shape have.
-const APART_CHANGES: [ApartChange; 5] = [
+const APART_CHANGES: [ApartChange; 9] = [
     ("stiffness of the upper body", |a| {
         if let Elastic::Isotropic(young, _) = &mut a.recipe.elastic[1] {
             *young *= MORE;
@@ -146,6 +146,23 @@ const APART_CHANGES: [ApartChange; 5] = [
         }
     }),
     ("common area", |a| a.pairs.iter_mut().for_each(|p| p.common /= MORE)),
+    ("normal compliance", |a| {
+        a.pairs.iter_mut().for_each(|p| p.compliance[0] *= MORE);
+        a.rocks.iter_mut().for_each(|r| r.compliance[0] *= MORE);
+    }),
+    ("tangential compliance", |a| {
+        a.pairs.iter_mut().for_each(|p| p.compliance[1] *= MORE);
+        a.rocks.iter_mut().for_each(|r| r.compliance[1] *= MORE);
+    }),
+    ("angle of obstacles", |a| {
+        let turns = a.rocks.iter_mut().filter_map(|r| r.turn.as_mut());
+        turns.for_each(|turn| turn.2 = turn.2.clone().times(1.1));
+    }),
+    ("foundation", |a| {
+        if let Some((_, stiffness)) = &mut a.ground {
+            stiffness[0] *= MORE;
+        }
+    }),
 ];
 
 #[test]

@@ -6,6 +6,7 @@
 //! SIGNORINI_SCENES=2000 cargo test --release -p signorini --test campaign        # any number, from SIGNORINI_SEED, _FROM
 //! SIGNORINI_SCENE=137 cargo test --release -p signorini --test campaign -- --nocapture    # one, with its levels
 //! SIGNORINI_APART=17, SIGNORINI_APARTS=500 ...                                    # the same of bodies meshed apart
+//! SIGNORINI_RANKED=200 ...                                                       # so many of both on two ranks
 //! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
 //! ```
 
@@ -21,13 +22,17 @@ mod say;
 mod spots;
 mod vec3;
 
-use std::sync::Mutex;
+use signorini::tfeti::Alone;
+use signorini::tfeti::internal::on_ranks;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Scenes of an ordinary run, and the seed of all numbers.
 const SCENES: u64 = 240;
 const APART: u64 = 120;
 const SEED: u64 = 20_240_229;
+/// Scenes of each kind that several ranks solve.
+const RANKED: u64 = 12;
 
 fn number(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| {
@@ -52,6 +57,31 @@ fn bodies_meshed_apart_are_solved() {
         let outcome = run::run_apart(&scene);
         (scene.recipe, outcome)
     });
+}
+
+/// Scenes of both kinds on two ranks: what they do is the same on both, bit for bit that of one process.
+#[test]
+fn ranks_change_no_bit() {
+    let (seed, count) = (number("SIGNORINI_SEED", SEED), number("SIGNORINI_RANKED", RANKED));
+    for number in 0..count {
+        let apart = generate::apart::apart(seed, number);
+        let recipe = generate::recipe(seed, number);
+        let plain = say::scene(&recipe).expect("a scene");
+        let meshed_apart = apart
+            .scene(say::scene(&apart.recipe).expect("a scene"))
+            .expect("a scene");
+        for (scene, recipe) in [(plain, &recipe), (meshed_apart, &apart.recipe)] {
+            let alone = run::bits(scene.clone(), recipe, Arc::new(Alone));
+            let ranks = on_ranks(2, |communicator| run::bits(scene.clone(), recipe, communicator));
+            for (rank, own) in ranks.into_iter().enumerate() {
+                assert!(
+                    own.as_ref() == Some(&alone),
+                    "scene {number}, rank {rank}: {:?}",
+                    (own, &alone.1)
+                );
+            }
+        }
+    }
 }
 
 /// Runs many scenes, or the one that `name` gives the number of; `name` with an S is their number.

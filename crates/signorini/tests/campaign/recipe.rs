@@ -45,6 +45,21 @@ impl Course {
     }
 }
 
+impl Course {
+    /// So many times as much.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        match self {
+            Self::Constant(value) => Self::Constant(factor * value),
+            Self::Table(points) => Self::Table(points.into_iter().map(|(t, v)| (t, factor * v)).collect()),
+            Self::Wave { size, pace, phase } => Self::Wave {
+                size: factor * size,
+                pace,
+                phase,
+            },
+        }
+    }
+}
+
 /// Straight lines through points of ascending first numbers, constant outside.
 pub(crate) fn line(points: &[(f64, f64)], x: f64) -> f64 {
     let (first, last) = (points[0], points[points.len() - 1]);

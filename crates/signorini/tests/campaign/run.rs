@@ -7,6 +7,7 @@ use crate::recipe::Recipe;
 use crate::say;
 use signorini::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 /// A level that the library solved.
 #[derive(Debug, Clone)]
@@ -80,7 +81,8 @@ pub(crate) fn each_apart_level(
     apart: &Apart,
     see: impl FnMut(&Simulation, &StepResult) -> Result<(), Error>,
 ) -> Result<Option<Refusal>, Error> {
-    levels_of(apart.scene(say::scene(&apart.recipe)?)?, &apart.recipe, see)
+    let recipe = &apart.recipe;
+    levels_of(apart.scene(say::scene(recipe)?)?, recipe, &say::settings(recipe), see)
 }
 
 /// An outcome, or how it broke.
@@ -104,16 +106,19 @@ pub(crate) fn each_level(
     recipe: &Recipe,
     mut see: impl FnMut(&StepResult) -> Result<(), Error>,
 ) -> Result<Option<Refusal>, Error> {
-    levels_of(say::scene(recipe)?, recipe, |_, frame| see(frame))
+    levels_of(say::scene(recipe)?, recipe, &say::settings(recipe), |_, frame| {
+        see(frame)
+    })
 }
 
 /// The same of a scene that says more than its recipe.
 fn levels_of(
     scene: Scene,
     recipe: &Recipe,
+    settings: &Settings,
     mut see: impl FnMut(&Simulation, &StepResult) -> Result<(), Error>,
 ) -> Result<Option<Refusal>, Error> {
-    let mut simulation = match Simulation::new(scene.clone(), say::settings(recipe)) {
+    let mut simulation = match Simulation::new(scene.clone(), settings.clone()) {
         Ok(simulation) => simulation,
         Err(error) => {
             let name = match &error {
@@ -130,7 +135,7 @@ fn levels_of(
     while !simulation.is_finished() {
         if recipe.how.resume == Some(solved) {
             let state = simulation.state().clone();
-            simulation = Simulation::new(scene.clone(), say::settings(recipe))?;
+            simulation = Simulation::new(scene.clone(), settings.clone())?;
             simulation.resume(state)?;
         }
         let result = simulation.step()?;
@@ -138,6 +143,19 @@ fn levels_of(
         solved += 1;
     }
     Ok(None)
+}
+
+/// Bits of the displacements and certificates of all levels, and how the scene ended; solved by one of several ranks.
+pub(crate) fn bits(scene: Scene, recipe: &Recipe, communicator: Arc<dyn Communicator>) -> (Vec<u64>, String) {
+    let mut bits = Vec::new();
+    let settings = say::settings(recipe).with_communicator(communicator);
+    let end = levels_of(scene, recipe, &settings, |_, frame| {
+        bits.extend(frame.torn_displacement().iter().map(|v| v.to_bits()));
+        bits.extend([frame.certificate().largest(), frame.algebraic_error().energy].map(f64::to_bits));
+        bits.push(frame.report().counters.products as u64);
+        Ok(())
+    });
+    (bits, format!("{end:?}"))
 }
 
 /// Takes a level with its violations.

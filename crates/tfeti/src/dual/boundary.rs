@@ -6,11 +6,14 @@
 //! nodes vectorise over members. `spread` is `B^T` restricted to the boundary, `collect` is `B`. Both only gather (each
 //! result is summed by one task in a fixed order), so results do not depend on the number of threads.
 
+use super::cut::{Cut, Place, Run};
 use crate::linalg::both;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory};
+use crate::processes::exchange::Exchange;
 use crate::tolerances::{BLOCKS, LARGE, PARTS};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Boundary of one class.
 #[derive(Debug, Clone)]
@@ -45,7 +48,12 @@ pub(crate) struct Lane {
 pub(crate) struct BoundaryMap {
     pub(crate) classes: Vec<BoundaryClass>,
     pub(crate) panels: Vec<Panel>,
+    /// Panels of this rank, in lanes.
     pub(crate) lanes: Vec<Lane>,
+    pub(super) exchange: Arc<Exchange>,
+    /// Parts of boundary vectors that the ranks set.
+    pub(super) parts: Vec<Range<usize>>,
+    pub(super) cut: Cut,
     pub(super) copies: usize,
     pub(crate) interface: Range<usize>,
     pub(super) rows: usize,
@@ -68,25 +76,12 @@ pub(crate) struct BoundaryMap {
     pub(super) row_vectors: Vec<[f64; 3]>,
 }
 
-/// Where the three components of a copy stand in a boundary vector.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
-    pub(super) first: u32,
-    pub(super) stride: u32,
-}
-
-impl Place {
-    #[inline]
-    fn read(self, y: &[f64]) -> [f64; 3] {
-        let (first, stride) = (self.first as usize, self.stride as usize);
-        [y[first], y[first + stride], y[first + 2 * stride]]
-    }
-}
-
 /// Work memory of products by panels: a boundary vector, and what each lane needs.
 #[derive(Debug)]
 pub(crate) struct PanelScratch {
     boundary: Vec<f64>,
+    /// To and from other ranks; empty without.
+    message: Vec<f64>,
     lanes: Vec<LaneScratch>,
 }
 
@@ -107,13 +102,21 @@ impl BoundaryMap {
         self.rows
     }
 
+    /// Panels of this rank.
+    pub(crate) fn own_panels(&self) -> &[Panel] {
+        match (self.lanes.first(), self.lanes.last()) {
+            (Some(first), Some(last)) => &self.panels[first.panels.start..last.panels.end],
+            _ => &[],
+        }
+    }
+
     pub(crate) fn bytes(&self) -> u64 {
         let words = self.spread_pointers.len()
             + self.spread_blocks.len()
             + self.block_pointers.len()
             + 2 * self.block_places.len();
         let numbers = self.spread_weights.len() + self.block_weights.len();
-        (4 * words + 8 * numbers + 56 * self.row_places.len()) as u64
+        (4 * words + 8 * numbers + 56 * self.row_places.len() + self.cut.bytes()) as u64
     }
 
     /// A number for each boundary copy, from its subdomain and local node.
@@ -183,6 +186,47 @@ impl BoundaryMap {
         both(self.is_large(), blocks, others);
     }
 
+    /// `out = B y` for a boundary vector of which this rank has its part; one exchange.
+    pub(super) fn collect_with_others(&self, y: &mut [f64], message: &mut [f64], out: &mut [f64]) {
+        let (cut, rank) = (&self.cut, self.exchange.rank());
+        let part = cut.parts[rank].clone();
+        let (rows, copies) = message[part.clone()].split_at_mut(part.len() - 3 * cut.copies[rank].len());
+        let offset = |run: &Run| run.at - part.start;
+        over_tasks(&cut.runs[rank], rows, &offset, self.is_large(), &|run, out| {
+            self.collect_some(y, run.rows.clone(), &mut out[..run.rows.len()]);
+        });
+        for (place, values) in cut.copies[rank].iter().zip(copies.as_chunks_mut().0) {
+            *values = place.read(y);
+        }
+        self.exchange.gather(message, &cut.parts);
+        for (k, (runs, copies)) in cut.runs.iter().zip(&cut.copies).enumerate() {
+            for run in runs {
+                out[run.rows.clone()].copy_from_slice(&message[run.at..][..run.rows.len()]);
+            }
+            let values = &message[cut.parts[k].end - 3 * copies.len()..cut.parts[k].end];
+            for (place, values) in copies.iter().zip(values.as_chunks().0) {
+                place.write(*values, y);
+            }
+        }
+        for rows in &cut.shared {
+            self.collect_some(y, rows.clone(), &mut out[rows.clone()]);
+        }
+    }
+
+    /// Some consecutive rows of one kind of `B y`.
+    pub(super) fn collect_some(&self, y: &[f64], rows: Range<usize>, out: &mut [f64]) {
+        if self.interface.contains(&rows.start) {
+            self.collect_blocks(y, (rows.start - self.interface.start) / 3, out);
+        } else {
+            let before = if rows.start < self.interface.start {
+                0
+            } else {
+                self.interface.len()
+            };
+            self.collect_rows(y, rows.start - before, out);
+        }
+    }
+
     fn collect_blocks(&self, y: &[f64], first: usize, out: &mut [f64]) {
         let pointers = &self.block_pointers[first..=first + out.len() / 3];
         for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
@@ -232,11 +276,13 @@ impl BoundaryMap {
         };
         PanelScratch {
             boundary: vec![0.0; 3 * self.copies],
+            message: vec![0.0; self.cut.message()],
             lanes: self.lanes.iter().map(lane).collect(),
         }
     }
 
-    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does.
+    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does. Each rank
+    /// does its panels, one exchange brings those of the others.
     pub(crate) fn by_panels(
         &self,
         x: &[f64],
@@ -256,8 +302,19 @@ impl BoundaryMap {
             }
         };
         let offset = |lane: &Lane| 3 * lane.copy;
-        over_lanes(&self.lanes, &mut s.lanes, &mut s.boundary, &offset, parallel, &task);
-        self.collect(&s.boundary, y);
+        let own = self.parts[self.exchange.rank()].clone();
+        over_lanes(
+            &self.lanes,
+            &mut s.lanes,
+            &mut s.boundary[own],
+            &offset,
+            parallel,
+            &task,
+        );
+        match self.exchange.ranks() {
+            1 => self.collect(&s.boundary, y),
+            _ => self.collect_with_others(&mut s.boundary, &mut s.message, y),
+        }
     }
 
     /// Whether loops over all copies are worth several threads.
@@ -303,8 +360,9 @@ pub(crate) fn over_tasks<L: Sync, T: Send>(
     parallel: bool,
     task: &(impl Fn(&L, &mut [T]) + Sync),
 ) {
-    let work = &mut [(); PARTS][..tasks.len()];
-    over_lanes(tasks, work, y, offset, parallel, &|one, (), y| task(one, y));
+    // takes no memory
+    let mut work = vec![(); tasks.len()];
+    over_lanes(tasks, &mut work, y, offset, parallel, &|one, (), y| task(one, y));
 }
 
 /// Consecutive items in ranges of about equal work, of which no one is below `least` and there are no more than `most`.

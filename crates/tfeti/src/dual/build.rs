@@ -1,9 +1,10 @@
 //! Building the gather tables.
 
-use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, Place, shares};
+use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, shares};
+use super::cut::{Cut, CutBuilder, Place};
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
-use crate::tolerances::PANEL;
+use crate::subdomain::ownership::Ownership;
 use signorini_fem_mesh::internal::buckets;
 use std::ops::Range;
 
@@ -32,7 +33,7 @@ impl Numbering<'_> {
 }
 
 impl BoundaryMap {
-    pub(crate) fn new(classes: &Classes, gluing: &Gluing) -> Self {
+    pub(crate) fn new(classes: &Classes, gluing: &Gluing, ownership: &Ownership) -> Self {
         let mut map = Self {
             classes: boundaries(classes, gluing),
             interface: gluing.ranges().interface.clone(),
@@ -40,9 +41,10 @@ impl BoundaryMap {
             nodal_pointers: vec![0],
             block_pointers: vec![0],
             row_pointers: vec![0],
+            exchange: ownership.exchange.clone(),
             ..Self::default()
         };
-        map.fill_panels();
+        map.fill_panels(ownership);
         let copies = map.fill_collect(gluing, &map.numbering(classes));
         map.fill_spread(gluing, &copies);
         let place = |copy: usize| map.nodal_copies.partition_point(|&c| (c as usize) < copy);
@@ -52,18 +54,21 @@ impl BoundaryMap {
         map
     }
 
-    /// Cuts the members into panels of about equal width and the panels into lanes of about equal work.
-    fn fill_panels(&mut self) {
+    /// Takes the panels of the ranks, and cuts those of this one into lanes of about equal work.
+    fn fill_panels(&mut self, ownership: &Ownership) {
         let mut work = Vec::new();
-        let touched = self.classes.iter().enumerate().filter(|(_, b)| !b.nodes.is_empty());
-        for (class, boundary) in touched {
-            let (members, nodes) = (boundary.members.len(), boundary.nodes.len());
-            let count = members.div_ceil(PANEL);
-            for k in 0..count {
-                let columns = members * k / count..members * (k + 1) / count;
+        for (rank, panels) in ownership.panels.iter().enumerate() {
+            let first = (self.panels.len(), self.copies);
+            for (class, columns) in panels.iter().cloned() {
+                let nodes = self.classes[class].nodes.len();
+                if nodes == 0 {
+                    continue;
+                }
                 let copies = self.copies..self.copies + columns.len() * nodes;
                 self.copies = copies.end;
-                work.push((columns.len() * nodes * (nodes + 64)) as u64);
+                if rank == ownership.exchange.rank() {
+                    work.push((columns.len() * nodes * (nodes + 64)) as u64);
+                }
                 let nodal = 0..0;
                 self.panels.push(Panel {
                     class,
@@ -72,12 +77,16 @@ impl BoundaryMap {
                     nodal,
                 });
             }
+            self.parts.push(3 * first.1..3 * self.copies);
+            if rank == ownership.exchange.rank() {
+                let panels = &self.panels;
+                let lane = |own: Range<usize>| Lane {
+                    copy: panels[first.0 + own.start].copies.start,
+                    panels: first.0 + own.start..first.0 + own.end,
+                };
+                self.lanes = shares(&work, 1, work.len()).into_iter().map(lane).collect();
+            }
         }
-        let lane = |panels: Range<usize>| Lane {
-            copy: self.panels[panels.start].copies.start,
-            panels,
-        };
-        self.lanes = shares(&work, 1, self.panels.len()).into_iter().map(lane).collect();
     }
 
     fn numbering<'a>(&self, classes: &'a Classes) -> Numbering<'a> {
@@ -101,14 +110,22 @@ impl BoundaryMap {
     }
 
     /// Fills the tables by row; returns the copies of the blocks' entries and of the other rows' entries.
+    /// Of several ranks, each has those entries of blocks with which it computes.
     fn fill_collect(&mut self, gluing: &Gluing, numbering: &Numbering<'_>) -> [Vec<u32>; 2] {
         let mut copies = [Vec::new(), Vec::new()];
+        self.cut = self.fill_cut(gluing, numbering);
+        let mine = self.cut.computed(self.exchange.rank(), &self.interface);
+        let mut mine = mine.into_iter().peekable();
         for block in 0..gluing.blocks() {
-            for e in gluing.block(block) {
-                let (copy, place) = numbering.copy(e.subdomain, e.local);
-                copies[0].push(copy);
-                self.block_places.push(place);
-                self.block_weights.push(e.coefficient);
+            let row = self.interface.start + 3 * block;
+            while mine.next_if(|rows| rows.end <= row).is_some() {}
+            if self.exchange.ranks() == 1 || mine.peek().is_some_and(|rows| rows.contains(&row)) {
+                for e in gluing.block(block) {
+                    let (copy, place) = numbering.copy(e.subdomain, e.local);
+                    copies[0].push(copy);
+                    self.block_places.push(place);
+                    self.block_weights.push(e.coefficient);
+                }
             }
             self.block_pointers.push(self.block_places.len() as u32);
         }
@@ -122,6 +139,33 @@ impl BoundaryMap {
             self.row_pointers.push(self.row_places.len() as u32);
         }
         copies
+    }
+
+    /// What the ranks compute alone and tell one another.
+    fn fill_cut(&self, gluing: &Gluing, numbering: &Numbering<'_>) -> Cut {
+        let ranks = self.exchange.ranks();
+        if ranks == 1 {
+            return Cut::default();
+        }
+        let mut cut = CutBuilder::new(ranks);
+        let copy = |subdomain: u32, local: u32| {
+            let (copy, place) = numbering.copy(subdomain, local);
+            let rank = self.parts.partition_point(|part| part.end <= 3 * copy as usize);
+            (rank, copy, place)
+        };
+        let mut nodal = |nodal: usize| {
+            let copies = gluing.nodal(nodal).iter().map(|e| copy(e.subdomain, e.local));
+            let row = gluing.nodal_row(nodal);
+            cut.enter(row..row + 1, &copies.collect::<Vec<_>>());
+        };
+        (0..self.interface.start).for_each(&mut nodal);
+        (self.interface.start..gluing.nodal_rows()).for_each(nodal);
+        for block in 0..gluing.blocks() {
+            let copies = gluing.block(block).iter().map(|e| copy(e.subdomain, e.local));
+            let row = self.interface.start + 3 * block;
+            cut.enter(row..row + 3, &copies.collect::<Vec<_>>());
+        }
+        cut.build(&self.interface)
     }
 
     /// Fills the tables by copy: the transposes of the tables by row.

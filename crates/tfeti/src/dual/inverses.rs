@@ -5,7 +5,7 @@ use crate::error::TfetiError;
 use crate::linalg::sparse::Symbolic;
 use crate::subdomain::cost::{InverseSettings, Size, choose};
 use crate::subdomain::inverse::{Inverse, regularised};
-use crate::subdomain::matrices::Subdomains;
+use crate::subdomain::matrices::{ClassMatrices, Subdomains};
 use rayon::prelude::*;
 
 /// Generalised inverse of a class.
@@ -23,41 +23,54 @@ impl ClassInverse {
     }
 }
 
-/// Chooses and computes the inverses of all classes; their patterns may be `known`.
+/// Inverses by class, and which are dense; `None` where another rank holds the class.
+pub(crate) type Inverses = (Vec<Option<ClassInverse>>, Vec<bool>);
+
+/// Chooses the inverses of all classes and computes those that this rank holds; their patterns may be `known`.
 pub(crate) fn invert(
     subdomains: &Subdomains,
     map: &BoundaryMap,
     settings: &InverseSettings,
     known: Option<&[Symbolic]>,
-) -> Result<Vec<ClassInverse>, TfetiError> {
+) -> Result<Inverses, TfetiError> {
     let (bases, classes) = (&subdomains.bases, subdomains.classes.classes());
     let first = |k: usize| classes[k].members[0] as usize;
     let symbolic = |k: usize| {
-        Symbolic::new(&regularised(&bases[k].stiffness, &bases[k].kernel), 3)
-            .map_err(|e| TfetiError::pattern(e, first(k)))
+        let own = |own: &ClassMatrices| match known {
+            Some(known) => Ok(known[k].clone()),
+            None => Symbolic::new(&regularised(&own.stiffness, &bases[k].kernel), 3)
+                .map_err(|e| TfetiError::pattern(e, first(k))),
+        };
+        subdomains.held(k).map(own).transpose()
     };
     let each = || (0..bases.len()).into_par_iter();
-    let patterns: Vec<Symbolic> = match known {
-        Some(known) => known.to_vec(),
-        None => each().map(symbolic).collect::<Result<_, _>>()?,
-    };
+    let patterns: Vec<Option<Symbolic>> = each().map(symbolic).collect::<Result<_, _>>()?;
+    let stored = |pattern: &Option<Symbolic>| pattern.as_ref().map_or(0, Symbolic::stored) as f64;
+    let mut factors: Vec<f64> = patterns.iter().map(stored).collect();
+    let ownership = &subdomains.ownership;
+    let pieces = (0..factors.len()).map(|k| (ownership.rank_of(k, 0), k..k + 1));
+    ownership.exchange.complete(&mut factors, &pieces.collect::<Vec<_>>());
     let size = |k: usize| Size {
-        dim: bases[k].stiffness.dim,
+        dim: 3 * classes[k].nodes,
         boundary: 3 * map.classes[k].nodes.len(),
         members: classes[k].members.len(),
-        factor: patterns[k].stored(),
+        factor: factors[k] as usize,
     };
     let sizes: Vec<Size> = (0..bases.len()).map(size).collect();
     let dense = choose(&sizes, settings)?;
     let inverse = |k: usize| {
-        let base = &bases[k];
-        let full = Inverse::new(&base.stiffness, &base.kernel, &patterns[k], first(k))?;
-        let boundary = dense[k].then(|| full.boundary_block(&base.kernel, &map.classes[k].nodes));
+        let (Some(own), Some(pattern)) = (subdomains.held(k), &patterns[k]) else {
+            return Ok(None);
+        };
+        let kernel = &bases[k].kernel;
+        let full = Inverse::new(&own.stiffness, kernel, pattern, first(k))?;
+        let boundary = dense[k].then(|| full.boundary_block(kernel, &map.classes[k].nodes));
         let full = match &boundary {
-            None if sizes[k].is_packed(dense[k]) => full.packed(&base.stiffness),
+            None if sizes[k].is_packed(dense[k]) => full.packed(&own.stiffness),
             _ => full,
         };
-        Ok(ClassInverse { full, boundary })
+        Ok(Some(ClassInverse { full, boundary }))
     };
-    each().map(inverse).collect()
+    let inverses = each().map(inverse).collect::<Result<_, TfetiError>>()?;
+    Ok((inverses, dense))
 }

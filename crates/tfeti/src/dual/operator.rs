@@ -1,6 +1,6 @@
-//! The dual operator `F = B K+ B^T`, with what springs add.
+//! The dual operator `F = B K+ B^T`, with what springs and compliant contact add.
 
-use crate::dual::boundary::{BoundaryMap, PanelScratch};
+use crate::dual::boundary::{BoundaryMap, Panel, PanelScratch};
 use crate::dual::inverses::ClassInverse;
 use crate::linalg::dense;
 use crate::rows::gluing::Gluing;
@@ -9,8 +9,8 @@ use crate::tolerances::PRODUCT;
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
-/// `F = B K+ B^T`, applied without forming it; where there are springs, with their compliance on the diagonal of their
-/// rows.
+/// `F = B K+ B^T`, applied without forming it; where springs or contact rows give way, with their compliance on the
+/// diagonal.
 ///
 /// Each product gathers the multipliers of every subdomain into the columns of one matrix per class, multiplies it by
 /// the class's boundary inverse (or solves with its sparse factor) and gathers the rows of `B` from the result.
@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub struct DualOperator {
     pub(crate) map: Arc<BoundaryMap>,
     pub(crate) subdomains: Arc<Subdomains>,
-    pub(crate) inverses: Arc<Vec<ClassInverse>>,
+    pub(crate) inverses: Arc<Vec<Option<ClassInverse>>>,
     gluing: Arc<Gluing>,
     parallel: bool,
 }
@@ -31,7 +31,7 @@ impl DualOperator {
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
         subdomains: Arc<Subdomains>,
-        inverses: Arc<Vec<ClassInverse>>,
+        inverses: Arc<Vec<Option<ClassInverse>>>,
         gluing: Arc<Gluing>,
     ) -> Self {
         let parallel = product_flops(&map, &inverses) > PRODUCT;
@@ -44,25 +44,24 @@ impl DualOperator {
         }
     }
 
-    /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels.
+    /// Floating-point operations of one product (multiplications and additions) in the dense or sparse kernels of this
+    /// rank.
     pub fn flops(&self) -> u64 {
         product_flops(&self.map, &self.inverses)
     }
 }
 
 /// Floating-point operations in the dense or sparse kernels.
-fn product_flops(map: &BoundaryMap, inverses: &[ClassInverse]) -> u64 {
-    let class = |k: usize| {
-        let size = 3 * map.classes[k].nodes.len();
-        let dense = inverses[k].boundary.is_some();
-        let per_member = if dense {
-            2 * size * size
-        } else {
-            4 * inverses[k].full.stored()
+fn product_flops(map: &BoundaryMap, inverses: &[Option<ClassInverse>]) -> u64 {
+    let panel = |panel: &Panel| {
+        let size = 3 * map.classes[panel.class].nodes.len();
+        let per_member = |inverse: &ClassInverse| match inverse.boundary {
+            Some(_) => 2 * size * size,
+            None => 4 * inverse.full.stored(),
         };
-        (per_member * map.classes[k].members.len()) as u64
+        (inverses[panel.class].as_ref().map_or(0, per_member) * panel.columns.len()) as u64
     };
-    (0..inverses.len()).map(class).sum()
+    map.own_panels().iter().map(panel).sum()
 }
 
 /// `out = a x` for each member of a panel: `a` is symmetric, members are rows.
@@ -103,8 +102,8 @@ impl SymmetricOperator for DualOperator {
 
     fn scratch(&self) -> DualScratch {
         DualScratch(self.map.scratch(|panel| {
-            let (inverse, columns) = (&self.inverses[panel.class], panel.columns.len());
-            let dim = self.subdomains.bases[panel.class].stiffness.dim;
+            let (inverse, columns) = (self.inverses[panel.class].as_ref()?, panel.columns.len());
+            let dim = self.subdomains.bases[panel.class].diagonal.len();
             let full = if inverse.full.is_packed() { 0 } else { dim * columns };
             inverse.boundary.is_none().then(|| (full, inverse.full.need(columns)))
         }))
@@ -114,12 +113,14 @@ impl SymmetricOperator for DualOperator {
         self.map
             .by_panels(x, y, self.parallel, &mut s.0, &|panel, x, y, full, memory| {
                 let (columns, class) = (panel.columns.len(), panel.class);
-                let inverse = &self.inverses[class];
+                let Some(inverse) = &self.inverses[class] else {
+                    return;
+                };
                 if let Some(matrix) = &inverse.boundary {
                     multiply_members(y, x, matrix, columns, x.len() / columns);
                 } else if let Some(memory) = memory {
                     let base = &self.subdomains.bases[class];
-                    let (nodes, dim) = (&self.map.classes[class].nodes, base.stiffness.dim);
+                    let (nodes, dim) = (&self.map.classes[class].nodes, base.diagonal.len());
                     if inverse.full.apply_at(&base.kernel, nodes, x, y, memory) {
                         return;
                     }

@@ -41,8 +41,13 @@ pub(super) fn torn_entries(system: &Tfeti, row: usize) -> Vec<(usize, f64)> {
 }
 
 impl JoinedGroups {
-    /// The matrix of these rows with `compliance` of each torn node.
-    pub(super) fn new(system: &Tfeti, rows: Vec<u32>, compliance: &[f64]) -> Result<Self, TfetiError> {
+    /// The matrix of these rows with `compliance` of each torn node, and what contact rows give way.
+    pub(super) fn new(
+        system: &Tfeti,
+        rows: Vec<u32>,
+        compliance: &[f64],
+        gives_way: &HashMap<usize, f64>,
+    ) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
         let places: HashMap<u32, usize> = rows.iter().enumerate().map(|(k, &row)| (row, k)).collect();
         let entries: Vec<_> = rows.iter().map(|&row| torn_entries(system, row as usize)).collect();
@@ -60,6 +65,9 @@ impl JoinedGroups {
             let dependent = gluing.node(row as usize).is_some_and(|n| gluing.is_dependent(n));
             if let Some(diagonal) = matrix.find(k, k).filter(|_| dependent) {
                 matrix.values[diagonal] *= 1.0 + DEPENDENT;
+            }
+            if let (Some(own), Some(diagonal)) = (gives_way.get(&(row as usize)), matrix.find(k, k)) {
+                matrix.values[diagonal] += own;
             }
         }
         let node = |k: usize| gluing.node(rows[k.min(rows.len() - 1)] as usize).unwrap_or_default();

@@ -12,7 +12,7 @@ use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
 use crate::preconditioner::springs::Springs;
-use crate::subdomain::matrices::ClassBase;
+use crate::subdomain::matrices::ClassMatrices;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
 use rayon::prelude::*;
@@ -30,7 +30,8 @@ enum Kind {
 #[derive(Debug)]
 pub struct DualPreconditioner {
     map: Arc<BoundaryMap>,
-    classes: Vec<BoundaryStiffness>,
+    /// `None` where another rank holds the class.
+    classes: Vec<Option<BoundaryStiffness>>,
     scaling: Option<Scaling>,
     springs: Springs,
 }
@@ -88,10 +89,15 @@ impl DualPreconditioner {
         let map = system.parts.map.clone();
         let classes = (0..map.classes.len())
             .into_par_iter()
-            .map(|k| BoundaryStiffness::new(&system.parts.subdomains.bases[k], &map, k, kind))
+            .map(|k| {
+                let held = system.parts.subdomains.held(k);
+                held.map(|own| BoundaryStiffness::new(own, &map, k, kind)).transpose()
+            })
             .collect::<Result<_, _>>()?;
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
-        let needs_scaling = !system.gluing().is_aligned() || !system.copy_stiffness().is_plain();
+        let gluing = system.gluing();
+        let plain = gluing.is_aligned() && gluing.contact_compliance().is_empty();
+        let needs_scaling = !plain || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
         let springs = Springs::new(system, needs_scaling);
         Ok(Self {
@@ -109,7 +115,9 @@ impl DualPreconditioner {
                 let columns = panel.columns.len();
                 let weights = divide.map(|w| &w[panel.copies.clone()]);
                 scale_nodes(weights, x, columns);
-                self.classes[panel.class].apply(x, y, columns, interior, memory);
+                if let Some(class) = &self.classes[panel.class] {
+                    class.apply(x, y, columns, interior, memory);
+                }
                 scale_nodes(weights, y, columns);
             });
     }
@@ -134,7 +142,7 @@ impl SymmetricOperator for DualPreconditioner {
     fn scratch(&self) -> DualPreconditionerScratch {
         let panels = self
             .map
-            .scratch(|panel| self.classes[panel.class].need(panel.columns.len()));
+            .scratch(|panel| self.classes[panel.class].as_ref()?.need(panel.columns.len()));
         let dual = if self.scaling.is_some() { self.dim() } else { 0 };
         DualPreconditionerScratch {
             panels,
@@ -166,6 +174,7 @@ impl DualPreconditioner {
         };
         scaling.solve(x, y, scratch);
         self.stiffness_product(y, &mut s.dual, &mut s.panels);
+        scaling.add_compliance(y, &mut s.dual);
         scaling.solve(&s.dual, y, scratch);
     }
 }
@@ -179,7 +188,7 @@ impl ActiveSetPreconditioner for DualPreconditioner {
 }
 
 impl BoundaryStiffness {
-    fn new(base: &ClassBase, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
+    fn new(base: &ClassMatrices, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
         let layout = &map.classes[class];
         let split = Split::new(base.preconditioning(), &layout.nodes);
         let shared = layout.members.len() >= SHARED;

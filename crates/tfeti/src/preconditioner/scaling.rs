@@ -6,9 +6,13 @@ use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{DEPENDENT, GROUP_ROWS, SINGULAR};
 use signorini_qp::active_set::{ActiveSetView, Freedom};
+use std::collections::HashMap;
 
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or
 /// to a contact pair) are coupled by a small matrix, which is inverted once.
+///
+/// Springs, and contact rows that give way, by `C`, act as if they ended in a subdomain of stiffness `C^-1`, a further entry
+/// of `D` and of `K`: `B D^-1 B^T + C` in the place of the matrix, and `B D^-1 K D^-1 B^T + C` between its inverses.
 #[derive(Debug)]
 pub(crate) struct Scaling {
     /// `1 / D` of each boundary copy, relative to the stiffest.
@@ -22,6 +26,8 @@ pub(crate) struct Scaling {
     joined: Option<JoinedGroups>,
     /// Group of each contact row, and its place there; none for rows of `joined`.
     contact: Vec<Option<(u32, u32)>>,
+    /// `C` of rows, with `1 / D` of the stiffest copy as unit, N/m; none where they do not give way.
+    compliance: Vec<(usize, f64)>,
 }
 
 /// What [`Scaling`] keeps for an active set, and work memory.
@@ -76,10 +82,19 @@ impl Groups {
 impl Scaling {
     pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
-        let stiffness = system.copy_stiffness();
+        let all;
+        let stiffness = match gluing.is_compliant() {
+            false => system.copy_stiffness(),
+            // ratios are not enough
+            true => {
+                all = system.all_copy_stiffness();
+                &all
+            }
+        };
         let mut compliance: Vec<f64> = (0..system.torn_dim() / 3).map(|k| 1.0 / stiffness.weight(k)).collect();
         let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));
         compliance.iter_mut().for_each(|v| *v /= smallest);
+        let gives_way: HashMap<usize, f64> = gluing.compliance().map(|(row, c)| (row, c / smallest)).collect();
         // Rows by group: a mesh node, or nodes that contact points join.
         let groups = gluing.node_groups();
         let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
@@ -92,6 +107,10 @@ impl Scaling {
             triples: Groups::default(),
             joined: None,
             contact: vec![None; gluing.ranges().contact().end],
+            compliance: gluing
+                .compliance()
+                .map(|(row, c)| (row, c / smallest / smallest))
+                .collect(),
         };
         let mut joined = Vec::new();
         let interface = &gluing.ranges().interface;
@@ -116,6 +135,9 @@ impl Scaling {
                     matrix[i + j * count] = entries[i].iter().map(weight).sum();
                 }
             }
+            for (k, (_, row)) in rows.iter().enumerate() {
+                matrix[k * (count + 1)] += gives_way.get(&(*row as usize)).copied().unwrap_or(0.0);
+            }
             if gluing.is_dependent(rows[0].0) {
                 let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
                 (0..count).for_each(|k| matrix[k * (count + 1)] += DEPENDENT * size);
@@ -132,7 +154,7 @@ impl Scaling {
             target.push(rows.iter().map(|r| r.1), inverse);
         }
         if !joined.is_empty() {
-            out.joined = Some(JoinedGroups::new(system, joined, &compliance)?);
+            out.joined = Some(JoinedGroups::new(system, joined, &compliance, &gives_way)?);
         }
         out.weights = system
             .parts
@@ -200,6 +222,11 @@ impl Scaling {
                 matrix[i + j * count] -= a * b / own;
             }
         }
+    }
+
+    /// `y += C x`
+    pub(crate) fn add_compliance(&self, x: &[f64], y: &mut [f64]) {
+        self.compliance.iter().for_each(|&(row, c)| y[row] += c * x[row]);
     }
 
     pub(crate) fn scratch(&self) -> ScalingScratch {

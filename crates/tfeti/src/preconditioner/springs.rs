@@ -1,8 +1,8 @@
 //! What springs change in a preconditioner of `F + C`.
 //!
 //! The row of a spring alone, of length `s`, is scaled so that the inverse of `F + C` is about the stiffness `k` of its
-//! node. The product with the stiffness makes `s² k` of it, and with the scaling of the copies `k / s²`. Where contact may
-//! take the place of a spring its row depends on others, on which that product vanishes: there `1 / c` is added.
+//! node. The product with the stiffness makes `s² k` of it. Where contact may take the place of a spring its row depends on
+//! others, on which that product vanishes: there `1 / c` is added. The scaling of copies knows springs by itself.
 
 use crate::rows::gluing::SpringRow;
 use crate::system::tfeti::Tfeti;
@@ -19,12 +19,13 @@ pub(super) struct Springs {
 }
 
 impl Springs {
-    /// `scaled`: whether rows are scaled by what copies of a node are worth.
+    /// None where rows are `scaled` by what copies of a node are worth.
     pub(super) fn new(system: &Tfeti, scaled: bool) -> Self {
         let gluing = system.gluing();
-        let (springs, total) = (gluing.springs(), gluing.ranges().total());
+        let springs = if scaled { &[] } else { gluing.springs() };
+        let total = gluing.ranges().total();
         let first = total - springs.len();
-        let factor = |spring: &SpringRow| if scaled { spring.scale } else { 1.0 / spring.scale };
+        let factor = |spring: &SpringRow| 1.0 / spring.scale;
         let copies = |row: usize| gluing.row(row).into_iter().map(|(s, dof, _)| (s, dof / 3));
         let touching: HashSet<(usize, usize)> = match springs {
             [] => HashSet::new(),

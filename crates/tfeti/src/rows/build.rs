@@ -175,9 +175,30 @@ impl Builder<'_> {
             }
             *end = self.gluing.nodal_rows();
         }
+        self.compliance(contact, points);
         let ([discs, end], ranges) = (ends, &mut self.gluing.ranges);
         (ranges.normal, ranges.discs, ranges.intervals) = (0..normal, normal..discs, discs..end);
         ranges.interface = end..end;
+    }
+
+    /// A force of one newton is `1 / scale` as a multiplier, and a metre `scale` as the value of a row.
+    fn compliance(&mut self, contact: &[ContactConstraint], points: &[PointRows]) {
+        if points.iter().all(|p| contact[p.point].compliance == [0.0; 2]) {
+            return;
+        }
+        let mut out = vec![0.0; self.gluing.nodal_rows()];
+        for (p, rows) in points.iter().zip(&self.gluing.contact) {
+            let [normal, along] = contact[p.point].compliance;
+            out[rows.row] = normal * p.normal.scale.powi(2);
+            let first = match rows.tangential {
+                TangentialRows::None => continue,
+                TangentialRows::Interval { row, .. } | TangentialRows::Disc { row, .. } => row,
+            };
+            for (k, row) in p.tangential.iter().enumerate() {
+                out[first + k] = along * row.scale.powi(2);
+            }
+        }
+        self.gluing.contact_compliance = out;
     }
 
     /// Rows of tied constraints.
@@ -188,8 +209,13 @@ impl Builder<'_> {
             for row in std::iter::once(&p.normal).chain(&p.tangential) {
                 self.contact_row(of, row, &p.prescribed);
             }
-            let (point, rows) = (p.point, first..first + 1 + p.tangential.len());
-            self.gluing.tied.push(TiedRows { point, rows });
+            let rows = first..first + 1 + p.tangential.len();
+            let all = std::iter::once(&p.normal).chain(&p.tangential);
+            self.gluing.tied.push(TiedRows {
+                point: p.point,
+                rows,
+                directions: all.map(|row| (row.direction, row.scale)).collect(),
+            });
             self.gluing.aligned &= is_aligned(of, p);
         }
     }

@@ -5,7 +5,7 @@ use crate::linalg::entry;
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
-use crate::tolerances::{ANGLE, FIXED};
+use crate::tolerances::{ANGLE, FIXED, HELD};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
 
@@ -154,12 +154,27 @@ impl Space {
         self.row(direction, length.recip())
     }
 
-    /// Directions that supports fix at all nodes.
-    fn fixed(&self) -> Vec<Vector3<f64>> {
+    /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides: the
+    /// node of the first and a good part of the mean of the other. There, at a plane of symmetry that cuts both, a row
+    /// would see no slip, but how the displacement of the other side bends.
+    fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();
         let fixed = (0..3).filter(|&k| eigen.eigenvalues[k] <= zero);
-        fixed.map(|k| eigen.eigenvectors.column(k).into()).collect()
+        let mut fixed: Vec<Vector3<f64>> = fixed.map(|k| eigen.eigenvectors.column(k).into()).collect();
+        if point.side.nodes().len() == 1 && point.partner.as_ref().is_some_and(|side| side.nodes().len() > 1) {
+            let along = |d: &Vector3<f64>| d * d.transpose();
+            let own = Matrix3::identity() - self.nodes[0].1;
+            let other = point.nodes().zip(&self.nodes).skip(1);
+            let other: Matrix3<f64> = other.map(|((_, w), (_, free))| (Matrix3::identity() - free) * -w).sum();
+            let left = fixed
+                .iter()
+                .fold(Matrix3::identity() - along(&normal), |p, d| p - along(d));
+            let held = SymmetricEigen::new(left * own * other * own * left);
+            let found = (0..3).filter(|&k| held.eigenvalues[k] >= HELD);
+            fixed.extend(found.map(|k| Vector3::from(held.eigenvectors.column(k))));
+        }
+        fixed
     }
 
     /// Whether supports move the point along the surface, or fix a direction that is neither normal nor tangential, so
@@ -190,8 +205,8 @@ impl AllRows {
     }
 
     /// The rows of a tied constraint: the axes, or all directions that are left.
-    fn tie(&mut self, index: usize, space: Space) {
-        let fixed = space.fixed();
+    fn tie(&mut self, index: usize, point: &ContactConstraint, space: Space) {
+        let fixed = space.fixed(point, Vector3::zeros());
         let mut rows: Vec<ContactRow> = match fixed.len() {
             0 => (0..3).map(|c| space.row(Vector3::ith(c, 1.0), 1.0)).collect(),
             _ => complement(&fixed).into_iter().map(|d| space.unit_row(d)).collect(),
@@ -210,13 +225,13 @@ impl AllRows {
 
     fn add(&mut self, index: usize, point: &ContactConstraint, space: Space) {
         if point.tied {
-            return self.tie(index, space);
+            return self.tie(index, point, space);
         }
         let normal = Vector3::from(point.frame.normal);
         let tangents = point.frame.tangents.map(Vector3::from);
         let factors = [1.0, point.stretch];
         let along_surface = || tangents.into_iter().zip(factors);
-        let fixed = space.fixed();
+        let fixed = space.fixed(point, normal);
         let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
         if fixed.len() == 3 || (normal - along).norm() <= FIXED {
             self.remove(point, RowKind::Normal, RemovalReason::NormalFixed);

@@ -57,12 +57,15 @@ pub struct SpringRow {
 }
 
 /// The rows of a tied constraint.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TiedRows {
     /// Position in the list of contact points given.
     pub point: usize,
     /// Its rows: one for each direction that supports leave free.
     pub rows: std::ops::Range<usize>,
+    /// Their directions with their lengths: a row is the length times what the first side moves along the direction
+    /// against the other.
+    pub directions: Vec<([f64; 3], f64)>,
 }
 
 /// An entry of a row that is no interface row: a copy and the vector that multiplies its displacement.
@@ -115,6 +118,8 @@ pub struct Gluing {
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
     /// The rows of springs, which are the last ones.
     pub(super) springs: Vec<SpringRow>,
+    /// Of each contact row, in row units, m/N; empty where none gives way.
+    pub(super) contact_compliance: Vec<f64>,
     /// Mesh nodes that contact points join.
     pub(super) groups: NodeGroups,
     pub(super) paper_rows: usize,
@@ -204,19 +209,26 @@ impl Gluing {
         &self.springs
     }
 
-    /// By how much a spring gives way, in row units, under this multiplier; 0 for all other rows.
-    pub fn gives_way(&self, row: usize, multiplier: f64) -> f64 {
-        let first = self.ranges.total() - self.springs.len();
-        let own = row.checked_sub(first).and_then(|k| self.springs.get(k));
-        own.map_or(0.0, |spring| spring.compliance * multiplier)
+    /// How much contact rows give way under their multipliers, in row units, m/N; empty where none does.
+    pub fn contact_compliance(&self) -> &[f64] {
+        &self.contact_compliance
     }
 
-    /// Adds what springs give way to `B u`: `y += C x`, for whole dual vectors.
-    pub fn add_compliance(&self, x: &[f64], y: &mut [f64]) {
+    /// Whether springs or contact rows give way.
+    pub fn is_compliant(&self) -> bool {
+        !(self.springs.is_empty() && self.contact_compliance.is_empty())
+    }
+
+    /// Rows that give way, contact rows and springs, with `C` of them in row units, m/N.
+    pub(crate) fn compliance(&self) -> impl Iterator<Item = (usize, f64)> {
         let first = self.ranges.total() - self.springs.len();
-        let rows = x.iter().zip(y).skip(first);
-        rows.zip(&self.springs)
-            .for_each(|((x, y), spring)| *y += spring.compliance * x);
+        let contact = self.contact_compliance.iter().copied().enumerate();
+        contact.chain((first..).zip(self.springs.iter().map(|s| s.compliance)))
+    }
+
+    /// Adds what springs and contact rows give way to `B u`: `y += C x`, for whole dual vectors.
+    pub fn add_compliance(&self, x: &[f64], y: &mut [f64]) {
+        self.compliance().for_each(|(row, c)| y[row] += c * x[row]);
     }
 
     /// Entries `(subdomain, local degree of freedom, coefficient)` of a row; empty beyond the last row.

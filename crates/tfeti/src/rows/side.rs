@@ -80,6 +80,8 @@ pub struct ContactConstraint {
     pub moving: bool,
     /// Whether both sides move alike: equalities in place of contact and friction.
     pub tied: bool,
+    /// How far the point gives way along the normal and along the surface under a force, m/N; 0 for not at all.
+    pub compliance: [f64; 2],
     /// Factor of the second tangential row beside the first, 1 for isotropic friction. An ellipse with this ratio of its
     /// axes, along the tangents, is a disc in the rows.
     pub stretch: f64,
@@ -97,6 +99,7 @@ impl ContactConstraint {
             friction: false,
             moving: false,
             tied: false,
+            compliance: [0.0; 2],
             stretch: 1.0,
         }
     }
@@ -126,6 +129,13 @@ impl ContactConstraint {
     #[must_use]
     pub fn with_stretch(mut self, stretch: f64) -> Self {
         self.stretch = stretch;
+        self
+    }
+
+    /// How far it gives way along the normal and along the surface under a force, m/N: finite and not negative.
+    #[must_use]
+    pub fn with_compliance(mut self, compliance: [f64; 2]) -> Self {
+        self.compliance = compliance;
         self
     }
 
@@ -171,6 +181,14 @@ impl ContactConstraint {
         if !(self.stretch.is_finite() && self.stretch > 0.0) {
             let (node, stretch) = (self.side.first(), self.stretch);
             return Err(TfetiError::BadStretch { point, node, stretch });
+        }
+        if let Some(&compliance) = self.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
+            let node = self.side.first();
+            return Err(TfetiError::BadCompliance {
+                point,
+                node,
+                compliance,
+            });
         }
         let [t1, t2] = self.frame.tangents;
         let axes = [self.frame.normal, t1, t2];

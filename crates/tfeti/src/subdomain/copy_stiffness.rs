@@ -24,10 +24,10 @@ impl CopyStiffness {
     pub(crate) fn new(subdomains: &Subdomains) -> Self {
         let by_class = |base: &ClassBase| -> Vec<f64> {
             let mean = |node: usize| {
-                let diagonal = (3 * node..3 * node + 3).map(|i| base.stiffness.diagonal(i));
+                let diagonal = (3 * node..3 * node + 3).map(|i| base.diagonal[i]);
                 (diagonal.sum::<f64>() / 3.0).max(f64::MIN_POSITIVE)
             };
-            (0..base.stiffness.dim / 3).map(mean).collect()
+            (0..base.diagonal.len() / 3).map(mean).collect()
         };
         let by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
         let (mut first, mut values) = (Vec::new(), Vec::new());

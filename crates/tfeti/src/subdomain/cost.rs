@@ -41,7 +41,7 @@ impl InverseSettings {
         self
     }
 
-    /// Upper bound in bytes for all inverses and factors. Default: 8 GiB.
+    /// Upper bound in bytes for all inverses and factors, of all processes together. Default: 8 GiB.
     #[must_use]
     pub fn with_memory_limit(mut self, bytes: u64) -> Self {
         self.memory_limit = bytes;
@@ -61,7 +61,7 @@ pub struct ClassReport {
     pub boundary: usize,
     /// Whether products use a dense matrix on the boundary (otherwise a sparse factor).
     pub dense: bool,
-    /// Bytes of the inverses.
+    /// Bytes of the inverses; 0 where another process holds them.
     pub bytes: u64,
 }
 

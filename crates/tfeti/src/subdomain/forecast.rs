@@ -64,7 +64,7 @@ impl<'a> Forecast<'a> {
                 false => nodal_pattern(class.nodes, &subdomain.quadratic_tets()),
             };
             let symbolic = Symbolic::new(&pattern, 3).map_err(|e| TfetiError::pattern(e, s))?;
-            Ok((pattern, symbolic))
+            Ok::<_, TfetiError>((pattern, symbolic))
         });
         let analysed: Vec<(Columns, Symbolic)> = analysed.collect::<Result<_, _>>()?;
         let (mut sizes, mut copies, mut others) = (Vec::with_capacity(list.len()), 0, 0);

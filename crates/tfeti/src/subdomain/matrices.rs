@@ -5,6 +5,7 @@ use crate::linalg::block_rows::BlockRows;
 use crate::linalg::sparse::Columns;
 use crate::subdomain::class::{Class, Classes};
 use crate::subdomain::kernel::Kernel;
+use crate::subdomain::ownership::Ownership;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, TetMesh, assemble_stiffness};
 use std::sync::OnceLock;
@@ -13,23 +14,32 @@ use std::sync::OnceLock;
 #[derive(Debug)]
 pub(crate) struct Subdomains {
     pub(crate) classes: Classes,
+    pub(crate) ownership: Ownership,
     /// One for each class.
     pub(crate) bases: Vec<ClassBase>,
 }
 
-/// Stiffness and kernel of a class.
+/// What is known of a class: its matrices where this rank holds them.
 #[derive(Debug)]
 pub(crate) struct ClassBase {
+    pub(crate) held: Option<ClassMatrices>,
+    /// Of the stiffness.
+    pub(crate) diagonal: Vec<f64>,
+    pub(crate) kernel: Kernel,
+}
+
+/// Stiffness of a class.
+#[derive(Debug)]
+pub(crate) struct ClassMatrices {
     pub(crate) stiffness: Columns,
     /// The same for products with several members, made when first needed.
     pub(crate) blocks: OnceLock<BlockRows>,
-    pub(crate) kernel: Kernel,
     /// What preconditioners are made of where the material is nearly incompressible and elements do not lock: the
     /// stiffness of a compressible one. With its own they would need many times more iterations.
     pub(crate) compressible: Option<Columns>,
 }
 
-impl ClassBase {
+impl ClassMatrices {
     /// The stiffness that preconditioners are made of.
     pub(crate) fn preconditioning(&self) -> &Columns {
         self.compressible.as_ref().unwrap_or(&self.stiffness)
@@ -37,18 +47,17 @@ impl ClassBase {
 }
 
 impl Subdomains {
-    /// Assembles stiffness and kernel of every class from its first member.
+    /// Assembles kernel and, where this rank holds it, stiffness of every class from its first member.
     pub(crate) fn assemble(
         mesh: &TetMesh,
         decomposition: &Decomposition,
         materials: &Materials,
         classes: Classes,
+        ownership: Ownership,
     ) -> Result<Self, TfetiError> {
-        let base = |class: &Class| {
+        let matrices = |class: &Class, points: &[[f64; 3]]| {
             let s = class.members[0] as usize;
             let subdomain = &decomposition.subdomains()[s];
-            let nodes = subdomain.nodes.iter();
-            let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
             let elements = subdomain.elements.iter();
             let regions: Vec<u32> = elements.map(|&e| mesh.regions()[e as usize]).collect();
             let element = subdomain.elements[0] as usize;
@@ -56,9 +65,9 @@ impl Subdomains {
             let hooke = materials.of_tets(&regions).map_err(|e| material(e.to_string()))?;
             let assemble = |laws: &[&Hooke]| {
                 let matrix = if subdomain.mids.is_empty() {
-                    assemble_stiffness(&points, &subdomain.tets, |t| laws[t])
+                    assemble_stiffness(points, &subdomain.tets, |t| laws[t])
                 } else {
-                    assemble_stiffness(&points, &subdomain.quadratic_tets(), |t| laws[t])
+                    assemble_stiffness(points, &subdomain.quadratic_tets(), |t| laws[t])
                 };
                 let matrix = matrix.map_err(|e| material(e.to_string()))?;
                 Ok::<_, TfetiError>(Columns::from_symmetric(&matrix))
@@ -73,15 +82,37 @@ impl Subdomains {
                     .map(|(soft, &law)| soft.as_ref().unwrap_or(law));
                 assemble(&laws.collect::<Vec<_>>())
             });
-            Ok(ClassBase {
+            Ok::<_, TfetiError>(ClassMatrices {
                 stiffness: assemble(&hooke)?,
                 compressible: compressible.transpose()?,
                 blocks: OnceLock::new(),
+            })
+        };
+        let base = |(k, class): (usize, &Class)| {
+            let s = class.members[0] as usize;
+            let nodes = decomposition.subdomains()[s].nodes.iter();
+            let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
+            let held = ownership.holds(k).then(|| matrices(class, &points)).transpose()?;
+            let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.stiffness.diagonal(i)).collect();
+            Ok(ClassBase {
+                diagonal: held.as_ref().map_or_else(|| vec![0.0; 3 * class.nodes], diagonal),
+                held,
                 kernel: Kernel::new(&points, s)?,
             })
         };
-        let bases = classes.classes().par_iter().map(base).collect::<Result<_, _>>()?;
-        Ok(Self { classes, bases })
+        let each = classes.classes().par_iter().enumerate();
+        let mut bases: Vec<ClassBase> = each.map(base).collect::<Result<_, TfetiError>>()?;
+        share_diagonals(&ownership, &mut bases);
+        Ok(Self {
+            classes,
+            ownership,
+            bases,
+        })
+    }
+
+    /// The matrices of a class, if this rank holds them.
+    pub(crate) fn held(&self, class: usize) -> Option<&ClassMatrices> {
+        self.bases[class].held.as_ref()
     }
 
     /// Number of subdomains.
@@ -102,5 +133,22 @@ impl Subdomains {
     /// Rigid motions of a subdomain.
     pub(crate) fn kernel(&self, subdomain: usize) -> &Kernel {
         &self.of(subdomain).kernel
+    }
+}
+
+/// Brings the diagonals of all classes to all ranks.
+fn share_diagonals(ownership: &Ownership, bases: &mut [ClassBase]) {
+    if ownership.exchange.ranks() == 1 {
+        return;
+    }
+    let (mut all, mut pieces) = (Vec::new(), Vec::new());
+    for (class, base) in bases.iter().enumerate() {
+        let start = all.len();
+        all.extend_from_slice(&base.diagonal);
+        pieces.push((ownership.rank_of(class, 0), start..all.len()));
+    }
+    ownership.exchange.complete(&mut all, &pieces);
+    for (base, (_, range)) in bases.iter_mut().zip(pieces) {
+        base.diagonal.copy_from_slice(&all[range]);
     }
 }

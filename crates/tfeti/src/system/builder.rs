@@ -5,6 +5,8 @@ use crate::dual::boundary::BoundaryMap;
 use crate::dual::inverses::{ClassInverse, invert};
 use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
+use crate::processes::communicator::Communicator;
+use crate::processes::exchange::Exchange;
 use crate::rows::gluing::Gluing;
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{NodalSpring, NodeSupport};
@@ -14,6 +16,7 @@ use crate::subdomain::cost::InverseSettings;
 use crate::subdomain::forecast::Forecast;
 use crate::subdomain::kernel::mean;
 use crate::subdomain::matrices::Subdomains;
+use crate::subdomain::ownership::Ownership;
 use crate::system::report::{SetupReport, class_reports, count};
 use crate::system::tfeti::{Parts, Tfeti};
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
@@ -32,6 +35,7 @@ pub struct TfetiBuilder<'a> {
     share_translates: bool,
     inverse: InverseSettings,
     forecast: Option<&'a Forecast<'a>>,
+    communicator: Option<&'a Arc<dyn Communicator>>,
 }
 
 impl<'a> TfetiBuilder<'a> {
@@ -48,6 +52,7 @@ impl<'a> TfetiBuilder<'a> {
             share_translates: true,
             inverse: InverseSettings::default(),
             forecast: None,
+            communicator: None,
         }
     }
 
@@ -101,11 +106,19 @@ impl<'a> TfetiBuilder<'a> {
         self
     }
 
+    /// Sets the processes that solve the problem together; each builds the system and holds its part of the matrices.
+    /// Default: this one alone.
+    #[must_use]
+    pub fn with_communicator(mut self, communicator: &'a Arc<dyn Communicator>) -> Self {
+        self.communicator = Some(communicator);
+        self
+    }
+
     /// Builds the system. A body that nothing holds is no error: see [`Tfeti::coarse_factor`] and its free motions.
     ///
     /// # Errors
     /// Any of [`TfetiError`]: bad supports or contact constraints, unknown materials, subdomains whose stiffness is
-    /// singular beyond the rigid motions, not enough memory.
+    /// singular beyond the rigid motions, not enough memory, a process lost.
     pub fn build(self) -> Result<Tfeti, TfetiError> {
         let (mesh, decomposition) = (self.mesh, self.decomposition);
         let check = |what, found, expected| match found == expected {
@@ -120,7 +133,9 @@ impl<'a> TfetiBuilder<'a> {
             None => Classes::find(mesh, decomposition, self.materials, self.share_translates)?,
         };
         let classes_seconds = clock.lap();
-        let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes)?;
+        let exchange = Arc::new(self.communicator.cloned().map_or_else(Exchange::default, Exchange::new));
+        let ownership = Ownership::new(&classes, exchange.clone());
+        let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes, ownership)?;
         let subdomains = Arc::new(subdomains);
         let assembly_seconds = clock.lap();
         let mut stiffness = CopyStiffness::new(&subdomains);
@@ -139,7 +154,7 @@ impl<'a> TfetiBuilder<'a> {
             (self.springs, &all),
         )?;
         let gluing = Arc::new(gluing);
-        let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing));
+        let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing, &subdomains.ownership));
         let gluing_seconds = clock.lap();
         let points = mesh.points();
         let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
@@ -159,8 +174,9 @@ impl<'a> TfetiBuilder<'a> {
                 Ok::<_, TfetiError>((coarse, factor))
             },
         );
-        let inverses = Arc::new(inverses?);
+        let inverses = inverses?;
         let (coarse, factor) = coarse?;
+        exchange.check()?;
         let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
         let motions = factor.free_motions().iter();
         let report = SetupReport {
@@ -170,11 +186,11 @@ impl<'a> TfetiBuilder<'a> {
             rows: gluing.ranges().clone(),
             rows_as_paper: gluing.rows_as_paper(),
             removed: count(gluing.removed()),
-            inverse_bytes: inverses.iter().map(ClassInverse::bytes).sum(),
+            inverse_bytes: inverses.0.iter().flatten().map(ClassInverse::bytes).sum(),
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
-            factorisations: 1 + subdomains.bases.len(),
-            analysed: known.map_or(subdomains.bases.len(), |_| 0),
+            factorisations: 1 + inverses.0.iter().flatten().count(),
+            analysed: known.map_or(inverses.0.iter().flatten().count(), |_| 0),
             free_motions: motions.map(ToString::to_string).collect(),
             classes_seconds,
             gluing_seconds,
@@ -182,6 +198,7 @@ impl<'a> TfetiBuilder<'a> {
             inverse_seconds,
             coarse_seconds,
         };
+        let inverses = Arc::new(inverses.0);
         let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone(), gluing.clone());
         let parts = Parts {
             subdomains,

@@ -1,7 +1,7 @@
 //! What the set-up did.
 
 use crate::dual::boundary::BoundaryMap;
-use crate::dual::inverses::ClassInverse;
+use crate::dual::inverses::{ClassInverse, Inverses};
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind, RowRanges};
 use crate::subdomain::class::Classes;
 use crate::subdomain::cost::ClassReport;
@@ -23,7 +23,7 @@ pub struct SetupReport {
     pub rows_as_paper: usize,
     /// Removed rows by kind and reason.
     pub removed: Vec<(RowKind, RemovalReason, usize)>,
-    /// Bytes of all inverses and factors of subdomains.
+    /// Bytes of the inverses and factors of subdomains, of several processes those that this one holds.
     pub inverse_bytes: u64,
     /// Bytes of the coarse factor.
     pub coarse_bytes: u64,
@@ -61,13 +61,14 @@ pub(super) fn count(removed: &[RemovedRow]) -> Vec<(RowKind, RemovalReason, usiz
     alike.map(|all| (all[0].0, all[0].1, all.len())).collect()
 }
 
-pub(super) fn class_reports(classes: &Classes, map: &BoundaryMap, inverses: &[ClassInverse]) -> Vec<ClassReport> {
+pub(super) fn class_reports(classes: &Classes, map: &BoundaryMap, inverses: &Inverses) -> Vec<ClassReport> {
+    let (inverses, dense) = inverses;
     let report = |k: usize| ClassReport {
         members: classes.classes()[k].members.len(),
         unknowns: 3 * classes.classes()[k].nodes,
         boundary: 3 * map.classes[k].nodes.len(),
-        dense: inverses[k].boundary.is_some(),
-        bytes: inverses[k].bytes(),
+        dense: dense[k],
+        bytes: inverses[k].as_ref().map_or(0, ClassInverse::bytes),
     };
     (0..inverses.len()).map(report).collect()
 }

@@ -1,10 +1,14 @@
 //! The stiffness that a single row of `B` feels, with all other unknowns held or with its subdomains free.
 
 use crate::linalg::sparse::SolveMemory;
+use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::SAMPLE;
 use rayon::prelude::*;
 use std::ops::Range;
+
+/// Subdomain, unknown and coefficient in a row.
+type Entry = (usize, usize, f64);
 
 /// What is known of the compliance of a class.
 enum Compliance<'a> {
@@ -25,57 +29,73 @@ impl Tfeti {
     pub fn row_compliance(&self, rows: Range<usize>, out: &mut [f64]) {
         let parts = &self.parts;
         let subdomains = &parts.subdomains;
-        let entries: Vec<_> = rows.map(|row| self.gluing().row(row)).collect();
         let mut nodes = vec![Vec::new(); subdomains.bases.len()];
-        for &(subdomain, dof, _) in entries.iter().flatten() {
+        for (subdomain, dof, _) in rows.clone().flat_map(|row| self.gluing().row(row)) {
             nodes[subdomains.class(subdomain)].push(dof / 3);
         }
-        let of_class = |(class, mut nodes): (usize, Vec<usize>)| match &parts.inverses[class].boundary {
-            Some(block) => Compliance::Block(block),
-            None => {
-                nodes.sort_unstable();
-                nodes.dedup();
-                Compliance::Sample(self.sample_compliance(class, &nodes))
-            }
-        };
-        let compliance: Vec<Compliance<'_>> = nodes.into_par_iter().enumerate().map(of_class).collect();
-        for (entries, target) in entries.iter().zip(out) {
-            *target = 0.0;
-            for &(subdomain, dof, value) in entries {
-                let class = subdomains.class(subdomain);
-                let own = entries.iter().filter(|e| e.0 == subdomain);
-                match &compliance[class] {
-                    Compliance::Block(block) => {
-                        let nodes = &parts.map.classes[class].nodes;
-                        let place = |dof: usize| {
-                            let node = nodes.binary_search(&((dof / 3) as u32));
-                            node.ok().map(|node| 3 * node + dof % 3)
-                        };
-                        for &(_, other, factor) in own {
-                            if let (Some(i), Some(j)) = (place(dof), place(other)) {
-                                *target += value * factor * block[i + j * 3 * nodes.len()];
-                            }
-                        }
-                    }
-                    Compliance::Sample(ratios) => {
-                        let diagonal = subdomains.bases[class].stiffness.diagonal(dof);
-                        if diagonal > 0.0 {
-                            *target += value * value * ratios[dof % 3] / diagonal;
-                        }
-                    }
+        let of_class = |(class, mut nodes): (usize, Vec<usize>)| {
+            let inverse = parts.inverses[class].as_ref()?;
+            Some(match &inverse.boundary {
+                Some(block) => Compliance::Block(block),
+                None => {
+                    nodes.sort_unstable();
+                    nodes.dedup();
+                    Compliance::Sample(self.sample_compliance(class, &inverse.full, &nodes))
                 }
+            })
+        };
+        let compliance: Vec<Option<Compliance<'_>>> = nodes.into_par_iter().enumerate().map(of_class).collect();
+        self.sum_terms(rows, out, |class, first, second| match &compliance[class] {
+            Some(Compliance::Block(block)) => {
+                let nodes = &parts.map.classes[class].nodes;
+                let place = |dof: usize| {
+                    let node = nodes.binary_search(&((dof / 3) as u32));
+                    node.ok().map(|node| 3 * node + dof % 3)
+                };
+                let (i, j) = (place(first.1)?, place(second.1)?);
+                Some(first.2 * second.2 * block[i + j * 3 * nodes.len()])
             }
+            Some(Compliance::Sample(ratios)) => {
+                let &(_, dof, value) = first;
+                let diagonal = subdomains.bases[class].diagonal[dof];
+                let own = std::ptr::eq(first, second) && diagonal > 0.0;
+                own.then(|| value * value * ratios[dof % 3] / diagonal)
+            }
+            None => None,
+        });
+    }
+
+    /// `out[k]` is a sum over all pairs of entries of row `k` in one subdomain; `term` is told its class, which it must
+    /// hold, and both entries.
+    fn sum_terms(&self, rows: Range<usize>, out: &mut [f64], term: impl Fn(usize, &Entry, &Entry) -> Option<f64>) {
+        let subdomains = &self.parts.subdomains;
+        let ownership = &subdomains.ownership;
+        let (mut terms, mut ends, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
+        for row in rows {
+            let entries = self.gluing().row(row);
+            for first in &entries {
+                let (class, start) = (subdomains.class(first.0), terms.len());
+                let own = entries.iter().filter(|second| second.0 == first.0);
+                terms.extend(own.map(|second| term(class, first, second).unwrap_or(0.0)));
+                pieces.push((ownership.rank_of(class, 0), start..terms.len()));
+            }
+            ends.push(terms.len());
+        }
+        ownership.exchange.complete(&mut terms, &pieces);
+        let mut start = 0;
+        for (end, target) in ends.into_iter().zip(out) {
+            *target = terms[start..end].iter().fold(0.0, |sum, term| sum + term);
+            start = end;
         }
     }
 
     /// Smallest diagonal entry of `K+` times that of `K` at some of these nodes, by direction.
-    fn sample_compliance(&self, class: usize, nodes: &[usize]) -> [f64; 3] {
+    fn sample_compliance(&self, class: usize, inverse: &Inverse, nodes: &[usize]) -> [f64; 3] {
         let base = &self.parts.subdomains.bases[class];
-        let inverse = &self.parts.inverses[class].full;
         let mut memory = SolveMemory::new(inverse.need(1));
         let mut out = [f64::INFINITY; 3];
         let count = nodes.len().min(SAMPLE);
-        let mut x = vec![0.0; base.stiffness.dim];
+        let mut x = vec![0.0; base.diagonal.len()];
         for k in 0..count {
             let node = nodes[(2 * k + 1) * nodes.len() / (2 * count)];
             for (c, smallest) in out.iter_mut().enumerate() {
@@ -83,7 +103,7 @@ impl Tfeti {
                 x.fill(0.0);
                 x[dof] = 1.0;
                 inverse.apply(&base.kernel, &mut x, 1, &mut memory);
-                *smallest = smallest.min(x[dof] * base.stiffness.diagonal(dof));
+                *smallest = smallest.min(x[dof] * base.diagonal[dof]);
             }
         }
         out
@@ -94,36 +114,39 @@ impl Tfeti {
     ///
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_stiffness(&self, rows: Range<usize>, out: &mut [f64]) {
-        for (row, target) in rows.zip(out) {
-            let entries = self.gluing().row(row);
-            *target = 0.0;
-            for &(subdomain, dof, value) in &entries {
-                let stiffness = &self.parts.subdomains.of(subdomain).stiffness;
-                for &(_, other, factor) in entries.iter().filter(|e| e.0 == subdomain) {
-                    if let Some(at) = stiffness.find(other, dof) {
-                        *target += value * stiffness.values[at] * factor;
-                    }
-                }
-            }
-        }
+        self.sum_terms(rows, out, |class, &(_, dof, value), &(_, other, factor)| {
+            let stiffness = &self.parts.subdomains.held(class)?.stiffness;
+            let at = stiffness.find(other, dof)?;
+            Some(value * stiffness.values[at] * factor)
+        });
     }
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one. `None` where all
-    /// copies [count alike](Self::copy_stiffness).
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a contact row that
+    /// gives way in proportion to both together. `None` where all copies [count alike](Self::copy_stiffness) and no
+    /// contact row gives way.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
-        if self.copy_stiffness().is_plain() {
+        let (plain, given) = (self.copy_stiffness().is_plain(), self.gluing().contact_compliance());
+        if plain && given.is_empty() {
             return None;
         }
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
-            let diagonal = self.parts.subdomains.of(subdomain).stiffness.diagonal(dof);
+            let diagonal = self.parts.subdomains.of(subdomain).diagonal[dof];
             if diagonal > 0.0 { value * value / diagonal } else { 0.0 }
         };
         let weight = |row: usize| {
             let sum: f64 = self.gluing().row(row).into_iter().map(compliance).sum();
             if sum > 0.0 { 1.0 / sum } else { 0.0 }
         };
+        if plain {
+            let soft = given.iter().enumerate().map(|(row, c)| 1.0 / (1.0 + c * weight(row)));
+            let rest = self.dual_dim() - given.len();
+            return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
+        }
         let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
+        for (weight, compliance) in weights.iter_mut().zip(given) {
+            *weight /= 1.0 + compliance * *weight;
+        }
         let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for w in &mut weights {
             *w = if *w > 0.0 { *w / largest } else { 1.0 };

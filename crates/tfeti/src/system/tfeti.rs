@@ -4,6 +4,8 @@ use crate::coarse::space::Coarse;
 use crate::dual::boundary::BoundaryMap;
 use crate::dual::inverses::ClassInverse;
 use crate::dual::operator::DualOperator;
+use crate::error::TfetiError;
+use crate::processes::exchange::{Exchange, Traffic};
 use crate::projector::factor::CoarseFactor;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::Classes;
@@ -21,7 +23,7 @@ pub(crate) struct Parts {
     pub(crate) subdomains: Arc<Subdomains>,
     pub(crate) gluing: Arc<Gluing>,
     pub(crate) map: Arc<BoundaryMap>,
-    pub(crate) inverses: Arc<Vec<ClassInverse>>,
+    pub(crate) inverses: Arc<Vec<Option<ClassInverse>>>,
 }
 
 /// A T-FETI system: the rows of `B`, the dual operator `F`, the coarse space `G` and what is needed to recover
@@ -113,6 +115,45 @@ impl Tfeti {
     /// What was built, how large it is and how long it took.
     pub fn report(&self) -> &SetupReport {
         &self.report
+    }
+
+    /// The process that works with the matrices of a subdomain, by its rank.
+    ///
+    /// # Panics
+    /// If there is no such subdomain.
+    pub fn rank_of(&self, subdomain: usize) -> usize {
+        let (class, member) = self.classes().place(subdomain);
+        self.parts.subdomains.ownership.rank_of(class, member)
+    }
+
+    /// What this process has exchanged with those that solve the problem with it.
+    pub fn traffic(&self) -> Traffic {
+        self.exchange().traffic()
+    }
+
+    /// Whether all processes are still there. Vectors exchanged after one is lost are not numbers.
+    ///
+    /// # Errors
+    /// [`TfetiError::Communication`] if one was lost.
+    pub fn check_processes(&self) -> Result<(), TfetiError> {
+        Ok(self.exchange().check()?)
+    }
+
+    /// The value that each process gives, by rank. All must ask.
+    ///
+    /// # Errors
+    /// [`TfetiError::Communication`].
+    pub fn gather(&self, value: f64) -> Result<Vec<f64>, TfetiError> {
+        let exchange = self.exchange();
+        let mut values = vec![value; exchange.ranks()];
+        let parts: Vec<Range<usize>> = (0..values.len()).map(|rank| rank..rank + 1).collect();
+        exchange.gather(&mut values, &parts);
+        self.check_processes()?;
+        Ok(values)
+    }
+
+    fn exchange(&self) -> &Exchange {
+        &self.parts.subdomains.ownership.exchange
     }
 
     /// Number of subdomains.

@@ -1,5 +1,6 @@
 //! Stiffness and generalised inverse of the torn body: class by class, some members of a class at a time.
 
+use crate::dual::inverses::ClassInverse;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::sparse::SolveMemory;
 use crate::system::tfeti::Tfeti;
@@ -14,7 +15,9 @@ impl Tfeti {
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(y, |class, members, columns| {
-            let base = &parts.subdomains.bases[class];
+            let Some(base) = parts.subdomains.held(class) else {
+                return;
+            };
             if parts.subdomains.classes.classes()[class].members.len() < SHARED {
                 for (&s, y) in members.iter().zip(columns) {
                     let x = &x[self.torn_range(s as usize)];
@@ -49,8 +52,11 @@ impl Tfeti {
     pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(u, |class, members, columns| {
-            let (base, inverse) = (&parts.subdomains.bases[class], &parts.inverses[class].full);
-            let (dim, count) = (base.stiffness.dim, members.len());
+            let base = &parts.subdomains.bases[class];
+            let Some(ClassInverse { full: inverse, .. }) = &parts.inverses[class] else {
+                return;
+            };
+            let (dim, count) = (base.diagonal.len(), members.len());
             let mut memory = SolveMemory::new(inverse.need(count));
             let mut x = vec![0.0; dim * count];
             for (&s, column) in members.iter().zip(x.chunks_exact_mut(dim)) {
@@ -63,23 +69,31 @@ impl Tfeti {
         });
     }
 
-    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`.
+    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`. Each rank does those
+    /// that it holds, one exchange brings the others.
     fn by_class(&self, out: &mut [f64], work: impl Fn(usize, &[u32], Vec<&mut [f64]>) + Sync) {
         let mut targets: Vec<Option<&mut [f64]>> = Vec::with_capacity(self.subdomains());
-        let mut rest = out;
+        let ownership = &self.parts.subdomains.ownership;
+        let mut rest = &mut *out;
         for s in 0..self.subdomains() {
             let (own, tail) = std::mem::take(&mut rest).split_at_mut(self.torn_range(s).len());
             targets.push(Some(own));
             rest = tail;
         }
-        let mut list = Vec::new();
+        let (mut list, mut pieces) = (Vec::new(), Vec::new());
         for (class, own) in self.classes().classes().iter().enumerate() {
-            for members in own.members.chunks(PANEL) {
+            for (k, members) in own.members.chunks(PANEL).enumerate() {
+                let rank = ownership.rank_of(class, k * PANEL);
+                pieces.extend(members.iter().map(|&s| (rank, self.torn_range(s as usize))));
+                if rank != ownership.exchange.rank() {
+                    continue;
+                }
                 let columns: Vec<&mut [f64]> = members.iter().filter_map(|&s| targets[s as usize].take()).collect();
                 list.push((class, members, columns));
             }
         }
         list.into_par_iter()
             .for_each(|(class, members, columns)| work(class, members, columns));
+        ownership.exchange.complete(out, &pieces);
     }
 }

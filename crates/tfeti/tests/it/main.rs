@@ -9,6 +9,7 @@ mod kernel;
 mod linear;
 mod operators;
 mod preconditioners;
+mod processes;
 mod refusals;
 mod rows;
 mod scratch;

@@ -156,13 +156,16 @@ fn materials() {
 #[test]
 fn contact() {
     let law = "*SURFACE INTERACTION, NAME=I\n";
-    let linear = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR";
+    let soft = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=EXPONENTIAL";
     behind(
-        &format!("{law}{linear}\n1e6\n"),
-        linear,
-        "PRESSURE-OVERCLOSURE=LINEAR",
-        "HARD",
+        &format!("{law}{soft}\n1e6\n"),
+        soft,
+        "PRESSURE-OVERCLOSURE=EXPONENTIAL",
+        "LINEAR with the slope",
     );
+    let linear = format!("{law}*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n");
+    behind(&format!("{linear}0., 1.\n"), "0., 1.", "0.", "positive");
+    behind(&format!("{law}*FRICTION\n0.3, -1e6\n"), "0.3, -1e6", "-1e6", "positive");
     behind(&format!("{law}*FRICTION\n-0.3\n"), "-0.3", "-0.3", "at least zero");
     behind(
         &format!("{law}*FRICTION, ROUGH\n"),

@@ -7,6 +7,11 @@
 //! | equilibrium at nodes that no tie has: strained tetrahedra = loads + contact forces times weights + reactions | forces |
 //! | the rest at tied sides: no force and no moment in all, and no work | forces; forces times displacements |
 //! | gap, sign, complementarity, cone (an ellipse), direction (its normal), as for matching meshes | as there |
+//! | forces of a foundation: stiffness times displacement | forces |
+//!
+//! Where contact gives way, the gap counts compliance times pressure, and slips are without compliance times friction stress.
+//! Forces between curved sides act where facets are, not where sides are: moments are left out there, and gaps at the start
+//! are taken from the library as far as the bumps allow them.
 
 use super::{Judge, Report, SAME, Size, Violation, Worst};
 use crate::generate::apart::{Apart, Pair, Rock};
@@ -15,6 +20,7 @@ use crate::recipe::{Clock, Law};
 use crate::vec3::{Vec3, across, add, at, cross, dot, norm, scale, sub, unit};
 use signorini::contact::ConstrainedPoint;
 use signorini::prelude::*;
+use std::collections::HashMap;
 
 /// The judge of a run.
 pub(crate) struct ApartJudge<'a> {
@@ -72,6 +78,7 @@ impl<'a> ApartJudge<'a> {
         self.equilibrium(points, &report, (&load, &torn.0), &sizes, &mut worst);
         self.balance(&report, &load, &sizes, &mut worst);
         self.weights(points, &mut worst);
+        self.ground(&report, &sizes, &mut worst);
         let now: Vec<At> = points.iter().enumerate().map(|(k, p)| self.at(k, p, &report)).collect();
         worst.add("points", (points.len() as f64 - report.points.len() as f64).abs(), 1.0);
         for (k, (point, state)) in points.iter().zip(report.points).enumerate() {
@@ -122,7 +129,13 @@ impl<'a> ApartJudge<'a> {
                 *own = sub(*own, scale(weight, state.force()));
             }
         }
-        for reaction in report.reactions.supports.iter().flat_map(|s| &s.nodes) {
+        let reactions = &report.reactions;
+        for reaction in reactions
+            .supports
+            .iter()
+            .chain(&reactions.springs)
+            .flat_map(|s| &s.nodes)
+        {
             let own = &mut rest[reaction.node as usize];
             *own = sub(*own, reaction.force);
         }
@@ -130,7 +143,9 @@ impl<'a> ApartJudge<'a> {
             let first = self.tied(index, pair, &rest, report, sizes, worst);
             let said = &report.reactions.contacts[index];
             worst.add("reported tie", norm(sub(first[0], said.force)), first[2][0]);
-            worst.add("reported tie", norm(sub(first[1], said.moment)), first[2][1]);
+            if self.scene.bumps == 0.0 {
+                worst.add("reported tie", norm(sub(first[1], said.moment)), first[2][1]);
+            }
         }
         let tied = |n: u32| {
             let of = |p: &&Pair| {
@@ -196,7 +211,9 @@ impl<'a> ApartJudge<'a> {
         let all = nodes(&tags);
         let (force, moment) = sum(&all);
         worst.add("force of ties", norm(force), size.forces);
-        worst.add("moment of ties", norm(moment), far * size.forces);
+        if self.scene.bumps == 0.0 {
+            worst.add("moment of ties", norm(moment), far * size.forces);
+        }
         let work: f64 = all.iter().map(|n| dot(rest[*n as usize], at(&report.u, *n))).sum();
         worst.add("work of ties", work.abs(), size.forces * size.displacement);
         // the side that only this tie has
@@ -220,13 +237,42 @@ impl<'a> ApartJudge<'a> {
         (0..places.len() as u32).for_each(|n| put(n, at(load, n)));
         let obstacles = report.points.iter().filter(|p| p.partner.is_none());
         obstacles.for_each(|p| put(p.node, p.force()));
-        let supports = report.reactions.supports.iter().flat_map(|s| &s.nodes);
-        supports.for_each(|n| put(n.node, n.force));
-        worst.add("balance", norm(sum[0]), forces);
-        worst.add("balance", norm(sum[1]), far * forces);
+        let supports = report.reactions.supports.iter().chain(&report.reactions.springs);
+        supports.flat_map(|s| &s.nodes).for_each(|n| put(n.node, n.force));
         let said = report.reactions.imbalance();
+        worst.add("balance", norm(sum[0]), forces);
         worst.add("reported imbalance", norm(said.force), forces);
-        worst.add("reported imbalance", norm(said.moment), far * forces);
+        if self.scene.bumps == 0.0 {
+            worst.add("balance", norm(sum[1]), far * forces);
+            worst.add("reported imbalance", norm(said.moment), far * forces);
+        }
+    }
+
+    /// Forces of the foundation, but for nodes that a support holds.
+    fn ground(&self, report: &Report<'_>, sizes: &[Size], worst: &mut Worst) {
+        let Some((tag, stiffness)) = self.scene.ground else {
+            return;
+        };
+        let held: Vec<u32> = (self.base.recipe.holds.iter())
+            .flat_map(|h| h.nodes(&self.base.recipe.mesh))
+            .collect();
+        let mut expected: HashMap<u32, Vec3> = HashMap::new();
+        for side in self.base.mechanics.sides.iter().filter(|s| s.tag == tag) {
+            for node in side.nodes.into_iter().filter(|n| !held.contains(n)) {
+                let u = at(&report.u, node);
+                let own = expected.entry(node).or_default();
+                (0..3).for_each(|c| own[c] -= norm(side.vector) / 3.0 * stiffness[c] * u[c]);
+            }
+        }
+        let said = report.reactions.springs.iter().flat_map(|s| &s.nodes);
+        for said in said.filter(|n| !held.contains(&n.node)) {
+            let force = expected.remove(&said.node).unwrap_or_default();
+            let size = self.base.size(sizes, said.node);
+            worst.add("foundation", norm(sub(force, said.force)), size.forces);
+        }
+        for (node, force) in expected {
+            worst.add("foundation", norm(force), self.base.size(sizes, node).forces);
+        }
     }
 
     /// Weights and areas.
@@ -248,10 +294,12 @@ impl<'a> ApartJudge<'a> {
             *area += point.area();
             worst.add("weights", (other + 1.0).abs(), 1e-6);
             // of a node that is covered by little only, weights are rounding over that part
-            worst.add("moment of weights", norm(arm), 1e-5 * self.base.extent);
+            let off = (norm(arm) - self.scene.bumps).max(0.0);
+            worst.add("moment of weights", off, 1e-5 * self.base.extent);
         }
         for (pair, area) in self.scene.pairs.iter().zip(areas).filter(|p| !p.0.tied) {
-            worst.add("area", area - pair.common, 1e-4 * pair.common);
+            let steep = 1.0 + (4.0 * self.scene.bumps / pair.common.sqrt()).powi(2);
+            worst.add("area", area - pair.common * steep, 1e-4 * pair.common);
         }
     }
 
@@ -260,23 +308,46 @@ impl<'a> ApartJudge<'a> {
             Clock::Static(_) => [1.0, 0.0, 0.0],
             Clock::Steps { weights, .. } => weights,
         };
+        let state = &report.points[k];
         let moved = (point.nodes()).fold([0.0; 3], |s, (n, w)| add(s, scale(w, at(&report.u, n))));
         let normal = point.frame().normal;
         let (way, gap) = match self.rock(point) {
             Some(rock) => {
-                let carried =
+                let mut carried =
                     (rock.motion.as_ref()).map_or([0.0; 3], |(v, course)| scale(course.value(report.time), *v));
-                let distance = rock.shape.distance(sub(point.position(), carried)).0;
-                (sub(moved, carried), distance - dot(normal, moved))
+                let mut place = sub(point.position(), carried);
+                if let Some((centre, axis, course)) = &rock.turn {
+                    let (arm, angle) = (sub(place, *centre), course.value(report.time));
+                    let along = scale(dot(arm, *axis), *axis);
+                    let (sin, cos) = angle.sin_cos();
+                    // the place is turned back, and dragged along the surface
+                    let off = sub(arm, along);
+                    let back = add(scale(cos, off), scale(-sin, cross(*axis, off)));
+                    place = add(*centre, add(along, back));
+                    carried = add(carried, scale(angle, cross(*axis, arm)));
+                }
+                (sub(moved, carried), rock.shape.distance(place).0 - dot(normal, moved))
             }
-            // sides touch at rest
-            None => (moved, -dot(normal, moved)),
+            // plane sides touch at rest
+            None if self.scene.bumps == 0.0 => (moved, -dot(normal, moved)),
+            None => (moved, point.gap() - dot(normal, moved)),
         };
+        // the place where it sticks
+        let along = self.compliance(point)[1] / point.area();
+        let way = add(way, scale(along, state.friction_force));
         let sum = add(scale(a, way), add(scale(b, self.ways[0][k]), scale(c, self.ways[1][k])));
         At {
             way,
             gap,
             slip: across(sum, normal),
+        }
+    }
+
+    fn compliance(&self, point: &ConstrainedPoint) -> [f64; 2] {
+        match (self.rock(point), self.scene.pairs.get(point.surface())) {
+            (Some(rock), _) => rock.compliance,
+            (_, Some(pair)) => pair.compliance,
+            _ => [0.0; 2],
         }
     }
 
@@ -288,13 +359,16 @@ impl<'a> ApartJudge<'a> {
         size: &Size,
         worst: &mut Worst,
     ) {
-        let (f, u) = (size.contact, size.displacement);
+        // where nothing moves, coordinates are the scale
+        let (f, u) = (size.contact, size.displacement.max(1e-11 * self.base.extent));
         let normal = point.frame().normal;
+        let least = if self.scene.bumps > 0.0 { 0.7 } else { SAME };
         let expected = match self.rock(point) {
             Some(rock) => scale(-1.0, rock.shape.distance(point.position()).1),
             None => {
-                let own =
-                    |s: &&crate::mechanics::Side| s.nodes.contains(&point.node()) && dot(unit(s.vector), normal) > SAME;
+                let own = |s: &&crate::mechanics::Side| {
+                    s.nodes.contains(&point.node()) && dot(unit(s.vector), normal) > least
+                };
                 self.base
                     .mechanics
                     .sides
@@ -303,12 +377,22 @@ impl<'a> ApartJudge<'a> {
                     .map_or([0.0; 3], |s| unit(s.vector))
             }
         };
-        worst.add("normal", f64::from(u8::from(dot(expected, normal) < SAME)), 1.0);
+        let least = if self.rock(point).is_some() { SAME } else { least };
+        worst.add("normal", f64::from(u8::from(dot(expected, normal) < least)), 1.0);
         let (force, friction) = (state.normal_force, state.friction_force);
-        worst.add("gap", -now.gap, u);
+        if self.rock(point).is_none() {
+            worst.add(
+                "gap at the start",
+                (point.gap().abs() - self.scene.bumps).max(0.0),
+                1e-6 * self.base.extent,
+            );
+        }
         worst.add("reported gap", (state.gap - now.gap).abs(), u.max(point.gap().abs()));
+        let let_in = self.compliance(point)[0] * -force / point.area();
+        let gap = now.gap + let_in;
+        worst.add("gap", -gap, u);
         worst.add("sign", force, f);
-        worst.add("complementarity", (force * now.gap.max(0.0)).abs(), f * u);
+        worst.add("complementarity", (force * gap.max(0.0)).abs(), f * u);
         worst.add("friction off the surface", dot(friction, normal).abs(), f);
         let (law, axis) = self.law(point);
         let bound = law.bound(point.position(), point.area(), (-force).max(0.0), self.rates[k]);

@@ -1,11 +1,12 @@
 //! Scenes of two or three bricks meshed apart, one on the other: partly covered, turned, tied or touching in either order of
-//! sides, of any ratio of meshes and stiffness, on obstacles of any shape, with friction by direction.
+//! sides, of any ratio of meshes and stiffness, on obstacles of any shape that are displaced or turned, with friction by
+//! direction. The sides are plane or curved, contacts may give way, and an elastic foundation may hold a body.
 
 use super::bodies::side;
 use super::{Shaft, bare, settings};
 use crate::dice::Dice;
 use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
-use crate::vec3::{Vec3, add, cross, dot, norm, scale, sub, unit};
+use crate::vec3::{Vec3, across, add, cross, dot, norm, scale, sub, unit};
 use signorini::prelude::*;
 
 /// Two sides that face each other.
@@ -16,8 +17,9 @@ pub(crate) struct Pair {
     pub(crate) law: Law,
     /// Direction of the law, and friction across it over that along it.
     pub(crate) axis: Option<(Vec3, f64)>,
-    /// Area where both sides face each other, m².
+    /// Area where both sides face each other, seen from above, m².
     pub(crate) common: f64,
+    pub(crate) compliance: [f64; 2],
 }
 
 /// The shape of a rigid obstacle.
@@ -37,8 +39,11 @@ pub(crate) struct Rock {
     pub(crate) side: FacetTag,
     pub(crate) shape: Shape,
     pub(crate) motion: Option<(Vec3, Course)>,
+    /// A point, the direction of an axis, of length one, and the angle in time.
+    pub(crate) turn: Option<(Vec3, Vec3, Course)>,
     pub(crate) law: Law,
     pub(crate) axis: Option<(Vec3, f64)>,
+    pub(crate) compliance: [f64; 2],
 }
 
 /// What a recipe does not say.
@@ -50,6 +55,10 @@ pub(crate) struct Apart {
     pub(crate) pairs: Vec<Pair>,
     /// Behind the pairs.
     pub(crate) rocks: Vec<Rock>,
+    /// Height of the bumps of sides that face each other, m; zero for plane ones.
+    pub(crate) bumps: f64,
+    /// Side and stiffness of an elastic foundation, N/m³.
+    pub(crate) ground: Option<(FacetTag, Vec3)>,
 }
 
 /// A rotation and a translation of the whole.
@@ -155,6 +164,33 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     };
     let count = if dice.chance(0.7) { 2 } else { 3 };
     let mut words = vec![format!("apart={count}")];
+    // with numbers of their own, so that scenes stay what they were without them
+    let mut more = Dice::new(seed ^ 0xc0de, number);
+    let bumps = if more.chance(0.25) {
+        length * more.decades(1e-3, 0.1)
+    } else {
+        0.0
+    };
+    if bumps > 0.0 {
+        words.push(format!("bumps {:.1e}", bumps / length));
+    }
+    let soft = way / stress;
+    let mut gives_way = |words: &mut Vec<String>| {
+        let mut one = || {
+            if more.chance(0.7) {
+                soft * more.decades(1e-3, 10.0)
+            } else {
+                0.0
+            }
+        };
+        let compliance = [one(), one()];
+        if !more.chance(0.25) {
+            return [0.0; 2];
+        }
+        let [normal, along] = compliance;
+        words.push(format!("gives way {normal:.0e} {along:.0e}"));
+        compliance
+    };
 
     // the bodies: one on the other, or two on the first
     let cells = [dice.whole(2, 5), dice.whole(2, 4), dice.whole(1, 3)];
@@ -205,11 +241,11 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         let foot = feet[body];
         let (sin, cos) = foot.angle.sin_cos();
         let place = |[x, y, z]: Vec3| {
-            turn.place([
-                foot.centre[0] + cos * x - sin * y,
-                foot.centre[1] + sin * x + cos * y,
-                z,
-            ])
+            let [x, y] = [foot.centre[0] + cos * x - sin * y, foot.centre[1] + sin * x + cos * y];
+            // flat below, and above the first body by so much higher everywhere
+            let [s, t] = [x / lengths[0], y / lengths[1]];
+            let lift = bumps * (s * s - 0.7 * s * t - 0.5 * t * t) * (z / lengths[2]).min(1.0);
+            turn.place([x, y, z + lift])
         };
         let brick = brick.build().expect("brick").map_tags(|t| side(body, t));
         let tets = brick.tets().len();
@@ -251,6 +287,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             law,
             axis,
             common: foot.common(&feet[below]),
+            compliance: if tied { [0.0; 2] } else { gives_way(&mut words) },
         });
     }
     let mesh = mesh.expect("a body");
@@ -276,8 +313,10 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             side: side(0, brick::Z_MIN),
             shape: Shape::Plane(turn.place([0.0; 3]), turn.way([0.0, 0.0, 1.0])),
             motion: None,
+            turn: None,
             axis: rough(dice, law.clone()),
             law,
+            compliance: gives_way(&mut recipe.words),
         });
         recipe.words.push("on a plane".into());
     }
@@ -322,8 +361,10 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
                     side: sides,
                     shape,
                     motion: Some((scale(3.0 * way, down), shaft.course(dice))),
+                    turn: None,
                     axis: rough(dice, law.clone()),
                     law,
+                    compliance: gives_way(&mut recipe.words),
                 });
             }
         }
@@ -334,8 +375,47 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             recipe.pushes.push(Push { density, course });
         }
     }
+    // obstacles that turn where they are, about their own axis or, planes, a little about one in them
+    for rock in &mut rocks {
+        if !more.chance(0.3) {
+            continue;
+        }
+        let way = way / length;
+        let (axis, angle) = match rock.shape {
+            Shape::Plane(_, outward) if more.chance(0.5) => (outward, 3.0 * way),
+            Shape::Plane(_, outward) => (unit(across(more.vector(), outward)), 0.3 * way),
+            Shape::Ball(..) => (unit(more.vector()), 3.0 * way),
+            Shape::Roll(_, axis, _) => (axis, 3.0 * way),
+        };
+        let (Shape::Plane(point, _) | Shape::Ball(point, _) | Shape::Roll(point, ..)) = rock.shape;
+        let course = shaft.course(&mut more).times(angle * more.between(0.2, 1.0));
+        rock.turn = Some((point, axis, course));
+        recipe.words.push("turns".into());
+        // one motion at a time: a ball is pressed in from the start
+        if let (Shape::Ball(centre, _) | Shape::Roll(centre, ..), Some((by, _))) = (&mut rock.shape, rock.motion.take())
+        {
+            *centre = add(*centre, scale(0.3, by));
+            rock.turn.as_mut().expect("it turns").0 = *centre;
+        }
+    }
+    let ground = more.chance(0.2).then(|| {
+        let stiffness = young / length * more.decades(1e-3, 1e2);
+        recipe.words.push("foundation".into());
+        let body = more.whole(0, count - 1);
+        let tag = side(body, if more.chance(0.5) { brick::Y_MIN } else { brick::X_MIN });
+        (
+            tag,
+            [1.0, more.between(0.1, 1.0), more.between(0.1, 1.0)].map(|k| k * stiffness),
+        )
+    });
     settings::describe(&mut recipe);
-    Apart { recipe, pairs, rocks }
+    Apart {
+        recipe,
+        pairs,
+        rocks,
+        bumps,
+        ground,
+    }
 }
 
 impl Shape {
@@ -356,8 +436,12 @@ impl Shape {
 impl Apart {
     /// The contacts in the words of the library.
     pub(crate) fn scene(&self, mut scene: Scene) -> Result<Scene, Error> {
-        let rough = |contact: Contact, law: &Law, axis: &Option<(Vec3, f64)>| {
+        if let Some((tag, stiffness)) = self.ground {
+            scene = scene.with_spring(Spring::components(tag, stiffness));
+        }
+        let rough = |contact: Contact, law: &Law, axis: &Option<(Vec3, f64)>, [normal, along]: [f64; 2]| {
             let contact = contact.with_friction(crate::say::friction(law));
+            let contact = contact.with_normal_compliance(normal).with_tangential_compliance(along);
             axis.map_or(contact.clone(), |(axis, ratio)| contact.with_friction_axis(axis, ratio))
         };
         for pair in &self.pairs {
@@ -365,7 +449,7 @@ impl Apart {
             scene = scene.with_contact(if pair.tied {
                 Contact::tied(a, b)
             } else {
-                rough(Contact::between(a, b), &pair.law, &pair.axis)
+                rough(Contact::between(a, b), &pair.law, &pair.axis, pair.compliance)
             });
         }
         for rock in &self.rocks {
@@ -378,7 +462,10 @@ impl Apart {
             if let Some((way, course)) = &rock.motion {
                 contact = contact.with_motion(*way, crate::say::history(course)?);
             }
-            scene = scene.with_contact(rough(contact, &rock.law, &rock.axis));
+            if let Some((point, axis, course)) = &rock.turn {
+                contact = contact.with_rotation(*point, *axis, crate::say::history(course)?);
+            }
+            scene = scene.with_contact(rough(contact, &rock.law, &rock.axis, rock.compliance));
         }
         Ok(scene)
     }

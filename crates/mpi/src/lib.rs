@@ -1,0 +1,108 @@
+//! Several processes for the [`signorini`](https://github.com/signorini-rs/signorini) contact library, over an MPI
+//! installation (Open MPI, MPICH).
+//!
+//! The same program runs as every rank. It hands the communicator to the settings, and is otherwise one for one process:
+//!
+//! ```no_run
+//! use signorini::prelude::*;
+//! use std::process::ExitCode;
+//!
+//! fn main() -> ExitCode {
+//!     signorini_mpi::run(|communicator| {
+//!         let mesh = Brick::new([3.0, 1.0, 1.0], [30, 10, 10]).build()?;
+//!         let scene = Scene::new(mesh, Hooke::isotropic(2.1e11, 0.3)?.into())
+//!             .with_support(Support::fixed(brick::X_MIN))
+//!             .with_load(Load::pressure(brick::Z_MAX, 1e8))
+//!             .with_contact(Contact::rigid(brick::Z_MIN))
+//!             .with_subdomains(48);
+//!         let settings = Settings::default().with_communicator(communicator);
+//!         let mut simulation = Simulation::new(scene, settings)?;
+//!         simulation.run(&mut Progress::new(std::io::stderr()))?;
+//!         Ok::<(), Error>(())
+//!     })
+//! }
+//! ```
+//!
+//! `mpirun -n 2 PROGRAM` then solves with two ranks: each holds the matrices of its subdomains and works with them, one
+//! gather a product brings the results together. Bits do not depend on the number of ranks, on processors of one kind.
+//!
+//! This package stands outside the workspace, because it needs an MPI and libclang to build.
+
+use mpi::Count;
+use mpi::Threading;
+use mpi::datatype::PartitionMut;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator as _, CommunicatorCollectives as _};
+use signorini_tfeti::{CommunicationError, Communicator};
+use std::fmt::Display;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// All ranks that `mpirun` has started.
+#[derive(Debug)]
+struct World {
+    rank: usize,
+    size: usize,
+    /// What this rank sends: MPI does not read where it writes.
+    sent: Mutex<Vec<f64>>,
+}
+
+impl Communicator for World {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError> {
+        let numbers = values.len();
+        let count = |n: usize| Count::try_from(n).map_err(|_| CommunicationError::TooLong { numbers });
+        count(numbers)?;
+        let counts: Vec<Count> = parts.iter().map(|part| count(part.len())).collect::<Result<_, _>>()?;
+        let starts: Vec<Count> = parts.iter().map(|part| count(part.start)).collect::<Result<_, _>>()?;
+        let mut sent = self.sent.lock().unwrap_or_else(PoisonError::into_inner);
+        sent.clear();
+        sent.extend_from_slice(&values[parts[self.rank].clone()]);
+        let mut received = PartitionMut::new(values, counts, starts);
+        SimpleCommunicator::world().all_gather_varcount_into(&sent[..], &mut received);
+        Ok(())
+    }
+}
+
+/// Starts MPI, runs `work` as this rank with the communicator of all, and ends MPI.
+///
+/// An error or a panic of one rank is printed with its number and ends all ranks at once, with exit code 1: the others
+/// would wait for it for ever. Give it all work of `main` but the reading of options.
+pub fn run<E: Display>(work: impl FnOnce(Arc<dyn Communicator>) -> Result<(), E>) -> ExitCode {
+    // products call from a thread of the pool
+    let Some((universe, threading)) = mpi::initialize_with_threading(Threading::Serialized) else {
+        eprintln!("error: MPI has been started already; call signorini_mpi::run once, at the beginning of main");
+        return ExitCode::FAILURE;
+    };
+    let world = universe.world();
+    let rank = world.rank();
+    if threading < Threading::Serialized {
+        eprintln!("rank {rank}: error: this MPI does not serve programs with threads; build or choose another one");
+        world.abort(1);
+    }
+    let communicator = World {
+        rank: rank as usize,
+        size: world.size() as usize,
+        sent: Mutex::default(),
+    };
+    match catch_unwind(AssertUnwindSafe(|| work(Arc::new(communicator)))) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(error)) => {
+            eprintln!("rank {rank}: error: {error}");
+            world.abort(1)
+        }
+        Err(_) => {
+            eprintln!("rank {rank}: panicked, see above");
+            world.abort(1)
+        }
+    }
+}
