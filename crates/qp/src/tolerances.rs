@@ -90,6 +90,8 @@ pub(crate) const OFF_EQUALITY: f64 = 0.03;
 pub(crate) const MOST_STEPS: usize = 500;
 /// Part of the tolerance below which further steps buy nothing.
 pub(crate) const ENOUGH: f64 = 0.3;
+/// `|x|` over its value at the start of a set from which on limits relative to it are set anew.
+pub(crate) const GROWN: f64 = 2.0;
 /// Decrease of the error that steps which round can make.
 pub(crate) const ROUNDED_STEPS: f64 = 1e-5;
 /// Error over the jump and the error before it that comes from bad conditioning, and has to fall further.
@@ -133,6 +135,13 @@ pub(crate) const REACH: f64 = 2.0;
 pub(crate) const RELEASE: f64 = 0.01;
 /// Distance from the set over `|x|` up to which a point is feasible.
 pub(crate) const INSIDE: f64 = 1e-11;
+
+// Active set: the start of bodies that constraints alone hold
+
+/// Rounds in which springs under a body and the number of those that are pressed follow each other.
+pub(crate) const SINK_ROUNDS: usize = 3;
+/// Share of the bounded components above which most are pressed from the start, and gaps tell nothing.
+pub(crate) const PRESSED: f64 = 0.5;
 
 // Active set: the balance of modes that constraints alone hold
 

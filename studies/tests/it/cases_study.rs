@@ -34,16 +34,17 @@ fn short_cases_come_near_their_targets() {
             assert!(finding.run.products <= 19, "{finding:?}");
         }
     }
+    // contact that grows from a point: 68 products is the linear problem with the last active set on the full mesh
+    let hertz = findings.iter().find(|f| f.case == "two spheres").expect("two spheres");
+    assert!(hertz.run.products <= 80, "{hertz:?}");
     // no locking, and products that do not explode
     let spheres: Vec<&Finding> = findings.iter().filter(|f| f.case.starts_with("rigid")).collect();
     assert!(
         spheres.len() == 2 && spheres.iter().all(|f| f.error() < 0.04),
         "{spheres:?}"
     );
-    assert!(
-        2 * spheres[1].run.products <= 5 * spheres[0].run.products,
-        "{spheres:?}"
-    );
+    let products = [0, 1].map(|k| spheres[k].run.products);
+    assert!(products[0] <= 340 && products[1] <= 860, "{spheres:?}");
     let mean = findings
         .iter()
         .find(|f| f.quantity == "pressure, mean, MPa")

@@ -104,12 +104,15 @@ fn real_parts_are_cut_and_solved() {
     assert!(!picture.contains("NaN"));
     let text = std::fs::read_to_string(plot).expect("a plot");
     assert!(text.contains("pressed nodes") && text.contains("Hertz"));
+    // 16 products where the last active set is known
+    let runs = parts(&format!("parts {mesh} --subdomains 1,4"));
+    assert!(runs.iter().all(|run| run.steps[0].n_m <= 30), "{runs:?}");
 }
 
 #[test]
 fn a_bracket_that_its_friction_holds_costs_the_same_in_any_fine_partition() {
     let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/bracket-6.msh");
-    for run in parts(&format!("parts {mesh} --subdomains 1,8,30,100,500")) {
+    for run in parts(&format!("parts {mesh} --subdomains 1,2,3,4,8,30,100,500")) {
         let dearest = run.steps.iter().map(|s| s.n_m).max().expect("steps");
         assert!(
             dearest <= 60,

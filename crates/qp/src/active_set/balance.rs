@@ -68,7 +68,11 @@ impl<'a> Search<'a> {
             if self.imbalance <= NO_IMBALANCE {
                 break;
             }
-            self.differentiate();
+            self.differentiate(false);
+            if self.is_loose() {
+                // nothing gives way along some mode: towards where all would
+                self.differentiate(true);
+            }
             let Some(step) = self.newton_step() else {
                 break;
             };
@@ -132,7 +136,7 @@ impl<'a> Search<'a> {
     }
 
     /// Second derivatives at the point of the last evaluation: `cᵀ P' a c`.
-    fn differentiate(&mut self) {
+    fn differentiate(&mut self, all: bool) {
         let Self {
             modes,
             set,
@@ -159,7 +163,7 @@ impl<'a> Search<'a> {
         for_constrained(set, |block| match block {
             Constrained::Bound { i, lower, upper, .. } => {
                 let s = s(i);
-                if s > lower && s < upper {
+                if all || s > lower && s < upper {
                     modes.iter().zip(&mut along).for_each(|(m, c)| *c = m.row[i]);
                     add(a[i], &along);
                 }
@@ -185,6 +189,15 @@ impl<'a> Search<'a> {
                 }
             }
         });
+    }
+
+    /// Whether the point is off its constraints along some mode.
+    fn is_loose(&self) -> bool {
+        let k = self.modes.len();
+        self.modes.iter().enumerate().any(|(r, mode)| {
+            let all: f64 = mode.row.iter().zip(&self.a).map(|(c, a)| a * c * c).sum();
+            self.second[r * (k + 1)] <= SHIFT * all
+        })
     }
 
     /// Minus the shifted second derivatives' inverse times the gradient, by Cholesky; `None` if nothing holds any mode.
@@ -287,6 +300,26 @@ mod tests {
             let (other, balances) = project(&other, &e);
             assert!(balances && distance(&other) >= best * (1.0 - 1e-12));
         }
+    }
+
+    /// Springs with gaps: nothing gives way before the first is closed.
+    #[test]
+    fn bounds_that_nothing_touches_yet_are_reached() {
+        let set = ProductSet::new(vec![Segment::upper(vec![0.0; 3]), Segment::discs(vec![1.0])]).expect("a set");
+        let modes = [LooseMode::new(vec![1.0], vec![1.0, 1.0, 1.0, 0.0, 0.0])];
+        // gaps 1, 2 and 4: two springs carry 1 at a depth of 2
+        let (x, balances) = Search::new(&modes, &set, &[-1.0], (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5])).run();
+        let off = x
+            .iter()
+            .zip([-1.0, 0.0, 0.0, 0.0, 0.0])
+            .map(|(x, y): (&f64, f64)| (x - y).abs());
+        assert!(balances && off.fold(0.0, f64::max) < 1e-12, "{x:?}");
+        let (x, balances) = Search::new(&modes, &set, &[-4.0], (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5])).run();
+        let off = x
+            .iter()
+            .zip([-2.5, -1.5, 0.0, 0.0, 0.0])
+            .map(|(x, y): (&f64, f64)| (x - y).abs());
+        assert!(balances && off.fold(0.0, f64::max) < 1e-12, "{x:?}");
     }
 
     #[test]

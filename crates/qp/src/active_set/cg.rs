@@ -16,10 +16,10 @@
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
-use crate::tolerances::{ENOUGH, MOST_STEPS, NEGATIVE_CURVATURE, ROUNDED_STEPS};
+use crate::tolerances::{ENOUGH, GROWN, MOST_STEPS, NEGATIVE_CURVATURE, ROUNDED_STEPS};
 use crate::vector;
 
-use super::iterate::{Iterate, Lengths};
+use super::iterate::{Iterate, Lengths, natural_map};
 
 /// How far the errors are to fall on an active set.
 pub(crate) struct Goal {
@@ -30,6 +30,11 @@ pub(crate) struct Goal {
     pub(crate) limits: Lengths,
     /// No more products than that in the whole solve.
     pub(crate) max_products: usize,
+    /// Whether to go on as long as the natural map of this `step` leaves the active set as it is, and `|x|` has
+    /// not outgrown its value at the start, `size`, by which the limits were set.
+    pub(crate) goes_on: bool,
+    pub(crate) step: f64,
+    pub(crate) size: f64,
 }
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
@@ -44,9 +49,12 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         } else {
             0.0
         };
-        let enough = start.zip(goal.limits, |start, limit| {
-            (goal.forcing * start).max(ENOUGH * limit).max(digits * first.all)
-        });
+        let fallen = |from: Lengths| {
+            from.zip(goal.limits, |from, limit| {
+                (goal.forcing * from).max(ENOUGH * limit).max(digits * first.all)
+            })
+        };
+        let mut enough = fallen(start);
         let last = goal.max_products.min(self.report.products() + MOST_STEPS);
         self.first_direction();
         let (mut rho, mut steps) = (rho, 0);
@@ -59,7 +67,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let length = rho / curvature;
             self.advance(length, coupled);
             let next = self.precondition();
-            let beta = if coupled {
+            // a direction that is coupled or rounded is kept conjugate to the last one
+            let beta = if coupled || digits > 0.0 {
                 vector::dot(&self.work.z, &self.work.ap) / curvature
             } else {
                 next / rho
@@ -69,6 +78,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let errors = self.errors();
             if errors.within(enough) {
                 let more = !errors.within(goal.limits);
+                let exact = errors.all > digits * first.all;
+                if more && exact && goal.goes_on && self.stays(goal) {
+                    enough = fallen(errors);
+                    continue;
+                }
                 return Ok(if more { length } else { 0.0 });
             }
             if self.work.coupling.too_strong(steps, first.all, errors.all) {
@@ -76,6 +90,15 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             }
         }
         Ok(0.0)
+    }
+
+    /// Whether a move would change nothing: radii that follow, blocks or the limits.
+    fn stays(&self, goal: &Goal) -> bool {
+        let work = &*self.work;
+        let map = natural_map(self.problem, &work.residual, goal.step);
+        vector::norm(self.x) <= GROWN * goal.size
+            && !work.coupling.follows(self.set, self.x)
+            && work.active.stays(self.set, self.x, &map)
     }
 
     /// `p = -z`.

@@ -73,6 +73,17 @@ impl Coupling {
         });
     }
 
+    /// Whether a radius follows a component that is not zero.
+    pub(crate) fn follows(&self, set: &ProductSet, x: &[f64]) -> bool {
+        let mut found = false;
+        if !self.slopes.is_empty() {
+            for_discs(set, |_, k, _| {
+                found |= self.by_disc[k].is_some_and(|(component, _)| x[component] != 0.0)
+            });
+        }
+        found
+    }
+
     /// `step = E p`.
     pub(crate) fn extend<C: EqualityProjector>(
         &mut self,

@@ -103,6 +103,12 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         self.work.active.foresee(self.set, self.x, &map);
     }
 
+    /// The same where the point has moved since the residual was computed.
+    pub(crate) fn foresee_moved(&mut self, step: f64) {
+        let map = natural_map(self.problem, &self.work.residual, step);
+        self.work.active.foresee_moved(self.set, self.x, &map);
+    }
+
     /// The residual on the active set from `residual`.
     pub(crate) fn start_residual(&mut self) {
         let work = &mut *self.work;
@@ -192,6 +198,23 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
                 }
             }
         });
+        let point = self.balanced(&y, &lengths);
+        if let Ok(point) = &point {
+            self.x[..constrained].copy_from_slice(point);
+        }
+        point.is_ok()
+    }
+
+    /// Moves the constrained components of `x` to where bodies that are rigid balance on springs of this part of the
+    /// preconditioner's stiffness, with `A x` left out of the gradient. Returns false and leaves `x` if there is no
+    /// such point.
+    pub(crate) fn sink(&mut self, stiffness: f64) -> bool {
+        let constrained = self.constrained();
+        let lengths: Vec<f64> = self.problem.scale[..constrained]
+            .iter()
+            .map(|a| stiffness * a)
+            .collect();
+        let y: Vec<f64> = lengths.iter().zip(self.problem.linear).map(|(a, b)| a * b).collect();
         let point = self.balanced(&y, &lengths);
         if let Ok(point) = &point {
             self.x[..constrained].copy_from_slice(point);

@@ -28,6 +28,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.settle()?;
         } else {
             self.settle_loose(false, self.moved.followed)?;
+            if self.safeguard.is_none() && self.progress.waited >= UNSURE {
+                self.at.foresee_moved(self.settings.natural_step);
+            }
         }
         let at = &mut self.at;
         self.moved.jump = vector::distance(&at.x[..constrained], &at.work.before);
@@ -101,7 +104,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     }
 
     /// Whether few bounded components changed between free and active.
-    fn has_settled(&self) -> bool {
+    pub(crate) fn has_settled(&self) -> bool {
         let active = &self.at.work.active;
         let few = (self.settings.settled_fraction * active.free_bounds as f64).max(2.0);
         active.changed as f64 <= few

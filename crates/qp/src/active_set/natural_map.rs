@@ -92,6 +92,40 @@ impl ActiveSet {
         });
     }
 
+    /// The same for a point `x` that has been moved since: blocks that came to a boundary stay there, those that were
+    /// there before as long as the map does not release them.
+    pub(crate) fn foresee_moved(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
+        let (foreseen, free, discs) = (&mut self.foreseen, &self.free, &self.discs);
+        foreseen.clear();
+        for_bounds(set, |i, k, lo, hi| {
+            let (at, s) = (x[i] <= lo || x[i] >= hi, map.of(x, i));
+            foreseen.push(at && (free[k] || s <= lo || s >= hi));
+        });
+        for_discs(set, |i, k, radius| {
+            let (at, g) = (x[i].hypot(x[i + 1]) >= radius * (1.0 - MAY_SLIDE), map.on_disc(i));
+            let slid = matches!(discs[k], Disc::Sliding { .. });
+            foreseen.push(at && (!slid || g[0] * x[i] + g[1] * x[i + 1] < 0.0));
+        });
+    }
+
+    /// Whether the natural map leaves every block as it is and where it is; a point that slides moves with its circle.
+    pub(crate) fn stays(&self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) -> bool {
+        let mut stays = true;
+        for_bounds(set, |i, k, lo, hi| {
+            let s = map.of(x, i);
+            let inside = |v: f64| v > lo && v < hi;
+            stays &= inside(s) == self.free[k] && (!self.free[k] || inside(x[i]));
+        });
+        for_discs(set, |i, k, radius| {
+            stays &= match self.discs[k] {
+                Disc::Fixed => true,
+                Disc::Free => map.of(x, i).hypot(map.of(x, i + 1)) <= radius && x[i].hypot(x[i + 1]) <= radius,
+                Disc::Sliding { .. } => false,
+            };
+        });
+        stays
+    }
+
     /// Whether the natural map would free an active bound, and move it by more than `limit`.
     pub(crate) fn contradicted(&self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>, limit: f64) -> bool {
         let mut found = false;
@@ -301,6 +335,80 @@ mod tests {
         with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
             assert!(!active_set(set, &[], false).contradicted(set, &[1.0], map, 0.1));
         });
+    }
+
+    #[test]
+    fn an_active_set_stays_where_no_block_would_change() {
+        // x, gradient, free: stays?
+        for (x, g, free, stays) in [
+            (0.5, 0.1, true, true),
+            (0.5, 0.6, true, false),
+            (1.2, 0.5, true, false),
+            (0.0, 0.5, false, true),
+            // the map releases it
+            (0.0, -0.5, false, false),
+        ] {
+            with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.free = vec![free];
+                assert_eq!(own.stays(set, &[x], map), stays, "{x} {g} {free}");
+            });
+        }
+        let sliding = slides([1.0, 0.0], 1.0, 2.0, 1.0);
+        for (state, x, g, stays) in [
+            (Disc::Free, [1.0, 0.0], [0.1, 0.0], true),
+            (Disc::Free, [1.0, 0.0], [-1.1, 0.0], false),
+            (Disc::Free, [2.1, 0.0], [1.0, 0.0], false),
+            (Disc::Fixed, [0.0, 0.0], [9.0, 0.0], true),
+            (sliding, [2.0, 0.0], [-1.0, 0.0], false),
+        ] {
+            with(Segment::discs(vec![2.0]), &g, |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.discs = vec![state];
+                assert_eq!(own.stays(set, &x, map), stays, "{state:?} {x:?} {g:?}");
+            });
+        }
+    }
+
+    /// What a balance has brought to a boundary is active next, whatever the residual says after it.
+    #[test]
+    fn moved_points_tell_what_is_active_next() {
+        // moved to x, gradient before, free before, gradient after: free?
+        for (x, before, free, after, expected) in [
+            (0.0, 0.1, true, -9.0, false),
+            (0.0, 0.1, false, -9.0, false),
+            (0.0, -0.1, false, 9.0, true),
+            (0.5, 0.9, true, 9.0, true),
+        ] {
+            let what = format!("{x} {before} {free} {after}");
+            let segment = || Segment::bounds(vec![0.0], vec![1.0]);
+            let own = with(segment(), &[before], |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.free = vec![free];
+                own.foresee_moved(set, &[x], map);
+                own.foreseen
+            });
+            with(segment(), &[after], |set, map| {
+                let mut next = active_set(set, &[], false);
+                next.foreseen.clone_from(&own);
+                next.classify(set, &[x], map);
+                assert_eq!(next.free, [expected], "{what}");
+            });
+        }
+        let sliding = slides([1.0, 0.0], 1.0, 2.0, 1.0);
+        for (state, x, g, expected) in [
+            (Disc::Free, [2.0, 0.0], [1.0, 0.0], true),
+            (Disc::Free, [1.0, 0.0], [-9.0, 0.0], false),
+            (sliding, [2.0, 0.0], [-1.0, 0.0], true),
+            (sliding, [2.0, 0.0], [1.0, 0.0], false),
+        ] {
+            with(Segment::discs(vec![2.0]), &g, |set, map| {
+                let mut own = active_set(set, &[], false);
+                own.discs = vec![state];
+                own.foresee_moved(set, &x, map);
+                assert_eq!(own.foreseen, [expected], "{state:?} {x:?} {g:?}");
+            });
+        }
     }
 
     #[test]

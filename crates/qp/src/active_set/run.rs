@@ -5,7 +5,9 @@ use std::mem::Discriminant;
 use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
-use crate::tolerances::{FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PROGRESS, SHRUNK, SMALL_PART};
+use crate::tolerances::{
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PRESSED, PROGRESS, SHRUNK, SINK_ROUNDS, SMALL_PART,
+};
 use crate::vector;
 
 use super::cg::Goal;
@@ -23,7 +25,7 @@ pub(crate) struct Place {
     /// Estimated distance to the solution on the set.
     errors: Lengths,
     /// What it is to fall below.
-    limits: Lengths,
+    pub(crate) limits: Lengths,
     x_norm: f64,
     /// Whether the constrained part is so small that directions in it mean nothing.
     vanishes: bool,
@@ -143,6 +145,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             self.at.projector.balance(self.at.x, self.at.problem.rhs);
             self.follow()?;
             self.guess();
+            if !self.repairs_suffice {
+                self.sink()?;
+            }
         }
         if !self.repairs_suffice {
             self.settle_loose(true, true)?;
@@ -158,6 +163,28 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             self.at.multiply();
         }
         self.peak = vector::norm(self.at.x);
+        Ok(())
+    }
+
+    /// Where nothing is known of the contact, bodies that constraints alone hold sink into springs until they balance,
+    /// rigid and without gluing. A spring alone has the stiffness of the preconditioner; `n` that are pressed at once
+    /// are softer by the root of `n`, for a patch of `n` points is softer than its points by as much. Where most are
+    /// pressed at once the gaps tell nothing, and `x` stays.
+    fn sink(&mut self) -> Result<(), QpError> {
+        let from = self.at.x.to_vec();
+        let mut stiffness = 1.0;
+        for _ in 0..SINK_ROUNDS {
+            let balances = self.at.sink(stiffness);
+            let active = &mut self.at.work.active;
+            active.guess(self.at.set, self.at.x);
+            let pressed = active.free_bounds;
+            if !balances || pressed as f64 > PRESSED * active.free.len() as f64 {
+                vector::copy(&from, self.at.x);
+                return self.follow();
+            }
+            stiffness = 1.0 / (pressed.max(1) as f64).sqrt();
+            self.follow()?;
+        }
         Ok(())
     }
 
@@ -332,6 +359,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth
     /// while.
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
+        let settled = self.has_settled();
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
             safeguard.enter(at.x, at.ax, &at.work.residual);
@@ -339,18 +367,25 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let steady = self.safeguard.is_none() && self.moved.unbalanced == 0;
         let free = self.moved.followed && steady && !place.vanishes;
         let error = at.report.constrained_error;
+
         at.work.coupling.begin(free, error, self.progress.waited);
+        let expected = |left: f64| MAGNIFIED * (self.moved.jump + left);
         let goal = Goal {
             forcing: at
                 .work
                 .coupling
                 .forcing(self.forcing, self.moved.jump, self.first_error),
-            expected: Lengths {
-                all: MAGNIFIED * (self.moved.jump + self.left.all),
-                constrained: MAGNIFIED * (self.moved.jump + self.left.constrained),
+            // of an error in other blocks than before the last move tells nothing
+            expected: if settled {
+                self.left.zip(self.left, |left, _| expected(left))
+            } else {
+                Lengths::INFINITE
             },
             limits: place.limits,
             max_products: self.settings.max_products,
+            goes_on: self.safeguard.is_none(),
+            step: self.settings.natural_step,
+            size: place.x_norm.max(self.settings.error_floor),
         };
         self.first_error = place.errors.constrained;
         let length = at.conjugate_gradients(place.rho, &goal)?;

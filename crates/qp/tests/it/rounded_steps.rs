@@ -87,9 +87,7 @@ fn the_equality_holds_after_steps_that_round() {
         assert!(off < 1e-10, "seed {seed}: {off:e}");
         assert!(product < 1e-12, "seed {seed}: the product is {product:e} off");
         let (few, many) = (exact.products(), report.products());
-        assert!(
-            many <= few + few / 2 + 3,
-            "seed {seed}: {many} instead of {few} products"
-        );
+        // an exact run goes on with its directions to the end; 76 to 120 where each decade began anew
+        assert!(few <= 80 && many <= 95, "seed {seed}: {many}, exactly {few} products");
     }
 }

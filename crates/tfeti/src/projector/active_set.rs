@@ -9,7 +9,7 @@ use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::levels::Bases;
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
-use crate::tolerances::{ROUNDED_STEP, WORK};
+use crate::tolerances::{ROUNDED_STEP, SHORT_ROWS, WORK};
 use signorini_qp::internal::{LineWeight, LooseMode};
 use signorini_qp::vector::{dot, norm};
 use signorini_qp::{EqualityProjector, QpError};
@@ -139,7 +139,9 @@ impl ActiveSetProjector {
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
         // weights that are added to those that hold every body leave the matrix better conditioned
-        let single = loose.is_empty() && factor.has_short() && factor.single_error(&mut scratch) <= ROUNDED_STEP;
+        let large = coarse.rows() >= SHORT_ROWS;
+        let single =
+            large && loose.is_empty() && factor.has_short() && factor.single_error(&mut scratch) <= ROUNDED_STEP;
         Ok(Self {
             digits: if single { Digits::Single } else { Digits::Double },
             scratch,
