@@ -29,7 +29,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn steps_are_rounded_symmetric_and_close_to_the_projector() {
-    let system = system(&Brick::new(3, 3));
+    let system = system(&Brick::new(4, 2));
     let mut space = space(&system, ActiveSetFactor::Split);
     assert!(space.rounds_steps());
     space.set_weights(&active_set(&system)).unwrap();
@@ -80,7 +80,7 @@ fn a_sparse_factor_rounds_nothing() {
 /// Rows of very different weights make the matrix so badly conditioned that rounding its factor shows.
 #[test]
 fn a_badly_conditioned_factor_is_not_rounded() {
-    let system = system(&Brick::new(3, 3));
+    let system = system(&Brick::new(4, 2));
     let contact = system.gluing().ranges().contact().end;
     let space = |least: f64| {
         let weight = |row: usize| if row.is_multiple_of(7) { 1.0 } else { least };
