@@ -32,6 +32,8 @@ pub struct Estimate {
     sizes: [usize; 3],
     product_flops: f64,
     setup_flops: f64,
+    /// Unknowns of one member of each class.
+    class_unknowns: f64,
     coarse_flops: f64,
 }
 
@@ -60,6 +62,8 @@ const COARSE_CHANGES: f64 = 0.05;
 const NUMBERS_OF_PRODUCT: [f64; 2] = [2e5, 100.0];
 /// Numbers moved in the set-up, whatever its size, and an unknown displacement.
 const NUMBERS_OF_SETUP: [f64; 2] = [2e7, 2000.0];
+/// Numbers moved in the set-up an unknown of a class: assembly, analysis and factor of what is not shared.
+const NUMBERS_OF_CLASS: f64 = 12e3;
 /// Numbers moved an unknown displacement in the recovery and certificate of a step.
 const NUMBERS_OF_STEP: f64 = 300.0;
 
@@ -83,6 +87,7 @@ impl Estimate {
             sizes,
             product_flops: forecast.product_flops(),
             setup_flops: forecast.setup_flops(),
+            class_unknowns: forecast.classes.iter().map(|c| c.unknowns as f64).sum(),
             coarse_flops: forecast.coarse_flops,
         }
     }
@@ -112,7 +117,7 @@ impl Estimate {
         let step = moved([0.0, NUMBERS_OF_STEP], primal);
         Times {
             product,
-            setup: setup + moved(NUMBERS_OF_SETUP, primal),
+            setup: setup + moved(NUMBERS_OF_SETUP, primal) + moved([0.0, NUMBERS_OF_CLASS], self.class_unknowns),
             steps: self.products as f64 * product + steps * step,
             coarse,
         }

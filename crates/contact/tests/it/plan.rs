@@ -104,3 +104,22 @@ fn matrices_that_are_not_shared_are_read_at_the_pace_of_memory() {
     assert!(product(&own) > 2.0 * reading);
     assert!(own.products == shared.products);
 }
+
+/// Measured on the benchmark with inner nodes displaced: 4.4 and 5.1 times the set-up of shared matrices at n = 3 and 4
+/// (docs/reports/performance.md).
+#[test]
+fn the_set_up_of_unshared_subdomains_takes_longer() {
+    let set_up = |perturbed: f64| {
+        let mesh = Brick::new([3.0, 1.0, 1.0], [45, 15, 15]).perturbed(perturbed, 7);
+        let scene = Scene::new(mesh.build().expect("mesh"), steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::pressure(brick::Z_MAX, 1e8))
+            .with_contact(foundation(Friction::coulomb(0.3)))
+            .with_boxes([9, 3, 3]);
+        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+        plan.with_machine(Rate::default()).estimate.times.expect("times").setup
+    };
+    let ratio = set_up(0.15) / set_up(0.0);
+    println!("{ratio}");
+    assert!((2.2..8.8).contains(&ratio), "{ratio}");
+}

@@ -244,12 +244,10 @@ fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> 
     }
     let s = [x[0] - a * g[0], x[1] - a * g[1]];
     let reach = s[0].hypot(s[1]);
-    if reach > radius {
-        to(s, reach)
-    } else if length > radius {
-        to(x, length)
-    } else {
-        x
+    match (reach > radius, length > radius) {
+        (true, _) => to(s, reach),
+        (_, true) => to(x, length),
+        _ => x,
     }
 }
 
@@ -258,17 +256,11 @@ mod tests {
     use super::*;
     use crate::problem::Segment;
 
-    const STEP: f64 = 0.5;
-
     /// The map of a set of one segment, with scale 2 and step 0.5: `s = x - g`.
     fn with<T>(segment: Segment, g: &[f64], f: impl Fn(&ProductSet, &NaturalMap<'_>) -> T) -> T {
         let set = ProductSet::new(vec![segment]).expect("set");
-        let map = NaturalMap {
-            gradient: g,
-            scale: &[2.0; 2],
-            step: STEP,
-        };
-        f(&set, &map)
+        let (gradient, scale, step) = (g, &[2.0; 2][..], 0.5);
+        f(&set, &NaturalMap { gradient, scale, step })
     }
 
     fn active_set(set: &ProductSet, blocked: &[bool], near: bool) -> ActiveSet {

@@ -367,7 +367,6 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let steady = self.safeguard.is_none() && self.moved.unbalanced == 0;
         let free = self.moved.followed && steady && !place.vanishes;
         let error = at.report.constrained_error;
-
         at.work.coupling.begin(free, error, self.progress.waited);
         let expected = |left: f64| MAGNIFIED * (self.moved.jump + left);
         let goal = Goal {
@@ -376,10 +375,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 .coupling
                 .forcing(self.forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing
-            expected: if settled {
-                self.left.zip(self.left, |left, _| expected(left))
-            } else {
-                Lengths::INFINITE
+            expected: match settled {
+                true => self.left.zip(self.left, |left, _| expected(left)),
+                false => Lengths::INFINITE,
             },
             limits: place.limits,
             max_products: self.settings.max_products,
