@@ -29,12 +29,14 @@
 //! This package stands outside the workspace, because it needs an MPI and libclang to build.
 
 use mpi::Count;
+use mpi::Rank;
 use mpi::Threading;
 use mpi::datatype::PartitionMut;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, CommunicatorCollectives as _};
 use signorini_tfeti::{CommunicationError, Communicator};
 use std::fmt::Display;
+use std::io::Write;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -86,7 +88,10 @@ pub fn run<E: Display>(work: impl FnOnce(Arc<dyn Communicator>) -> Result<(), E>
     let world = universe.world();
     let rank = world.rank();
     if threading < Threading::Serialized {
-        eprintln!("rank {rank}: error: this MPI does not serve programs with threads; build or choose another one");
+        last_words(
+            rank,
+            "error: this MPI does not serve programs with threads; build or choose another one",
+        );
         world.abort(1);
     }
     let communicator = World {
@@ -97,12 +102,19 @@ pub fn run<E: Display>(work: impl FnOnce(Arc<dyn Communicator>) -> Result<(), E>
     match catch_unwind(AssertUnwindSafe(|| work(Arc::new(communicator)))) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {
-            eprintln!("rank {rank}: error: {error}");
+            last_words(rank, &format!("error: {error}"));
             world.abort(1)
         }
         Err(_) => {
-            eprintln!("rank {rank}: panicked, see above");
+            last_words(rank, "panicked, see above");
             world.abort(1)
         }
     }
+}
+
+/// Prints why a rank ends all, in one write: `mpirun` mixes what ranks and itself print, piece by piece.
+fn last_words(rank: Rank, why: &str) {
+    let line = format!("rank {rank}: {why}\n");
+    // nobody is left to tell that the stream is closed
+    let _ = std::io::stderr().lock().write_all(line.as_bytes());
 }
