@@ -93,6 +93,8 @@ pub(crate) const ENOUGH: f64 = 0.6;
 /// Share of the free bounded components whose change, most of it one way, makes a set not worth it: one step leads over
 /// it to the next.
 pub(crate) const PASSING: f64 = 0.05;
+/// Constrained part over `|x|` below which sets change without an end: nothing is on its way then.
+pub(crate) const PASSING_PART: f64 = 0.01;
 /// Length of that step over the last one that was measured: of a fixed length, it must not magnify what is stiff.
 pub(crate) const PASSING_STEP: f64 = 0.9;
 /// `|x|` over its value at the start of a set from which on limits relative to it are set anew.

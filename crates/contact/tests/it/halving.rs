@@ -63,7 +63,7 @@ fn halved_steps_are_those_of_the_times_between() {
     assert!(!step(&mut failing).report.status.converged());
 
     let (scene_noting, asked) = noting(DifferenceFormula::BACKWARD_EULER);
-    let mut halved = Simulation::new(scene_noting, settings.clone().with_step_halving(4)).expect("set-up");
+    let mut halved = Simulation::new(scene_noting, settings.clone().with_step_halving(6)).expect("set-up");
     asked.lock().expect("times").clear();
     let results = rest(&mut halved);
     let times = passed(&asked.lock().expect("times"));

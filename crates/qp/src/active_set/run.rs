@@ -6,7 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PRESSED, PROGRESS, SHRUNK, SINK_ROUNDS, SMALL_PART,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PASSING_PART, PRESSED, PROGRESS, SHRUNK, SINK_ROUNDS,
+    SMALL_PART,
 };
 use crate::vector;
 
@@ -388,7 +389,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         };
         let falls = place.errors.all < self.first_error.all;
         self.first_error = place.errors;
-        let passes = steady && falls && self.settings.joint_step_fraction > 0.0 && at.is_on_the_way();
+        let matters = place.limits.constrained > PASSING_PART * place.limits.all;
+        let passes = steady && falls && matters && self.settings.joint_step_fraction > 0.0 && at.is_on_the_way();
         let length = if passes {
             at.pass()
         } else {
