@@ -1,12 +1,12 @@
 //! Two equal spheres, and two equal cylinders, pressed together and then moved along the surface to and fro (Cattaneo,
 //! Mindlin and Deresiewicz).
 //!
-//! Radius 8, E 200, nu 0, coefficient 0.3: without Poisson's effect slip is along the load everywhere, so that the formulas
-//! are exact. With `R' = R/2`, `E' = E/2` and the normal force `P` the radius (half the width) of contact is `a`,
-//! `a^3 = 3 P R' / (4 E')` or, `P` a length, `a^2 = 4 P R' / (pi E')`. A tangential force `Q` leaves `c = a (1 - k)^(1/3)` or
-//! `a (1 - k)^(1/2)` that sticks, `k = Q/(mu P)`; after its reversal it is `k = dQ/(2 mu P)` with the change `dQ`. A cycle of
-//! the spheres loses `9 mu^2 P^2 S / (10 a) (1 - (1-k)^(5/3) - 5k/6 (1 + (1-k)^(2/3)))`, `S = 2 (2 - nu) / G`. Half of both
-//! spheres is meshed, and a slab of the cylinders, matching, with linear elements.
+//! Radius 8, E 200, nu 0, coefficient 0.3: without Poisson's effect slip is along the load everywhere, so that the
+//! formulas are exact. With `R' = R/2`, `E' = E/2` and the normal force `P` the radius (half the width) of contact is
+//! `a`, `a^3 = 3 P R' / (4 E')` or, `P` a length, `a^2 = 4 P R' / (pi E')`. A tangential force `Q` leaves `c = a (1 -
+//! k)^(1/3)` or `a (1 - k)^(1/2)` that sticks, `k = Q/(mu P)`; after its reversal it is `k = dQ/(2 mu P)` with the
+//! change `dQ`. A cycle of the spheres loses `9 mu^2 P^2 S / (10 a) (1 - (1-k)^(5/3) - 5k/6 (1 + (1-k)^(2/3)))`, `S = 2
+//! (2 - nu) / G`. Half of both spheres is meshed, and a slab of the cylinders, matching, with linear elements.
 
 use super::meshes::graded;
 use super::{Failure, Finding, below, second, solve};

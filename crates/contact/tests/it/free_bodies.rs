@@ -161,8 +161,8 @@ fn without_forces_or_in_balance_the_motions_are_free() {
     }
 }
 
-/// Where the default method ends at a limit and the paper's cannot go on, since motions are free, the step has a status.
-/// It was an error in the middle of the run.
+/// Where the default method ends at a limit and the paper's cannot go on, since motions are free, the step has a
+/// status. It was an error in the middle of the run.
 #[test]
 fn without_a_second_method_the_step_ends_with_its_status() {
     let scene = cube()

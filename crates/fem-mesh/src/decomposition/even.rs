@@ -19,14 +19,17 @@ pub enum PartCount {
 
 /// Cuts a mesh into connected parts of similar numbers of tetrahedra, as compact as can be.
 ///
-/// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. Each connected group gets
-/// its share of the parts by its number of tetrahedra, at least one. It is cut across the longest edge of its box into slabs, slabs into
-/// columns, columns into blocks; cells of a structured mesh stay whole where the number of parts allows it. What is not compact then is made
-/// so as by [`compact_parts`](crate::decomposition::compact_parts). Where cells are graded along an axis,
-/// slabs of long cells get fewer of them, so that parts are not flat, and groups that fell into boxes stay so. The parts are numbered by their first tetrahedra.
+/// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. Each
+/// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
+/// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
+/// number of parts allows it. What is not compact then is made so as by
+/// [`compact_parts`](crate::decomposition::compact_parts). Where cells are graded along an axis, slabs of long cells get
+/// fewer of them, so that parts are not flat, and groups that fell into boxes stay so. The parts are numbered by their
+/// first tetrahedra.
 ///
 /// # Errors
-/// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`] for no parts.
+/// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`]
+/// for no parts.
 pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Vec<u32>, DecompositionError> {
     let tets = mesh.tets().len();
     expect_parts(mesh, groups)?;
@@ -73,7 +76,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     Ok(renumbered(&parts))
 }
 
-/// What each tetrahedron counts in a cut across each axis, where cells are graded along it; all count alike where not.
+/// What each tetrahedron counts in a cut across each axis, where cells are graded along it; none where all count alike.
 fn shares(mesh: &TetMesh) -> [Option<Vec<f64>>; 3] {
     let lengths = |tet: usize| [0, 1, 2].map(|d| reach(mesh, tet, d)).map(|[low, high]| high - low);
     let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
@@ -105,7 +108,8 @@ struct Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// The cut into a number near `share` whose parts have the least surface for their number, if the tetrahedra fill their box.
+    /// The cut into a number near `share` whose parts have the least surface for their number, if the tetrahedra fill
+    /// their box.
     fn nearest_to_cubes(&self, tets: &[u32], share: usize) -> Vec<Vec<u32>> {
         let (lengths, volume) = self.size(tets);
         let first = self.pieces(tets, share);
@@ -225,7 +229,8 @@ impl Cutter<'_> {
         2.0 * (a * b + b * c + c * a)
     }
 
-    /// The axis along which these tetrahedra reach farthest, and how many slabs across it are as thick as cubes that share the volume.
+    /// The axis along which these tetrahedra reach farthest, and how many slabs across it are as thick as cubes that
+    /// share the volume.
     fn slabs(&self, tets: &[u32], count: usize) -> (usize, usize) {
         let (lengths, volume) = self.size(tets);
         let longest = (1..3).fold(0, |best, d| if lengths[d] > lengths[best] { d } else { best });
@@ -234,7 +239,8 @@ impl Cutter<'_> {
         (longest, slabs.min(count))
     }
 
-    /// The widest gap between neighbours near `middle` in sorted tetrahedra: a plane between layers of a structured mesh.
+    /// The widest gap between neighbours near `middle` in sorted tetrahedra: a plane between layers of a structured
+    /// mesh.
     fn gap(&self, tets: &[u32], axis: usize, middle: usize, least: usize, most: usize) -> usize {
         let reach = (SNAP * middle.min(tets.len() - middle) as f64) as usize;
         let from = middle.saturating_sub(reach).max(least).max(1);
