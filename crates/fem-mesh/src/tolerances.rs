@@ -43,6 +43,14 @@ pub(crate) const SNAP: f64 = 0.15;
 /// are tried: so many steps of two per cent more and less than the edge that the number asks for.
 pub(crate) const FILLED: f64 = 0.98;
 pub(crate) const REACH: i32 = 6;
+/// Part of its box that a part fills which is a box but for rounding.
+pub(crate) const BOX: f64 = 1.0 - 1e-9;
+/// How much longer some cells are along an axis than others, each relative to itself, where a mesh is graded along it:
+/// the ratio of the quantiles at 0.95 and 0.05. Meshes of Gmsh have 1.8 to 2.1.
+pub(crate) const GRADED: f64 = 2.5;
+/// Part of a slab by which its end may move to a plane between layers of graded cells: a ragged cut through long cells
+/// costs more than parts of unequal size.
+pub(crate) const PLANE: f64 = 0.5;
 
 // Means on surfaces
 

@@ -1,11 +1,11 @@
 //! A cut for a mesh that comes without one: slabs of equal numbers of tetrahedra, made compact.
 
 use super::compact::{compact, join_pieces};
-use super::parts::expect_parts;
+use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets};
 use crate::tables::{buckets, range};
-use crate::tolerances::{FILLED, REACH, SNAP};
+use crate::tolerances::{BOX, FILLED, GRADED, PLANE, REACH, SNAP};
 use crate::vec3::{self, Vec3};
 
 /// How many parts [`even_parts`] makes.
@@ -23,7 +23,9 @@ pub enum PartCount {
 /// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
 /// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
 /// number of parts allows it. What is not compact then is made so as by
-/// [`compact_parts`](crate::decomposition::compact_parts). The parts are numbered by their first tetrahedra.
+/// [`compact_parts`](crate::decomposition::compact_parts). Where cells are graded along an axis, slabs of long cells get
+/// fewer of them, so that parts are not flat, and groups that fell into boxes stay so. The parts are numbered by their
+/// first tetrahedra.
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`]
@@ -41,8 +43,11 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let cutter = Cutter {
         mesh,
         centres: &centres,
+        shares: shares(mesh),
     };
+    let graded = cutter.shares.iter().any(Option::is_some);
     let (mut slabs, mut next) = (vec![0; tets], 0);
+    let mut whole = vec![false; starts.len() - 1];
     for group in 0..starts.len() - 1 {
         let own = &members[range(&starts, group)];
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
@@ -51,6 +56,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
             PartCount::Exactly(_) => cutter.pieces(own, share),
             PartCount::About(_) => cutter.nearest_to_cubes(own, share),
         };
+        whole[group] = graded && pieces.iter().all(|piece| cutter.is_box(piece));
         for piece in pieces {
             for tet in piece {
                 slabs[tet as usize] = next;
@@ -59,12 +65,46 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         }
     }
     join_pieces(mesh, &groups, &mut slabs);
-    Ok(compact(mesh, &groups, &slabs))
+    if whole.iter().all(|w| *w) {
+        return Ok(renumbered(&slabs));
+    }
+    let mut parts = compact(mesh, &groups, &slabs);
+    // boxes stay: their faces are plane, and along ragged ones long cells hang loose
+    for tet in (0..tets).filter(|&tet| whole[groups[tet] as usize]) {
+        parts[tet] = tets as u32 + slabs[tet];
+    }
+    Ok(renumbered(&parts))
+}
+
+/// What each tetrahedron counts in a cut across each axis, where cells are graded along it; none where all count alike.
+fn shares(mesh: &TetMesh) -> [Option<Vec<f64>>; 3] {
+    let lengths = |tet: usize| [0, 1, 2].map(|d| reach(mesh, tet, d)).map(|[low, high]| high - low);
+    let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
+    [0, 1, 2].map(|d| {
+        // relative to the tetrahedron itself: cells that are small all round count alike
+        let lengths: Vec<f64> = all.iter().map(|l| l[d] / l.iter().product::<f64>().cbrt()).collect();
+        let mut sorted = lengths.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
+        // between equal numbers and equal lengths
+        let share = |length: f64| length.powf(0.75);
+        (at(0.95) > GRADED * at(0.05)).then(|| lengths.into_iter().map(share).collect())
+    })
+}
+
+/// Where a tetrahedron begins and ends along an axis.
+fn reach(mesh: &TetMesh, tet: usize, axis: usize) -> [f64; 2] {
+    let places = mesh.tet_points(tet).map(|p| p[axis]);
+    [
+        places.into_iter().fold(f64::MAX, f64::min),
+        places.into_iter().fold(f64::MIN, f64::max),
+    ]
 }
 
 struct Cutter<'a> {
     mesh: &'a TetMesh,
     centres: &'a [Vec3],
+    shares: [Option<Vec<f64>>; 3],
 }
 
 impl Cutter<'_> {
@@ -121,12 +161,50 @@ impl Cutter<'_> {
                 rest.len()
             } else {
                 let most = rest.len() - (left - own);
-                self.gap(rest, axis, middle.clamp(own, most), own, most)
+                let graded = self.middle(rest, axis, own as f64 / left as f64);
+                let plane = graded.and_then(|middle| self.plane(rest, axis, middle, own, most));
+                let middle = graded.unwrap_or(middle).clamp(own, most);
+                plane.unwrap_or_else(|| self.gap(rest, axis, middle, own, most))
             };
             let (here, next) = rest.split_at_mut(end);
             self.cut(here, own, out);
             (rest, left) = (next, left - own);
         }
+    }
+
+    /// How many of these sorted tetrahedra have a part of all their shares; `None` where all count alike.
+    fn middle(&self, tets: &[u32], axis: usize, part: f64) -> Option<usize> {
+        let shares = self.shares[axis].as_ref()?;
+        let share = |tet: &u32| shares[*tet as usize];
+        let wanted = part * tets.iter().map(share).sum::<f64>();
+        let mut sum = 0.0;
+        tets.iter().position(|tet| {
+            sum += share(tet);
+            sum >= wanted
+        })
+    }
+
+    /// The plane between layers of sorted tetrahedra that is nearest to `middle`.
+    fn plane(&self, tets: &[u32], axis: usize, middle: usize, least: usize, most: usize) -> Option<usize> {
+        let far = (PLANE * middle.min(tets.len() - middle) as f64) as usize;
+        let places = middle.saturating_sub(far).max(least)..=(middle + far).min(most);
+        let ends = |k: usize| reach(self.mesh, tets[k] as usize, axis);
+        let mut next = vec![f64::MAX; tets.len() + 1];
+        (0..tets.len())
+            .rev()
+            .for_each(|k| next[k] = next[k + 1].min(ends(k)[0]));
+        let mut last = f64::MIN;
+        let parted = (1..tets.len()).filter(|&k| {
+            last = last.max(ends(k - 1)[1]);
+            last <= next[k] && places.contains(&k)
+        });
+        parted.min_by_key(|k| k.abs_diff(middle))
+    }
+
+    /// Whether these tetrahedra are all of a box.
+    fn is_box(&self, tets: &[u32]) -> bool {
+        let (lengths, volume) = self.size(tets);
+        volume >= BOX * lengths.iter().product::<f64>()
     }
 
     /// Edges of the box around these tetrahedra, and their volume.

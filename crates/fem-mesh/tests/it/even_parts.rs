@@ -56,6 +56,47 @@ fn about_so_many_is_the_grid_nearest_by() {
     }
 }
 
+/// Parts that cut through long cells, and flat ones, take up to fifty times the iterations.
+#[test]
+fn graded_bricks_fall_into_boxes_that_are_not_flat() {
+    for grading in [1.5, 1.8, 2.2] {
+        for cells in [[12, 4, 4], [18, 6, 6], [30, 10, 10]] {
+            let towards = |s: f64| match s < 0.5 {
+                true => 0.5 * (2.0 * s).powf(grading),
+                false => 1.0 - 0.5 * (2.0 - 2.0 * s).powf(grading),
+            };
+            let mesh = brick(cells);
+            let mesh = mesh
+                .map_points(|[x, y, z]| [3.0 * towards(x / 3.0), towards(y), towards(z)])
+                .expect("graded");
+            let labels = vec![0; mesh.tets().len()];
+            let parts = even_parts(&mesh, &labels, PartCount::About(mesh.tets().len() / 120)).expect("parts");
+            for part in 0..sizes(&parts).len() as u32 {
+                let own: Vec<usize> = (0..parts.len()).filter(|&tet| parts[tet] == part).collect();
+                let points = || own.iter().flat_map(|&tet| mesh.tet_points(tet));
+                let lengths = [0, 1, 2].map(|d| {
+                    let along = || points().map(|p| p[d]);
+                    along().fold(f64::MIN, f64::max) - along().fold(f64::MAX, f64::min)
+                });
+                let volume: f64 = own.iter().map(|&tet| mesh.volume(tet)).sum();
+                let full = lengths.iter().product::<f64>();
+                assert!(
+                    volume > (1.0 - 1e-9) * full,
+                    "{cells:?} {grading}: part {part} is ragged"
+                );
+                let (long, short) = (
+                    lengths.into_iter().fold(0.0, f64::max),
+                    lengths.into_iter().fold(9.0, f64::min),
+                );
+                assert!(
+                    long < 8.0 * short,
+                    "{cells:?} {grading}: part {part} is flat, {lengths:?}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn any_count_gives_connected_parts_of_similar_size() {
     let mesh = brick([18, 6, 6]);
