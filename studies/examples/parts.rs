@@ -1,4 +1,5 @@
-//! Real parts on meshes of Gmsh, cut by the library: products, seconds, memory and certificates; `--help` lists the options.
+//! Real parts on meshes of Gmsh, cut by the library: products, seconds, memory and certificates; `--help` lists the
+//! options.
 //!
 //! `studies/meshes/parts.py` makes the meshes; small ones of each part stand beside it. Lengths in mm, forces in N.
 
@@ -273,8 +274,8 @@ pub struct Hertz {
     pub peak: f64,
     /// Radius of the contact by the formula, and that of a disc with the pressed nodes' area, over it, less 1.
     pub radius: f64,
-    /// Force over area at the pressed nodes within 0.8 of the radius, off the profile: root of the mean square, over the
-    /// peak.
+    /// Force over area at the pressed nodes within 0.8 of the radius, off the profile: root of the mean square, over
+    /// the peak.
     pub rough: f64,
     /// The same of the library's contact pressure.
     pub smooth: f64,

@@ -19,8 +19,8 @@ pub enum Shown {
     ContactPressure,
 }
 
-/// The body of a result after its step, seen from `eye`, with displacements enlarged so that they are seen. Units are those
-/// of the scene; values far above all others (in sharp corners) take the scale with them.
+/// The body of a result after its step, seen from `eye`, with displacements enlarged so that they are seen. Units are
+/// those of the scene; values far above all others (in sharp corners) take the scale with them.
 pub fn result(result: &StepResult, shown: Shown, eye: [f64; 3]) -> String {
     let mesh = result.scene().mesh();
     let (places, displacement) = (mesh.points(), result.displacement());

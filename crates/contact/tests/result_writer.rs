@@ -305,8 +305,8 @@ fn a_failure_half_way_loses_nothing() {
     assert_eq!(String::from_utf8_lossy(&longer).lines().count(), 3 + STEPS);
 }
 
-/// A full disk (a device that takes no byte) in the place of each file in turn: the error names the file and what to do,
-/// what was written stays, and the step is written again once there is room.
+/// A full disk (a device that takes no byte) in the place of each file in turn: the error names the file and what to
+/// do, what was written stays, and the step is written again once there is room.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_loses_nothing() {

@@ -11,8 +11,8 @@ pub(crate) const COINCIDENT: f64 = 1e-12;
 pub(crate) const NEARLY_PARALLEL: f64 = 0.01;
 /// Length of the mean normal of the triangles around a node, over one for a plane, below which it has no normal.
 pub(crate) const NO_NORMAL: f64 = 1e-6;
-/// Distance of a mid-node from the middle of its edge, over the edge's length, above which it is off: at a quarter along
-/// the edge the map of the tetrahedron is singular at a corner.
+/// Distance of a mid-node from the middle of its edge, over the edge's length, above which it is off: at a quarter
+/// along the edge the map of the tetrahedron is singular at a corner.
 pub(crate) const MID_OFF: f64 = 0.25;
 /// Least volume of a curved tetrahedron per volume of the straight one of its corners, where it is looked at: less is
 /// inside out, or nearly so.
@@ -37,10 +37,13 @@ pub(crate) const INCOMPRESSIBLE: f64 = 0.4;
 /// interfaces.
 pub(crate) const SWEEPS: usize = 40;
 pub(crate) const SETTLED: f64 = 1e-3;
-/// Part of a slab's tetrahedra by which its end may move to a gap between layers of tetrahedra.
-pub(crate) const SNAP: f64 = 0.15;
-/// Part of its box that a body fills at least to be cut into a grid of about so many cubes, and the edges of cubes that are tried: so many
-/// steps of two per cent more and less than the edge that the number asks for.
+/// Part of a slab's tetrahedra by which its end may move to where the interface is smaller, and what its area counts
+/// more by that share of it. By how much interfaces differ that count as different.
+pub(crate) const REACHING: f64 = 0.4;
+pub(crate) const FARTHER: f64 = 2.0;
+pub(crate) const LIGHTER: f64 = 1e-6;
+/// Part of its box that a body fills at least to be cut into a grid of about so many cubes, and the edges of cubes that
+/// are tried: so many steps of two per cent more and less than the edge that the number asks for.
 pub(crate) const FILLED: f64 = 0.98;
 pub(crate) const REACH: i32 = 6;
 
@@ -58,10 +61,12 @@ pub(crate) const PIVOT: f64 = 1e-6;
 
 // Wanted sizes
 
-/// Most by which one estimate makes tetrahedra smaller, and larger. Farther the estimate of a coarse mesh does not reach.
+/// Most by which one estimate makes tetrahedra smaller, and larger. Farther the estimate of a coarse mesh does not
+/// reach.
 pub(crate) const REFINED: f64 = 4.0;
 pub(crate) const COARSENED: f64 = 2.0;
-/// Most by which wanted edges grow over a distance, relative to it. Tetrahedra twice as large as their neighbours are slivers.
+/// Most by which wanted edges grow over a distance, relative to it. Tetrahedra twice as large as their neighbours are
+/// slivers.
 pub(crate) const GROWTH: f64 = 0.5;
 
 // Series of files

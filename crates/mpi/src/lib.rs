@@ -1,7 +1,8 @@
 //! Several processes for the [`signorini`](https://github.com/signorini-rs/signorini) contact library, over an MPI
 //! installation (Open MPI, MPICH).
 //!
-//! The same program runs as every rank. It hands the communicator to the settings, and is otherwise one for one process:
+//! The same program runs as every rank. It hands the communicator to the settings, and is otherwise one for one
+//! process:
 //!
 //! ```no_run
 //! use signorini::prelude::*;

@@ -36,8 +36,9 @@
 //! # }
 //! ```
 //!
-//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `deck` reads CalculiX and Abaqus decks, `checkpoint`
-//! turns states into bytes and back, `serde` serialises tags, facets, frames and bricks. All are off by default.
+//! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `deck` reads CalculiX and Abaqus decks,
+//! `checkpoint` turns states into bytes and back, `serde` serialises tags, facets, frames and bricks. All are off by
+//! default.
 
 pub use signorini_contact as contact;
 #[cfg(feature = "deck")]

@@ -47,8 +47,8 @@
 //!
 //! Several processes build one system together, each with the matrices of its subdomains: see [`Communicator`].
 //!
-//! Rooms, each of which uses those before it: `processes`, `linalg`, `subdomain`, `rows`, `dual`, `coarse`, `projector`, `system`,
-//! `preconditioner`.
+//! Rooms, each of which uses those before it: `processes`, `linalg`, `subdomain`, `rows`, `dual`, `coarse`,
+//! `projector`, `system`, `preconditioner`.
 
 mod coarse;
 mod dual;

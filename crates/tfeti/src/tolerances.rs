@@ -26,6 +26,8 @@ pub(crate) const SINGULAR: f64 = 1e-14;
 /// Eigenvalues of free motions, relative to the largest: a support of extent `h` on a body of length `L` gives
 /// `(h/L)^2`.
 pub(crate) const FREE: f64 = 1e-11;
+/// Layers of a grid: largest difference of positions within one, relative to the extent.
+pub(crate) const LAYER: f64 = 1e-6;
 /// Components of a free motion that is described, relative to its length.
 pub(crate) const MOVING: f64 = 1e-9;
 /// Work on a free motion, relative to the norms of both, above which a load is not in balance with it.

@@ -1,9 +1,9 @@
 //! A closed crack under compression (Phan and others 2003), between two halves that are tied beside it.
 //!
 //! Plane strain, E 25,000 MPa, nu 0.25, pressure `s` = 100 MPa along an axis at `psi` = 20 degrees to the crack of
-//! length 2 b = 2 m, friction angle `theta` = 30 degrees. Along the crack the normal traction is `s sin^2 psi` and friction
-//! `tan theta` times that; the slip is `4 (1 - nu^2) / E s sin psi (cos psi - sin psi tan theta) sqrt(b^2 - x^2)`. Elements
-//! are quadratic: at the tips strains are singular.
+//! length 2 b = 2 m, friction angle `theta` = 30 degrees. Along the crack the normal traction is `s sin^2 psi` and
+//! friction `tan theta` times that; the slip is `4 (1 - nu^2) / E s sin psi (cos psi - sin psi tan theta) sqrt(b^2 -
+//! x^2)`. Elements are quadratic: at the tips strains are singular.
 
 use super::meshes::series;
 use super::{Failure, Finding, second, solve};

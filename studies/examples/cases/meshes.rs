@@ -33,8 +33,8 @@ pub fn graded([part, whole]: [f64; 2], [near, far]: [usize; 2]) -> impl Fn(f64) 
     }
 }
 
-/// A slice of a body of revolution about z, `angle` radians wide and a cell thick: `grid[i][j]` are the radius and z of its
-/// nodes, the radius 0 for the first `i`. Tags are those of a brick along radius, angle and z.
+/// A slice of a body of revolution about z, `angle` radians wide and a cell thick: `grid[i][j]` are the radius and z of
+/// its nodes, the radius 0 for the first `i`. Tags are those of a brick along radius, angle and z.
 pub fn slice(grid: &[Vec<[f64; 2]>], angle: f64) -> Result<TetMesh, Failure> {
     let rows = grid[0].len();
     let node = |i: usize, j: usize, k: usize| match i {

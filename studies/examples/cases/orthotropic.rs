@@ -1,8 +1,8 @@
 //! A block on a floor whose friction differs by direction: 0.3 along one axis, 0.6 across it.
 //!
 //! Pulled at 30, 45 and 60 degrees to the axis it slides where the friction stress reaches the ellipse, at 0.332820,
-//! 0.379473 and 0.453557 of the pressure, and along the normal of the ellipse, at 8.2132, 14.0362 and 23.4132 degrees. The
-//! stress is uniform: complementary shear on the sides, Poisson's ratio 0.
+//! 0.379473 and 0.453557 of the pressure, and along the normal of the ellipse, at 8.2132, 14.0362 and 23.4132 degrees.
+//! The stress is uniform: complementary shear on the sides, Poisson's ratio 0.
 
 use super::{Failure, Finding, solve};
 use signorini::prelude::*;

@@ -1,8 +1,9 @@
 //! A plate pressed on a rigid plane and pushed along it, with a coefficient of one (GRECO; Code_Aster SSNV128).
 //!
-//! Half of a plate of 80 x 40 mm in plane strain, E 130 GPa, nu 0.2, pressure 50 MPa above and 150 MPa on the free side.
-//! Asked are displacements along the plane at some distances from the free side, those of the finest plane model of
-//! Code_Aster. Its quadratic tetrahedra, one over the thickness as here, have 2.87187e-5 and 2.28971e-5 m at 0 and 5 mm.
+//! Half of a plate of 80 x 40 mm in plane strain, E 130 GPa, nu 0.2, pressure 50 MPa above and 150 MPa on the free
+//! side. Asked are displacements along the plane at some distances from the free side, those of the finest plane model
+//! of Code_Aster. Its quadratic tetrahedra, one over the thickness as here, have 2.87187e-5 and 2.28971e-5 m at 0 and
+//! 5 mm.
 
 use super::{Failure, Finding, solve};
 use signorini::prelude::*;

@@ -1,9 +1,9 @@
 //! A punch with a rounded edge on a larger foundation (NAFEMS contact benchmark 2; Code_Aster SSNA122).
 //!
 //! Axisymmetric: punch of diameter and height 100, fillet 10, E 210,000; foundation of diameter and height 200, fixed
-//! below, E 70,000; nu 0.3; pressure 100 on the punch. On the axis the contact goes down by 0.13294 without friction and by
-//! 0.13079 with a coefficient of 0.1 (theirs with quadratic elements; 0.13073 and 0.12858 with linear ones). A slice of five
-//! degrees is meshed, with linear elements, graded towards the end of the flat part.
+//! below, E 70,000; nu 0.3; pressure 100 on the punch. On the axis the contact goes down by 0.13294 without friction
+//! and by 0.13079 with a coefficient of 0.1 (theirs with quadratic elements; 0.13073 and 0.12858 with linear ones). A
+//! slice of five degrees is meshed, with linear elements, graded towards the end of the flat part.
 
 use super::meshes::{graded, series, slice, symmetric};
 use super::{Failure, Finding, second, solve};

@@ -1,8 +1,8 @@
 //! Two equal spheres pressed together (Hertz): the pressure on a curved interface of unequal meshes.
 //!
 //! Radius R 8, E 200, nu 0.3, force 10: `a^3 = 3 P R' / (4 E')` with `R' = R/2`, `E' = E / (2 (1 - nu^2))`, pressure
-//! `p0 sqrt(1 - r^2/a^2)` with `p0 = 3 P / (2 pi a^2)`. A quarter of a block with a paraboloid on either side is meshed,
-//! graded towards the contact.
+//! `p0 sqrt(1 - r^2/a^2)` with `p0 = 3 P / (2 pi a^2)`. A quarter of a block with a paraboloid on either side is
+//! meshed, graded towards the contact.
 
 use super::meshes::graded;
 use super::{Failure, Finding, RunFacts, below, second, solve};

@@ -1,9 +1,9 @@
 //! Partners: which nodes of the other body a contact node may touch.
 //!
 //! Where meshes match the partner of a node lies on its normal; elsewhere it is a list of nodes (`mortar`). What is
-//! small against the facets is put down to rounding, and across a gap to the normals of curved surfaces, which are those
-//! of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of its far side on the
-//! same normal.
+//! small against the facets is put down to rounding, and across a gap to the normals of curved surfaces, which are
+//! those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of its far side
+//! on the same normal.
 
 use super::normals::fixed_frame;
 use super::rounding::rounding;

@@ -263,8 +263,8 @@ impl Solved<'_> {
         on_planes(v);
     }
 
-    /// What rows have to measure of an admissible displacement, in row units. Springs and compliant contact are held where
-    /// their multipliers put them: they then add nothing to the gap.
+    /// What rows have to measure of an admissible displacement, in row units. Springs and compliant contact are held
+    /// where their multipliers put them: they then add nothing to the gap.
     fn offset(&self) -> Cow<'_, [f64]> {
         let (offset, gives_way) = (&self.problem.offset, &self.recovered.gives_way);
         match &gives_way[..] {

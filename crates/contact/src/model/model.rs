@@ -121,9 +121,13 @@ impl Model {
         self.scene.contacts.iter().any(|c| such(c.friction()))
     }
 
-    /// How deep points are let into their obstacles or partners by normal compliance, m: by node their places and depths.
+    /// How deep points are let into their obstacles or partners by normal compliance, m: by node their places and
+    /// depths.
     pub(crate) fn given_way(&self, lambda: &[f64]) -> HashMap<u32, Vec<(usize, f64)>> {
         let mut out: HashMap<u32, Vec<(usize, f64)>> = HashMap::new();
+        if !self.plan.effects.compliance {
+            return out;
+        }
         let compliant = self.points.iter().enumerate();
         for (k, point) in compliant.filter(|(_, p)| p.contact.compliance[0] > 0.0) {
             let pressure = -point.scale * lambda[point.row] / point.area();

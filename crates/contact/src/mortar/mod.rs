@@ -1,8 +1,8 @@
 //! Two surfaces whose meshes do not match: what each node of the first side sees of the other one.
 //!
 //! Facets of both sides are laid over one another in the plane of a facet of the first side (`search`), and the covered
-//! part of that facet is integrated (`cover`). With dual shape functions a node of the first side keeps one point, whose
-//! other side is a list of nodes with weights (`nodes`).
+//! part of that facet is integrated (`cover`). With dual shape functions a node of the first side keeps one point,
+//! whose other side is a list of nodes with weights (`nodes`).
 //!
 //! Uses: nothing of this crate but `tolerances`. In: two surfaces. Out: a [`MortarNode`] for each node that the other
 //! side faces.

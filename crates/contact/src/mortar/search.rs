@@ -176,8 +176,8 @@ impl OtherSide {
         norm(sub(high, low))
     }
 
-    /// The parts of facets that lie over a facet within the distance `far`, with their signed distance, each place once;
-    /// none where none is within `near`.
+    /// The parts of facets that lie over a facet within the distance `far`, with their signed distance, each place
+    /// once; none where none is within `near`.
     fn pieces(&self, plane: &Plane, [near, far]: [f64; 2]) -> Vec<(Piece, f64)> {
         let own = plane.corners.map(|c| plane.space(c));
         let ways = [far, -far].map(|by| scale(by, plane.frame.normal));

@@ -15,9 +15,9 @@ use std::path::PathBuf;
 /// | `NAME_contact.pvd` | the contact surfaces, a piece each: displacement, contact pressure, friction stress, gap, slip, state |
 /// | `NAME.csv` | a row a step: time, products, status, certificate, numbers of points, contact forces, reactions, probes |
 ///
-/// More or less is chosen with [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields). The series begin
-/// at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error after the
-/// step; what was there stays. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
+/// More or less is chosen with [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields). The series
+/// begin at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error
+/// after the step; what was there stays. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
 /// `contact_0_mz` for each contact surface and support (force on the body and its moment about the origin;
 /// [`Reactions::contacts`](crate::result::Reactions::contacts)), then `node_7_ux` for probes.
 ///
@@ -133,8 +133,8 @@ impl ResultWriter {
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not
-    /// finite; [`ContactError::Probe`] if a probe is no node; [`ContactError::ResultTable`] if the table of a run that is
-    /// resumed is another one.
+    /// finite; [`ContactError::Probe`] if a probe is no node; [`ContactError::ResultTable`] if the table of a run that
+    /// is resumed is another one.
     pub fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
         if result.model.plan.rank > 0 {
             return Ok(());

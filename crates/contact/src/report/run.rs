@@ -36,8 +36,8 @@ pub struct RunReport {
     /// The largest certificate of all its steps.
     pub largest_certificate: f64,
     /// Estimated error of the mesh at the last step, relative in the energy norm
-    /// ([`DiscretisationError::relative`](signorini_fem_mesh::recovery::DiscretisationError::relative)). `None` where no step was
-    /// solved, and where bodies are at rest or move as rigid ones.
+    /// ([`DiscretisationError::relative`](signorini_fem_mesh::recovery::DiscretisationError::relative)). `None` where
+    /// no step was solved, and where bodies are at rest or move as rigid ones.
     pub mesh_error: Option<f64>,
     pub(crate) warnings: Vec<Warning>,
 }

@@ -10,12 +10,12 @@ use std::path::PathBuf;
 /// [`RunReport::warnings`](crate::RunReport::warnings) has them and those of the results, each kind once, where it was
 /// first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known.
 ///
-/// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for
-/// the turn of normals, the body
-/// for gaps, 3 for coefficients and 10 % for the error of the mesh. A body is as long as the longest side of the box
-/// around it. By them the brick of the benchmark, pressed down by 0.1 m and 3 m long, does not warn of its displacement,
-/// as it would from a thirtieth on; it does of its strain, 6 % at the free corner, and of its mesh. Strain is
-/// judged tetrahedron by tetrahedron: at clamped edges that of linear theory grows without bound as the mesh is refined.
+/// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for the
+/// turn of normals, the body for gaps, 3 for coefficients and 10 % for the error of the mesh. A body is as long as the
+/// longest side of the box around it. By them the brick of the benchmark, pressed down by 0.1 m and 3 m long, does not
+/// warn of its displacement, as it would from a thirtieth on; it does of its strain, 6 % at the free corner, and of its
+/// mesh. Strain is judged tetrahedron by tetrahedron: at clamped edges that of linear theory grows without bound as the
+/// mesh is refined.
 ///
 /// ```
 /// use signorini_contact::{Contact, Friction, Plan, Scene, Settings, Support, Warning};

@@ -41,8 +41,8 @@ pub struct PointState {
     /// Slip bound, N; 0 without friction. That along the axis where friction [differs by
     /// direction](crate::Contact::with_friction_axis).
     pub slip_bound: f64,
-    /// Distance to the obstacle or the partner, m; negative by what a [compliant](crate::Contact::with_normal_compliance)
-    /// contact gives way.
+    /// Distance to the obstacle or the partner, m; negative by what a
+    /// [compliant](crate::Contact::with_normal_compliance) contact gives way.
     pub gap: f64,
     /// Tangential displacement, m, in space; relative to the partner, if there is one.
     pub tangential_displacement: [f64; 3],

@@ -81,8 +81,8 @@ pub struct Reactions {
     /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
     pub contact: Resultant,
     /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the
-    /// body with the first tag ([`Contact::between`](crate::Contact::between), [`Contact::tied`](crate::Contact::tied)),
-    /// which has the opposite on the partner.
+    /// body with the first tag ([`Contact::between`](crate::Contact::between),
+    /// [`Contact::tied`](crate::Contact::tied)), which has the opposite on the partner.
     pub contacts: Vec<Resultant>,
     /// What the loads do.
     pub loads: Resultant,

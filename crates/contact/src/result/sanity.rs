@@ -98,8 +98,8 @@ fn large_displacement(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize)
     })
 }
 
-/// No strain exceeds the sum over four nodes of displacement over height; of ten with gradients of up to 3 (corners) and
-/// 8 (mid-nodes) over the height.
+/// No strain exceeds the sum over four nodes of displacement over height; of ten with gradients of up to 3 (corners)
+/// and 8 (mid-nodes) over the height.
 fn large_strain(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize) -> Option<Warning> {
     let largest = u.chunks_exact(3).map(norm).fold(0.0, f64::max);
     let gradients = if mesh.order() == 2 { 60.0 } else { 4.0 };

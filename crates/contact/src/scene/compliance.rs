@@ -3,9 +3,9 @@
 use super::contact::Contact;
 
 impl Contact {
-    /// Rough surfaces give way under pressure: where they touch, the distance is `-compliance` (m/Pa) times the pressure,
-    /// a negative gap in [`PointState`](crate::PointState). Zero, the default, is the exact law. The inverse is the
-    /// contact stiffness of other codes (N/m³, the slope of a linear pressure-overclosure).
+    /// Rough surfaces give way under pressure: where they touch, the distance is `-compliance` (m/Pa) times the
+    /// pressure, a negative gap in [`PointState`](crate::PointState). Zero, the default, is the exact law. The inverse
+    /// is the contact stiffness of other codes (N/m³, the slope of a linear pressure-overclosure).
     ///
     /// Contacts that meet a node along one direction need the same compliances and gaps. A node that a support holds
     /// along the normal still may not be inside the obstacle: no pressure is known there.

@@ -72,12 +72,12 @@ impl Contact {
         }
     }
 
-    /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the gradient
-    /// of its distance, and the gap is the distance.
+    /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the
+    /// gradient of its distance, and the gap is the distance.
     ///
-    /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction, along
-    /// which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body and
-    /// obstacle at the start, as small displacements have it: slips and motions must be small against the radius of
+    /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction,
+    /// along which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body
+    /// and obstacle at the start, as small displacements have it: slips and motions must be small against the radius of
     /// curvature. Motions that turn the obstacle's normal at a node by more than 0.1 are refused
     /// ([`TurnedNormal`](ContactError::TurnedNormal)), displacements that do so at a node that touches are
     /// [warned](crate::Warning::TurnedNormal) of.
@@ -110,8 +110,8 @@ impl Contact {
     /// Contact of two elastic bodies: facets with `tag`, and facets of the other body with the tag `partner`.
     ///
     /// Where the meshes match, a node of the first side is a contact point, and its partner is the node of the other
-    /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they do
-    /// not, the side with the larger facets has the points, whichever is named first, and the partner of each is a
+    /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they
+    /// do not, the side with the larger facets has the points, whichever is named first, and the partner of each is a
     /// weighted mean of nodes (mortar method with dual multipliers): uniform pressure passes exactly, for any ratio of
     /// the meshes and where sides cover each other in part. Nodes that nothing faces have no point. Flat sides that
     /// meet at an edge are a contact each.
@@ -155,7 +155,8 @@ impl Contact {
 
     /// Bonds two bodies, or parts of one that are meshed apart: both sides move alike where they face each other, as
     /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is, or
-    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts are tied.
+    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts
+    /// are tied.
     #[must_use]
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
@@ -336,10 +337,10 @@ impl Contact {
         self.tied
     }
 
-    /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles to
-    /// it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its normal
-    /// (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound) is the
-    /// bound along the axis.
+    /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles
+    /// to it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its
+    /// normal (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
+    /// is the bound along the axis.
     ///
     /// ```
     /// use signorini_contact::{Contact, Friction};
@@ -464,8 +465,8 @@ impl Contact {
         self.carries_field() || self.gap_history.is_some()
     }
 
-    /// The gap at a node, m, that is `initial` at first, where the obstacle has moved, times its factor. The part of its
-    /// way along the normal, which opens the gap, is not in it.
+    /// The gap at a node, m, that is `initial` at first, where the obstacle has moved, times its factor. The part of
+    /// its way along the normal, which opens the gap, is not in it.
     pub(crate) fn gap_brought(
         &self,
         contact: usize,

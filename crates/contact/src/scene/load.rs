@@ -25,8 +25,8 @@ impl Load {
         Self::new(LoadDensity::traction(tag, value))
     }
 
-    /// A force on a tag, N, spread evenly over its facets: a bolt force on the print of its head, say. The sum of the load
-    /// is this force to rounding, whatever area the facets of a curved surface have.
+    /// A force on a tag, N, spread evenly over its facets: a bolt force on the print of its head, say. The sum of the
+    /// load is this force to rounding, whatever area the facets of a curved surface have.
     ///
     /// ```
     /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};

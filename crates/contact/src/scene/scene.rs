@@ -94,7 +94,8 @@ impl Scene {
         self
     }
 
-    /// Cuts the body into so many subdomains of similar size, as compact as can be; without a partition the number follows from the size.
+    /// Cuts the body into so many subdomains of similar size, as compact as can be; without a partition the number
+    /// follows from the size.
     #[must_use]
     pub fn with_subdomains(mut self, count: usize) -> Self {
         self.partition = Partition::Subdomains(count);
@@ -166,7 +167,8 @@ impl Scene {
     /// The decomposition that the scene asks for.
     ///
     /// # Errors
-    /// [`ContactError::Decomposition`] for a zero count, and for part numbers with gaps or disconnected parts; for a region without material.
+    /// [`ContactError::Decomposition`] for a zero count, and for part numbers with gaps or disconnected parts; for a
+    /// region without material.
     pub fn decompose(&self) -> Result<Decomposition, ContactError> {
         self.partition.decompose(&self.mesh, &self.materials)
     }

@@ -60,8 +60,8 @@ impl DifferenceFormula {
 
     /// The formula for a step that is `ratio` times as long as the one before, for a rate in units of the new step: the
     /// new difference quotient, and that of the last step, weighted so that a rate that grows evenly is met as well as
-    /// with equal steps. From [`PAPER`](Self::PAPER) follows the formula of second order with variable steps, stable for
-    /// ratios up to `1 + sqrt(2)` (Grigorieff 1983).
+    /// with equal steps. From [`PAPER`](Self::PAPER) follows the formula of second order with variable steps, stable
+    /// for ratios up to `1 + sqrt(2)` (Grigorieff 1983).
     pub(crate) fn at_ratio(self, ratio: f64) -> Self {
         if ratio == 1.0 || self.is_one_step() {
             return self;

@@ -104,8 +104,8 @@ impl Scene {
                 return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
         }
-        let loose = contact.friction.is_some() || !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
-        let loose = loose || contact.compliance != [0.0; 2];
+        let gap = !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
+        let loose = contact.friction.is_some() || gap || contact.compliance != [0.0; 2];
         let turned = contact.normal != ContactNormal::Body || contact.rotation.is_some();
         if contact.tied && (loose || turned) {
             return Err(ContactError::Tied { contact: index });

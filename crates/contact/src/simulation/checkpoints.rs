@@ -118,8 +118,8 @@ impl Simulation {
         })
     }
 
-    /// [`resume_newest`](Self::resume_newest) on rank 0, which makes the folder and sets damaged files aside, then on the
-    /// others, which must find the same.
+    /// [`resume_newest`](Self::resume_newest) on rank 0, which makes the folder and sets damaged files aside, then on
+    /// the others, which must find the same.
     fn resume_in_turn(&mut self, folder: &Path) -> Result<Option<Warning>, ContactError> {
         let root = self.plan().rank == 0;
         if root {

@@ -1,7 +1,9 @@
 //! The simulation: steps one after another, each prepared, solved, recovered, judged and remembered.
 //!
 //! `step` is one step, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
-//! `halving` the way through a step that fails as a whole, `resume` goes on from a stored state, `checkpoints` (feature `checkpoint`) keeps states in a folder, `result` is what the user is shown, `step_doubling` estimates errors in time.
+//! `halving` the way through a step that fails as a whole, `resume` goes on from a stored state, `checkpoints` (feature
+//! `checkpoint`) keeps states in a folder, `result` is what the user is shown, `step_doubling` estimates errors in
+//! time.
 //!
 //! Uses: everything below.
 //! In: a scene and settings. Out: a [`StepResult`] a step.

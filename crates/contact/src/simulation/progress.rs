@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 const RECENT: usize = 10;
 
 /// Writes a line a step: its number, time, products, and how long the run will still take if its steps last as long as
-/// the last ten did. Warnings are lines of their own. Of several processes rank 0 writes. A writer that fails ends the run with its error.
+/// the last ten did. Warnings are lines of their own. Of several processes rank 0 writes. A writer that fails ends the
+/// run with its error.
 ///
 /// ```
 /// use signorini_contact::{Flow, Load, Progress, Scene, Settings, Simulation, StepResult, Support};

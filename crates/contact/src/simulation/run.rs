@@ -62,9 +62,7 @@ impl Simulation {
         observer.finished(report.steps);
         failed.map_or(Ok(report), Err)
     }
-}
 
-impl Simulation {
     /// What the observers of all processes want: to fail if one fails, else to stop if one stops.
     fn agreed(&self, flow: Flow) -> Result<Flow, ContactError> {
         if self.plan().ranks == 1 {

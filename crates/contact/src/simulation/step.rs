@@ -103,8 +103,8 @@ impl Simulation {
         Ok((report, recovered))
     }
 
-    /// Start vectors of an increment, `ratio` times as long as the last one: zero, the last vectors, or the line through
-    /// the last two.
+    /// Start vectors of an increment, `ratio` times as long as the last one: zero, the last vectors, or the line
+    /// through the last two.
     fn start(&mut self, state: &State, ratio: f64) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
@@ -180,8 +180,8 @@ fn start_vector(last: &[f64], before: &[f64], n: usize, along: Option<f64>) -> V
     x
 }
 
-/// Tangential displacements relative to the obstacle or the other body, m, by tangential row; without elastic slip, which
-/// comes back.
+/// Tangential displacements relative to the obstacle or the other body, m, by tangential row; without elastic slip,
+/// which comes back.
 fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     let mut trace = vec![0.0; model.tangential_rows()];
     let start = model.tangential_start();

@@ -163,8 +163,8 @@ impl StepProblem {
         });
     }
 
-    /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time, without
-    /// what the obstacle opens, m.
+    /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time,
+    /// without what the obstacle opens, m.
     pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
         gap_brought(scene, point, &self.obstacles[0])
     }

@@ -47,8 +47,8 @@ impl StepProblem {
         tresca / unit + coefficient * pressure
     }
 
-    /// Writes the slip bounds that go with `lambda` into the feasible set, in units of the rows; an error for a set that
-    /// has no discs or intervals in their places.
+    /// Writes the slip bounds that go with `lambda` into the feasible set, in units of the rows; an error for a set
+    /// that has no discs or intervals in their places.
     pub(crate) fn write_slip_bounds(
         &self,
         model: &Model,

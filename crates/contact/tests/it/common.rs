@@ -146,6 +146,14 @@ pub(crate) fn loaded_brick(mesh: TetMesh, traction: History) -> Scene {
         .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]).with_history(traction))
 }
 
+/// Three steps of the brick with displaced nodes, so that no two subdomains share matrices, on a foundation.
+pub(crate) fn perturbed() -> Scene {
+    let mesh = Brick::new([3.0, 1.0, 1.0], [12, 4, 4]).perturbed(0.1, 2);
+    loaded_brick(mesh.build().expect("brick"), up_down_up())
+        .with_contact(foundation(weakening()))
+        .with_analysis(paper_steps(1.0, 3))
+}
+
 /// A clamped brick pressed and pulled on a rough floor, one step.
 pub(crate) fn pressed(cells: usize, friction: Friction) -> Scene {
     pressed_on(block([3.0, 1.0, 1.0], [3 * cells, cells, cells]), friction)

@@ -93,8 +93,8 @@ fn to_and_fro(method: Method) -> (Vec<f64>, Vec<Solved>) {
     (ways.collect(), results)
 }
 
-/// Friction follows the displacement as a spring, slides at its bound, and goes back along the spring: a loop, whose area
-/// is the work of friction.
+/// Friction follows the displacement as a spring, slides at its bound, and goes back along the spring: a loop, whose
+/// area is the work of friction.
 #[test]
 fn elastic_slip_comes_back_and_the_rest_is_lost() {
     for method in [Method::default(), Method::paper()] {
@@ -163,8 +163,8 @@ fn histories() -> [History; 2] {
     ]
 }
 
-/// Force of a node of the penalty method on the body, and where it sticks afterwards: `u` its displacement, `old` where it
-/// stuck.
+/// Force of a node of the penalty method on the body, and where it sticks afterwards: `u` its displacement, `old` where
+/// it stuck.
 fn penalty(u: Vector3<f64>, gap: f64, old: [f64; 2], stiffness: [f64; 2]) -> (Vector3<f64>, [f64; 2]) {
     let normal = stiffness[0] * (-u[2] - gap).max(0.0);
     let trial = [0, 1].map(|c| -stiffness[1] * (u[c] - old[c]));
@@ -175,8 +175,8 @@ fn penalty(u: Vector3<f64>, gap: f64, old: [f64; 2], stiffness: [f64; 2]) -> (Ve
     (Vector3::new(friction[0], friction[1], normal), stuck)
 }
 
-/// The same scene as a code with penalties solves it: dense, primal, Newton's method with return mapping. Displacements of
-/// each step.
+/// The same scene as a code with penalties solves it: dense, primal, Newton's method with return mapping. Displacements
+/// of each step.
 fn by_penalties(compliance: [f64; 2]) -> Vec<Vec<f64>> {
     let scene = rubbing(compliance);
     let mesh = scene.mesh();

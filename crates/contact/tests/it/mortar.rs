@@ -6,8 +6,8 @@ const PRESSURE: f64 = 2.5e7;
 const YOUNG: f64 = 2e9;
 const POISSON: f64 = 0.3;
 
-/// Two blocks of unit size in units of length `unit`, one on the other, of so many cells each; tags of the upper one are
-/// those of the [`second`] body.
+/// Two blocks of unit size in units of length `unit`, one on the other, of so many cells each; tags of the upper one
+/// are those of the [`second`] body.
 fn blocks(lower: [usize; 3], upper: [usize; 3], unit: f64) -> TetMesh {
     let below = block([unit; 3], lower);
     let above = block([unit; 3], upper)
@@ -150,8 +150,8 @@ fn results_do_not_depend_on_the_cut_the_method_nor_on_which_side_comes_first() {
     assert!(error.relative() < 1e-4, "{error:?}");
 }
 
-/// Tied blocks move as one, pulled as well as pressed and sheared, for any ratio of meshes, either order, any cut; without
-/// contact the solver is the linear one. Reactions balance though supports hold nodes of the tie.
+/// Tied blocks move as one, pulled as well as pressed and sheared, for any ratio of meshes, either order, any cut;
+/// without contact the solver is the linear one. Reactions balance though supports hold nodes of the tie.
 #[test]
 fn tied_blocks_are_one() {
     for (lower, upper, boxes) in [
@@ -204,8 +204,8 @@ fn tied_blocks_are_one() {
     assert!(error.relative() < 1e-5, "{error:?}");
 }
 
-/// A bolt: tied parts that are pulled together between walls carry the stress of the way over their length, step by step,
-/// linear and quadratic, whatever side is named first; supports may hold nodes of the tie.
+/// A bolt: tied parts that are pulled together between walls carry the stress of the way over their length, step by
+/// step, linear and quadratic, whatever side is named first; supports may hold nodes of the tie.
 #[test]
 fn tied_parts_that_move_against_each_other_are_a_tightened_bolt() {
     let way = 1e-4;

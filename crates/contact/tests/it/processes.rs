@@ -49,14 +49,7 @@ fn the_benchmark_has_the_same_bits_on_any_number_of_ranks() {
 /// A part cut along its graph: no two subdomains share matrices, each rank holds its own.
 #[test]
 fn parts_have_the_same_bits_and_each_rank_its_matrices() {
-    let mesh = Brick::new([3.0, 1.0, 1.0], [12, 4, 4])
-        .perturbed(0.1, 2)
-        .build()
-        .expect("brick");
-    let scene = loaded_brick(mesh, up_down_up())
-        .with_contact(foundation(weakening()))
-        .with_subdomains(13)
-        .with_analysis(paper_steps(1.0, 3));
+    let scene = perturbed().with_subdomains(13);
     for preconditioner in [Preconditioner::Lumped, Preconditioner::Dirichlet] {
         let settings = Settings::default().with_preconditioner(preconditioner);
         let whole = solved(&scene, settings.clone()).2;
@@ -109,8 +102,8 @@ fn other_scenes_and_methods_have_the_same_bits() {
     the_same_on(&[2, 3, 4], &bodies, Settings::default(), "bodies");
 }
 
-/// Bytes of all messages of a product: a number for each row that one rank computes alone, three for each copy of a node
-/// in the others.
+/// Bytes of all messages of a product: a number for each row that one rank computes alone, three for each copy of a
+/// node in the others.
 fn message(tfeti: &Tfeti) -> u64 {
     let (mut alone, mut copies) = (0, BTreeSet::new());
     for row in 0..tfeti.dual_dim() {

@@ -107,7 +107,8 @@ fn the_benchmark_is_warned_of_its_strain() {
     assert_eq!(told.at_step[2..4], [0, 1]);
 }
 
-/// E = 1e9 Pa and nu = 0: the strain is the pressure over E, to the tolerance of 1e-6, where it is first too large, once.
+/// E = 1e9 Pa and nu = 0: the strain is the pressure over E, to the tolerance of 1e-6, where it is first too large,
+/// once.
 #[test]
 fn strains_and_displacements_are_named_where_they_are_first_large() {
     let (report, observed) = told(pressed_column(6e7, 4));

@@ -1,4 +1,5 @@
-//! Broken decks: cut at every line and byte, bytes flipped, lines repeated and swapped. Nothing panics, and all end quickly.
+//! Broken decks: cut at every line and byte, bytes flipped, lines repeated and swapped. Nothing panics, and all end
+//! quickly.
 
 use std::time::{Duration, Instant};
 
@@ -46,8 +47,8 @@ fn survive(path: &std::path::Path, bytes: &[u8]) -> bool {
     }
 }
 
-/// Most bytes that reading may hold at once: for files of at most two million bytes, a keyword of many parameters being the
-/// dearest.
+/// Most bytes that reading may hold at once: for files of at most two million bytes, a keyword of many parameters being
+/// the dearest.
 const MEMORY: u64 = 100_000_000;
 
 /// SplitMix64.

@@ -75,7 +75,8 @@ fn slopes_of_contact_are_compliances() {
     assert_eq!(compliance(hard), [0.0; 2]);
 }
 
-/// A force grows to its value over the step, stays in the next, changes along a line, and goes where the deck removes it.
+/// A force grows to its value over the step, stays in the next, changes along a line, and goes where the deck removes
+/// it.
 #[test]
 fn forces_accumulate_over_steps() {
     let four =

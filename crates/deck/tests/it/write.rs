@@ -26,8 +26,8 @@ pub(crate) fn folder(files: &[(&str, &str)]) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Nodes, elements and sets of a mesh: numbers from 1, elements in `ALL`, for each tag the surface `S` and the node set `N` with
-/// its number.
+/// Nodes, elements and sets of a mesh: numbers from 1, elements in `ALL`, for each tag the surface `S` and the node set
+/// `N` with its number.
 pub(crate) fn mesh(mesh: &TetMesh) -> String {
     let mut deck = String::from("*NODE\n");
     for (n, [x, y, z]) in mesh.points().iter().enumerate() {

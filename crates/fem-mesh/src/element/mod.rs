@@ -1,9 +1,11 @@
 //! Elements, and integrals over them.
 //!
 //! `p1` is the linear tetrahedron: gradients of its shape functions, strain, blocks of stiffness; `p2` the quadratic
-//! one, `columns` what assembly takes of both. `piece` has a displacement in a tetrahedron of either kind, and integrals over a mesh.
+//! one, `columns` what assembly takes of both. `piece` has a displacement in a tetrahedron of either kind, and
+//! integrals over a mesh.
 //!
-//! Uses: `material`, `mesh`, `quadrature`, `vec3`. In: the points of an element. Out: gradients, blocks of stiffness, integrals.
+//! Uses: `material`, `mesh`, `quadrature`, `vec3`. In: the points of an element. Out: gradients, blocks of stiffness,
+//! integrals.
 
 mod columns;
 mod p1;

@@ -13,10 +13,10 @@ use super::density::{LoadDensity, LoadError};
 /// node n at 3 n + i.
 ///
 /// The forces are consistent: the work of the load on the displacements of the elements. In a mesh of order 1 a
-/// constant load gives a third of each triangle's force, a quarter of each tetrahedron's, to its
-/// nodes; in one of order 2 with straight edges a third of each triangle's to its mid-nodes and nothing to its corners.
-/// Functions and curved elements are integrated by rules of degree 5, along the normal at each point. Each facet and tetrahedron loads only the
-/// subdomain that owns it, a nodal force only the first copy of its node.
+/// constant load gives a third of each triangle's force, a quarter of each tetrahedron's, to its nodes; in one of order
+/// 2 with straight edges a third of each triangle's to its mid-nodes and nothing to its corners. Functions and curved
+/// elements are integrated by rules of degree 5, along the normal at each point. Each facet and tetrahedron loads only
+/// the subdomain that owns it, a nodal force only the first copy of its node.
 ///
 /// # Errors
 /// [`LoadError`] if the tag or node is unknown, a load is not finite, or the decomposition belongs

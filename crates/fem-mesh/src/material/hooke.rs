@@ -84,7 +84,8 @@ impl Hooke {
         isotropic.then(|| lambda / (2.0 * (lambda + shear)))
     }
 
-    /// Whether Poisson's ratio is above 0.4: quadratic elements then take the mean of the volume strain of each element.
+    /// Whether Poisson's ratio is above 0.4: quadratic elements then take the mean of the volume strain of each
+    /// element.
     #[must_use]
     pub fn is_nearly_incompressible(&self) -> bool {
         self.poisson().is_some_and(|p| p > INCOMPRESSIBLE)

@@ -242,11 +242,11 @@ impl Surface {
         &self.triangles
     }
 
-    /// The mean of a displacement around a node, as mesh nodes with weights that sum to one, over those triangles around
-    /// it that are chosen (all of its own side, at a crease): the node alone in a mesh of order 1. In a mesh of order 2
-    /// the displacement is weighted by half the sum of the linear hat function `l` of the node and the linear function of
-    /// each triangle that is dual to the hat functions, `4 l - 1` where edges are straight. The node comes first, the
-    /// others ascend.
+    /// The mean of a displacement around a node, as mesh nodes with weights that sum to one, over those triangles
+    /// around it that are chosen (all of its own side, at a crease): the node alone in a mesh of order 1. In a mesh of
+    /// order 2 the displacement is weighted by half the sum of the linear hat function `l` of the node and the linear
+    /// function of each triangle that is dual to the hat functions, `4 l - 1` where edges are straight. The node comes
+    /// first, the others ascend.
     ///
     /// # Panics
     /// If there is no such node or triangle.

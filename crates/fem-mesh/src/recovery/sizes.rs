@@ -1,8 +1,8 @@
 //! The mesh that an error asks for: edge lengths such that all tetrahedra have the same part in the error.
 //!
-//! Edges of a tetrahedron `h` times as long change the error energy on its place by `h^(2p)` with displacements of order
-//! `p`, that of each new tetrahedron by `h^(2p+3)`. With `e` the error energy of an old tetrahedron and `c` that of each
-//! new one,
+//! Edges of a tetrahedron `h` times as long change the error energy on its place by `h^(2p)` with displacements of
+//! order `p`, that of each new tetrahedron by `h^(2p+3)`. With `e` the error energy of an old tetrahedron and `c` that
+//! of each new one,
 //!
 //! ```text
 //! h^(2p+3) = c / e,    sum of e h^(2p) = target,    so c^(2p/(2p+3)) = target / sum of e^(3/(2p+3))

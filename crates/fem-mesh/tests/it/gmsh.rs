@@ -355,8 +355,8 @@ fn modest(bytes: &[u8], what: &str) {
     );
 }
 
-/// Any word of a text file, and any bytes of a binary one, in which a count may be, set to what no file holds: an answer,
-/// and no memory for what is not there.
+/// Any word of a text file, and any bytes of a binary one, in which a count may be, set to what no file holds: an
+/// answer, and no memory for what is not there.
 #[test]
 fn huge_counts_take_no_memory() {
     let words: Vec<&str> = TEXT.split_inclusive(char::is_whitespace).collect();

@@ -278,9 +278,9 @@ fn pressure_on_a_closed_curved_surface_has_no_sum() {
     close(force.iter().flatten().sum(), 4.0, 4.0, 1e-13);
 }
 
-/// Area A, half the sum of hat and dual function: the node itself A/12, other corners -A/24, mid-nodes beside it A/6, the
-/// one opposite nothing; sum A/3. On curved facets the dual function is found anew: the mean of a hat function is half of
-/// its mean with the hat function of the node, and half of its value there.
+/// Area A, half the sum of hat and dual function: the node itself A/12, other corners -A/24, mid-nodes beside it A/6,
+/// the one opposite nothing; sum A/3. On curved facets the dual function is found anew: the mean of a hat function is
+/// half of its mean with the hat function of the node, and half of its value there.
 #[test]
 fn means_have_the_weights_of_hat_and_dual_functions() {
     let mesh = block();

@@ -226,8 +226,8 @@ fn two_meshes_of_the_same_linear_field_do_not_differ() {
     assert!(zero < 1e-20 * own && (all - own).abs() < 1e-9 * own);
 }
 
-/// Along all edges wanted lengths grow by at most half the distance; the error that they predict is the target; where the
-/// error is, tetrahedra are smaller.
+/// Along all edges wanted lengths grow by at most half the distance; the error that they predict is the target; where
+/// the error is, tetrahedra are smaller.
 #[test]
 fn wanted_sizes_have_the_target_and_grow_slowly() {
     let mesh = Brick::new([1.0; 3], [8; 3]).perturbed(0.1, 3).build().expect("mesh");

@@ -41,8 +41,8 @@ impl SmalseSettings {
     }
 }
 
-/// Is told the iterate, feasible for the set as it is, after Step 1 of every outer step, and may change the set; whether it
-/// did anything that matters. If it did, `x` is projected on the set again and the solve goes on.
+/// Is told the iterate, feasible for the set as it is, after Step 1 of every outer step, and may change the set;
+/// whether it did anything that matters. If it did, `x` is projected on the set again and the solve goes on.
 pub(crate) type OuterHook<'h, S> = dyn FnMut(&[f64], &mut S) -> bool + 'h;
 
 /// Result of [`smalse`](crate::smalse()).

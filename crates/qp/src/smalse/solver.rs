@@ -34,9 +34,9 @@ use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
 /// last solution or an extrapolation, [`vector::extrapolate`]), which are overwritten by the result.
 ///
 /// `norm` is an upper bound of the norm of `PAP` ([`norm_estimate`](crate::norm_estimate) of
-/// [`Projected`](crate::Projected)). `hook` is told the iterate after Step 1 of every outer
-/// step, may change the set, and says whether it did; pass `&mut |_, _| false` for none. On return `x` is feasible for the set as the hook left it, and the workspace
-/// holds the gradient, `A x - b` and the multiplier of the original problem.
+/// [`Projected`](crate::Projected)). `hook` is told the iterate after Step 1 of every outer step, may change the set,
+/// and says whether it did; pass `&mut |_, _| false` for none. On return `x` is feasible for the set as the hook left
+/// it, and the workspace holds the gradient, `A x - b` and the multiplier of the original problem.
 ///
 /// # Errors
 /// As for [`kprgp`](crate::kprgp()). Not reaching the tolerance is no error: see

@@ -1,5 +1,5 @@
-//! The check of one level: displacement, contact forces and reactions that the library reports, against all conditions of
-//! the recipe. It shares no code with the library's model.
+//! The check of one level: displacement, contact forces and reactions that the library reports, against all conditions
+//! of the recipe. It shares no code with the library's model.
 //!
 //! | condition | relative to |
 //! |---|---|
@@ -9,9 +9,10 @@
 //! | pulling, cone, friction off the surface, reported slip bounds | largest contact force at a node |
 //! | force times open gap; slip and friction that are not opposite (`abs(r s + abs(s) t)`) | the product of both |
 //!
-//! Sizes are those of the bodies that may touch each other, at the level. The displacement is at least what the load of a node would do to it
-//! with all others held, the contact force at least 1e-4 of all forces, and both at least a thousandth of those at earlier
-//! levels; forces are at least 1e-8 of displacements times stiffness, below which they are rounding.
+//! Sizes are those of the bodies that may touch each other, at the level. The displacement is at least what the load of
+//! a node would do to it with all others held, the contact force at least 1e-4 of all forces, and both at least a
+//! thousandth of those at earlier levels; forces are at least 1e-8 of displacements times stiffness, below which they
+//! are rounding.
 
 pub(crate) mod apart;
 mod contact;

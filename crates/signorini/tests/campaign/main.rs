@@ -1,5 +1,5 @@
-//! A campaign of random scenes as a property test: whatever the public interface can say, a level that is said to be solved
-//! obeys all conditions of contact, by a check that shares no code with the library's model.
+//! A campaign of random scenes as a property test: whatever the public interface can say, a level that is said to be
+//! solved obeys all conditions of contact, by a check that shares no code with the library's model.
 //!
 //! ```text
 //! cargo test --release -p signorini --test campaign                              # a few hundred scenes

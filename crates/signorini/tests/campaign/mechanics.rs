@@ -184,8 +184,8 @@ impl Mechanics {
         out
     }
 
-    /// Integral of a density times the linear functions of a simplex: a square or a cube of Gauss points is collapsed onto
-    /// it. `measure` is that of the whole square or cube.
+    /// Integral of a density times the linear functions of a simplex: a square or a cube of Gauss points is collapsed
+    /// onto it. `measure` is that of the whole square or cube.
     fn spread<const N: usize>(
         &self,
         nodes: [u32; N],

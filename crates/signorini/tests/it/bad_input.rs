@@ -339,7 +339,8 @@ fn damaged_checkpoints() {
     assert_eq!(count, 3);
 }
 
-/// A damaged checkpoint is refused. With a checksum that was made to fit it may continue as some state; it never panics.
+/// A damaged checkpoint is refused. With a checksum that was made to fit it may continue as some state; it never
+/// panics.
 #[cfg(feature = "checkpoint")]
 #[test]
 fn flipped_bits_of_a_checkpoint_do_not_panic() {

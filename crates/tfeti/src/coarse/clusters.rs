@@ -5,7 +5,7 @@ use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::CLUSTER;
+use crate::tolerances::{CLUSTER, LAYER};
 use signorini_fem_mesh::vec3::sub;
 
 type Block = [[f64; 6]; 6];
@@ -136,7 +136,7 @@ fn halve(mut group: Vec<u32>, at: &[[f64; 3]], out: &mut Vec<Vec<u32>>) {
     }
     let coordinate = |s: u32| at[s as usize][axis];
     group.sort_by(|&a, &b| coordinate(a).total_cmp(&coordinate(b)).then(a.cmp(&b)));
-    let between = |k: &usize| coordinate(group[*k]) - coordinate(group[*k - 1]) > 1e-6 * extents[axis];
+    let between = |k: &usize| coordinate(group[*k]) - coordinate(group[*k - 1]) > LAYER * extents[axis];
     let middle = group.len() / 2;
     let cut = (1..group.len()).filter(between).min_by_key(|k| k.abs_diff(middle));
     let right = group.split_off(cut.unwrap_or(middle));

@@ -281,8 +281,8 @@ impl BoundaryMap {
         }
     }
 
-    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does. Each rank
-    /// does its panels, one exchange brings those of the others.
+    /// `y = B A B^T x`, where `work(panel, B^T x, A B^T x, numbers, memory)` does panel by panel what `A` does. Each
+    /// rank does its panels, one exchange brings those of the others.
     pub(crate) fn by_panels(
         &self,
         x: &[f64],

@@ -35,8 +35,8 @@ impl Columns {
         }
     }
 
-    /// The Gram matrix of sparse rows of `(unknown, coefficient)`, with a weight for each unknown. In column `k` also the
-    /// entry of row `stored(k)` is there, if only as a zero.
+    /// The Gram matrix of sparse rows of `(unknown, coefficient)`, with a weight for each unknown. In column `k` also
+    /// the entry of row `stored(k)` is there, if only as a zero.
     pub(crate) fn gram(
         rows: &[Vec<(usize, f64)>],
         weight: impl Fn(usize) -> f64,

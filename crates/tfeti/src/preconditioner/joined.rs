@@ -1,8 +1,8 @@
 //! Groups of many rows in the scaling of preconditioners: contact points whose sides share nodes, as where meshes do
 //! not match, join all rows of a surface.
 //!
-//! Their matrix `B D^-1 B^T` is like a mass matrix of the surface: sparse, and cheap to factor anew for each active set.
-//! Rows that the set holds leave it by a large weight on their diagonal, so that its pattern stays.
+//! Their matrix `B D^-1 B^T` is like a mass matrix of the surface: sparse, and cheap to factor anew for each active
+//! set. Rows that the set holds leave it by a large weight on their diagonal, so that its pattern stays.
 
 use crate::error::TfetiError;
 use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};

@@ -11,8 +11,9 @@ use std::collections::HashMap;
 /// `B_D = (B D^-1 B^T)^-1 B D^-1` with `D` the stiffness of each copy of a node: rows that belong to one mesh node (or
 /// to a contact pair) are coupled by a small matrix, which is inverted once.
 ///
-/// Springs, and contact rows that give way, by `C`, act as if they ended in a subdomain of stiffness `C^-1`, a further entry
-/// of `D` and of `K`: `B D^-1 B^T + C` in the place of the matrix, and `B D^-1 K D^-1 B^T + C` between its inverses.
+/// Springs, and contact rows that give way, by `C`, act as if they ended in a subdomain of stiffness `C^-1`, a further
+/// entry of `D` and of `K`: `B D^-1 B^T + C` in the place of the matrix, and `B D^-1 K D^-1 B^T + C` between its
+/// inverses.
 #[derive(Debug)]
 pub(crate) struct Scaling {
     /// `1 / D` of each boundary copy, relative to the stiffest.

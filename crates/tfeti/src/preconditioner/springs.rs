@@ -1,8 +1,9 @@
 //! What springs change in a preconditioner of `F + C`.
 //!
 //! The row of a spring alone, of length `s`, is scaled so that the inverse of `F + C` is about the stiffness `k` of its
-//! node. The product with the stiffness makes `s² k` of it. Where contact may take the place of a spring its row depends on
-//! others, on which that product vanishes: there `1 / c` is added. The scaling of copies knows springs by itself.
+//! node. The product with the stiffness makes `s² k` of it. Where contact may take the place of a spring its row
+//! depends on others, on which that product vanishes: there `1 / c` is added. The scaling of copies knows springs by
+//! itself.
 
 use crate::rows::gluing::SpringRow;
 use crate::system::tfeti::Tfeti;

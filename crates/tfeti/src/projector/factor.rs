@@ -219,7 +219,7 @@ impl CoarseFactor {
         self.0.weights.as_ref().map_or(&[], |w| &w.lines)
     }
 
-    fn weigh(&self, x: &mut [f64]) {
+    pub(super) fn weigh(&self, x: &mut [f64]) {
         if let Some(weights) = &self.0.weights {
             weights.apply(x);
         }

@@ -2,14 +2,14 @@
 //!
 //! The factor of `G W G^T` that follows the contact rows grows with the third power of the number of subdomains that
 //! touch. Here it is that of [`Clusters`], an approximation `N` of the inverse: contact rows take `W G^T N g`, and the
-//! rows that are always free, with a factor `A^-1` that never changes, what is left of the equality:
-//! `P x = x - W_c G^T N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact
-//! whatever `N` is; iterations need the more steps the worse it is.
+//! rows that are always free, with a factor `A^-1` that never changes, what is left of the equality: `P x = x - W_c G^T
+//! N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact whatever `N` is;
+//! iterations need the more steps the worse it is.
 
 use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
 use crate::coarse::space::{Coarse, CoarseScratch};
-use crate::coarse::weights::{RowWeights, along};
+use crate::coarse::weights::RowWeights;
 use crate::projector::factor::CoarseFactor;
 use crate::projector::split::factor::SplitBase;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
@@ -114,7 +114,7 @@ impl CoarseFactor {
         self.solve_first(s, false);
         let contact = data.gluing.ranges().contact().end;
         data.contact_transpose(&s.first, &mut s.dual[..contact], &mut s.motions);
-        self.weigh_contact(&mut s.dual[..contact]);
+        self.weigh(&mut s.dual[..contact]);
         x.iter_mut().zip(&s.dual[..contact]).for_each(|(x, c)| *x -= c);
         data.contact_product(&s.dual[..contact], &mut s.first);
         s.first.iter_mut().zip(&s.second).for_each(|(v, g)| *v = g - *v);
@@ -137,21 +137,9 @@ impl CoarseFactor {
         let contact = data.gluing.ranges().contact().end;
         data.contact_transpose(alpha, &mut s.dual[..contact], &mut s.motions);
         s.dual.iter_mut().zip(&r[..contact]).for_each(|(v, r)| *v += r);
-        self.weigh_contact(&mut s.dual[..contact]);
+        self.weigh(&mut s.dual[..contact]);
         data.contact_product(&s.dual[..contact], &mut s.first);
         self.solve_first(s, false);
         alpha.iter_mut().zip(&s.first).for_each(|(a, v)| *a -= v);
-    }
-
-    /// `x = W x` for the contact rows.
-    fn weigh_contact(&self, x: &mut [f64]) {
-        let Some(weights) = self.weights() else {
-            return;
-        };
-        x.iter_mut().zip(&weights.diagonal).for_each(|(x, w)| *x *= w);
-        for line in &weights.lines {
-            let pair = along(line, [x[line.row], x[line.row + 1]]);
-            x[line.row..line.row + 2].copy_from_slice(&pair);
-        }
     }
 }

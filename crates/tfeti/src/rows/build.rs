@@ -29,8 +29,8 @@ impl Gluing {
         Self::with_springs(decomposition, supports, contact, stiffness, (&[], stiffness))
     }
 
-    /// The same with springs to the ground, whose rows are the last of the support rows, and the stiffness of all copies,
-    /// with which springs are compared: the row of a soft one is as much smaller as it is softer.
+    /// The same with springs to the ground, whose rows are the last of the support rows, and the stiffness of all
+    /// copies, with which springs are compared: the row of a soft one is as much smaller as it is softer.
     ///
     /// # Errors
     /// As [`new`](Self::new); springs at unknown nodes, or without a stiffness.

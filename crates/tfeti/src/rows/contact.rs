@@ -154,9 +154,9 @@ impl Space {
         self.row(direction, length.recip())
     }
 
-    /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides: the
-    /// node of the first and a good part of the mean of the other. There, at a plane of symmetry that cuts both, a row
-    /// would see no slip, but how the displacement of the other side bends.
+    /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides:
+    /// the node of the first and a good part of the mean of the other. There, at a plane of symmetry that cuts both, a
+    /// row would see no slip, but how the displacement of the other side bends.
     fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();

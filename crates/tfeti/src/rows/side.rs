@@ -82,8 +82,8 @@ pub struct ContactConstraint {
     pub tied: bool,
     /// How far the point gives way along the normal and along the surface under a force, m/N; 0 for not at all.
     pub compliance: [f64; 2],
-    /// Factor of the second tangential row beside the first, 1 for isotropic friction. An ellipse with this ratio of its
-    /// axes, along the tangents, is a disc in the rows.
+    /// Factor of the second tangential row beside the first, 1 for isotropic friction. An ellipse with this ratio of
+    /// its axes, along the tangents, is a disc in the rows.
     pub stretch: f64,
 }
 

@@ -7,8 +7,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Members of classes in panels, and panels spread over ranks: neighbours in the order of the subdomains together, each
-/// rank with about equal work. A rank holds the matrices of the classes of its panels. Panels are the same for any number
-/// of ranks, and so are the bits of what is done to them.
+/// rank with about equal work. A rank holds the matrices of the classes of its panels. Panels are the same for any
+/// number of ranks, and so are the bits of what is done to them.
 #[derive(Debug)]
 pub(crate) struct Ownership {
     pub(crate) exchange: Arc<Exchange>,

@@ -122,9 +122,9 @@ impl Tfeti {
     }
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a contact row that
-    /// gives way in proportion to both together. `None` where all copies [count alike](Self::copy_stiffness) and no
-    /// contact row gives way.
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a contact row
+    /// that gives way in proportion to both together. `None` where all copies [count alike](Self::copy_stiffness) and
+    /// no contact row gives way.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
         let (plain, given) = (self.copy_stiffness().is_plain(), self.gluing().contact_compliance());
         if plain && given.is_empty() {

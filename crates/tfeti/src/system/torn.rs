@@ -69,8 +69,8 @@ impl Tfeti {
         });
     }
 
-    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`. Each rank does those
-    /// that it holds, one exchange brings the others.
+    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`. Each rank does
+    /// those that it holds, one exchange brings the others.
     fn by_class(&self, out: &mut [f64], work: impl Fn(usize, &[u32], Vec<&mut [f64]>) + Sync) {
         let mut targets: Vec<Option<&mut [f64]>> = Vec::with_capacity(self.subdomains());
         let ownership = &self.parts.subdomains.ownership;

@@ -1,4 +1,5 @@
-//! Several ranks, here threads, build and apply one system: the same bits, the work spread evenly, one exchange a product.
+//! Several ranks, here threads, build and apply one system: the same bits, the work spread evenly, one exchange a
+//! product.
 
 use crate::common::*;
 use signorini_qp::SymmetricOperator;

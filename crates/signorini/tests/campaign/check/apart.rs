@@ -1,6 +1,6 @@
-//! The same check for bodies meshed apart. Of a contact point it takes from the library which nodes it is made of, and judges
-//! these, too: weights of either side sum to one, leave no moment where sides are flat, and areas are those of the sides where
-//! they face each other.
+//! The same check for bodies meshed apart. Of a contact point it takes from the library which nodes it is made of, and
+//! judges these, too: weights of either side sum to one, leave no moment where sides are flat, and areas are those of
+//! the sides where they face each other.
 //!
 //! | condition | relative to |
 //! |---|---|
@@ -9,9 +9,9 @@
 //! | gap, sign, complementarity, cone (an ellipse), direction (its normal), as for matching meshes | as there |
 //! | forces of a foundation: stiffness times displacement | forces |
 //!
-//! Where contact gives way, the gap counts compliance times pressure, and slips are without compliance times friction stress.
-//! Forces between curved sides act where facets are, not where sides are: moments are left out there, and gaps at the start
-//! are taken from the library as far as the bumps allow them.
+//! Where contact gives way, the gap counts compliance times pressure, and slips are without compliance times friction
+//! stress. Forces between curved sides act where facets are, not where sides are: moments are left out there, and gaps
+//! at the start are taken from the library as far as the bumps allow them.
 
 use super::{Judge, Report, SAME, Size, Violation, Worst};
 use crate::generate::apart::{Apart, Pair, Rock};

@@ -1,4 +1,5 @@
-//! The conditions at contact points: gap, sign, complementarity, cone, direction of friction, and what is reported of them.
+//! The conditions at contact points: gap, sign, complementarity, cone, direction of friction, and what is reported of
+//! them.
 
 use super::{Judge, ROUNDED, Report, SAME, Size, Worst};
 use crate::recipe::{Clock, Recipe, Touch};
@@ -57,8 +58,8 @@ impl Judge<'_> {
         (a.gap - b.gap).abs() <= self.rounding(a)
     }
 
-    /// Area that a reported point stands for: surfaces that meet a node along one direction are one point, of the nearer
-    /// obstacle, or of both if they are as near.
+    /// Area that a reported point stands for: surfaces that meet a node along one direction are one point, of the
+    /// nearer obstacle, or of both if they are as near.
     fn area(&self, points: &[PointState], spot: &Spot) -> f64 {
         let own = |node: u32, partner: Option<u32>, normal: Vec3| {
             node == spot.node && partner == spot.partner && dot(normal, spot.normal) > SAME

@@ -1,6 +1,7 @@
-//! Scenes of two or three bricks meshed apart, one on the other: partly covered, turned, tied or touching in either order of
-//! sides, of any ratio of meshes and stiffness, on obstacles of any shape that are displaced or turned, with friction by
-//! direction. The sides are plane or curved, contacts may give way, and an elastic foundation may hold a body.
+//! Scenes of two or three bricks meshed apart, one on the other: partly covered, turned, tied or touching in either
+//! order of sides, of any ratio of meshes and stiffness, on obstacles of any shape that are displaced or turned, with
+//! friction by direction. The sides are plane or curved, contacts may give way, and an elastic foundation may hold a
+//! body.
 
 use super::bodies::side;
 use super::{Shaft, bare, settings};

@@ -7,7 +7,6 @@
 
 use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::both;
-use crate::linalg::dense;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
 use crate::projector::split::front::{Front, extend, load_columns};
@@ -266,10 +265,7 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
             if node.changing != self.changing {
                 continue;
             }
-            let threshold = self.base.threshold;
-            dense::cholesky_columns(&mut front.columns, height, width, threshold)
-                .map_err(|pivot| 6 * node.columns.start + pivot)?;
-            dense::subtract_columns(&mut front.update, &front.columns, height, width);
+            front.eliminate(node, self.base.threshold)?;
             let (group, first) = match self.changing {
                 true => (&pieces[r].changing, region.changing.start),
                 false => (&*pieces[r].steady, region.steady.start),

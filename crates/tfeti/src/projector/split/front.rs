@@ -1,13 +1,26 @@
 //! One front: its beginning from the matrix, and what earlier fronts add to it.
 
 use crate::coarse::matrix::CoarseMatrix;
-use crate::projector::split::tree::CoarseTree;
+use crate::linalg::dense;
+use crate::projector::split::tree::{CoarseTree, Node};
 
 /// Columns of a node, and what is subtracted from the later unknowns of its border: lower triangles.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Front {
     pub(crate) columns: Vec<f64>,
     pub(crate) update: Vec<f64>,
+}
+
+impl Front {
+    /// Factors the columns of a `node` and takes what that does to later unknowns from the update. `Err(pivot)` if a
+    /// pivot is not larger than `threshold`.
+    pub(crate) fn eliminate(&mut self, node: &Node, threshold: f64) -> Result<(), usize> {
+        let (width, height) = (node.width(), node.height());
+        dense::cholesky_columns(&mut self.columns, height, width, threshold)
+            .map_err(|pivot| 6 * node.columns.start + pivot)?;
+        dense::subtract_columns(&mut self.update, &self.columns, height, width);
+        Ok(())
+    }
 }
 
 /// Adds the entries of the columns of node `k` of a tree of this `graph`.

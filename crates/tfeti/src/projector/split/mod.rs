@@ -1,8 +1,8 @@
 //! A factor of `G W G^T` of which only the part that follows the weights of the contact rows is done anew.
 //!
 //! Uses `linalg` and the matrix of `coarse`. `order` cuts the subdomains apart, `tree` groups blocks that are
-//! eliminated together, `fronts` knows what contact rows add, `factor` eliminates (a `front` at a time), `shared` eliminates equal regions
-//! once, `tiles` stores and `solve` solves.
+//! eliminated together, `fronts` knows what contact rows add, `factor` eliminates (a `front` at a time), `shared`
+//! eliminates equal regions once, `tiles` stores and `solve` solves.
 //!
 //! Why not faer's: with faer's factor of the whole matrix, made anew at each change (8.9 times the time at n = 10), an
 //! iteration of the benchmark (F, lumped, both projectors, a sixth of a change of the active set) takes 1.13, 1.46 and

@@ -5,7 +5,7 @@
 //! eliminates its steady blocks before the changing ones.
 
 use crate::linalg::sparse::{FactorError, minimum_degree};
-use crate::tolerances::{CUT, PERIOD};
+use crate::tolerances::{CUT, LAYER, PERIOD};
 use std::ops::Range;
 
 /// Blocks in the order of elimination and the regions of the cuts.
@@ -116,7 +116,8 @@ impl Cutter<'_> {
         best
     }
 
-    /// Left, layer and right of the layer of a grid that divides most evenly, among those with the largest power of two.
+    /// Left, layer and right of the layer of a grid that divides most evenly, among those with the largest power of
+    /// two.
     fn layer(&self, blocks: &[u32], grid: &[[u32; 3]], axis: usize) -> Option<[Vec<u32>; 3]> {
         let at = |b: u32| grid[b as usize][axis];
         let all = blocks.iter().map(|&b| at(b));
@@ -136,7 +137,7 @@ impl Cutter<'_> {
         let mut values: Vec<f64> = blocks.iter().map(|&b| at(b)).collect();
         values.sort_by(f64::total_cmp);
         let extent = values[values.len() - 1] - values[0];
-        let limit = values[values.len() / 2] - 1e-6 * extent;
+        let limit = values[values.len() / 2] - LAYER * extent;
         for &b in blocks {
             self.mark[b as usize] = if at(b) < limit { 0 } else { 2 };
         }
@@ -166,7 +167,7 @@ pub(crate) fn grid_of(points: &[[f64; 3]]) -> Option<Vec<[u32; 3]>> {
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by(|&a, &b| points[a][axis].total_cmp(&points[b][axis]));
         let (first, last) = (*order.first()?, *order.last()?);
-        let gap = 1e-6 * (points[last][axis] - points[first][axis]);
+        let gap = LAYER * (points[last][axis] - points[first][axis]);
         let (mut layer, mut before) = (0, points[first][axis]);
         for k in order {
             layer += u32::from(points[k][axis] - before > gap);

@@ -5,7 +5,6 @@
 //! kind of border.
 
 use crate::coarse::matrix::CoarseMatrix;
-use crate::linalg::dense;
 use crate::linalg::supernodes::Supernodes;
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::tiles::Tiles;
@@ -17,7 +16,8 @@ use std::sync::Arc;
 /// What a region leaves: its tiles, and for the later unknowns the update of each of its nodes.
 type Grown = (Tiles, Vec<Vec<f64>>);
 
-/// The tiles of each region, of which `first` is the first equal one; equal ones share theirs. `steady` are the patterns of the regions. `Err(pivot)` if the matrix is not positive definite.
+/// The tiles of each region, of which `first` is the first equal one; equal ones share theirs. `steady` are the
+/// patterns of the regions. `Err(pivot)` if the matrix is not positive definite.
 pub(super) fn shared_tiles(
     tree: &CoarseTree,
     steady: &[Arc<Supernodes>],
@@ -97,9 +97,7 @@ fn grow(
             };
             extend(update, &tree.nodes[child].into, &mut front, width, height);
         }
-        dense::cholesky_columns(&mut front.columns, height, width, 0.0)
-            .map_err(|pivot| 6 * this.columns.start + pivot)?;
-        dense::subtract_columns(&mut front.update, &front.columns, height, width);
+        front.eliminate(this, 0.0)?;
         pattern.pack(k - own.start, &front.columns, &mut tiles.exact);
         updates.push(front.update);
     }
@@ -134,8 +132,11 @@ pub(super) fn share(tree: &mut CoarseTree, matrix: &CoarseMatrix, graph: &[Vec<u
         }
         first.push(equal);
     }
-    for r in 0..tree.regions.len() {
-        tree.place_children(r, first[r]);
+    for (r, &equal) in first.iter().enumerate() {
+        match equal == r {
+            true => tree.place_children(r),
+            false => tree.copy_children(r, equal),
+        }
     }
     first
 }

@@ -176,26 +176,29 @@ impl CoarseTree {
     }
 
     /// Places in a region of what is behind the regions within and in the borders that lead to it, for lists in any
-    /// order; those of the `equal` region are taken over, if that is another one.
-    pub(crate) fn place_children(&mut self, r: usize, equal: usize) {
-        let children = |r: usize| self.regions[r].region.children.into_iter().flatten();
-        let pairs: Vec<(usize, usize)> = children(r).zip(children(equal)).collect();
-        for (child, other) in pairs {
-            let region = &self.regions[r];
-            let lift = match equal == r {
-                true => self.regions[child].behind.iter().map(|&p| region.local(p)).collect(),
-                false => self.regions[other].lift.clone(),
-            };
-            self.regions[child].lift = lift;
-        }
+    /// order.
+    pub(crate) fn place_children(&mut self, r: usize) {
+        self.lift_children(r);
         for k in self.regions[r].steady.start..self.regions[r].changing.end {
             for child in self.nodes[k].children.clone() {
-                if equal == r {
-                    let above = &self.nodes[k];
-                    let into = self.nodes[child].border.iter().map(|&p| above.local(p)).collect();
-                    self.nodes[child].into = into;
-                }
+                let above = &self.nodes[k];
+                self.nodes[child].into = self.nodes[child].border.iter().map(|&p| above.local(p)).collect();
             }
+        }
+    }
+
+    /// Takes over the places of what is behind the regions within from an `equal` region.
+    pub(crate) fn copy_children(&mut self, r: usize, equal: usize) {
+        let children = |r: usize| self.regions[r].region.children.into_iter().flatten();
+        for (child, other) in children(r).zip(children(equal)).collect::<Vec<_>>() {
+            self.regions[child].lift = self.regions[other].lift.clone();
+        }
+    }
+
+    fn lift_children(&mut self, r: usize) {
+        for child in self.regions[r].region.children.into_iter().flatten() {
+            let region = &self.regions[r];
+            self.regions[child].lift = self.regions[child].behind.iter().map(|&p| region.local(p)).collect();
         }
     }
 
@@ -243,11 +246,8 @@ impl CoarseTree {
             lift: Vec::new(),
             region,
         };
-        for k in region.region.children.into_iter().flatten() {
-            let lift = |&p: &u32| region.local(p);
-            self.regions[k].lift = self.regions[k].behind.iter().map(lift).collect();
-        }
         self.regions.push(region);
+        self.lift_children(self.regions.len() - 1);
     }
 
     /// Finds parents and what changes, and divides each region into what stays and what changes.
