@@ -206,12 +206,14 @@ fn page(findings: &[Finding], options: &CasesOptions) -> String {
         }
     );
     let mut text = format!(
-        "# Cases with known answers\n\nBodies meshed apart, touching, sliding or tied, against closed forms and published numbers. \
-         Sources: [cases](../../studies/examples/cases), each with its formulas. Made by\n\n```sh\n{command}\n```\n\n\
-         The error is relative to the target, or the value itself where the target is 0. Meshes of both sides do not match unless it is said.\n\n"
+        "# Cases with known answers\n\nBodies meshed apart, touching, sliding or tied, against closed forms and \
+         published numbers. Sources: [cases](../../studies/examples/cases), each with its formulas. Made by\n\n```sh\n{command}\n```\n\n\
+         The error is relative to the target, or the value itself where the target is 0. Meshes of both sides \
+         do not match unless it is said.\n\n"
     );
     let heads = HEADS.map(|[a, b]| format!("{a} {b}").trim().replace("- ", ""));
-    text += "In the rows *pulled* of cubes the library cuts; a pair is compared with matching meshes of its finer side.\n\n";
+    text += "In the rows *pulled* of cubes the library cuts; pairs are compared with matching meshes of the finer \
+             side.\n\n";
     text += &format!("| {} |\n|{}\n", heads.join(" | "), "---|".repeat(heads.len()));
     for finding in findings {
         text += &format!("| {} |\n", row(finding).join(" | "));
@@ -232,7 +234,8 @@ const OTHERS: [(&str, &str); 11] = [
     ),
     (
         "pulled",
-        "no T-FETI code has friction on such meshes; ESPRESO, without friction, one pair: 230 to 360 iterations on a small Hertz case",
+        "no T-FETI code has friction on such meshes; ESPRESO, without friction, one pair: 230 to 360 iterations on a \
+         small Hertz case",
     ),
     ("press fit", "one published CalculiX model is 2.3 times off, silently"),
     ("wedge", "FrontISTR 5e-4"),
