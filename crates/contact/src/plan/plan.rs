@@ -31,6 +31,9 @@ pub struct Plan {
     /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the
     /// partner. `None` without points.
     pub gaps: Option<[f64; 2]>,
+    /// Contacts whose meshes do not match, and whether the side that the scene names second has their points: the one
+    /// with the larger facets has.
+    pub apart: Vec<(usize, bool)>,
     /// Rows of `N`: contact points that can touch, nodes in edges and corners once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
     pub normal_rows: usize,
@@ -129,6 +132,7 @@ impl Plan {
             subdomains,
             primal,
             gaps: points.iter().fold(None, gap),
+            apart: discrete.apart.clone(),
             normal_rows: points.len(),
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
