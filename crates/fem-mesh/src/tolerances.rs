@@ -37,12 +37,8 @@ pub(crate) const INCOMPRESSIBLE: f64 = 0.4;
 /// interfaces.
 pub(crate) const SWEEPS: usize = 40;
 pub(crate) const SETTLED: f64 = 1e-3;
-/// Part of a slab's tetrahedra by which its end may move to where the interface is smaller, and what its area counts
-/// more by that share of it, between equal cells and between graded ones: there ragged cuts cost more than unequal parts.
-/// By how much interfaces differ that count as different.
-pub(crate) const REACHING: f64 = 0.4;
-pub(crate) const FARTHER: [f64; 2] = [2.0, 0.2];
-pub(crate) const LIGHTER: f64 = 1e-6;
+/// Part of a slab's tetrahedra by which its end may move to a gap between layers of tetrahedra.
+pub(crate) const SNAP: f64 = 0.15;
 /// Part of its box that a body fills at least to be cut into a grid of about so many cubes, and the edges of cubes that
 /// are tried: so many steps of two per cent more and less than the edge that the number asks for.
 pub(crate) const FILLED: f64 = 0.98;
@@ -52,6 +48,9 @@ pub(crate) const BOX: f64 = 1.0 - 1e-9;
 /// How much longer some cells are along an axis than others, each relative to itself, where a mesh is graded along it:
 /// the ratio of the quantiles at 0.95 and 0.05. Meshes of Gmsh have 1.8 to 2.1.
 pub(crate) const GRADED: f64 = 2.5;
+/// Part of a slab by which its end may move to a plane between layers of graded cells: a ragged cut through long cells
+/// costs more than parts of unequal size.
+pub(crate) const PLANE: f64 = 0.5;
 
 // Means on surfaces
 
