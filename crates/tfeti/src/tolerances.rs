@@ -96,6 +96,10 @@ pub(crate) const CUT: usize = 36;
 pub(crate) const CLUSTER: usize = 12;
 pub(crate) const GROWTH: f64 = 1.0;
 pub(crate) const ROW: f64 = 2e-8;
+/// Sweeps of the model of the coarse matrix that relax each subdomain by itself, and by how much: two copies of a node
+/// make the matrix up to twice its diagonal blocks.
+pub(crate) const SWEEPS: usize = 2;
+pub(crate) const RELAXED: f64 = 0.9;
 /// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
 pub(crate) const PERIOD: u32 = 4;
 /// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.

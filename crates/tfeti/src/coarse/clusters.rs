@@ -1,14 +1,12 @@
 //! Clusters of about eight subdomains that move as one: a small model of `G W G^T`.
 
-use crate::coarse::matrix::CoarseMatrix;
+use crate::coarse::matrix::{Block, CoarseMatrix};
 use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{CLUSTER, LAYER};
 use signorini_fem_mesh::vec3::sub;
-
-type Block = [[f64; 6]; 6];
 
 /// Which subdomains move together, and how.
 #[derive(Debug)]
@@ -96,30 +94,8 @@ impl Clusters {
 
     /// The matrix of the clusters for these `values` of that of the subdomains.
     pub(crate) fn matrix(&self, fine: &CoarseMatrix, values: &[f64]) -> (CoarseMatrix, Vec<f64>) {
-        let mut lower: Vec<Vec<u32>> = (0..self.count() as u32).map(|c| vec![c]).collect();
-        fine.for_blocks(values, |a, b, _| {
-            let (a, b) = (self.of[a as usize], self.of[b as usize]);
-            lower[a.min(b) as usize].push(a.max(b));
-        });
-        lower.iter_mut().for_each(|list| {
-            list.sort_unstable();
-            list.dedup();
-        });
-        let columns = lower.into_iter().map(|list| {
-            let values = vec![0.0; 36 * list.len()];
-            (list, values)
-        });
-        let matrix = CoarseMatrix::of_columns(columns);
-        let mut sums = vec![0.0; matrix.pattern().values.len()];
-        fine.for_blocks(values, |a, b, block| {
-            let [p, q] = [a, b].map(|s| self.of[s as usize]);
-            let both = times(&self.maps[a as usize], block, &self.maps[b as usize]);
-            matrix.add_block(p, q, &both, &mut sums);
-            if p == q && a != b {
-                matrix.add_block(p, p, &transposed(&both), &mut sums);
-            }
-        });
-        (matrix, sums)
+        let block = |a: u32, b: u32, block: &Block| times(&self.maps[a as usize], block, &self.maps[b as usize]);
+        fine.joined(values, self.count(), |s| Some(self.of[s as usize]), block)
     }
 }
 
@@ -162,10 +138,6 @@ fn add_restricted(map: &Block, y: &[f64; 6], sum: &mut [f64; 6]) {
     for (row, y) in map.iter().zip(y) {
         (0..6).for_each(|j| sum[j] += row[j] * y);
     }
-}
-
-fn transposed(a: &Block) -> Block {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
 /// `a^T b c`.

@@ -11,23 +11,19 @@ use crate::coarse::matrix::ModeTable;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::projector::factor::CoarseFactor;
+use crate::projector::model::{ClusterTree, Model};
 use crate::projector::split::factor::SplitBase;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
 use crate::tolerances::{GROWTH, ROW, SOLVES};
-use std::sync::Arc;
 
 /// What the factors of all active sets have in common.
-pub(super) struct Bases {
-    /// Of what changes: the subdomains, or their clusters.
-    pub(super) changing: SplitBase,
-    pub(super) levels: Option<Levels>,
-}
-
-/// The parts of a projector by two levels.
-pub(super) struct Levels {
-    pub(super) clusters: Arc<Clusters>,
-    /// Of the rows that are always free.
-    pub(super) always: SplitBase,
+pub(super) enum Bases {
+    One(SplitBase),
+    Levels {
+        model: Model,
+        /// Of the rows that are always free.
+        always: SplitBase,
+    },
 }
 
 impl Coarse {
@@ -63,9 +59,9 @@ impl Coarse {
                 return Some(bases);
             }
         }
-        let changing = SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write).ok()?;
-        let levels = None;
-        Some(Bases { changing, levels })
+        SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write)
+            .ok()
+            .map(Bases::One)
     }
 
     /// The bases by two levels, if they exist and their seconds `pay`.
@@ -79,25 +75,16 @@ impl Coarse {
         pays: &dyn Fn(f64) -> bool,
     ) -> Option<Bases> {
         let data = &self.0;
-        let (mobility, subdomains) = (&data.mobility, &data.subdomains);
+        let (mobility, matrix) = (&data.mobility, &data.matrix);
         let fixed = CoarseTree::regular(graph, mobility.centres()).ok()?;
-        let clusters = Clusters::new(mobility, subdomains);
-        let (matrix, sums) = clusters.matrix(&data.matrix, values);
-        let links = matrix.graph();
-        let tree = cheapest_tree(&links, clusters.centres(), &clusters.marks(changing))?;
+        let clusters = Clusters::new(mobility, &data.subdomains);
+        let tree = ClusterTree::new(clusters, matrix, values, changing)?;
         if !pays(fixed.cost() + tree.cost()) {
             return None;
         }
-        let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| {
-            let mut row = Vec::new();
-            modes.row(&data.gluing, nodal, 1.0, &mut row);
-            clusters.join(&row, out);
-        };
-        let changing = SplitBase::new(tree, &matrix, &links, &sums, rows, &write).ok()?;
-        let always = SplitBase::new(fixed, &data.matrix, graph, values, 0, &|_, _| {}).ok()?;
-        let clusters = Arc::new(clusters);
-        let levels = Some(Levels { clusters, always });
-        Some(Bases { changing, levels })
+        let model = Model::new(tree, (&data.gluing, modes), (matrix, values), changing, rows)?;
+        let always = SplitBase::new(fixed, matrix, graph, values, 0, &|_, _| {}).ok()?;
+        Some(Bases::Levels { model, always })
     }
 }
 

@@ -10,7 +10,7 @@ use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
 use crate::projector::split::front::{Front, extend, load_columns};
-use crate::projector::split::fronts::{ContactFronts, ContactRow, ContactWeights};
+use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
 use crate::projector::split::shared::{share, shared_tiles};
 use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
@@ -26,7 +26,7 @@ pub(crate) struct SplitBase {
     pub(crate) pieces: Vec<Piece>,
     /// Steady part of the columns of each node that changes; empty for the others.
     base: Vec<Vec<f64>>,
-    contact: ContactFronts,
+    contact: ContactTerms,
     /// Leading rows whose weights change.
     rows: usize,
     /// Pivots up to this size count as zero.
@@ -86,7 +86,7 @@ impl SplitBase {
             threshold: 0.0,
             base: Vec::new(),
             pieces,
-            contact: ContactFronts::new(&tree, contact, write),
+            contact: ContactTerms::new(tree.nodes.len(), contact, &|a, b| tree.front(a, b), write),
             rows: contact,
             tree,
         };

@@ -207,6 +207,13 @@ impl CoarseTree {
         self.nodes.partition_point(|n| n.columns.end <= position)
     }
 
+    /// The node and the place in its columns of the block of two blocks, if its row does not stand before its column.
+    pub(crate) fn front(&self, row: u32, column: u32) -> Option<(usize, usize)> {
+        let (p, q) = (self.place[row as usize], self.place[column as usize]);
+        let k = self.node_of(q as usize);
+        (p >= q).then(|| (k, self.nodes[k].place(p, q)))
+    }
+
     /// Groups the own blocks of a region where that saves time.
     fn group(&mut self, region: Region, patterns: &[Vec<u32>], changing: &[bool]) {
         let first_own = self.nodes.len();
