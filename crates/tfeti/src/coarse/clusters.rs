@@ -5,8 +5,9 @@ use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::{CLUSTER, LAYER};
+use crate::tolerances::{CLUSTER, LAYER, TRANSLATE};
 use signorini_fem_mesh::vec3::sub;
+use std::collections::{BTreeMap, HashMap};
 
 /// Which subdomains move together, and how.
 #[derive(Debug)]
@@ -18,8 +19,8 @@ pub(crate) struct Clusters {
 }
 
 impl Clusters {
-    /// Clusters of these subdomains, each within one rigid part.
-    pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains) -> Self {
+    /// Clusters of these subdomains, each within one rigid part; in a `grid` they are alike.
+    pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains, grid: Option<&[[u32; 3]]>) -> Self {
         let (at, parts) = (mobility.centres(), mobility.part_of());
         let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
         let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -27,7 +28,12 @@ impl Clusters {
             .zip(parts)
             .for_each(|(s, &part)| groups[part as usize].push(s));
         let mut members: Vec<Vec<u32>> = Vec::new();
-        groups.into_iter().for_each(|group| halve(group, at, &mut members));
+        for group in groups {
+            match grid {
+                Some(grid) => boxes(&group, grid, &mut members),
+                None => halve(group, at, &mut members),
+            }
+        }
         let mut of = vec![0; at.len()];
         for (k, list) in members.iter().enumerate() {
             list.iter().for_each(|&s| of[s as usize] = k as u32);
@@ -40,11 +46,14 @@ impl Clusters {
             maps: Vec::new(),
             centres: members.iter().map(centre).collect(),
         };
+        // the same for translates, bit for bit
+        let mut known: HashMap<(usize, [i64; 3]), Block> = HashMap::new();
         let each = out.of.iter().enumerate();
         out.maps = each
             .map(|(s, &cluster)| {
                 let arm = sub(at[s], out.centres[cluster as usize]).map(|d| d / length);
-                rigid_map(subdomains.kernel(s), &arm, length)
+                let key = (subdomains.class(s), arm.map(|a| (a / TRANSLATE).round() as i64));
+                *(known.entry(key)).or_insert_with(|| rigid_map(subdomains.kernel(s), &arm, length))
             })
             .collect();
         out
@@ -97,6 +106,15 @@ impl Clusters {
         let block = |a: u32, b: u32, block: &Block| times(&self.maps[a as usize], block, &self.maps[b as usize]);
         fine.joined(values, self.count(), |s| Some(self.of[s as usize]), block)
     }
+}
+
+/// Two subdomains of a grid along each edge.
+fn boxes(group: &[u32], grid: &[[u32; 3]], out: &mut Vec<Vec<u32>>) {
+    let mut all: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
+    for &s in group {
+        all.entry(grid[s as usize].map(|layer| layer / 2)).or_default().push(s);
+    }
+    out.extend(all.into_values());
 }
 
 /// Halves a group along its longest extent, between layers, until each part is a cluster.

@@ -1,5 +1,6 @@
 //! The projector of the active set method of `signorini-qp`: `G` weighted by the rows that are free.
 
+use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::error::TfetiError;
@@ -119,7 +120,9 @@ impl ActiveSetProjector {
         };
         let pays = |base: &SplitBase| kind != ActiveSetFactor::Auto || base.pays(coarse.rows(), coarse.factor_size());
         let (basis, fixed) = match bases {
-            Some(Bases::Levels { model, always }) => (Some(Basis::Model(Arc::new(model))), Some(always)),
+            Some(Bases::Levels { model, always, free }) => {
+                (Some(Basis::Model(Arc::new(model))), Some((Arc::new(always), free)))
+            }
             Some(Bases::One(base)) if pays(&base) => (Some(Basis::Split(Arc::new(base))), None),
             _ => (None, None),
         };
@@ -132,7 +135,7 @@ impl ActiveSetProjector {
         let diagonal = weighted(&weights, metric.as_deref());
         let weighted = RowWeights::diagonal(diagonal);
         let factor = match fixed {
-            Some(base) => parts.steady(coarse, Arc::new(base), weighted)?,
+            Some((base, free)) => steady(coarse, base, weighted, free)?,
             None => parts.factor(coarse, weighted, None)?,
         };
         let mut scratch = factor.scratch();
@@ -159,6 +162,12 @@ impl ActiveSetProjector {
             coarse_rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
         })
+    }
+
+    /// Whether it has two levels.
+    #[doc(hidden)]
+    pub fn has_levels(&self) -> bool {
+        matches!(self.parts.basis, Some(Basis::Model(_)))
     }
 
     /// The factor of the last active set.
@@ -214,22 +223,6 @@ impl ActiveSetProjector {
 }
 
 impl SplitParts {
-    /// The factor of a basis in which nothing changes.
-    fn steady(
-        &mut self,
-        coarse: &Coarse,
-        base: Arc<SplitBase>,
-        weights: RowWeights,
-    ) -> Result<CoarseFactor, TfetiError> {
-        match base.factor(&ContactWeights::default(), None, &mut Fronts::default()) {
-            Ok(factor) => {
-                let factor = Factor::Split(base, factor);
-                Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()))
-            }
-            Err(_) => coarse.factor_weighted(weights),
-        }
-    }
-
     /// The factor for `weights` on this basis; of the whole matrix if there is no basis, if free motions ask for a
     /// generalised inverse, or if the matrix is singular to working precision.
     fn factor(
@@ -262,6 +255,22 @@ impl SplitParts {
             }
         }
         coarse.factor_weighted(weights)
+    }
+}
+
+/// The factor of a basis in which nothing changes.
+fn steady(
+    coarse: &Coarse,
+    base: Arc<SplitBase>,
+    weights: RowWeights,
+    free: Vec<FreeMotion>,
+) -> Result<CoarseFactor, TfetiError> {
+    match base.factor(&ContactWeights::default(), None, &mut Fronts::default()) {
+        Ok(factor) => {
+            let factor = Factor::Split(base, factor);
+            Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), free))
+        }
+        Err(_) => coarse.factor_weighted(weights),
     }
 }
 

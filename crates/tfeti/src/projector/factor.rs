@@ -70,15 +70,7 @@ impl Coarse {
         let modes = ModeTable::new(&data.subdomains);
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
         let free = data.free_motions(weights.as_ref());
-        if !free.is_empty() {
-            let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
-            let mean = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
-            let strength = if mean > 0.0 { mean } else { 1.0 };
-            for (subdomain, spring) in data.mobility.springs(&free) {
-                let row = [(subdomain as u32, spring)];
-                data.matrix.add_row(&row, strength, &mut matrix.values);
-            }
-        }
+        data.hold(&free, &mut matrix.values);
         let (what, count) = ("coarse unknowns", matrix.dim);
         let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
             FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },

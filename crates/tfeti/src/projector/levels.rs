@@ -8,21 +8,24 @@
 
 use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
+use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::projector::factor::CoarseFactor;
 use crate::projector::model::{ClusterTree, Model};
 use crate::projector::split::factor::SplitBase;
+use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
-use crate::tolerances::{GROWTH, ROW, SOLVES};
+use crate::tolerances::{FEW, GROWTH, MANY, ROW, SOLVES};
 
 /// What the factors of all active sets have in common.
 pub(super) enum Bases {
     One(SplitBase),
     Levels {
         model: Model,
-        /// Of the rows that are always free.
+        /// Of the rows that are always free, and of springs where these leave motions free.
         always: SplitBase,
+        free: Vec<FreeMotion>,
     },
 }
 
@@ -44,22 +47,28 @@ impl Coarse {
             changing[e.subdomain as usize] = true;
         }
         let graph = data.matrix.graph();
-        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
         let modes = ModeTable::new(&data.subdomains);
         weights.diagonal[..rows].fill(0.0);
         let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
         let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
-        let possible = levels != Some(false) && rows == gluing.ranges().contact().end && tree.changes();
-        if possible && data.free_motions(Some(&weights)).is_empty() {
-            let pays = |other: f64| {
-                let slower = GROWTH * 0.5 * SOLVES * ROW * self.dim() as f64;
-                levels == Some(true) || other + slower < tree.cost()
-            };
-            if let Some(bases) = self.two_levels(rows, &graph, &changing, &values, &modes, &pays) {
+        let one = || cheapest_tree(&graph, data.mobility.centres(), &changing, None);
+        let mut tree = None;
+        let count = changing.len();
+        let wanted = levels.unwrap_or(count >= FEW);
+        if wanted && rows > 0 && rows == gluing.ranges().contact().end {
+            let told = levels.is_some() || count > MANY;
+            if !told {
+                tree = Some(one()?);
+            }
+            let limit = tree.as_ref().map_or(f64::INFINITY, CoarseTree::cost);
+            let pays = |other: f64| other + GROWTH * 0.5 * SOLVES * ROW * (self.dim() as f64) < limit;
+            let free = data.free_motions(Some(&weights));
+            if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes, &pays) {
                 return Some(bases);
             }
         }
-        SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write)
+        let tree = tree.or_else(one)?;
+        SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write, false)
             .ok()
             .map(Bases::One)
     }
@@ -70,21 +79,25 @@ impl Coarse {
         rows: usize,
         graph: &[Vec<u32>],
         changing: &[bool],
-        values: &[f64],
+        (values, free): (&[f64], Vec<FreeMotion>),
         modes: &ModeTable<'_>,
         pays: &dyn Fn(f64) -> bool,
     ) -> Option<Bases> {
         let data = &self.0;
         let (mobility, matrix) = (&data.mobility, &data.matrix);
-        let fixed = CoarseTree::regular(graph, mobility.centres()).ok()?;
-        let clusters = Clusters::new(mobility, &data.subdomains);
+        let grid = grid_of(mobility.centres());
+        let nothing = vec![false; changing.len()];
+        let fixed = CoarseTree::new(graph, mobility.centres(), &nothing, 0, grid.as_deref()).ok()?;
+        let clusters = Clusters::new(mobility, &data.subdomains, grid.as_deref());
         let tree = ClusterTree::new(clusters, matrix, values, changing)?;
         if !pays(fixed.cost() + tree.cost()) {
             return None;
         }
         let model = Model::new(tree, (&data.gluing, modes), (matrix, values), changing, rows)?;
-        let always = SplitBase::new(fixed, matrix, graph, values, 0, &|_, _| {}).ok()?;
-        Some(Bases::Levels { model, always })
+        let mut values = values.to_vec();
+        data.hold(&free, &mut values);
+        let always = SplitBase::new(fixed, matrix, graph, &values, 0, &|_, _| {}, true).ok()?;
+        Some(Bases::Levels { model, always, free })
     }
 }
 

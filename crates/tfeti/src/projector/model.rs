@@ -11,6 +11,7 @@ use crate::coarse::matrix::{Block, CoarseMatrix, ModeTable};
 use crate::linalg::tiles::{Digits, LANES};
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::{ContactTerms, ContactWeights};
+use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
 use crate::rows::gluing::Gluing;
 use crate::tolerances::{RELAXED, SWEEPS};
@@ -57,7 +58,10 @@ impl ClusterTree {
     pub(super) fn new(clusters: Clusters, matrix: &CoarseMatrix, values: &[f64], changing: &[bool]) -> Option<Self> {
         let (matrix, values) = clusters.matrix(matrix, values);
         let graph = matrix.graph();
-        let tree = cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing))?;
+        let tree = {
+            let grid = grid_of(clusters.centres());
+            cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing), grid.as_deref())?
+        };
         Some(Self {
             clusters,
             tree,
@@ -89,8 +93,16 @@ impl Model {
             of_row(nodal, &mut row);
             clusters.join(&row, out);
         };
-        let of_clusters =
-            SplitBase::new(tree.tree, &tree.matrix, &tree.graph, &tree.values, rows, &on_clusters).ok()?;
+        let of_clusters = SplitBase::new(
+            tree.tree,
+            &tree.matrix,
+            &tree.graph,
+            &tree.values,
+            rows,
+            &on_clusters,
+            true,
+        )
+        .ok()?;
         let mut partners: Vec<Vec<u32>> = vec![Vec::new(); changing.len()];
         let mut row = Vec::new();
         for nodal in 0..rows {

@@ -9,6 +9,7 @@ use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
+use crate::projector::split::alike::Bunches;
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
 use crate::projector::split::shared::{share, shared_tiles};
@@ -27,6 +28,8 @@ pub(crate) struct SplitBase {
     /// Steady part of the columns of each node that changes; empty for the others.
     base: Vec<Vec<f64>>,
     contact: ContactTerms,
+    /// Regions that are solved together, if equal ones are looked for.
+    pub(super) bunches: Option<Bunches>,
     /// Leading rows whose weights change.
     rows: usize,
     /// Pivots up to this size count as zero.
@@ -62,7 +65,8 @@ pub(crate) struct SplitFactor {
 pub(crate) struct Fronts(Vec<Front>);
 
 impl SplitBase {
-    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells.
+    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions are
+    /// stored once and solved together if it `shares` or nothing changes.
     pub(crate) fn new(
         mut tree: CoarseTree,
         matrix: &CoarseMatrix,
@@ -70,10 +74,12 @@ impl SplitBase {
         values: &[f64],
         contact: usize,
         write: &ContactRow<'_>,
+        shares: bool,
     ) -> Result<Self, usize> {
-        let first = match tree.changes() {
-            true => (0..tree.regions.len()).collect(),
-            false => share(&mut tree, matrix, graph, values),
+        let steady = !tree.changes();
+        let first = match steady {
+            true => share(&mut tree, matrix, graph, values),
+            false => (0..tree.regions.len()).collect(),
         };
         let mut pieces: Vec<Piece> = Vec::with_capacity(tree.regions.len());
         for (r, region) in tree.regions.iter().enumerate() {
@@ -87,15 +93,17 @@ impl SplitBase {
             base: Vec::new(),
             pieces,
             contact: ContactTerms::new(tree.nodes.len(), contact, &|a, b| tree.front(a, b), write),
+            bunches: None,
             rows: contact,
             tree,
         };
-        if !out.tree.changes() {
+        if steady {
             let steady: Vec<_> = out.pieces.iter().map(|p| p.steady.clone()).collect();
             let tiles = shared_tiles(&out.tree, &steady, matrix, graph, values, &first)?;
             for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
                 piece.tiles = tiles;
             }
+            out.bunches = Some(out.bunch(&first));
             return Ok(out);
         }
         let mut fronts = vec![Front::default(); out.tree.nodes.len()];
@@ -119,12 +127,31 @@ impl SplitBase {
         }
         let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
+        if shares {
+            let first = share(&mut out.tree, matrix, graph, values);
+            for (r, &equal) in first.iter().enumerate() {
+                out.pieces[r] = out.pieces[equal].clone();
+            }
+            out.bunches = Some(out.bunch(&first));
+        }
         Ok(out)
+    }
+
+    /// What is solved together where `first` is the first equal region of each.
+    fn bunch(&self, first: &[usize]) -> Bunches {
+        let buffer = |r: usize| {
+            let piece = &self.pieces[r];
+            piece.steady.buffer().max(piece.changing.buffer())
+        };
+        Bunches::new(&self.tree, first, buffer)
     }
 
     /// Length of the work memory of a solve.
     pub(crate) fn work(&self) -> usize {
-        self.tree.dim() + self.pieces.last().map_or(0, |p| p.work)
+        match &self.bunches {
+            Some(bunches) => bunches.work(),
+            None => self.tree.dim() + self.pieces.last().map_or(0, |p| p.work),
+        }
     }
 
     /// Leading rows whose weights change: others do not lead to blocks that change.

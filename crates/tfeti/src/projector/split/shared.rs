@@ -105,7 +105,7 @@ fn grow(
     Ok((tiles, updates))
 }
 
-/// For each region the first one that is equal. The others' lists of later blocks take its order.
+/// For each region the first one that is equal; one in which something changes equals itself only. The others' lists of later blocks take its order.
 pub(super) fn share(tree: &mut CoarseTree, matrix: &CoarseMatrix, graph: &[Vec<u32>], values: &[f64]) -> Vec<usize> {
     let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut first: Vec<usize> = Vec::with_capacity(tree.regions.len());
@@ -120,7 +120,10 @@ pub(super) fn share(tree: &mut CoarseTree, matrix: &CoarseMatrix, graph: &[Vec<u
         let all = || (own.start as u32..own.end as u32).chain(at.iter().copied());
         (0..).zip(all()).for_each(|(k, p)| place[p as usize] = k);
         let key = key(tree, region, &first, &place, matrix, graph, values);
-        let equal = *known.entry(key).or_insert(r);
+        let equal = match tree.region_changes(r) {
+            true => r,
+            false => *known.entry(key).or_insert(r),
+        };
         let rank = |p: &u32| place[*p as usize];
         ranks.push(region.behind.iter().map(rank).collect());
         if equal != r {

@@ -2,7 +2,7 @@
 
 use crate::linalg::elimination::{grouped, patterns};
 use crate::linalg::sparse::FactorError;
-use crate::projector::split::order::{Dissection, Region, grid_of};
+use crate::projector::split::order::{Dissection, Region};
 use crate::tolerances::{BORDER, CUTS, NODE, OPERATION, READ, SOLVES};
 use std::ops::Range;
 
@@ -101,11 +101,16 @@ impl Node {
     }
 }
 
-/// The cheapest tree for changes of the active set and the solves between them.
-pub(crate) fn cheapest_tree(graph: &[Vec<u32>], centres: &[[f64; 3]], changing: &[bool]) -> Option<CoarseTree> {
-    let mut best = CoarseTree::new(graph, centres, changing, 0).ok()?;
+/// The cheapest tree for changes of the active set and the solves between them, by layers of a `grid` if there is one.
+pub(crate) fn cheapest_tree(
+    graph: &[Vec<u32>],
+    centres: &[[f64; 3]],
+    changing: &[bool],
+    grid: Option<&[[u32; 3]]>,
+) -> Option<CoarseTree> {
+    let mut best = CoarseTree::new(graph, centres, changing, 0, grid).ok()?;
     for cuts in 1..=CUTS {
-        let next = CoarseTree::new(graph, centres, changing, cuts).ok()?;
+        let next = CoarseTree::new(graph, centres, changing, cuts, grid).ok()?;
         if next.cost() >= best.cost() {
             break;
         }
@@ -115,25 +120,16 @@ pub(crate) fn cheapest_tree(graph: &[Vec<u32>], centres: &[[f64; 3]], changing: 
 }
 
 impl CoarseTree {
-    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set.
+    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set. Where
+    /// they stand in a `grid`, most regions are equal to others.
     pub(crate) fn new(
         graph: &[Vec<u32>],
         centres: &[[f64; 3]],
         changing: &[bool],
         cuts: usize,
+        grid: Option<&[[u32; 3]]>,
     ) -> Result<Self, FactorError> {
-        Self::cut(graph, changing, Dissection::new(graph, centres, changing, cuts, None)?)
-    }
-
-    /// For blocks none of which changes; where they stand in a grid, most regions are equal to others.
-    pub(crate) fn regular(graph: &[Vec<u32>], centres: &[[f64; 3]]) -> Result<Self, FactorError> {
-        let (changing, grid) = (vec![false; graph.len()], grid_of(centres));
-        let cuts = Dissection::new(graph, centres, &changing, 0, grid.as_deref())?;
-        Self::cut(graph, &changing, cuts)
-    }
-
-    fn cut(graph: &[Vec<u32>], changing: &[bool], cuts: Dissection) -> Result<Self, FactorError> {
-        let Dissection { blocks, regions } = cuts;
+        let Dissection { blocks, regions } = Dissection::new(graph, centres, changing, cuts, grid)?;
         let blocks = postorder(&blocks, &patterns(graph, &blocks), &regions, changing);
         let patterns = patterns(graph, &blocks);
         let mut place = vec![0; blocks.len()];
@@ -173,6 +169,14 @@ impl CoarseTree {
     /// Whether anything changes.
     pub(crate) fn changes(&self) -> bool {
         self.nodes.iter().any(|n| n.changing)
+    }
+
+    /// Whether anything changes in a region or those within.
+    pub(crate) fn region_changes(&self, r: usize) -> bool {
+        let region = &self.regions[r];
+        self.nodes[region.first_node..region.changing.end]
+            .iter()
+            .any(|n| n.changing)
     }
 
     /// Places in a region of what is behind the regions within and in the borders that lead to it, for lists in any
@@ -342,7 +346,7 @@ mod tests {
     fn check(size: [usize; 3], changing: impl Fn(&[f64; 3]) -> bool, cuts: usize) {
         let (graph, centres) = grid(size);
         let changing: Vec<bool> = centres.iter().map(changing).collect();
-        let tree = CoarseTree::new(&graph, &centres, &changing, cuts).unwrap();
+        let tree = CoarseTree::new(&graph, &centres, &changing, cuts, None).unwrap();
         let fill = filled(&graph, &tree);
         let mut next = 0;
         for (k, node) in tree.nodes.iter().enumerate() {
