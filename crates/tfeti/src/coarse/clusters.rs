@@ -22,18 +22,7 @@ impl Clusters {
     /// Clusters of these subdomains, each within one rigid part; in a `grid` they are alike.
     pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains, grid: Option<&[[u32; 3]]>) -> Self {
         let (at, parts) = (mobility.centres(), mobility.part_of());
-        let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
-        let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
-        (0_u32..)
-            .zip(parts)
-            .for_each(|(s, &part)| groups[part as usize].push(s));
-        let mut members: Vec<Vec<u32>> = Vec::new();
-        for group in groups {
-            match grid {
-                Some(grid) => boxes(&group, grid, &mut members),
-                None => halve(group, at, &mut members),
-            }
-        }
+        let members = members(parts, at, grid);
         let mut of = vec![0; at.len()];
         for (k, list) in members.iter().enumerate() {
             list.iter().for_each(|&s| of[s as usize] = k as u32);
@@ -106,6 +95,23 @@ impl Clusters {
         let block = |a: u32, b: u32, block: &Block| times(&self.maps[a as usize], block, &self.maps[b as usize]);
         fine.joined(values, self.count(), |s| Some(self.of[s as usize]), block)
     }
+}
+
+/// The subdomains of each cluster.
+pub(crate) fn members(parts: &[u32], at: &[[f64; 3]], grid: Option<&[[u32; 3]]>) -> Vec<Vec<u32>> {
+    let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
+    let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
+    (0_u32..)
+        .zip(parts)
+        .for_each(|(s, &part)| groups[part as usize].push(s));
+    let mut out: Vec<Vec<u32>> = Vec::new();
+    for group in groups {
+        match grid {
+            Some(grid) => boxes(&group, grid, &mut out),
+            None => halve(group, at, &mut out),
+        }
+    }
+    out
 }
 
 /// Two subdomains of a grid along each edge.

@@ -12,11 +12,11 @@ use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::projector::factor::CoarseFactor;
-use crate::projector::model::{ClusterTree, Model};
+use crate::projector::model::Model;
 use crate::projector::split::factor::SplitBase;
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
-use crate::tolerances::{FEW, GROWTH, MANY, ROW, SOLVES};
+use crate::tolerances::{FEW, GROWTH, MANY, OPERATION, ROW, SOLVES};
 
 /// What the factors of all active sets have in common.
 pub(super) enum Bases {
@@ -27,6 +27,15 @@ pub(super) enum Bases {
         always: SplitBase,
         free: Vec<FreeMotion>,
     },
+}
+
+/// Whether two levels pay for subdomains of which those that are `touching` have contact rows, with so many `rows` of `B`
+/// in all: a change of the active set with one level factors a dense matrix of those that touch.
+pub(super) fn two_levels_pay(touching: &[bool], rows: usize) -> bool {
+    let dense = 6.0 * touching.iter().filter(|t| **t).count() as f64;
+    let slower = GROWTH * 0.5 * SOLVES * ROW * rows as f64;
+    let pays = OPERATION * dense.powi(3) / 3.0 > slower;
+    touching.len() > MANY || touching.len() >= FEW && pays
 }
 
 impl Coarse {
@@ -51,29 +60,20 @@ impl Coarse {
         weights.diagonal[..rows].fill(0.0);
         let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
         let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
-        let one = || cheapest_tree(&graph, data.mobility.centres(), &changing, None);
-        let mut tree = None;
-        let count = changing.len();
-        let wanted = levels.unwrap_or(count >= FEW);
+        let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, self.dim()));
         if wanted && rows > 0 && rows == gluing.ranges().contact().end {
-            let told = levels.is_some() || count > MANY;
-            if !told {
-                tree = Some(one()?);
-            }
-            let limit = tree.as_ref().map_or(f64::INFINITY, CoarseTree::cost);
-            let pays = |other: f64| other + GROWTH * 0.5 * SOLVES * ROW * (self.dim() as f64) < limit;
             let free = data.free_motions(Some(&weights));
-            if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes, &pays) {
+            if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes) {
                 return Some(bases);
             }
         }
-        let tree = tree.or_else(one)?;
+        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
         SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write, false)
             .ok()
             .map(Bases::One)
     }
 
-    /// The bases by two levels, if they exist and their seconds `pay`.
+    /// The bases by two levels, if they exist.
     fn two_levels(
         &self,
         rows: usize,
@@ -81,7 +81,6 @@ impl Coarse {
         changing: &[bool],
         (values, free): (&[f64], Vec<FreeMotion>),
         modes: &ModeTable<'_>,
-        pays: &dyn Fn(f64) -> bool,
     ) -> Option<Bases> {
         let data = &self.0;
         let (mobility, matrix) = (&data.mobility, &data.matrix);
@@ -89,11 +88,7 @@ impl Coarse {
         let nothing = vec![false; changing.len()];
         let fixed = CoarseTree::new(graph, mobility.centres(), &nothing, 0, grid.as_deref()).ok()?;
         let clusters = Clusters::new(mobility, &data.subdomains, grid.as_deref());
-        let tree = ClusterTree::new(clusters, matrix, values, changing)?;
-        if !pays(fixed.cost() + tree.cost()) {
-            return None;
-        }
-        let model = Model::new(tree, (&data.gluing, modes), (matrix, values), changing, rows)?;
+        let model = Model::new(clusters, (&data.gluing, modes), (matrix, values), changing, rows)?;
         let mut values = values.to_vec();
         data.hold(&free, &mut values);
         let always = SplitBase::new(fixed, matrix, graph, &values, 0, &|_, _| {}, true).ok()?;

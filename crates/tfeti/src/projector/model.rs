@@ -12,7 +12,7 @@ use crate::linalg::tiles::{Digits, LANES};
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::{ContactTerms, ContactWeights};
 use crate::projector::split::order::grid_of;
-use crate::projector::split::tree::{CoarseTree, cheapest_tree};
+use crate::projector::split::tree::cheapest_tree;
 use crate::rows::gluing::Gluing;
 use crate::tolerances::{RELAXED, SWEEPS};
 use nalgebra::Matrix6;
@@ -34,15 +34,6 @@ pub(super) struct Model {
     diagonal: Vec<Block>,
 }
 
-/// The clusters with their matrix, and what it is likely to cost.
-pub(super) struct ClusterTree {
-    clusters: Clusters,
-    tree: CoarseTree,
-    graph: Vec<Vec<u32>>,
-    matrix: CoarseMatrix,
-    values: Vec<f64>,
-}
-
 /// What follows the weights.
 #[derive(Debug)]
 pub(super) struct ModelFactor {
@@ -53,56 +44,25 @@ pub(super) struct ModelFactor {
     inverses: Vec<Block>,
 }
 
-impl ClusterTree {
-    /// For the steady `values` of the matrix and the subdomains that have contact rows.
-    pub(super) fn new(clusters: Clusters, matrix: &CoarseMatrix, values: &[f64], changing: &[bool]) -> Option<Self> {
-        let (matrix, values) = clusters.matrix(matrix, values);
-        let graph = matrix.graph();
-        let tree = {
-            let grid = grid_of(clusters.centres());
-            cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing), grid.as_deref())?
-        };
-        Some(Self {
-            clusters,
-            tree,
-            graph,
-            matrix,
-            values,
-        })
-    }
-
-    /// Seconds of solves and changes.
-    pub(super) fn cost(&self) -> f64 {
-        2.0 * self.tree.cost()
-    }
-}
-
 impl Model {
     /// With the leading contact `rows`; `values` are those of the matrix without them.
     pub(super) fn new(
-        tree: ClusterTree,
+        clusters: Clusters,
         (gluing, modes): (&Gluing, &ModeTable<'_>),
         (matrix, values): (&CoarseMatrix, &[f64]),
         changing: &[bool],
         rows: usize,
     ) -> Option<Self> {
-        let ClusterTree { clusters, .. } = tree;
         let of_row = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
         let on_clusters = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| {
             let mut row = Vec::new();
             of_row(nodal, &mut row);
             clusters.join(&row, out);
         };
-        let of_clusters = SplitBase::new(
-            tree.tree,
-            &tree.matrix,
-            &tree.graph,
-            &tree.values,
-            rows,
-            &on_clusters,
-            true,
-        )
-        .ok()?;
+        let (sums, sum_values) = clusters.matrix(matrix, values);
+        let (graph, grid) = (sums.graph(), grid_of(clusters.centres()));
+        let tree = cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing), grid.as_deref())?;
+        let of_clusters = SplitBase::new(tree, &sums, &graph, &sum_values, rows, &on_clusters, true).ok()?;
         let mut partners: Vec<Vec<u32>> = vec![Vec::new(); changing.len()];
         let mut row = Vec::new();
         for nodal in 0..rows {

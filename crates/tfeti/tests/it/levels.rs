@@ -5,8 +5,8 @@ use signorini_fem_mesh::decomposition::{PartCount, even_parts};
 use signorini_fem_mesh::{Decomposition, FacetTag, SurfaceFrame, brick};
 use signorini_qp::vector::dot;
 use signorini_qp::{EqualityProjector, QpError};
-use signorini_tfeti::internal::ActiveSetFactor;
-use signorini_tfeti::{ActiveSetProjector, ContactConstraint, NodeSupport, Tfeti, TfetiBuilder};
+use signorini_tfeti::internal::{ActiveSetFactor, Forecast, forecast_levels};
+use signorini_tfeti::{ActiveSetProjector, ContactConstraint, InverseSettings, NodeSupport, Tfeti, TfetiBuilder};
 
 fn space(system: &Tfeti, kind: ActiveSetFactor) -> ActiveSetProjector {
     let contact = system.gluing().ranges().contact().end;
@@ -198,6 +198,33 @@ fn equal_regions_are_eliminated_once_and_the_solution_is_that_of_the_whole() {
     let (shared, whole) = (levels.factor().stored(), sparse.factor().stored());
     // each tile is kept twice, once rounded
     assert!(2 * shared < 3 * whole, "{shared} of {whole}");
+}
+
+/// What a plan counts is what is stored: regions that are equal once, at most a quarter more.
+#[test]
+fn a_forecast_counts_what_two_levels_store() {
+    for (n, perturbation) in [(8, 0.0), (7, 0.1)] {
+        let b = Brick::of(n, 1, perturbation);
+        let system = b.system();
+        let settings = InverseSettings::default();
+        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, |_| false).unwrap();
+        let forecast = |rows| forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), rows);
+        let mut space = space(&system, ActiveSetFactor::Auto);
+        assert!(space.has_levels());
+        let always = space.factor().stored();
+        space.set_weights(&active_set(&system, 0.5, 1)).unwrap();
+        let stored = 8.0 * (always + space.factor().stored()) as f64;
+        let ratio = forecast(system.dual_dim()).unwrap().bytes as f64 / stored;
+        assert!((0.75..1.25).contains(&ratio), "n = {n}: {ratio}");
+    }
+    // one level
+    let b = Brick::new(3, 1);
+    let (materials, settings) = (steel(), InverseSettings::default());
+    let found = Forecast::new(&b.mesh, &b.decomposition, &materials, true, &settings, |_| false).unwrap();
+    assert_eq!(
+        forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), 5000),
+        None
+    );
 }
 
 #[test]

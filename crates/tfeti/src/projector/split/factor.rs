@@ -12,11 +12,12 @@ use crate::linalg::tiles::Tile;
 use crate::projector::split::alike::Bunches;
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
-use crate::projector::split::shared::{share, shared_tiles};
+use crate::projector::split::shared::{bits, share, shared_tiles};
 use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
 use crate::tolerances::{OPERATIONS, READ, SINGULAR, SOLVES, SPARSE};
 use signorini_qp::internal::LineWeight;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// What does not depend on the weights of contact rows.
@@ -78,7 +79,7 @@ impl SplitBase {
     ) -> Result<Self, usize> {
         let steady = !tree.changes();
         let first = match steady {
-            true => share(&mut tree, matrix, graph, values),
+            true => share(&mut tree, graph, &bits(matrix, values)),
             false => (0..tree.regions.len()).collect(),
         };
         let mut pieces: Vec<Piece> = Vec::with_capacity(tree.regions.len());
@@ -128,7 +129,7 @@ impl SplitBase {
         let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
         if shares {
-            let first = share(&mut out.tree, matrix, graph, values);
+            let first = share(&mut out.tree, graph, &bits(matrix, values));
             for (r, &equal) in first.iter().enumerate() {
                 out.pieces[r] = out.pieces[equal].clone();
             }
@@ -161,17 +162,11 @@ impl SplitBase {
 
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
-        // a rounded tile is half a tile
-        let tiles = |count: usize| Tile::NUMBERS * count * 3 / 2;
         // equal regions share theirs
-        let mut steady: Vec<(*const Tiles, usize)> = (self.pieces.iter())
-            .map(|p| (Arc::as_ptr(&p.tiles), p.steady.tiles()))
-            .collect();
-        steady.sort_unstable();
-        steady.dedup_by_key(|s| s.0);
-        let steady: usize = steady.iter().map(|s| tiles(s.1)).sum();
-        let changing: usize = self.pieces.iter().map(|p| tiles(p.changing.tiles())).sum();
-        steady + changing + self.base.iter().map(Vec::len).sum::<usize>()
+        let mut known: HashSet<*const Tiles> = HashSet::new();
+        let pieces = self.pieces.iter();
+        self.tree
+            .stored(pieces.map(|piece| known.insert(Arc::as_ptr(&piece.tiles))))
     }
 
     /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows`

@@ -2,6 +2,8 @@
 
 use crate::linalg::elimination::{grouped, patterns};
 use crate::linalg::sparse::FactorError;
+use crate::linalg::supernodes::Supernodes;
+use crate::linalg::tiles::Tile;
 use crate::projector::split::order::{Dissection, Region};
 use crate::tolerances::{BORDER, CUTS, NODE, OPERATION, READ, SOLVES};
 use std::ops::Range;
@@ -153,6 +155,34 @@ impl CoarseTree {
     /// Unknowns.
     pub(crate) fn dim(&self) -> usize {
         6 * self.blocks.len()
+    }
+
+    /// Numbers that a factor stores: exact and rounded tiles, and what is steady in the columns that change. Steady columns
+    /// count in regions with tiles of their `own`.
+    pub(crate) fn stored(&self, own: impl Iterator<Item = bool>) -> usize {
+        // a rounded tile is half a tile
+        let tiles = |node: &Node| Tile::NUMBERS * Supernodes::tiles_of(node.width(), node.height()) * 3 / 2;
+        let region = |(region, own): (&TreeRegion, bool)| {
+            let steady = if own { region.steady.clone() } else { 0..0 };
+            let changing = &self.nodes[region.changing.clone()];
+            let columns: usize = changing.iter().map(|n| tiles(n) + n.width() * n.height()).sum();
+            columns + self.nodes[steady].iter().map(tiles).sum::<usize>()
+        };
+        self.regions.iter().zip(own).map(region).sum()
+    }
+
+    /// Operations of an elimination; steady columns count in regions of their `own`.
+    pub(crate) fn operations(&self, own: impl Iterator<Item = bool>) -> f64 {
+        let region = |(region, own): (&TreeRegion, bool)| {
+            let first = if own {
+                region.steady.start
+            } else {
+                region.changing.start
+            };
+            let nodes = &self.nodes[first..region.changing.end];
+            nodes.iter().map(Node::operations).sum::<f64>()
+        };
+        self.regions.iter().zip(own).map(region).sum()
     }
 
     /// Seconds on two threads: of the larger side only of the first cut.
