@@ -200,6 +200,11 @@ pub(crate) const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Singular values below this part of one count as zero.
 pub(crate) const NULL_RANK: f64 = 1e-9;
 
+/// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold, and what
+/// may be left of the imbalance before them to go on.
+pub(crate) const BALANCING: usize = 2000;
+pub(crate) const BALANCED: f64 = 0.5;
+
 // ---- points and accumulated errors (result, report) ----
 
 /// Part of all forces that a vanishing contact force is measured against.

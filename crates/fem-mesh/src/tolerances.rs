@@ -37,8 +37,11 @@ pub(crate) const INCOMPRESSIBLE: f64 = 0.4;
 /// interfaces.
 pub(crate) const SWEEPS: usize = 40;
 pub(crate) const SETTLED: f64 = 1e-3;
-/// Part of a slab's tetrahedra by which its end may move to a gap between layers of tetrahedra.
-pub(crate) const SNAP: f64 = 0.15;
+/// Part of a slab's tetrahedra by which its end may move to where the interface is smaller, and what its area counts
+/// more by that share of it. By how much interfaces differ that count as different.
+pub(crate) const REACHING: f64 = 0.4;
+pub(crate) const FARTHER: f64 = 2.0;
+pub(crate) const LIGHTER: f64 = 1e-6;
 /// Part of its box that a body fills at least to be cut into a grid of about so many cubes, and the edges of cubes that
 /// are tried: so many steps of two per cent more and less than the edge that the number asks for.
 pub(crate) const FILLED: f64 = 0.98;

@@ -196,7 +196,11 @@ impl ActiveSetSolver {
         iterate.multiplier.clear();
         // other normal forces may hold the body yet
         let not_held = report.status == StepStatus::NotHeld;
-        let outcome = paper.solve_within(task.settings.max_fallback_products, task, iterate);
+        let most = task.settings.max_fallback_products;
+        let outcome = match not_held {
+            true => paper.solve_while_balancing(most, task, iterate),
+            false => paper.solve_within(most, task, iterate),
+        };
         self.paper = Some(paper);
         let second = outcome?;
         report.fallback = true;

@@ -2,6 +2,7 @@
 
 use crate::error::ContactError;
 use crate::model::Model;
+use signorini_qp::{Equality, vector};
 use signorini_tfeti::OrthonormalCoarse;
 use signorini_tfeti::internal::CoarseScratch;
 
@@ -39,6 +40,13 @@ impl OrthonormalRows {
     /// Takes the right side `e` of a step.
     pub(super) fn set_rhs(&mut self, rhs: &[f64]) {
         self.coarse.rhs(rhs, &mut self.rhs, &mut self.scratch);
+    }
+
+    /// Length of what is left of the equality.
+    pub(super) fn imbalance(&mut self, lambda: &[f64]) -> f64 {
+        let mut forces = vec![0.0; self.rhs.len()];
+        self.coarse.apply(lambda, &mut forces, &mut self.scratch);
+        vector::distance(&forces, &self.rhs)
     }
 
     /// Rigid amplitudes from the multiplier of the equality.

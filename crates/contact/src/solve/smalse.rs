@@ -9,7 +9,7 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
-use crate::tolerances::{INNER_STALL, SMALSE_SAFETY};
+use crate::tolerances::{BALANCED, BALANCING, INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
@@ -69,6 +69,31 @@ impl SmalseSolver {
         let report = self.solve(task, iterate);
         self.left = usize::MAX;
         report
+    }
+
+    /// The same for bodies that friction does not seem to hold: ends as well when a share of the products has not
+    /// brought the forces much nearer to balance.
+    pub(crate) fn solve_while_balancing(
+        &mut self,
+        limit: usize,
+        task: Task<'_>,
+        iterate: &mut Iterate,
+    ) -> Result<StepReport, ContactError> {
+        let (mut all, mut left, mut before) = (StepReport::new(), limit, f64::INFINITY);
+        loop {
+            let part = self.solve_within(left.min(BALANCING), task, iterate)?;
+            left = left.saturating_sub(part.counters.products);
+            all.iterations += part.iterations;
+            all.counters += part.counters;
+            all.steps += part.steps;
+            all.fixed_point = part.fixed_point;
+            all.status = part.status;
+            let now = self.rows.imbalance(&iterate.lambda);
+            if part.status != StepStatus::IterationLimit || left == 0 || now > BALANCED * before {
+                return Ok(all);
+            }
+            before = now;
+        }
     }
 
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {

@@ -231,3 +231,27 @@ fn a_pull_beyond_friction_is_named() {
         assert!(text.contains("held neither by supports nor by contact"), "{text}");
     }
 }
+
+/// Squeezed between two walls, a block is held by as much friction as it is pressed, which only the step can tell. The
+/// fall-back ends where it does not come nearer to balance.
+#[test]
+fn a_block_pulled_out_of_a_clamp_is_not_held() {
+    let pulled = |traction: f64| {
+        let wall = |tag| Contact::rigid(tag).with_friction(Friction::coulomb(0.2));
+        let squeeze = wall(brick::Z_MAX).with_motion([0.0, 0.0, -1e-3], History::constant(1.0));
+        let scene = Scene::new(block([1.0; 3], [4; 3]), uniform(1e9, 0.3))
+            .with_contact(wall(brick::Z_MIN))
+            .with_contact(squeeze)
+            .with_load(Load::traction(brick::X_MAX, [traction, 0.0, 0.0]))
+            .with_boxes([2; 3]);
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("friction may hold it");
+        step(&mut simulation)
+    };
+    let held = pulled(3.5e5);
+    assert_certified(&held, "held");
+    // both walls press with this force
+    let normal: f64 = held.points.iter().map(|p| p.normal_force).sum::<f64>().abs();
+    let out = pulled(0.2 * 1.2 * normal);
+    assert_eq!(out.report.status, StepStatus::NotHeld);
+    assert!(out.report.fallback_products <= 4100, "{}", out.report.fallback_products);
+}

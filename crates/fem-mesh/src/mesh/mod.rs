@@ -24,6 +24,6 @@ pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 #[doc(hidden)]
 pub use curved::{EDGES, facet_shape};
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};
-pub(crate) use faces::{NONE, connected_sets};
+pub(crate) use faces::{FACES, NONE, connected_sets};
 pub(crate) use quadratic::quadratic_tets;
 pub(crate) use tet_mesh::{facet_area_vector, tag_list};

@@ -1,6 +1,7 @@
 //! The cut of a mesh that comes without one: connected parts of similar size, boxes where boxes are best.
 
 use signorini_fem_mesh::decomposition::{PartCount, even_parts};
+use signorini_fem_mesh::mesh::drop_unused_nodes;
 use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, TetMesh};
 
 fn brick(cells: [usize; 3]) -> TetMesh {
@@ -91,6 +92,32 @@ fn no_part_reaches_into_another_body_or_group() {
             seen.len()
         );
         Decomposition::from_parts(&mesh, &parts).expect("connected parts");
+    }
+}
+
+/// A bolt: two of its three parts would be slices of head and shank together, were they cut along the box.
+#[test]
+fn cuts_go_through_necks() {
+    let mesh = Brick::new([8.0, 8.0, 5.0], [8, 8, 5]).build().expect("brick");
+    let height = |tet: usize| mesh.tet_points(tet).iter().map(|p| p[2]).sum::<f64>() / 4.0;
+    let inside = |tet: &usize| {
+        let off = |d: usize| (mesh.tet_points(*tet).iter().map(|p| p[d]).sum::<f64>() / 4.0 - 4.0).abs();
+        height(*tet) > 3.0 || off(0).max(off(1)) < 2.0
+    };
+    let mut tets: Vec<[u32; 4]> = (0..mesh.tets().len())
+        .filter(inside)
+        .map(|tet| mesh.tets()[tet])
+        .collect();
+    let mut points = mesh.points().to_vec();
+    drop_unused_nodes(&mut points, &mut tets, &mut []);
+    let bolt = TetMesh::new(points, tets, Vec::new()).expect("a bolt");
+    for count in [3, 4] {
+        let parts = even(&bolt, count);
+        let shank = |tet: &usize| bolt.tet_points(*tet).iter().map(|p| p[2]).sum::<f64>() < 12.0;
+        let mut in_shank: Vec<u32> = (0..parts.len()).filter(shank).map(|tet| parts[tet]).collect();
+        in_shank.sort_unstable();
+        in_shank.dedup();
+        assert_eq!(in_shank.len(), 1, "{count} parts: {:?}", sizes(&parts));
     }
 }
 
