@@ -102,7 +102,7 @@ pub(crate) const GROWTH: f64 = 0.2;
 pub(crate) const ROW: f64 = 2e-8;
 /// Sweeps of the model of the coarse matrix that relax each subdomain by itself, and by how much: two copies of a node
 /// make the matrix up to twice its diagonal blocks.
-pub(crate) const SWEEPS: usize = 2;
+pub(crate) const SWEEPS: usize = 3;
 pub(crate) const RELAXED: f64 = 0.9;
 /// Equal regions of a coarse factor from which on they are solved together.
 pub(crate) const TOGETHER: usize = 3;

@@ -96,7 +96,8 @@ fn the_plan_counts_what_is_built() {
             .estimate
             .setup_bytes()
     };
-    let (two, one) = (many(scene(Friction::None)), scene(Friction::None).with_subdomains(100));
+    let all = || scene(Friction::coulomb(0.4));
+    let (two, one) = (many(all()), all().with_subdomains(100));
     let whole = |scene: &Scene| {
         let simulation = Simulation::new(scene.clone(), Settings::default()).expect("set-up");
         let report = simulation.tfeti().report().clone();
