@@ -9,7 +9,7 @@ use crate::report::Warning;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::Directions;
-use signorini_tfeti::internal::{Forecast, HELD, Rate};
+use signorini_tfeti::internal::{Forecast, HELD, Rate, forecast_levels};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes of a scene and the method chosen for it.
@@ -156,7 +156,7 @@ impl Plan {
         let touching = points.iter().copied().chain(&discrete.ties);
         let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes(&p)).collect();
         touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
-        let forecast = Forecast::new(
+        let mut forecast = Forecast::new(
             &scene.mesh,
             decomposition,
             &scene.materials,
@@ -164,6 +164,13 @@ impl Plan {
             &settings.inverse,
             |node| fixed.contains_key(&node) || touching.contains(&node),
         )?;
+        if plan.method == MethodKind::ActiveSet {
+            let nodes: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+            let (supported, rows) = (fixed.keys().copied(), plan.dual());
+            if let Some(levels) = forecast_levels(&forecast, nodes.into_iter(), supported, rows) {
+                (forecast.coarse_bytes, forecast.coarse_flops) = (levels.bytes, levels.flops);
+            }
+        }
         let vectors = match settings.method.kind() {
             MethodKind::Linear | MethodKind::ActiveSet => 16,
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
