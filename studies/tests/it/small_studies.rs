@@ -167,7 +167,7 @@ fn graded_quadratic_elements_reach_per_mille_and_per_cent() {
     assert!(rows[5].products < 150, "{rows:?}");
     let slope = |rows| order::slope(rows, |row| row.energy).expect("reference");
     let (equal, graded) = (slope(&rows[2..4]), slope(&rows[4..]));
-    assert!(equal < 1.0 && graded > equal + 0.3, "{equal} {graded}");
+    assert!(equal < 1.1 && graded > equal + 0.3, "{equal} {graded}");
 }
 
 /// 3,915 quadratic tetrahedra of the sizes that the estimate on a first mesh asks for; the limit is that of meshes of
