@@ -120,7 +120,11 @@ fn a_static_step_costs_hardly_more_than_a_linear_problem_twice() {
                 ..whole
             });
             assert!(m.complaint(Expect::Certified(1e-7)).is_none(), "{n}: {}", outcome(&m));
-            assert!(m.products <= most && m.fallbacks == 0, "{n}, {friction:?}: {}", m.products);
+            assert!(
+                m.products <= most && m.fallbacks == 0,
+                "{n}, {friction:?}: {}",
+                m.products
+            );
         }
     }
 }

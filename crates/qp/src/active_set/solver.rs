@@ -6,7 +6,8 @@
 //! the projector `P_W`, `W` marking the free components. The active set is left as soon as the estimated error has
 //! fallen by `forcing`; then `x - a g` tells which blocks are active next (a primal-dual active-set step), `x` is
 //! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
-//! next step of conjugate gradients, of the length of the last one.
+//! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
+//! this step leads over it.
 //!
 //! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
