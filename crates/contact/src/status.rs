@@ -44,8 +44,7 @@ impl StepStatus {
             }
             Self::NotHeld => "press the body more, take a larger coefficient, or hold it by a support",
             Self::NotCertified => {
-                "the parts of the certificate name the violated condition: take better shaped cells, Poisson's ratio \
-                 further from 1/2, smaller steps, or Method::paper()"
+                "take better shaped cells, Poisson's ratio further from 1/2, smaller steps, or Method::paper()"
             }
         }
     }
@@ -76,6 +75,8 @@ pub struct StepFailure {
     pub status: StepStatus,
     /// The largest relative violation of its certificate.
     pub certificate: f64,
+    /// The condition of the certificate that is violated so.
+    pub condition: &'static str,
 }
 
 impl fmt::Display for StepFailure {
@@ -85,10 +86,11 @@ impl fmt::Display for StepFailure {
             time,
             status,
             certificate,
+            condition,
         } = self;
         write!(
             f,
-            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}); {}",
+            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); {}",
             status.remedy()
         )
     }

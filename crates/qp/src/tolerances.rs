@@ -88,8 +88,15 @@ pub(crate) const OFF_EQUALITY: f64 = 0.03;
 
 /// Most steps: where more are needed, rounding has taken over or the set is not worth it.
 pub(crate) const MOST_STEPS: usize = 500;
-/// Part of the tolerance below which further steps buy nothing.
-pub(crate) const ENOUGH: f64 = 0.3;
+/// Part of the tolerance below which further steps buy nothing: the move after them brings some of it back.
+pub(crate) const ENOUGH: f64 = 0.6;
+/// Share of the free bounded components whose change, most of it one way, makes a set not worth it: one step leads over
+/// it to the next.
+pub(crate) const PASSING: f64 = 0.05;
+/// Constrained part over `|x|` below which sets change without an end: nothing is on its way then.
+pub(crate) const PASSING_PART: f64 = 0.01;
+/// Length of that step over the last one that was measured: of a fixed length, it must not magnify what is stiff.
+pub(crate) const PASSING_STEP: f64 = 0.9;
 /// `|x|` over its value at the start of a set from which on limits relative to it are set anew.
 pub(crate) const GROWN: f64 = 2.0;
 /// Decrease of the error that steps which round can make.

@@ -91,6 +91,7 @@ pub mod internal {
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
+    pub use crate::projector::forecast::{LevelsForecast, forecast_levels};
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
     pub use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};

@@ -91,11 +91,21 @@ pub(crate) const SPARSE: f64 = 0.1e-9;
 /// Most levels of cuts through coarse blocks that change, and fewest blocks worth a cut.
 pub(crate) const CUTS: usize = 4;
 pub(crate) const CUT: usize = 36;
+/// Subdomains from which on two levels may pay, and from which on a factor of the whole matrix that follows the contact
+/// rows is out of the question.
+pub(crate) const FEW: usize = 1000;
+pub(crate) const MANY: usize = 4000;
 /// Most subdomains of a cluster. What products grow by with clusters, and seconds of a product and what belongs to it a
 /// row.
 pub(crate) const CLUSTER: usize = 12;
-pub(crate) const GROWTH: f64 = 1.0;
+pub(crate) const GROWTH: f64 = 0.2;
 pub(crate) const ROW: f64 = 2e-8;
+/// Sweeps of the model of the coarse matrix that relax each subdomain by itself, and by how much: two copies of a node
+/// make the matrix up to twice its diagonal blocks.
+pub(crate) const SWEEPS: usize = 3;
+pub(crate) const RELAXED: f64 = 0.9;
+/// Equal regions of a coarse factor from which on they are solved together.
+pub(crate) const TOGETHER: usize = 3;
 /// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
 pub(crate) const PERIOD: u32 = 4;
 /// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.

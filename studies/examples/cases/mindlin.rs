@@ -5,8 +5,16 @@
 //! formulas are exact. With `R' = R/2`, `E' = E/2` and the normal force `P` the radius (half the width) of contact is
 //! `a`, `a^3 = 3 P R' / (4 E')` or, `P` a length, `a^2 = 4 P R' / (pi E')`. A tangential force `Q` leaves `c = a (1 -
 //! k)^(1/3)` or `a (1 - k)^(1/2)` that sticks, `k = Q/(mu P)`; after its reversal it is `k = dQ/(2 mu P)` with the
-//! change `dQ`. A cycle of the spheres loses `9 mu^2 P^2 S / (10 a) (1 - (1-k)^(5/3) - 5k/6 (1 + (1-k)^(2/3)))`, `S = 2
-//! (2 - nu) / G`. Half of both spheres is meshed, and a slab of the cylinders, matching, with linear elements.
+//! change `dQ`. A cycle of the spheres loses `9 mu^2 P^2 S / (10 a) (1 - (1-k)^(5/3) - 5k/6 (1 + (1-k)^(2/3)))`, `S =
+//! 2 (2 - nu) / G`. One of the cylinders loses `2 mu^2 P^2 / (pi E') (1 - m^2 + 2 m ln m)` a length, `m = 1 - k`:
+//! along the first loading the way of the far points grows by `2 / (pi E') (const - ln c)` times the force, and loops
+//! follow by Masing's rule; the constant loses nothing. Measured: bodies of 8 half widths of contact lose 3 % less
+//! than that, of 16 less than 0.5 % off.
+//!
+//! Half of both spheres is meshed, and a slab of the cylinders, matching, with linear elements. Radii are those of the
+//! tractions, from their mean square of distance: pressure over the contact, and the friction that slip would still
+//! add over what sticks, both go like `sqrt(1 - r^2/c^2)`. Areas of points that touch or stick jump by a ring of
+//! nodes.
 
 use super::meshes::graded;
 use super::{Failure, Finding, below, second, solve};
@@ -45,14 +53,15 @@ impl Shape {
         }
     }
 
-    /// Radius or half width of an area of the mesh, and how much of the forces the mesh has.
-    fn extent(self, area: f64) -> f64 {
+    /// Radius or half width of tractions like `sqrt(1 - r^2/c^2)` from their mean square of distance.
+    fn of_spread(self, square: f64) -> f64 {
         match self {
-            Self::Sphere => (2.0 * area / PI).sqrt(),
-            Self::Cylinder => 0.5 * area / THICK,
+            Self::Sphere => (2.5 * square).sqrt(),
+            Self::Cylinder => 2.0 * square.sqrt(),
         }
     }
 
+    /// How much of the forces the mesh has.
     fn share(self) -> f64 {
         match self {
             Self::Sphere => 0.5,
@@ -65,7 +74,7 @@ impl Shape {
         let part = 1.15 * CONTACT;
         let (size, across, layers) = match self {
             Self::Sphere => (4.0, near + far, near / 2 + far),
-            Self::Cylinder => (8.0 * CONTACT, 1, 2 * far),
+            Self::Cylinder => (16.0 * CONTACT, 1, 2 * far),
         };
         let along = graded([part, size], [near, far]);
         let deep = graded([part / near as f64, size], [1, layers]);
@@ -87,6 +96,18 @@ struct Step {
     touches: f64,
     sticks: f64,
     work: f64,
+    /// Traction times area, along the load, of each point.
+    friction: Vec<f64>,
+}
+
+/// Mean square of the distance from the middle, weighted.
+fn spread(points: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let [mut sum, mut moment] = [0.0; 2];
+    for (weight, square) in points {
+        sum += weight;
+        moment += weight * square;
+    }
+    moment / sum
 }
 
 /// Pressed in by so much, and moved to and fro by so much.
@@ -120,17 +141,34 @@ fn cycle(shape: Shape, [near, far]: [usize; 2], [sink, way]: [f64; 2]) -> Result
     }
     let mut steps: Vec<Step> = Vec::new();
     let run = solve(scene, Settings::default(), |result| {
-        let extent = |kind: fn(&PointState) -> bool| {
-            let points = result.points().iter().filter(|p| p.normal_force < 0.0 && kind(p));
-            shape.extent(points.map(|p| p.area).sum())
+        let points = result.points();
+        let square = |p: &PointState| {
+            let [x, y, _] = result.scene().mesh().points()[p.node as usize];
+            x * x + if shape == Shape::Sphere { y * y } else { 0.0 }
         };
+        let friction: Vec<f64> = points.iter().map(|p| p.friction_force[0]).collect();
+        // what the loads so far leave of friction that can be added: where it slips nothing
+        let (whole, before) = match steps.len() {
+            4.. => (2.0, Some(&steps[3].friction)),
+            _ => (1.0, None),
+        };
+        let left = |(k, p): (usize, &PointState)| {
+            let change = friction[k] - before.map_or(0.0, |before| before[k]);
+            (
+                (-whole * COEFFICIENT * p.normal_force - change.abs()).max(0.0),
+                square(p),
+            )
+        };
+        let touches = shape.of_spread(spread(points.iter().map(|p| (-p.normal_force, square(p)))));
+        let sticks = shape.of_spread(spread(points.iter().enumerate().map(left)));
         let s = result.summary();
         steps.push(Step {
             normal: s.normal_force / shape.share(),
             tangential: s.friction_force[0] / shape.share(),
-            touches: extent(|_| true),
-            sticks: extent(|p| p.state == ContactState::Stick),
+            touches,
+            sticks,
             work: s.friction_work / shape.share(),
+            friction,
         });
     })?;
     let (case, what) = match shape {
@@ -173,23 +211,32 @@ fn cycle(shape: Shape, [near, far]: [usize; 2], [sink, way]: [f64; 2]) -> Result
         let target = shape.radius(normal) * shape.sticks(share);
         all.push(of(format!("{case}, {when}"), what[1], sticks, target, 1e-2));
     }
-    if shape == Shape::Sphere {
-        let (normal, q) = (steps[7].normal, steps[7].tangential.abs());
-        let (k, compliance) = (q / (COEFFICIENT * normal), 2.0 * 2.0 / (YOUNG / 2.0));
-        let lost = 1.0 - (1.0 - k).powf(5.0 / 3.0) - 5.0 * k / 6.0 * (1.0 + (1.0 - k).powf(2.0 / 3.0));
-        let target = 0.9 * (COEFFICIENT * normal).powi(2) * compliance / shape.radius(normal) * lost;
-        let work = steps[4..8].iter().map(|s| s.work).sum();
-        all.push(of(case.to_owned(), "energy lost in a cycle", work, target, 2e-2));
-    }
+    let (normal, k) = (
+        steps[7].normal,
+        steps[7].tangential.abs() / (COEFFICIENT * steps[7].normal),
+    );
+    let full = COEFFICIENT * normal;
+    let target = match shape {
+        Shape::Sphere => {
+            let lost = 1.0 - (1.0 - k).powf(5.0 / 3.0) - 5.0 * k / 6.0 * (1.0 + (1.0 - k).powf(2.0 / 3.0));
+            0.9 * full.powi(2) * 2.0 * 2.0 / (YOUNG / 2.0) / shape.radius(normal) * lost
+        }
+        Shape::Cylinder => {
+            let m = 1.0 - k;
+            2.0 * full.powi(2) / (PI * YOUNG / 2.0) * (1.0 - m * m + 2.0 * m * m.ln())
+        }
+    };
+    let work = steps[4..8].iter().map(|s| s.work).sum();
+    all.push(of(case.to_owned(), "energy lost in a cycle", work, target, 2e-2));
     Ok(all)
 }
 
 /// Both; in short the spheres.
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
-    let cells = if short { [6, 3] } else { [12, 5] };
+    let cells = if short { [6, 3] } else { [18, 6] };
     let mut all = cycle(Shape::Sphere, cells, [0.086, 0.016])?;
     if !short {
-        all.extend(cycle(Shape::Cylinder, [40, 12], [0.16, 0.03])?);
+        all.extend(cycle(Shape::Cylinder, [20, 15], [0.16, 0.03])?);
     }
     Ok(all)
 }

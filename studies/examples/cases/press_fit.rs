@@ -22,7 +22,7 @@ fn quarter(inner: f64, outer: f64, cells: [usize; 3]) -> Result<TetMesh, Failure
 
 /// Pressure and, sliding, the axial force.
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
-    let n = if short { 1 } else { 3 };
+    let n = if short { 1 } else { 5 };
     let [a, b, c] = RADII;
     let (young, radial, coefficient) = (210_000.0, 0.0025, 0.1);
     let shaft = quarter(a, b, [3 * n, 7 * n, 2])?;

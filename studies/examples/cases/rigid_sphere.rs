@@ -20,7 +20,7 @@ const ANGLE: f64 = 15.0;
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
     let ([near, far], ratios): (_, &[f64]) = match short {
         true => ([4, 8], &[0.3, 0.4999]),
-        false => ([6, 12], &[0.3, 0.49, 0.499, 0.4999]),
+        false => ([8, 12], &[0.3, 0.49, 0.499, 0.4999]),
     };
     let angle = ANGLE.to_radians();
     let places = graded([1.4, SIZE], [near, far]);

@@ -22,10 +22,14 @@ fn short_cases_come_near_their_targets() {
         let most = match finding.case.split([',', ' ']).next() {
             Some("patch") => 1e-9,
             Some("pulled" | "wedge") => 1e-9,
+            Some("pairs") => 0.3,
+            // seconds over seconds
+            Some("search") => 1.0,
+            Some("plate") => 5e-3,
             Some("press") => 0.1,
             Some("crack" | "punch") => 0.1,
             Some("orthotropic") => 1e-6,
-            Some("Cattaneo") => 0.05,
+            Some("Cattaneo") => 0.04,
             _ => 0.25,
         };
         assert!(finding.error() < most, "{finding:?}");

@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use signorini::prelude::*;
-use signorini_studies::brick::Block;
+use signorini_studies::brick::{Block, Loading};
 
 use crate::stability::case::{Case, Expect, Setup, ToSetup};
 use crate::stability::cases_restart::{dice, garble};
@@ -102,6 +102,26 @@ fn sliding_everywhere_does_not_grow_with_the_mesh() {
             4 * fine.max(finest) <= 5 * coarse,
             "{coarse} {fine} {finest} at {coefficient}, {aside}"
         );
+    }
+}
+
+/// Everything at once, from nothing: a linear problem takes 12 products. A set on the way to the contact takes one.
+#[test]
+fn a_static_step_costs_hardly_more_than_a_linear_problem_twice() {
+    for n in 1..=5 {
+        for (friction, most) in [(Friction::coulomb(0.2), 28), (Friction::None, 24)] {
+            let whole = Block::benchmark(n, Loading::B);
+            let half = |traction: [f64; 3]| traction.map(|t| 0.5 * t);
+            let m = run_block(Block {
+                floor: Some(friction.clone()),
+                top: half(whole.top),
+                end: half(whole.end),
+                steps: 0,
+                ..whole
+            });
+            assert!(m.complaint(Expect::Certified(1e-7)).is_none(), "{n}: {}", outcome(&m));
+            assert!(m.products <= most && m.fallbacks == 0, "{n}, {friction:?}: {}", m.products);
+        }
     }
 }
 

@@ -51,6 +51,11 @@ pub(super) enum Partners {
 }
 
 impl Paired {
+    /// Whether the meshes of its sides do not match.
+    pub(super) fn is_apart(&self) -> bool {
+        matches!(self.partners, Partners::Mortar(_))
+    }
+
     /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one: there they
     /// are fewer, their rows farther from depending on one another, and their pressures smoother.
     pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact) -> Result<Self, ContactError> {

@@ -14,6 +14,7 @@ use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
 use std::collections::{HashMap, HashSet};
+use std::time::{Duration, Instant};
 
 /// A scene lowered to nodes.
 #[derive(Debug)]
@@ -38,6 +39,10 @@ pub(crate) struct DiscreteScene {
     pub(crate) poses: Vec<Vec<Pose>>,
     /// What of a gap may be rounding, m.
     pub(crate) rounding: f64,
+    /// Contacts whose meshes do not match, and whether the other side than the scene names first has the points.
+    pub(crate) apart: Vec<(usize, bool)>,
+    /// How long it took to find the sides of the contacts.
+    pub(crate) search: Duration,
 }
 
 impl DiscreteScene {
@@ -49,8 +54,12 @@ impl DiscreteScene {
         let supports = Supports::new(scene)?;
         let springs = Springs::new(scene, &supports)?;
         let contacts = scene.contacts.iter().enumerate();
+        let started = Instant::now();
         let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
+        let search = started.elapsed();
+        let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
+        let apart = mortar.map(|(index, p)| (index, p.swapped)).collect();
         let rounding = rounding(&scene.mesh);
         let mut conditions = conditions(scene, &paired, rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
@@ -97,6 +106,8 @@ impl DiscreteScene {
             loads,
             poses,
             rounding,
+            apart,
+            search,
         })
     }
 

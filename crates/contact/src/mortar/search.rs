@@ -85,11 +85,8 @@ pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) ->
             .filter(|&k| out[k].is_none())
             .filter_map(|k| {
                 let plane = planes[k].as_ref()?;
-                let mut pieces = other.pieces(plane, reach);
-                if !pieces.is_empty() {
-                    // a steep facet may go on beyond
-                    pieces = other.pieces(plane, reach + FARTHER * plane.size);
-                }
+                // a steep facet may go on beyond
+                let pieces = other.pieces(plane, [reach, reach + FARTHER * plane.size]);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
                 let cover = Cover::new(&plane.corners, triangles[k].quadratic().as_ref(), &pieces);
@@ -179,18 +176,22 @@ impl OtherSide {
         norm(sub(high, low))
     }
 
-    /// The parts of facets that lie over a facet within a distance, with their signed distance, each place once.
-    fn pieces(&self, plane: &Plane, reach: f64) -> Vec<(Piece, f64)> {
+    /// The parts of facets that lie over a facet within the distance `far`, with their signed distance, each place
+    /// once; none where none is within `near`.
+    fn pieces(&self, plane: &Plane, [near, far]: [f64; 2]) -> Vec<(Piece, f64)> {
         let own = plane.corners.map(|c| plane.space(c));
-        let ways = [reach, -reach].map(|by| scale(by, plane.frame.normal));
+        let ways = [far, -far].map(|by| scale(by, plane.frame.normal));
         let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| own.map(|c| add(c, way))).collect();
         let [low, high] = extent(&swept);
-        let near = self
+        let boxes = self
             .tree
             .locate_in_envelope_intersecting(&AABB::from_corners(low, high));
-        let mut numbers: Vec<u32> = near.map(|found| found.data).collect();
+        let mut numbers: Vec<u32> = boxes.map(|found| found.data).collect();
         numbers.sort_unstable();
-        let mut found: Vec<(Piece, f64)> = numbers.iter().filter_map(|&k| self.piece(plane, k, reach)).collect();
+        let mut found: Vec<(Piece, f64)> = numbers.iter().filter_map(|&k| self.piece(plane, k, far)).collect();
+        if found.iter().all(|(_, distance)| distance.abs() > near) {
+            return Vec::new();
+        }
         // of several layers the nearest
         let whole = plane.size * plane.size;
         if found.iter().map(|(piece, _)| piece.area).sum::<f64>() <= whole * (1.0 + OVERLAP) {

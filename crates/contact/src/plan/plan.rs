@@ -9,7 +9,7 @@ use crate::report::Warning;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::Directions;
-use signorini_tfeti::internal::{Forecast, HELD, Rate};
+use signorini_tfeti::internal::{Forecast, HELD, Rate, forecast_levels};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes of a scene and the method chosen for it.
@@ -31,6 +31,9 @@ pub struct Plan {
     /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the
     /// partner. `None` without points.
     pub gaps: Option<[f64; 2]>,
+    /// Contacts whose meshes do not match, and whether the side that the scene names second has their points: the one
+    /// with the larger facets has.
+    pub apart: Vec<(usize, bool)>,
     /// Rows of `N`: contact points that can touch, nodes in edges and corners once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
     pub normal_rows: usize,
@@ -129,6 +132,7 @@ impl Plan {
             subdomains,
             primal,
             gaps: points.iter().fold(None, gap),
+            apart: discrete.apart.clone(),
             normal_rows: points.len(),
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
@@ -152,7 +156,7 @@ impl Plan {
         let touching = points.iter().copied().chain(&discrete.ties);
         let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes(&p)).collect();
         touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
-        let forecast = Forecast::new(
+        let mut forecast = Forecast::new(
             &scene.mesh,
             decomposition,
             &scene.materials,
@@ -160,6 +164,13 @@ impl Plan {
             &settings.inverse,
             |node| fixed.contains_key(&node) || touching.contains(&node),
         )?;
+        if plan.method == MethodKind::ActiveSet {
+            let nodes: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+            let (supported, rows) = (fixed.keys().copied(), plan.dual());
+            if let Some(levels) = forecast_levels(&forecast, nodes.into_iter(), supported, rows) {
+                (forecast.coarse_bytes, forecast.coarse_flops) = (levels.bytes, levels.flops);
+            }
+        }
         let vectors = match settings.method.kind() {
             MethodKind::Linear | MethodKind::ActiveSet => 16,
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,

@@ -41,6 +41,13 @@ impl fmt::Display for Plan {
             line("ties", format!("{} rows{moving}", self.tied_rows))?;
         }
         line("contact", self.contact_text())?;
+        for (contact, second) in &self.apart {
+            let side = if *second { "second" } else { "first" };
+            line(
+                "",
+                format!("contact {contact}: meshes do not match, points on its {side} side"),
+            )?;
+        }
         line("friction", self.friction_text())?;
         line("history", self.history_text())?;
         line("dual", format!("{} rows, coarse {}", self.dual(), self.coarse))?;

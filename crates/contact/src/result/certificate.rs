@@ -74,7 +74,13 @@ impl Certificate {
     /// The largest relative violation; not a number if one is none.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        worst(self.parts().iter().map(|(_, v)| v.relative()))
+        self.worst().1.relative()
+    }
+
+    /// The condition that is violated most, relatively; one whose violation is not a number before all others.
+    #[must_use]
+    pub fn worst(&self) -> (&'static str, Violation) {
+        worst(self.parts())
     }
 
     /// Name and violation of every condition.
@@ -99,15 +105,17 @@ fn is_worse(new: f64, old: f64) -> bool {
 
 /// Largest relative violation of the contact conditions; not a number if one is none.
 pub(crate) fn contact_violation(certificate: &Certificate) -> f64 {
-    let c = certificate;
-    let parts = [c.gap, c.sign, c.complementarity, c.cone, c.direction];
-    worst(parts.iter().map(Violation::relative))
+    let [_equilibrium, _continuity, contact @ ..] = certificate.parts();
+    worst(contact).1.relative()
 }
 
-/// The largest violation, at least 0; `f64::max` would hide what is not a number.
-fn worst(violations: impl IntoIterator<Item = f64>) -> f64 {
-    let larger = |old, new| if is_worse(new, old) { new } else { old };
-    violations.into_iter().fold(0.0, larger)
+/// The part with the largest relative violation; `f64::max` would hide what is not a number.
+fn worst<const N: usize>(parts: [(&'static str, Violation); N]) -> (&'static str, Violation) {
+    let worse = |old: (_, Violation), new: (_, Violation)| match is_worse(new.1.relative(), old.1.relative()) {
+        true => new,
+        false => old,
+    };
+    parts.into_iter().reduce(worse).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -121,6 +129,7 @@ mod tests {
         certificate.cone.reference = 4.0;
         certificate.equilibrium.value = 1.0;
         assert_eq!(contact_violation(&certificate), 0.25);
+        assert_eq!(certificate.worst(), ("equilibrium", certificate.equilibrium));
         certificate.gap.value = f64::NAN;
         assert!(contact_violation(&certificate).is_nan());
     }

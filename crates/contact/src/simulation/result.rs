@@ -78,6 +78,7 @@ impl StepResult {
             time: self.time(),
             status: self.report.status,
             certificate: self.recovered.certificate.largest(),
+            condition: self.recovered.certificate.worst().0,
         })
     }
 

@@ -150,6 +150,12 @@ impl Simulation {
         self.setup
     }
 
+    /// Wall-clock time, within the set-up, of the search for what the sides of the contacts face.
+    #[must_use]
+    pub fn search_time(&self) -> Duration {
+        self.model.discrete.search
+    }
+
     /// Counters of all steps so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {

@@ -197,3 +197,22 @@ fn an_accuracy_asked_for_is_kept_over_many_steps() {
         assert!(worst < 1.0 && likely <= 1.0 + 1e-12, "{accuracy:?}");
     }
 }
+
+/// Where no old slip rate magnifies what a step inherits, the likely error is above the true one in every step.
+#[test]
+fn the_likely_error_is_above_the_true_one() {
+    let scene = loaded_brick(block([3.0, 1.0, 1.0], [15, 5, 5]), up_down_up())
+        .with_contact(foundation(Friction::coulomb(0.2)))
+        .with_boxes([3, 1, 1])
+        .with_analysis(paper_steps(1.0, 50));
+    let exact = rest(&mut Simulation::new(scene.clone(), at(1e-10)).expect("set-up"));
+    for target in [1e-4, 1e-6] {
+        let settings = Settings::default().with_accuracy(Accuracy::Relative(target));
+        let results = rest(&mut Simulation::new(scene.clone(), settings).expect("set-up"));
+        for (k, (found, exact)) in results.iter().zip(&exact).enumerate() {
+            let likely = found.report.accuracy.expect("a report").accumulated.likely();
+            let truth = relative_distance(&scene, &found.displacement, &exact.displacement);
+            assert!(truth <= likely, "step {k}: {truth:e} above {likely:e}");
+        }
+    }
+}

@@ -253,5 +253,6 @@ fn a_block_pulled_out_of_a_clamp_is_not_held() {
     let normal: f64 = held.points.iter().map(|p| p.normal_force).sum::<f64>().abs();
     let out = pulled(0.2 * 1.2 * normal);
     assert_eq!(out.report.status, StepStatus::NotHeld);
+    assert_eq!(out.certificate.worst().0, "equilibrium");
     assert!(out.report.fallback_products <= 6100, "{}", out.report.fallback_products);
 }

@@ -57,13 +57,13 @@ fn passed(asked: &[f64]) -> Vec<f64> {
 /// A run with halved steps is, bit for bit, that of a user who gave its times, and says what it did.
 #[test]
 fn halved_steps_are_those_of_the_times_between() {
-    let settings = short_of(17).with_extrapolation(false);
+    let settings = short_of(14).with_extrapolation(false);
     let whole = scene(&WHOLE, DifferenceFormula::BACKWARD_EULER);
     let mut failing = Simulation::new(whole, settings.clone()).expect("set-up");
     assert!(!step(&mut failing).report.status.converged());
 
     let (scene_noting, asked) = noting(DifferenceFormula::BACKWARD_EULER);
-    let mut halved = Simulation::new(scene_noting, settings.clone().with_step_halving(4)).expect("set-up");
+    let mut halved = Simulation::new(scene_noting, settings.clone().with_step_halving(6)).expect("set-up");
     asked.lock().expect("times").clear();
     let results = rest(&mut halved);
     let times = passed(&asked.lock().expect("times"));
@@ -99,7 +99,7 @@ fn halved_steps_are_those_of_the_times_between() {
 fn nothing_is_halved_unless_asked_for_or_needed() {
     let easy = || Simulation::new(scene(&WHOLE, DifferenceFormula::PAPER), Settings::default());
     let hard = |most| {
-        let settings = short_of(17).with_step_halving(most);
+        let settings = short_of(14).with_step_halving(most);
         Simulation::new(scene(&WHOLE, DifferenceFormula::PAPER), settings).expect("set-up")
     };
     let mut plain = easy().expect("set-up");
@@ -127,7 +127,7 @@ fn nothing_is_halved_unless_asked_for_or_needed() {
 /// what short steps differ from one another.
 #[test]
 fn unequal_increments_keep_the_papers_formula() {
-    let settings = short_of(17).with_step_halving(4);
+    let settings = short_of(14).with_step_halving(4);
     let mut halved = Simulation::new(scene(&WHOLE, DifferenceFormula::PAPER), settings).expect("set-up");
     let results = rest(&mut halved);
     assert!(results[0].report.counters.between >= 3);
@@ -174,7 +174,7 @@ fn a_resumed_run_goes_on_with_the_same_increments() {
 fn a_history_without_a_value_between_is_named_and_changes_nothing() {
     let holes = History::function(|time| if time.fract() == 0.0 { 0.0 } else { f64::NAN });
     let scene = scene(&WHOLE, DifferenceFormula::PAPER).with_load(Load::body([1.0, 0.0, 0.0]).with_history(holes));
-    let mut simulation = Simulation::new(scene, short_of(17).with_step_halving(2)).expect("set-up");
+    let mut simulation = Simulation::new(scene, short_of(14).with_step_halving(2)).expect("set-up");
     let before = simulation.state().clone();
     let error = simulation.step().expect_err("no value");
     assert!(
@@ -194,7 +194,7 @@ fn a_history_without_a_value_between_is_named_and_changes_nothing() {
 /// One step alone has a history, too, once it is halved.
 #[test]
 fn a_single_step_is_halved() {
-    let settings = short_of(17).with_step_halving(4);
+    let settings = short_of(14).with_step_halving(4);
     let mut simulation = Simulation::new(scene(&[1.0], DifferenceFormula::PAPER), settings).expect("set-up");
     let result = step(&mut simulation);
     assert_certified(&result, "halved");

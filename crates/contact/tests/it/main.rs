@@ -16,6 +16,7 @@ mod free_bodies;
 mod gap_history;
 mod halving;
 mod invariance;
+mod levels;
 mod manufactured;
 mod methods;
 mod mortar;

@@ -400,3 +400,39 @@ fn planes_of_symmetry_cost_no_products() {
         assert!(10 * symmetric <= 13 * free, "{tied}: {free}, {symmetric}");
     }
 }
+
+/// Sides that do not face each other, a tag on both sides, bodies inside each other: refused as where meshes match. The
+/// plan says which side has the points: that with the larger facets, or the first of those that are alike.
+#[test]
+fn bad_pairs_are_named_and_the_plan_tells_whose_points_they_are() {
+    let scene = |lower: usize, upper: usize, contact: Contact| {
+        Scene::new(blocks([lower; 3], [upper; 3], 1.0), uniform(YOUNG, POISSON))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_contact(contact)
+    };
+    let joint = || Contact::between(second(brick::Z_MIN), brick::Z_MAX);
+    let refused = |contact| Plan::new(&scene(3, 2, contact), &Settings::default()).expect_err("refused");
+    let error = refused(Contact::between(second(brick::Z_MIN), brick::X_MIN));
+    assert!(matches!(error, ContactError::NoPartner { contact: 0, .. }), "{error}");
+    let error = refused(joint().with_partner(second(brick::Z_MIN)));
+    assert!(matches!(error, ContactError::SameSide { contact: 0, .. }), "{error}");
+    let error = refused(Contact::between(second(brick::Z_MAX), brick::Z_MIN));
+    let ContactError::Overlap {
+        node, partner, depth, ..
+    } = error
+    else {
+        panic!("{error}")
+    };
+    let mesh = blocks([3; 3], [2; 3], 1.0);
+    let [above, below] = [node, partner].map(|n| mesh.points()[n as usize][2]);
+    assert!(
+        (above - below - 2.0).abs() < 1e-9 && (depth - 2.0).abs() < 1e-9,
+        "{above} {below} {depth}"
+    );
+    for (lower, upper, apart) in [(2, 2, vec![]), (3, 2, vec![(0, false)]), (2, 3, vec![(0, true)])] {
+        let plan = Plan::new(&scene(lower, upper, joint()), &Settings::default()).expect("a plan");
+        assert_eq!(plan.apart, apart);
+        let said = plan.to_string().contains("meshes do not match, points on its");
+        assert_eq!(said, !apart.is_empty(), "{plan}");
+    }
+}

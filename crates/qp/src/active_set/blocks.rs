@@ -45,6 +45,8 @@ pub(crate) struct ActiveSet {
     pub(crate) near: bool,
     /// Bounded components that changed between free and active in the last [`classify`](Self::classify).
     pub(crate) changed: usize,
+    /// Those of them that are free now.
+    pub(crate) freed: usize,
     /// Bounded components that are free.
     pub(crate) free_bounds: usize,
 }
@@ -62,6 +64,7 @@ impl ActiveSet {
         self.blocked.clear();
         self.foreseen.clear();
         self.changed = bounds;
+        self.freed = 0;
         self.free_bounds = 0;
     }
 

@@ -16,7 +16,7 @@
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
-use crate::tolerances::{ENOUGH, GROWN, MOST_STEPS, NEGATIVE_CURVATURE, ROUNDED_STEPS};
+use crate::tolerances::{ENOUGH, GROWN, MOST_STEPS, NEGATIVE_CURVATURE, PASSING, PASSING_STEP, ROUNDED_STEPS};
 use crate::vector;
 
 use super::iterate::{Iterate, Lengths, natural_map};
@@ -65,6 +65,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
                 break;
             };
             let length = rho / curvature;
+            self.work.length = length;
             self.advance(length, coupled);
             let next = self.precondition();
             // a direction that is coupled or rounded is kept conjugate to the last one
@@ -99,6 +100,20 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         vector::norm(self.x) <= GROWN * goal.size
             && !work.coupling.follows(self.set, self.x)
             && work.active.stays(self.set, self.x, &map)
+    }
+
+    /// Whether so much of the active set has changed, and one way, that its solution tells little.
+    pub(crate) fn is_on_the_way(&self) -> bool {
+        let (active, first) = (&self.work.active, self.report.active_sets == 0);
+        let many = (PASSING * active.free_bounds as f64).max(2.0);
+        let one_way = 2 * (2 * active.freed).abs_diff(active.changed) >= active.changed;
+        !first && !self.work.coupling.on && active.changed as f64 > many && one_way
+    }
+
+    /// Passes over a set on the way: the next step is the first one, of about the last length.
+    pub(crate) fn pass(&mut self) -> f64 {
+        self.first_direction();
+        PASSING_STEP * self.work.length
     }
 
     /// `p = -z`.

@@ -48,7 +48,7 @@ impl ActiveSet {
         let near = *near;
         let bounds = free.len();
         let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
-        let (mut changed, mut free_bounds) = (0, 0);
+        let (mut changed, mut freed, mut free_bounds) = (0, 0, 0);
         for_bounds(set, |i, k, lo, hi| {
             let s = map.of(x, i);
             // a component is active only if it also is at its bound
@@ -56,6 +56,7 @@ impl ActiveSet {
             let active =
                 lo >= hi || (x[i] <= lo && agrees(s <= lo)) || (x[i] >= hi && agrees(s >= hi)) || (near && stays(k));
             changed += usize::from(free[k] == active);
+            freed += usize::from(!free[k] && !active);
             free[k] = !active;
             free_bounds += usize::from(!active);
         });
@@ -71,6 +72,7 @@ impl ActiveSet {
         });
         foreseen.clear();
         self.changed = changed;
+        self.freed = freed;
         self.free_bounds = free_bounds;
     }
 
@@ -294,11 +296,12 @@ mod tests {
                 let mut own = active_set(set, &[blocked], near);
                 own.classify(set, &[x], map);
                 assert_eq!(own.free, [free], "{what}");
-                let counts = (usize::from(free), usize::from(free));
-                assert_eq!((own.changed, own.free_bounds), counts, "{what}");
+                let count = usize::from(free);
+                let counts = |own: &ActiveSet| [own.changed, own.freed, own.free_bounds];
+                assert_eq!(counts(&own), [count; 3], "{what}");
                 // again: nothing changes
                 own.classify(set, &[x], map);
-                assert_eq!((own.changed, own.free_bounds), (0, counts.1), "{what}");
+                assert_eq!(counts(&own), [0, 0, count], "{what}");
             });
         }
         with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {

@@ -6,7 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PRESSED, PROGRESS, SHRUNK, SINK_ROUNDS, SMALL_PART,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PASSING_PART, PRESSED, PROGRESS, SHRUNK, SINK_ROUNDS,
+    SMALL_PART,
 };
 use crate::vector;
 
@@ -75,9 +76,9 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     peak: f64,
     pub(crate) moved: LastMove,
     pub(crate) progress: Progress,
-    /// Estimated errors when the last set was left, and that of the constrained part when it was entered.
+    /// Estimated errors when the last set was left, and when it was entered.
     left: Lengths,
-    first_error: f64,
+    first_error: Lengths,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -95,6 +96,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let constrained = set.constrained();
         work.resize(constrained);
         work.coupling.start(set, constrained);
+        work.length = 0.0;
         work.active.resize(set);
         Self {
             shape: set.shape().collect(),
@@ -116,7 +118,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 waited: 0,
             },
             left: Lengths::INFINITE,
-            first_error: f64::INFINITY,
+            first_error: Lengths::INFINITE,
             safeguard: None,
             at: Iterate {
                 problem,
@@ -373,7 +375,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             forcing: at
                 .work
                 .coupling
-                .forcing(self.forcing, self.moved.jump, self.first_error),
+                .forcing(self.forcing, self.moved.jump, self.first_error.constrained),
             // of an error in other blocks than before the last move tells nothing
             expected: match settled {
                 true => self.left.zip(self.left, |left, _| expected(left)),
@@ -385,8 +387,15 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             step: self.settings.natural_step,
             size: place.x_norm.max(self.settings.error_floor),
         };
-        self.first_error = place.errors.constrained;
-        let length = at.conjugate_gradients(place.rho, &goal)?;
+        let falls = place.errors.all < self.first_error.all;
+        self.first_error = place.errors;
+        let matters = place.limits.constrained > PASSING_PART * place.limits.all;
+        let passes = steady && falls && matters && self.settings.joint_step_fraction > 0.0 && at.is_on_the_way();
+        let length = if passes {
+            at.pass()
+        } else {
+            at.conjugate_gradients(place.rho, &goal)?
+        };
         self.moved.drifted = at.projector.rounds_steps();
         self.left = at.errors();
         at.report.active_sets += 1;

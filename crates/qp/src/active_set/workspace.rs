@@ -28,6 +28,8 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) t: Vec<f64>,
     pub(crate) active: ActiveSet,
     pub(crate) coupling: Coupling,
+    /// Length of the last step of conjugate gradients.
+    pub(crate) length: f64,
 }
 
 impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
@@ -51,6 +53,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
             t: v(),
             active: ActiveSet::default(),
             coupling: Coupling::default(),
+            length: 0.0,
         }
     }
 

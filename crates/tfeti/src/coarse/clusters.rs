@@ -1,14 +1,13 @@
 //! Clusters of about eight subdomains that move as one: a small model of `G W G^T`.
 
-use crate::coarse::matrix::CoarseMatrix;
+use crate::coarse::matrix::{Block, CoarseMatrix};
 use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::{CLUSTER, LAYER};
+use crate::tolerances::{CLUSTER, LAYER, TRANSLATE};
 use signorini_fem_mesh::vec3::sub;
-
-type Block = [[f64; 6]; 6];
+use std::collections::{BTreeMap, HashMap};
 
 /// Which subdomains move together, and how.
 #[derive(Debug)]
@@ -20,16 +19,10 @@ pub(crate) struct Clusters {
 }
 
 impl Clusters {
-    /// Clusters of these subdomains, each within one rigid part.
-    pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains) -> Self {
+    /// Clusters of these subdomains, each within one rigid part; in a `grid` they are alike.
+    pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains, grid: Option<&[[u32; 3]]>) -> Self {
         let (at, parts) = (mobility.centres(), mobility.part_of());
-        let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
-        let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
-        (0_u32..)
-            .zip(parts)
-            .for_each(|(s, &part)| groups[part as usize].push(s));
-        let mut members: Vec<Vec<u32>> = Vec::new();
-        groups.into_iter().for_each(|group| halve(group, at, &mut members));
+        let members = members(parts, at, grid);
         let mut of = vec![0; at.len()];
         for (k, list) in members.iter().enumerate() {
             list.iter().for_each(|&s| of[s as usize] = k as u32);
@@ -42,11 +35,14 @@ impl Clusters {
             maps: Vec::new(),
             centres: members.iter().map(centre).collect(),
         };
+        // the same for translates, bit for bit
+        let mut known: HashMap<(usize, [i64; 3]), Block> = HashMap::new();
         let each = out.of.iter().enumerate();
         out.maps = each
             .map(|(s, &cluster)| {
                 let arm = sub(at[s], out.centres[cluster as usize]).map(|d| d / length);
-                rigid_map(subdomains.kernel(s), &arm, length)
+                let key = (subdomains.class(s), arm.map(|a| (a / TRANSLATE).round() as i64));
+                *(known.entry(key)).or_insert_with(|| rigid_map(subdomains.kernel(s), &arm, length))
             })
             .collect();
         out
@@ -96,31 +92,35 @@ impl Clusters {
 
     /// The matrix of the clusters for these `values` of that of the subdomains.
     pub(crate) fn matrix(&self, fine: &CoarseMatrix, values: &[f64]) -> (CoarseMatrix, Vec<f64>) {
-        let mut lower: Vec<Vec<u32>> = (0..self.count() as u32).map(|c| vec![c]).collect();
-        fine.for_blocks(values, |a, b, _| {
-            let (a, b) = (self.of[a as usize], self.of[b as usize]);
-            lower[a.min(b) as usize].push(a.max(b));
-        });
-        lower.iter_mut().for_each(|list| {
-            list.sort_unstable();
-            list.dedup();
-        });
-        let columns = lower.into_iter().map(|list| {
-            let values = vec![0.0; 36 * list.len()];
-            (list, values)
-        });
-        let matrix = CoarseMatrix::of_columns(columns);
-        let mut sums = vec![0.0; matrix.pattern().values.len()];
-        fine.for_blocks(values, |a, b, block| {
-            let [p, q] = [a, b].map(|s| self.of[s as usize]);
-            let both = times(&self.maps[a as usize], block, &self.maps[b as usize]);
-            matrix.add_block(p, q, &both, &mut sums);
-            if p == q && a != b {
-                matrix.add_block(p, p, &transposed(&both), &mut sums);
-            }
-        });
-        (matrix, sums)
+        let block = |a: u32, b: u32, block: &Block| times(&self.maps[a as usize], block, &self.maps[b as usize]);
+        fine.joined(values, self.count(), |s| Some(self.of[s as usize]), block)
     }
+}
+
+/// The subdomains of each cluster.
+pub(crate) fn members(parts: &[u32], at: &[[f64; 3]], grid: Option<&[[u32; 3]]>) -> Vec<Vec<u32>> {
+    let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
+    let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
+    (0_u32..)
+        .zip(parts)
+        .for_each(|(s, &part)| groups[part as usize].push(s));
+    let mut out: Vec<Vec<u32>> = Vec::new();
+    for group in groups {
+        match grid {
+            Some(grid) => boxes(&group, grid, &mut out),
+            None => halve(group, at, &mut out),
+        }
+    }
+    out
+}
+
+/// Two subdomains of a grid along each edge.
+fn boxes(group: &[u32], grid: &[[u32; 3]], out: &mut Vec<Vec<u32>>) {
+    let mut all: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
+    for &s in group {
+        all.entry(grid[s as usize].map(|layer| layer / 2)).or_default().push(s);
+    }
+    out.extend(all.into_values());
 }
 
 /// Halves a group along its longest extent, between layers, until each part is a cluster.
@@ -162,10 +162,6 @@ fn add_restricted(map: &Block, y: &[f64; 6], sum: &mut [f64; 6]) {
     for (row, y) in map.iter().zip(y) {
         (0..6).for_each(|j| sum[j] += row[j] * y);
     }
-}
-
-fn transposed(a: &Block) -> Block {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
 /// `a^T b c`.

@@ -20,6 +20,13 @@ pub(crate) struct CoarseMatrix {
 
 type Modes = [[f64; 6]; 3];
 
+/// Six rows of six.
+pub(crate) type Block = [[f64; 6]; 6];
+
+pub(crate) fn transposed(a: &Block) -> Block {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+}
+
 /// Rows of `R` at all nodes of each class.
 pub(crate) struct ModeTable<'a> {
     tables: Vec<Vec<Modes>>,
@@ -170,6 +177,44 @@ impl CoarseMatrix {
                 each(i, j as u32, &std::array::from_fn(|r| std::array::from_fn(|c| at(r, c))));
             }
         }
+    }
+
+    /// A matrix of `count` parts to which the subdomains belong, or of which they are none, with the sums of what `block`
+    /// makes of the blocks of a matrix with these values.
+    pub(crate) fn joined(
+        &self,
+        values: &[f64],
+        count: usize,
+        part: impl Fn(u32) -> Option<u32>,
+        block: impl Fn(u32, u32, &Block) -> Block,
+    ) -> (Self, Vec<f64>) {
+        let mut lower: Vec<Vec<u32>> = (0..count as u32).map(|c| vec![c]).collect();
+        self.for_blocks(values, |a, b, _| {
+            if let (Some(a), Some(b)) = (part(a), part(b)) {
+                lower[a.min(b) as usize].push(a.max(b));
+            }
+        });
+        lower.iter_mut().for_each(|list| {
+            list.sort_unstable();
+            list.dedup();
+        });
+        let columns = lower.into_iter().map(|list| {
+            let values = vec![0.0; 36 * list.len()];
+            (list, values)
+        });
+        let matrix = Self::of_columns(columns);
+        let mut sums = vec![0.0; matrix.pattern().values.len()];
+        self.for_blocks(values, |a, b, own| {
+            let (Some(p), Some(q)) = (part(a), part(b)) else {
+                return;
+            };
+            let own = block(a, b, own);
+            matrix.add_block(p, q, &own, &mut sums);
+            if p == q && a != b {
+                matrix.add_block(p, p, &transposed(&own), &mut sums);
+            }
+        });
+        (matrix, sums)
     }
 
     /// Adds a block with rows of `i` and columns of `j`, or its transpose where that is stored.

@@ -4,6 +4,7 @@
 //! `G` (`space`, by `products`), the values of `G W G^T` for row weights (`matrix`, `weights`) and rigid motions of
 //! bodies that rows do not stop (`mobility`; `joints` finds the bodies). What factors this matrix lives in `projector`.
 
+pub(crate) mod blocks;
 pub(crate) mod clusters;
 pub(crate) mod joints;
 pub(crate) mod matrix;

@@ -214,6 +214,19 @@ impl CoarseData {
             .for_motions(&self.map, motions, x, contact, interface, other);
     }
 
+    /// Adds springs that stop free motions to the values of the matrix, as stiff as its mean diagonal entry.
+    pub(crate) fn hold(&self, free: &[FreeMotion], values: &mut [f64]) {
+        if free.is_empty() {
+            return;
+        }
+        let mean = self.matrix.diagonal(values).sum::<f64>() / self.matrix.pattern().dim.max(1) as f64;
+        let strength = if mean > 0.0 { mean } else { 1.0 };
+        for (subdomain, spring) in self.mobility.springs(free) {
+            let row = [(subdomain as u32, spring)];
+            self.matrix.add_row(&row, strength, values);
+        }
+    }
+
     pub(crate) fn free_motions(&self, weights: Option<&RowWeights>) -> Vec<FreeMotion> {
         let gluing = &self.gluing;
         // The usual case needs no look at the contact rows.

@@ -11,6 +11,7 @@
 pub(crate) mod block_rows;
 pub(crate) mod dense;
 pub(crate) mod elimination;
+pub(crate) mod lanes;
 pub(crate) mod sparse;
 pub(crate) mod supernodes;
 pub(crate) mod tiles;

@@ -16,19 +16,19 @@ use std::ops::Range;
 /// belong to others. Rows below a group come in units of `unit` consecutive ones.
 #[derive(Debug, Clone)]
 pub(crate) struct Supernodes {
-    unit: usize,
-    nodes: Vec<Supernode>,
+    pub(super) unit: usize,
+    pub(super) nodes: Vec<Supernode>,
     /// First rows of the units below the triangle of each group, over the unit.
-    rows: Vec<u32>,
+    pub(super) rows: Vec<u32>,
     tiles: usize,
     height: usize,
 }
 
 #[derive(Debug, Clone)]
-struct Supernode {
-    columns: Range<usize>,
-    rows: Range<usize>,
-    tiles: Range<usize>,
+pub(super) struct Supernode {
+    pub(super) columns: Range<usize>,
+    pub(super) rows: Range<usize>,
+    pub(super) tiles: Range<usize>,
     /// How many groups of one panel and one shape end here, one after another; they are worked on in one loop.
     alike: usize,
 }

@@ -1,12 +1,13 @@
 //! The projector of the active set method of `signorini-qp`: `G` weighted by the rows that are free.
 
-use crate::coarse::clusters::Clusters;
+use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::error::TfetiError;
 use crate::linalg::tiles::Digits;
 use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::levels::Bases;
+use crate::projector::model::Model;
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
 use crate::tolerances::{ROUNDED_STEP, SHORT_ROWS, WORK};
@@ -62,13 +63,18 @@ pub struct ActiveSetProjector {
 /// What split factors are made from.
 #[derive(Debug)]
 struct SplitParts {
-    base: Option<Arc<SplitBase>>,
-    /// If the basis is one of clusters.
-    clusters: Option<Arc<Clusters>>,
+    basis: Option<Basis>,
     /// Leading rows with constraints.
     contact_rows: usize,
     fronts: Fronts,
     contact: ContactWeights,
+}
+
+/// The whole factor, or a model of it.
+#[derive(Debug)]
+enum Basis {
+    Split(Arc<SplitBase>),
+    Model(Arc<Model>),
 }
 
 impl ActiveSetProjector {
@@ -112,17 +118,16 @@ impl ActiveSetProjector {
             ActiveSetFactor::Auto => coarse.bases(contact_rows, metric.as_deref(), None),
             _ => coarse.bases(contact_rows, metric.as_deref(), Some(kind == ActiveSetFactor::Levels)),
         };
-        let pays = |bases: &Bases| {
-            let any = kind != ActiveSetFactor::Auto || bases.levels.is_some();
-            any || bases.changing.pays(coarse.rows(), coarse.factor_size())
+        let pays = |base: &SplitBase| kind != ActiveSetFactor::Auto || base.pays(coarse.rows(), coarse.factor_size());
+        let (basis, fixed) = match bases {
+            Some(Bases::Levels { model, always, free }) => {
+                (Some(Basis::Model(Arc::new(model))), Some((Arc::new(always), free)))
+            }
+            Some(Bases::One(base)) if pays(&base) => (Some(Basis::Split(Arc::new(base))), None),
+            _ => (None, None),
         };
-        let (base, levels) = bases
-            .filter(pays)
-            .map_or((None, None), |b| (Some(b.changing), b.levels));
-        let (clusters, fixed) = levels.map_or((None, None), |l| (Some(l.clusters), Some(l.always)));
         let mut parts = SplitParts {
-            base: base.map(Arc::new),
-            clusters,
+            basis,
             contact_rows,
             fronts: Fronts::default(),
             contact: ContactWeights::default(),
@@ -130,7 +135,7 @@ impl ActiveSetProjector {
         let diagonal = weighted(&weights, metric.as_deref());
         let weighted = RowWeights::diagonal(diagonal);
         let factor = match fixed {
-            Some(base) => parts.steady(coarse, Arc::new(base), weighted)?,
+            Some((base, free)) => steady(coarse, base, weighted, free)?,
             None => parts.factor(coarse, weighted, None)?,
         };
         let mut scratch = factor.scratch();
@@ -159,6 +164,12 @@ impl ActiveSetProjector {
         })
     }
 
+    /// Whether it has two levels.
+    #[doc(hidden)]
+    pub fn has_levels(&self) -> bool {
+        matches!(self.parts.basis, Some(Basis::Model(_)))
+    }
+
     /// The factor of the last active set.
     pub fn factor(&self) -> &CoarseFactor {
         &self.active
@@ -175,7 +186,7 @@ impl ActiveSetProjector {
 
     /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
     pub fn amplitudes(&mut self, residual: &[f64], alpha: &mut [f64]) {
-        match self.active.is_clustered() {
+        match self.active.is_model() {
             true => self
                 .active
                 .amplitudes_with(&self.always, residual, alpha, &mut self.scratch),
@@ -197,7 +208,7 @@ impl ActiveSetProjector {
 
     /// Changes rows that are free on the last active set such that `G x = e`, zero if `None`.
     fn restore(&mut self, x: &mut [f64], e: Option<&[f64]>) {
-        match self.active.is_clustered() {
+        match self.active.is_model() {
             true => self.active.project_with(&self.always, x, e, &mut self.scratch),
             false => self.active.project(x, e, &mut self.scratch),
         }
@@ -212,22 +223,6 @@ impl ActiveSetProjector {
 }
 
 impl SplitParts {
-    /// The factor of a basis in which nothing changes.
-    fn steady(
-        &mut self,
-        coarse: &Coarse,
-        base: Arc<SplitBase>,
-        weights: RowWeights,
-    ) -> Result<CoarseFactor, TfetiError> {
-        match base.factor(&ContactWeights::default(), None, &mut Fronts::default()) {
-            Ok(factor) => {
-                let factor = Factor::Split(base, factor);
-                Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()))
-            }
-            Err(_) => coarse.factor_weighted(weights),
-        }
-    }
-
     /// The factor for `weights` on this basis; of the whole matrix if there is no basis, if free motions ask for a
     /// generalised inverse, or if the matrix is singular to working precision.
     fn factor(
@@ -237,19 +232,45 @@ impl SplitParts {
         spare: Option<SplitFactor>,
     ) -> Result<CoarseFactor, TfetiError> {
         weights.validate(coarse.0.gluing.ranges())?;
-        let usable =
-            |base: &&Arc<SplitBase>| base.allows(&weights.lines) && coarse.0.free_motions(Some(&weights)).is_empty();
-        if let Some(base) = self.base.as_ref().filter(usable) {
+        let allows = |basis: &Basis| match basis {
+            Basis::Split(base) => base.allows(&weights.lines),
+            Basis::Model(model) => model.allows(&weights.lines),
+        };
+        let usable = |basis: &&Basis| allows(basis) && coarse.0.free_motions(Some(&weights)).is_empty();
+        if let Some(basis) = self.basis.as_ref().filter(usable) {
             self.contact.set(&weights.diagonal[..self.contact_rows], &weights.lines);
-            if let Ok(factor) = base.factor(&self.contact, spare, &mut self.fronts) {
-                let factor = match &self.clusters {
-                    Some(clusters) => Factor::Clusters(clusters.clone(), base.clone(), factor),
-                    None => Factor::Split(base.clone(), factor),
-                };
+            let (contact, fronts) = (&self.contact, &mut self.fronts);
+            let factor = match basis {
+                Basis::Split(base) => {
+                    let factor = base.factor(contact, spare, fronts);
+                    factor.map(|factor| Factor::Split(base.clone(), factor))
+                }
+                Basis::Model(model) => {
+                    let factor = model.factor(contact, spare, fronts);
+                    factor.map(|factor| Factor::Model(model.clone(), factor))
+                }
+            };
+            if let Ok(factor) = factor {
                 return Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()));
             }
         }
         coarse.factor_weighted(weights)
+    }
+}
+
+/// The factor of a basis in which nothing changes.
+fn steady(
+    coarse: &Coarse,
+    base: Arc<SplitBase>,
+    weights: RowWeights,
+    free: Vec<FreeMotion>,
+) -> Result<CoarseFactor, TfetiError> {
+    match base.factor(&ContactWeights::default(), None, &mut Fronts::default()) {
+        Ok(factor) => {
+            let factor = Factor::Split(base, factor);
+            Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), free))
+        }
+        Err(_) => coarse.factor_weighted(weights),
     }
 }
 
@@ -329,7 +350,7 @@ impl EqualityProjector for ActiveSetProjector {
 
     fn project_transpose(&mut self, g: &mut [f64]) {
         let (alpha, scratch) = (&mut self.alpha, &mut self.scratch);
-        match self.active.is_clustered() {
+        match self.active.is_model() {
             true => self.active.project_transpose_with(&self.always, g, alpha, scratch),
             false => self.active.project_transpose(g, alpha, scratch),
         }

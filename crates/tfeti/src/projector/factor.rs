@@ -1,6 +1,5 @@
 //! Factors of `G W G^T` and their projectors.
 
-use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
 use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
@@ -9,6 +8,7 @@ use crate::error::TfetiError;
 use crate::linalg::both;
 use crate::linalg::sparse::{FactorError, SparseCholesky};
 use crate::linalg::tiles::Digits;
+use crate::projector::model::{Model, ModelFactor};
 use crate::projector::split::factor::{SplitBase, SplitFactor};
 use signorini_qp::internal::LineWeight;
 use std::ops::Range;
@@ -39,8 +39,8 @@ struct FactorData {
 pub(super) enum Factor {
     Sparse(Arc<SparseCholesky>),
     Split(Arc<SplitBase>, SplitFactor),
-    /// An approximation: that of the clusters.
-    Clusters(Arc<Clusters>, Arc<SplitBase>, SplitFactor),
+    /// An approximation.
+    Model(Arc<Model>, ModelFactor),
 }
 
 impl Coarse {
@@ -70,15 +70,7 @@ impl Coarse {
         let modes = ModeTable::new(&data.subdomains);
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
         let free = data.free_motions(weights.as_ref());
-        if !free.is_empty() {
-            let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
-            let mean = diagonal.sum::<f64>() / matrix.dim.max(1) as f64;
-            let strength = if mean > 0.0 { mean } else { 1.0 };
-            for (subdomain, spring) in data.mobility.springs(&free) {
-                let row = [(subdomain as u32, spring)];
-                data.matrix.add_row(&row, strength, &mut matrix.values);
-            }
-        }
+        data.hold(&free, &mut matrix.values);
         let (what, count) = ("coarse unknowns", matrix.dim);
         let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
             FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },
@@ -115,9 +107,10 @@ impl CoarseFactor {
 
     /// The memory of a split factor that nobody else uses.
     pub(super) fn into_split(self) -> Option<SplitFactor> {
-        match Arc::into_inner(self.0)?.factor {
-            Factor::Split(_, factor) | Factor::Clusters(_, _, factor) => Some(factor),
-            Factor::Sparse(_) => None,
+        match Arc::into_inner(self.0).map(|data| data.factor) {
+            Some(Factor::Split(_, factor)) => Some(factor),
+            Some(Factor::Model(_, factor)) => Some(factor.clusters),
+            _ => None,
         }
     }
 
@@ -125,7 +118,8 @@ impl CoarseFactor {
     pub fn stored(&self) -> usize {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.stored(),
-            Factor::Split(base, _) | Factor::Clusters(_, base, _) => base.stored(),
+            Factor::Split(base, _) => base.stored(),
+            Factor::Model(model, _) => model.stored(),
         }
     }
 
@@ -150,7 +144,7 @@ impl CoarseFactor {
         let work = match &self.0.factor {
             Factor::Sparse(_) => 0,
             Factor::Split(base, _) => base.work(),
-            Factor::Clusters(clusters, base, _) => 6 * clusters.count() + base.work(),
+            Factor::Model(model, _) => model.work(),
         };
         scratch.split.resize(work, 0.0);
         scratch
@@ -171,15 +165,11 @@ impl CoarseFactor {
                 }
                 base.solve(factor, y, &mut s.split, changing, s.digits);
             }
-            Factor::Clusters(clusters, base, factor) => {
-                let own = 6 * clusters.count();
-                if s.split.len() < own + base.work() {
-                    s.split.resize(own + base.work(), 0.0);
+            Factor::Model(model, factors) => {
+                if s.split.len() < model.work() {
+                    s.split.resize(model.work(), 0.0);
                 }
-                let (sums, work) = s.split.split_at_mut(own);
-                clusters.restrict(y, sums);
-                base.solve(factor, sums, work, changing, s.digits);
-                clusters.prolong(sums, y);
+                model.solve(factors, y, &mut s.split, s.digits);
             }
         }
     }
@@ -191,9 +181,9 @@ impl CoarseFactor {
         s.first = first;
     }
 
-    /// Whether it approximates only, by clusters.
-    pub(super) fn is_clustered(&self) -> bool {
-        matches!(self.0.factor, Factor::Clusters(..))
+    /// Whether it approximates only.
+    pub(super) fn is_model(&self) -> bool {
+        matches!(self.0.factor, Factor::Model(..))
     }
 
     /// Whether the factor is stored in single precision, too.

@@ -8,26 +8,34 @@
 
 use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
+use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::projector::factor::CoarseFactor;
+use crate::projector::model::Model;
 use crate::projector::split::factor::SplitBase;
+use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
-use crate::tolerances::{GROWTH, ROW, SOLVES};
-use std::sync::Arc;
+use crate::tolerances::{FEW, GROWTH, MANY, OPERATION, ROW, SOLVES};
 
 /// What the factors of all active sets have in common.
-pub(super) struct Bases {
-    /// Of what changes: the subdomains, or their clusters.
-    pub(super) changing: SplitBase,
-    pub(super) levels: Option<Levels>,
+pub(super) enum Bases {
+    One(SplitBase),
+    Levels {
+        model: Model,
+        /// Of the rows that are always free, and of springs where these leave motions free.
+        always: SplitBase,
+        free: Vec<FreeMotion>,
+    },
 }
 
-/// The parts of a projector by two levels.
-pub(super) struct Levels {
-    pub(super) clusters: Arc<Clusters>,
-    /// Of the rows that are always free.
-    pub(super) always: SplitBase,
+/// Whether two levels pay for subdomains of which those that are `touching` have contact rows, with so many `rows` of `B`
+/// in all: a change of the active set with one level factors a dense matrix of those that touch.
+pub(super) fn two_levels_pay(touching: &[bool], rows: usize) -> bool {
+    let dense = 6.0 * touching.iter().filter(|t| **t).count() as f64;
+    let slower = GROWTH * 0.5 * SOLVES * ROW * rows as f64;
+    let pays = OPERATION * dense.powi(3) / 3.0 > slower;
+    touching.len() > MANY || touching.len() >= FEW && pays
 }
 
 impl Coarse {
@@ -48,56 +56,43 @@ impl Coarse {
             changing[e.subdomain as usize] = true;
         }
         let graph = data.matrix.graph();
-        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing)?;
         let modes = ModeTable::new(&data.subdomains);
         weights.diagonal[..rows].fill(0.0);
         let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
         let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
-        let possible = levels != Some(false) && rows == gluing.ranges().contact().end && tree.changes();
-        if possible && data.free_motions(Some(&weights)).is_empty() {
-            let pays = |other: f64| {
-                let slower = GROWTH * 0.5 * SOLVES * ROW * self.dim() as f64;
-                levels == Some(true) || other + slower < tree.cost()
-            };
-            if let Some(bases) = self.two_levels(rows, &graph, &changing, &values, &modes, &pays) {
+        let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, self.dim()));
+        if wanted && rows > 0 && rows == gluing.ranges().contact().end {
+            let free = data.free_motions(Some(&weights));
+            if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes) {
                 return Some(bases);
             }
         }
-        let changing = SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write).ok()?;
-        let levels = None;
-        Some(Bases { changing, levels })
+        let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
+        SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write, false)
+            .ok()
+            .map(Bases::One)
     }
 
-    /// The bases by two levels, if they exist and their seconds `pay`.
+    /// The bases by two levels, if they exist.
     fn two_levels(
         &self,
         rows: usize,
         graph: &[Vec<u32>],
         changing: &[bool],
-        values: &[f64],
+        (values, free): (&[f64], Vec<FreeMotion>),
         modes: &ModeTable<'_>,
-        pays: &dyn Fn(f64) -> bool,
     ) -> Option<Bases> {
         let data = &self.0;
-        let (mobility, subdomains) = (&data.mobility, &data.subdomains);
-        let fixed = CoarseTree::regular(graph, mobility.centres()).ok()?;
-        let clusters = Clusters::new(mobility, subdomains);
-        let (matrix, sums) = clusters.matrix(&data.matrix, values);
-        let links = matrix.graph();
-        let tree = cheapest_tree(&links, clusters.centres(), &clusters.marks(changing))?;
-        if !pays(fixed.cost() + tree.cost()) {
-            return None;
-        }
-        let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| {
-            let mut row = Vec::new();
-            modes.row(&data.gluing, nodal, 1.0, &mut row);
-            clusters.join(&row, out);
-        };
-        let changing = SplitBase::new(tree, &matrix, &links, &sums, rows, &write).ok()?;
-        let always = SplitBase::new(fixed, &data.matrix, graph, values, 0, &|_, _| {}).ok()?;
-        let clusters = Arc::new(clusters);
-        let levels = Some(Levels { clusters, always });
-        Some(Bases { changing, levels })
+        let (mobility, matrix) = (&data.mobility, &data.matrix);
+        let grid = grid_of(mobility.centres());
+        let nothing = vec![false; changing.len()];
+        let fixed = CoarseTree::new(graph, mobility.centres(), &nothing, 0, grid.as_deref()).ok()?;
+        let clusters = Clusters::new(mobility, &data.subdomains, grid.as_deref());
+        let model = Model::new(clusters, (&data.gluing, modes), (matrix, values), changing, rows)?;
+        let mut values = values.to_vec();
+        data.hold(&free, &mut values);
+        let always = SplitBase::new(fixed, matrix, graph, &values, 0, &|_, _| {}, true).ok()?;
+        Some(Bases::Levels { model, always, free })
     }
 }
 

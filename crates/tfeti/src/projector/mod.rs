@@ -7,6 +7,8 @@
 
 pub(crate) mod active_set;
 pub(crate) mod factor;
+pub(crate) mod forecast;
 pub(crate) mod levels;
+pub(crate) mod model;
 pub(crate) mod orthonormal;
 pub(crate) mod split;

@@ -154,9 +154,8 @@ fn nodal_pattern<const N: usize>(nodes: usize, tets: &[[u32; N]]) -> Columns {
     Columns::of_blocks(&mut graph, 3)
 }
 
-/// Numbers and operations of the factor of the coarse matrix: subdomains that share a node are coupled, be it by a
-/// corner only.
-fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorError> {
+/// For each subdomain itself and those of higher number with which it shares a node, be it a corner only.
+pub(crate) fn coarse_graph(decomposition: &Decomposition) -> Vec<Vec<u32>> {
     let count = decomposition.subdomains().len() as u32;
     // the lower triangle, as the matrix is stored
     let mut lower: Vec<Vec<u32>> = (0..count).map(|s| vec![s]).collect();
@@ -172,6 +171,12 @@ fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorEr
             }
         }
     }
+    lower
+}
+
+/// Numbers and operations of the factor of the coarse matrix.
+fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorError> {
+    let mut lower = coarse_graph(decomposition);
     let pattern = Columns::of_blocks(&mut lower, 6);
     let (pointers, rows) = quotient(&pattern, 6);
     let order: Vec<u32> = minimum_degree(&pointers, &rows)?

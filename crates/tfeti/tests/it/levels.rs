@@ -1,10 +1,12 @@
 //! The projector by two levels: exact, symmetric in its two forms, and small where subdomains are translates.
 
-use crate::common::{Brick, distance, noise, norm};
-use signorini_qp::EqualityProjector;
+use crate::common::{Brick, distance, noise, norm, steel};
+use signorini_fem_mesh::decomposition::{PartCount, even_parts};
+use signorini_fem_mesh::{Decomposition, FacetTag, SurfaceFrame, brick};
 use signorini_qp::vector::dot;
-use signorini_tfeti::internal::ActiveSetFactor;
-use signorini_tfeti::{ActiveSetProjector, Tfeti};
+use signorini_qp::{EqualityProjector, QpError};
+use signorini_tfeti::internal::{ActiveSetFactor, Forecast, forecast_levels};
+use signorini_tfeti::{ActiveSetProjector, ContactConstraint, InverseSettings, NodeSupport, Tfeti, TfetiBuilder};
 
 fn space(system: &Tfeti, kind: ActiveSetFactor) -> ActiveSetProjector {
     let contact = system.gluing().ranges().contact().end;
@@ -27,50 +29,156 @@ fn off(system: &Tfeti, x: &[f64], e: &[f64]) -> f64 {
     distance(&g, e) / norm(x)
 }
 
+/// `space` is a projector to the kernel of `G` that changes free rows only, and its other forms belong to it.
+fn check_projector(system: &Tfeti, space: &mut ActiveSetProjector, what: &str) {
+    let contact = system.gluing().ranges().contact().end;
+    let (x, y, e) = (
+        noise(system.dual_dim(), 5),
+        noise(system.dual_dim(), 6),
+        noise(system.coarse().rows(), 7),
+    );
+    for (share, seed) in [(0.5, 1), (1.0, 2), (0.1, 3)] {
+        let w = active_set(system, share, seed);
+        assert_eq!(space.set_weights(&w), Ok(true), "{what}");
+        let mut p = x.clone();
+        space.project(&mut p);
+        assert!(off(system, &p, &vec![0.0; e.len()]) < 1e-12, "{what}");
+        for k in (0..contact).filter(|&k| w[k] == 0.0) {
+            assert_eq!(p[k], x[k], "{what}");
+        }
+        let mut again = p.clone();
+        space.project(&mut again);
+        assert!(distance(&again, &p) < 1e-11 * norm(&p), "{what}");
+        // (P x) y = x (P^T y)
+        let mut t = y.clone();
+        space.project_transpose(&mut t);
+        let size = norm(&x) * norm(&t) + norm(&p) * norm(&y);
+        assert!((dot(&p, &y) - dot(&x, &t)).abs() < 1e-12 * size, "{what}");
+        // the amplitudes are those of the residual
+        let mut alpha = e.clone();
+        space.amplitudes(&y, &mut alpha);
+        let mut motion = vec![0.0; y.len()];
+        system
+            .coarse()
+            .apply_transpose(&alpha, &mut motion, &mut system.coarse().scratch());
+        motion.iter_mut().zip(&y).for_each(|(m, y)| *m += y);
+        assert!(distance(&motion, &t) < 1e-11 * norm(&t), "{what}");
+        let mut b = x.clone();
+        space.balance(&mut b, &e);
+        assert!(off(system, &b, &e) < 1e-12, "{what}");
+        if space.loose().is_empty() {
+            let mut b = x.clone();
+            space.repair(&mut b, &e);
+            assert!(off(system, &b, &e) < 1e-12, "{what}");
+        }
+    }
+}
+
 #[test]
 fn it_is_a_projector_that_changes_free_rows_only() {
     // translates, cut in a grid; the last has no two subdomains that are alike
     for b in [Brick::new(2, 2), Brick::new(4, 1), Brick::of(3, 2, 0.1)] {
         let system = b.system();
-        let contact = system.gluing().ranges().contact().end;
-        let mut space = space(&system, ActiveSetFactor::Levels);
-        let (x, y, e) = (
-            noise(system.dual_dim(), 5),
-            noise(system.dual_dim(), 6),
-            noise(system.coarse().rows(), 7),
+        check_projector(&system, &mut space(&system, ActiveSetFactor::Levels), "brick");
+    }
+}
+
+/// A brick on another one, with points of contact between both, under the lower and at a side of the upper one.
+fn two_bodies(parts: usize, supports: &[FacetTag]) -> Tfeti {
+    let one = |lift: f64, tags: u32| {
+        let mesh = brick::Brick::new([3.0, 1.0, 1.0], [9, 3, 3]).build().unwrap();
+        let mesh = mesh.map_points(|[x, y, z]| [x, y, z + lift]).unwrap();
+        mesh.map_tags(|tag| FacetTag(tag.0 + tags))
+    };
+    let mesh = one(0.0, 0).append(&one(1.0, 100)).unwrap();
+    let upper = |tag: FacetTag| FacetTag(tag.0 + 100);
+    let parts = even_parts(&mesh, &vec![0; mesh.tets().len()], PartCount::Exactly(parts)).unwrap();
+    let decomposition = Decomposition::from_parts(&mesh, &parts).unwrap();
+    let at = |node: &u32| mesh.points()[*node as usize].map(|v| (1e6 * v).round() as i64);
+    let top = mesh.nodes_on(brick::Z_MAX);
+    let frame = |normal| SurfaceFrame::from_normal(normal).unwrap();
+    let mut contact = Vec::new();
+    for node in mesh.nodes_on(upper(brick::Z_MIN)) {
+        let partner = top.iter().copied().find(|other| at(other) == at(&node));
+        contact.push(
+            ContactConstraint::new(node, frame([0.0, 0.0, -1.0]))
+                .with_friction(true)
+                .with_partner(partner),
         );
-        for (share, seed) in [(0.5, 1), (1.0, 2), (0.02, 3)] {
-            let w = active_set(&system, share, seed);
-            assert_eq!(space.set_weights(&w), Ok(true));
-            let mut p = x.clone();
-            space.project(&mut p);
-            assert!(off(&system, &p, &vec![0.0; e.len()]) < 1e-12);
-            for k in (0..contact).filter(|&k| w[k] == 0.0) {
-                assert_eq!(p[k], x[k]);
+    }
+    let faces = [(brick::Z_MIN, [0.0, 0.0, -1.0]), (upper(brick::Y_MAX), [0.0, 1.0, 0.0])];
+    for (tag, normal) in faces {
+        let nodes = mesh.nodes_on(tag);
+        // a node of one row only: those of an edge belong to one face
+        let known = |node: &u32| contact.iter().all(|c: &ContactConstraint| c.side.nodes()[0].0 != *node);
+        let own: Vec<u32> = nodes.into_iter().filter(known).collect();
+        contact.extend(
+            own.into_iter()
+                .map(|node| ContactConstraint::new(node, frame(normal)).with_friction(true)),
+        );
+    }
+    let supports: Vec<_> = supports
+        .iter()
+        .map(|tag| NodeSupport::fixed(mesh.nodes_on(*tag)))
+        .collect();
+    let materials = steel();
+    TfetiBuilder::new(&mesh, &decomposition, &materials)
+        .with_supports(&supports)
+        .with_contact(&contact)
+        .build()
+        .unwrap()
+}
+
+/// Graph parts of two bodies with three faces of contact; contact alone holds none of them, one, or both.
+#[test]
+fn bodies_parts_and_faces_of_any_kind_have_two_levels() {
+    let upper = FacetTag(brick::X_MIN.0 + 100);
+    for (supports, loose) in [(&[brick::X_MIN, upper][..], 0), (&[brick::X_MIN], 6), (&[], 12)] {
+        for parts in [60, 200] {
+            let system = two_bodies(parts, supports);
+            let what = format!("{parts} parts, {loose} loose modes");
+            let mut levels = space(&system, ActiveSetFactor::Levels);
+            assert!(levels.has_levels() && levels.loose().len() == loose, "{what}");
+            check_projector(&system, &mut levels, &what);
+            // what the exact one leaves to be done is nearly the same
+            let mut exact = space(&system, ActiveSetFactor::Sparse);
+            let w = active_set(&system, 0.6, 9);
+            let x = noise(system.dual_dim(), 10);
+            let (mut a, mut b) = (x.clone(), x.clone());
+            for (space, x) in [(&mut levels, &mut a), (&mut exact, &mut b)] {
+                space.set_weights(&w).unwrap();
+                space.project(x);
             }
-            let mut again = p.clone();
-            space.project(&mut again);
-            assert!(distance(&again, &p) < 1e-11 * norm(&p));
-            // (P x) y = x (P^T y)
-            let mut t = y.clone();
-            space.project_transpose(&mut t);
-            let size = norm(&x) * norm(&t) + norm(&p) * norm(&y);
-            assert!((dot(&p, &y) - dot(&x, &t)).abs() < 1e-12 * size);
-            // the amplitudes are those of the residual
-            let mut alpha = e.clone();
-            space.amplitudes(&y, &mut alpha);
-            let mut motion = vec![0.0; y.len()];
-            system
-                .coarse()
-                .apply_transpose(&alpha, &mut motion, &mut system.coarse().scratch());
-            motion.iter_mut().zip(&y).for_each(|(m, y)| *m += y);
-            assert!(distance(&motion, &t) < 1e-11 * norm(&t));
-            for work in [ActiveSetProjector::balance, ActiveSetProjector::repair] {
-                let mut b = x.clone();
-                work(&mut space, &mut b, &e);
-                assert!(off(&system, &b, &e) < 1e-12);
-            }
+            assert!(
+                distance(&a, &b) < 0.5 * distance(&x, &b),
+                "{what}: {}",
+                distance(&a, &b) / distance(&x, &b)
+            );
         }
+    }
+}
+
+/// Sets that hold no body go the way of the whole matrix, and back.
+#[test]
+fn open_sets_of_a_body_that_contact_alone_holds_are_deficient() {
+    let system = two_bodies(60, &[brick::X_MIN]);
+    let mut levels = space(&system, ActiveSetFactor::Levels);
+    levels.set_coarse_rhs(&noise(system.coarse().rows(), 3));
+    assert_eq!(levels.set_weights(&active_set(&system, 0.6, 1)), Ok(true));
+    let open = active_set(&system, 0.0, 1);
+    assert!(matches!(
+        levels.set_weights(&open),
+        Err(QpError::CoarseDeficient { .. })
+    ));
+    check_projector(&system, &mut levels, "after an open set");
+}
+
+/// Where nothing is gained two levels are off: the bricks of the benchmark up to n = 5.
+#[test]
+fn few_subdomains_have_one_level_and_many_have_two() {
+    for (n, levels) in [(1, false), (3, false), (5, false), (10, true)] {
+        let system = Brick::new(n, 1).system();
+        assert_eq!(space(&system, ActiveSetFactor::Auto).has_levels(), levels, "n = {n}");
     }
 }
 
@@ -90,6 +198,33 @@ fn equal_regions_are_eliminated_once_and_the_solution_is_that_of_the_whole() {
     let (shared, whole) = (levels.factor().stored(), sparse.factor().stored());
     // each tile is kept twice, once rounded
     assert!(2 * shared < 3 * whole, "{shared} of {whole}");
+}
+
+/// What a plan counts is what is stored: regions that are equal once, at most a quarter more.
+#[test]
+fn a_forecast_counts_what_two_levels_store() {
+    for (n, perturbation) in [(8, 0.0), (7, 0.1)] {
+        let b = Brick::of(n, 1, perturbation);
+        let system = b.system();
+        let settings = InverseSettings::default();
+        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, |_| false).unwrap();
+        let forecast = |rows| forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), rows);
+        let mut space = space(&system, ActiveSetFactor::Auto);
+        assert!(space.has_levels());
+        let always = space.factor().stored();
+        space.set_weights(&active_set(&system, 0.5, 1)).unwrap();
+        let stored = 8.0 * (always + space.factor().stored()) as f64;
+        let ratio = forecast(system.dual_dim()).unwrap().bytes as f64 / stored;
+        assert!((0.75..1.25).contains(&ratio), "n = {n}: {ratio}");
+    }
+    // one level
+    let b = Brick::new(3, 1);
+    let (materials, settings) = (steel(), InverseSettings::default());
+    let found = Forecast::new(&b.mesh, &b.decomposition, &materials, true, &settings, |_| false).unwrap();
+    assert_eq!(
+        forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), 5000),
+        None
+    );
 }
 
 #[test]

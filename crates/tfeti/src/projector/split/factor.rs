@@ -9,13 +9,15 @@ use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
+use crate::projector::split::alike::Bunches;
 use crate::projector::split::front::{Front, extend, load_columns};
-use crate::projector::split::fronts::{ContactFronts, ContactRow, ContactWeights};
-use crate::projector::split::shared::{share, shared_tiles};
+use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
+use crate::projector::split::shared::{bits, share, shared_tiles};
 use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
 use crate::tolerances::{OPERATIONS, READ, SINGULAR, SOLVES, SPARSE};
 use signorini_qp::internal::LineWeight;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// What does not depend on the weights of contact rows.
@@ -26,7 +28,9 @@ pub(crate) struct SplitBase {
     pub(crate) pieces: Vec<Piece>,
     /// Steady part of the columns of each node that changes; empty for the others.
     base: Vec<Vec<f64>>,
-    contact: ContactFronts,
+    contact: ContactTerms,
+    /// Regions that are solved together, if equal ones are looked for.
+    pub(super) bunches: Option<Bunches>,
     /// Leading rows whose weights change.
     rows: usize,
     /// Pivots up to this size count as zero.
@@ -62,7 +66,8 @@ pub(crate) struct SplitFactor {
 pub(crate) struct Fronts(Vec<Front>);
 
 impl SplitBase {
-    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells.
+    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions are
+    /// stored once and solved together if it `shares` or nothing changes.
     pub(crate) fn new(
         mut tree: CoarseTree,
         matrix: &CoarseMatrix,
@@ -70,10 +75,12 @@ impl SplitBase {
         values: &[f64],
         contact: usize,
         write: &ContactRow<'_>,
+        shares: bool,
     ) -> Result<Self, usize> {
-        let first = match tree.changes() {
-            true => (0..tree.regions.len()).collect(),
-            false => share(&mut tree, matrix, graph, values),
+        let steady = !tree.changes();
+        let first = match steady {
+            true => share(&mut tree, graph, &bits(matrix, values)),
+            false => (0..tree.regions.len()).collect(),
         };
         let mut pieces: Vec<Piece> = Vec::with_capacity(tree.regions.len());
         for (r, region) in tree.regions.iter().enumerate() {
@@ -86,16 +93,18 @@ impl SplitBase {
             threshold: 0.0,
             base: Vec::new(),
             pieces,
-            contact: ContactFronts::new(&tree, contact, write),
+            contact: ContactTerms::new(tree.nodes.len(), contact, &|a, b| tree.front(a, b), write),
+            bunches: None,
             rows: contact,
             tree,
         };
-        if !out.tree.changes() {
+        if steady {
             let steady: Vec<_> = out.pieces.iter().map(|p| p.steady.clone()).collect();
             let tiles = shared_tiles(&out.tree, &steady, matrix, graph, values, &first)?;
             for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
                 piece.tiles = tiles;
             }
+            out.bunches = Some(out.bunch(&first));
             return Ok(out);
         }
         let mut fronts = vec![Front::default(); out.tree.nodes.len()];
@@ -119,12 +128,31 @@ impl SplitBase {
         }
         let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
+        if shares {
+            let first = share(&mut out.tree, graph, &bits(matrix, values));
+            for (r, &equal) in first.iter().enumerate() {
+                out.pieces[r] = out.pieces[equal].clone();
+            }
+            out.bunches = Some(out.bunch(&first));
+        }
         Ok(out)
+    }
+
+    /// What is solved together where `first` is the first equal region of each.
+    fn bunch(&self, first: &[usize]) -> Bunches {
+        let buffer = |r: usize| {
+            let piece = &self.pieces[r];
+            piece.steady.buffer().max(piece.changing.buffer())
+        };
+        Bunches::new(&self.tree, first, buffer)
     }
 
     /// Length of the work memory of a solve.
     pub(crate) fn work(&self) -> usize {
-        self.tree.dim() + self.pieces.last().map_or(0, |p| p.work)
+        match &self.bunches {
+            Some(bunches) => bunches.work(),
+            None => self.tree.dim() + self.pieces.last().map_or(0, |p| p.work),
+        }
     }
 
     /// Leading rows whose weights change: others do not lead to blocks that change.
@@ -134,17 +162,11 @@ impl SplitBase {
 
     /// Numbers stored.
     pub(crate) fn stored(&self) -> usize {
-        // a rounded tile is half a tile
-        let tiles = |count: usize| Tile::NUMBERS * count * 3 / 2;
         // equal regions share theirs
-        let mut steady: Vec<(*const Tiles, usize)> = (self.pieces.iter())
-            .map(|p| (Arc::as_ptr(&p.tiles), p.steady.tiles()))
-            .collect();
-        steady.sort_unstable();
-        steady.dedup_by_key(|s| s.0);
-        let steady: usize = steady.iter().map(|s| tiles(s.1)).sum();
-        let changing: usize = self.pieces.iter().map(|p| tiles(p.changing.tiles())).sum();
-        steady + changing + self.base.iter().map(Vec::len).sum::<usize>()
+        let mut known: HashSet<*const Tiles> = HashSet::new();
+        let pieces = self.pieces.iter();
+        self.tree
+            .stored(pieces.map(|piece| known.insert(Arc::as_ptr(&piece.tiles))))
     }
 
     /// Whether a split factor is cheaper than a sparse factor of the whole matrix with `stored` numbers for `rows`

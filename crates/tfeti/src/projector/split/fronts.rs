@@ -1,15 +1,14 @@
 //! What the contact rows add to the fronts of the coarse matrix.
 
-use crate::projector::split::tree::CoarseTree;
 use signorini_qp::internal::LineWeight;
 
-/// The terms `w_r g_r g_r^T` of the contact rows `r`, by the node to whose columns they belong.
+/// The terms `w_r g_r g_r^T` of the contact rows `r`, by the front to whose columns they belong.
 #[derive(Debug)]
-pub(crate) struct ContactFronts {
+pub(crate) struct ContactTerms {
     /// Coefficients `g_r` on one subdomain each.
     vectors: Vec<[f64; 6]>,
     terms: Vec<Term>,
-    /// First term of each node.
+    /// First term of each front.
     pointers: Vec<usize>,
     /// Whether the row after a row stands on the same subdomains.
     paired: Vec<bool>,
@@ -47,16 +46,20 @@ struct Term {
     vectors: [u32; 2],
     /// From them to those of the next row.
     next: u32,
-    /// Its first entry in the columns of the node.
+    /// Its first entry in the columns of the front.
     place: usize,
 }
 
 /// Appends the entries of a contact row: six coefficients a block.
 pub(crate) type ContactRow<'a> = dyn Fn(usize, &mut Vec<(u32, [f64; 6])>) + 'a;
 
-impl ContactFronts {
-    /// `write` appends the entries of one of the leading `rows` of `G^T`.
-    pub(crate) fn new(tree: &CoarseTree, rows: usize, write: &ContactRow<'_>) -> Self {
+/// Front and first entry of the block of two subdomains.
+pub(crate) type ContactPlace<'a> = dyn Fn(u32, u32) -> Option<(usize, usize)> + 'a;
+
+impl ContactTerms {
+    /// `write` appends the entries of one of the leading `rows` of `G^T`; `place` tells in which of `count` fronts the
+    /// block of two subdomains stands, if it is stored, and where.
+    pub(crate) fn new(count: usize, rows: usize, place: &ContactPlace<'_>, write: &ContactRow<'_>) -> Self {
         let mut vectors: Vec<[f64; 6]> = Vec::new();
         let mut terms: Vec<(usize, Term)> = Vec::new();
         let (mut row, mut before) = (Vec::new(), Vec::new());
@@ -73,23 +76,21 @@ impl ContactFronts {
             vectors.extend(row.iter().map(|(_, g)| *g));
             for (i, &(a, _)) in row.iter().enumerate() {
                 for (j, &(b, _)) in row.iter().enumerate() {
-                    let (p, q) = (tree.place[a as usize], tree.place[b as usize]);
-                    if p < q {
+                    let Some((k, place)) = place(a, b) else {
                         continue;
-                    }
-                    let k = tree.node_of(q as usize);
+                    };
                     let term = Term {
                         row: nodal as u32,
                         vectors: [i, j].map(|v| (first + v) as u32),
                         next: row.len() as u32,
-                        place: tree.nodes[k].place(p, q),
+                        place,
                     };
                     terms.push((k, term));
                 }
             }
         }
         terms.sort_by_key(|(k, term)| (*k, term.place));
-        let pointers = (0..=tree.nodes.len()).map(|k| terms.partition_point(|t| t.0 < k));
+        let pointers = (0..=count).map(|k| terms.partition_point(|t| t.0 < k));
         Self {
             pointers: pointers.collect(),
             terms: terms.into_iter().map(|(_, term)| term).collect(),
@@ -103,9 +104,9 @@ impl ContactFronts {
         lines.iter().all(|l| self.paired.get(l.row) == Some(&true))
     }
 
-    /// Adds the terms of one node to its columns of the given height.
-    pub(crate) fn add(&self, node: usize, height: usize, weights: &ContactWeights, columns: &mut [f64]) {
-        for term in &self.terms[self.pointers[node]..self.pointers[node + 1]] {
+    /// Adds the terms of one front to its columns of the given height.
+    pub(crate) fn add(&self, front: usize, height: usize, weights: &ContactWeights, columns: &mut [f64]) {
+        for term in &self.terms[self.pointers[front]..self.pointers[front + 1]] {
             let row = term.row as usize;
             let weight = weights.diagonal[row];
             let [mut a, mut b] = term.vectors.map(|v| self.vectors[v as usize]);

@@ -105,8 +105,21 @@ fn grow(
     Ok((tiles, updates))
 }
 
-/// For each region the first one that is equal. The others' lists of later blocks take its order.
-pub(super) fn share(tree: &mut CoarseTree, matrix: &CoarseMatrix, graph: &[Vec<u32>], values: &[f64]) -> Vec<usize> {
+/// Appends what tells the entries of two blocks from those of others.
+pub(crate) type EntryBits<'a> = dyn Fn(u32, u32, &mut Vec<u64>) + 'a;
+
+/// The bits of a matrix with these values.
+pub(super) fn bits<'a>(matrix: &'a CoarseMatrix, values: &'a [f64]) -> impl Fn(u32, u32, &mut Vec<u64>) + 'a {
+    |a, b, key| {
+        let (start, stride) = matrix.place(a.max(b), a.min(b));
+        for c in 0..6 {
+            key.extend(values[start + c * stride..][..6].iter().map(|v| v.to_bits()));
+        }
+    }
+}
+
+/// For each region the first one that is equal; one in which something changes equals itself only. The others' lists of later blocks take its order.
+pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits<'_>) -> Vec<usize> {
     let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut first: Vec<usize> = Vec::with_capacity(tree.regions.len());
     let mut ranks: Vec<Vec<u32>> = Vec::with_capacity(tree.regions.len());
@@ -119,8 +132,11 @@ pub(super) fn share(tree: &mut CoarseTree, matrix: &CoarseMatrix, graph: &[Vec<u
         at.sort_unstable_by_key(|&p| tree.blocks[p as usize]);
         let all = || (own.start as u32..own.end as u32).chain(at.iter().copied());
         (0..).zip(all()).for_each(|(k, p)| place[p as usize] = k);
-        let key = key(tree, region, &first, &place, matrix, graph, values);
-        let equal = *known.entry(key).or_insert(r);
+        let key = key(tree, region, &first, &place, graph, write);
+        let equal = match tree.region_changes(r) {
+            true => r,
+            false => *known.entry(key).or_insert(r),
+        };
         let rank = |p: &u32| place[*p as usize];
         ranks.push(region.behind.iter().map(rank).collect());
         if equal != r {
@@ -165,9 +181,8 @@ fn key(
     region: &TreeRegion,
     first: &[usize],
     place: &[u32],
-    matrix: &CoarseMatrix,
     graph: &[Vec<u32>],
-    values: &[f64],
+    write: &EntryBits<'_>,
 ) -> Vec<u64> {
     let at = |p: &u32| u64::from(place[*p as usize]);
     let mut key = vec![region.behind.len() as u64];
@@ -189,12 +204,52 @@ fn key(
             if (p as usize) < q {
                 continue;
             }
-            let (start, stride) = matrix.place(a.max(b), a.min(b));
             key.extend([at(&p), u64::from(a <= b)]);
-            for c in 0..6 {
-                key.extend(values[start + c * stride..][..6].iter().map(|v| v.to_bits()));
-            }
+            write(a, b, &mut key);
         }
     }
     key
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::projector::split::order::{grid_of, tests::grid};
+
+    /// In a grid whose blocks are told by where they stand to each other, regions are equal if and only if their own
+    /// blocks and those behind them form the same shape.
+    #[test]
+    fn regions_of_one_shape_are_equal() {
+        let (graph, centres) = grid([40, 8, 9]);
+        let layers = grid_of(&centres);
+        let mut tree = CoarseTree::new(&graph, &centres, &vec![false; graph.len()], 0, layers.as_deref()).unwrap();
+        let offset = |a: u32, b: u32| [0, 1, 2].map(|c| (centres[b as usize][c] - centres[a as usize][c]) as i64);
+        let shape = |tree: &CoarseTree, r: usize| {
+            let region = &tree.regions[r];
+            let first = *tree.blocks[region.region.start..region.region.own.end]
+                .iter()
+                .min()
+                .unwrap();
+            let list = |blocks: &mut dyn Iterator<Item = u32>| {
+                let mut all: Vec<[i64; 3]> = blocks.map(|b| offset(first, b)).collect();
+                all.sort_unstable();
+                all
+            };
+            let own = tree.blocks[region.region.own.clone()].iter().copied();
+            let within = tree.blocks[region.region.start..region.region.own.start]
+                .iter()
+                .copied();
+            let behind = region.behind.iter().map(|&p| tree.blocks[p as usize]);
+            [list(&mut { own }), list(&mut { within }), list(&mut { behind })]
+        };
+        let shapes: Vec<_> = (0..tree.regions.len()).map(|r| shape(&tree, r)).collect();
+        let write = |a: u32, b: u32, key: &mut Vec<u64>| key.extend(offset(a, b).map(|v| v as u64));
+        let first = share(&mut tree, &graph, &write);
+        for (r, &equal) in first.iter().enumerate() {
+            let same = shapes.iter().position(|other| *other == shapes[r]);
+            assert_eq!(same, Some(equal), "region {r}");
+        }
+        let distinct = (0..first.len()).filter(|&r| first[r] == r).count();
+        assert!(3 * distinct < 2 * first.len(), "{distinct} of {}", first.len());
+    }
 }

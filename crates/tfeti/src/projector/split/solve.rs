@@ -5,7 +5,8 @@
 //! solve is symmetric and exact for a matrix next to the one given.
 
 use crate::linalg::both;
-use crate::linalg::tiles::{Digits, ShortTile, Tile};
+use crate::linalg::tiles::{Digits, LANES, ShortTile, Tile};
+use crate::projector::split::alike::{Bunch, Bunches};
 use crate::projector::split::factor::{SplitBase, SplitFactor};
 use crate::projector::split::tiles::Reads;
 use crate::tolerances::SOLVE_READS;
@@ -14,9 +15,11 @@ impl SplitBase {
     /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for
     /// blocks that change, and nothing steady is read on the way up.
     pub(crate) fn solve(&self, factor: &SplitFactor, y: &mut [f64], work: &mut [f64], changing: bool, digits: Digits) {
-        match digits {
-            Digits::Double => self.solve_with::<Tile>(factor, y, work, changing),
-            Digits::Single => self.solve_with::<ShortTile>(factor, y, work, changing),
+        match (&self.bunches, digits) {
+            (Some(bunches), Digits::Double) => self.solve_bunches::<Tile>(bunches, factor, y, work),
+            (Some(bunches), Digits::Single) => self.solve_bunches::<ShortTile>(bunches, factor, y, work),
+            (None, Digits::Double) => self.solve_with::<Tile>(factor, y, work, changing),
+            (None, Digits::Single) => self.solve_with::<ShortTile>(factor, y, work, changing),
         }
     }
 
@@ -110,5 +113,107 @@ impl SplitBase {
     fn divide<'a>(&self, left: usize, x: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
         let region = &self.tree.regions[left].region;
         x.split_at_mut(6 * (region.own.end - region.start))
+    }
+
+    /// The same by bunches.
+    fn solve_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
+        let tree = &self.tree;
+        let work = &mut work[..bunches.work()];
+        for height in &bunches.heights {
+            bunches.over_height(height, work, true, &|bunch, part, below| {
+                self.gather(bunch, y, part);
+                self.take_sums(bunches, bunch, below, part);
+                self.solve_bunch::<T>(bunch, factor, part, true);
+            });
+        }
+        let end = work.len();
+        for height in bunches.heights.iter().rev() {
+            bunches.over_height(height, work, false, &|bunch, part, above| {
+                let before = end - above.len();
+                for (lane, &r) in bunch.regions.iter().enumerate() {
+                    let Some(around) = bunches.around[r as usize] else {
+                        continue;
+                    };
+                    let [k, column] = bunches.of[around as usize];
+                    let other = &bunches.all[k as usize];
+                    let from = &above[other.numbers.start - before..];
+                    for (i, &place) in tree.regions[r as usize].lift.iter().enumerate() {
+                        for c in 0..6 {
+                            let value = from[(6 * place as usize + c) * other.width + column as usize];
+                            part[(bunch.own + 6 * i + c) * bunch.width + lane] = value;
+                        }
+                    }
+                }
+                self.solve_bunch::<T>(bunch, factor, part, false);
+            });
+        }
+        for bunch in &bunches.all {
+            let part = &work[bunch.numbers.clone()];
+            for (lane, &r) in bunch.regions.iter().enumerate() {
+                let blocks = &tree.blocks[tree.regions[r as usize].region.own.clone()];
+                for (i, &block) in blocks.iter().enumerate() {
+                    for c in 0..6 {
+                        y[6 * block as usize + c] = part[(6 * i + c) * bunch.width + lane];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Own unknowns from `y`, zero behind them.
+    fn gather(&self, bunch: &Bunch, y: &[f64], part: &mut [f64]) {
+        part[..bunch.rows() * bunch.width].fill(0.0);
+        for (lane, &r) in bunch.regions.iter().enumerate() {
+            let blocks = &self.tree.blocks[self.tree.regions[r as usize].region.own.clone()];
+            for (i, &block) in blocks.iter().enumerate() {
+                for c in 0..6 {
+                    part[(6 * i + c) * bunch.width + lane] = y[6 * block as usize + c];
+                }
+            }
+        }
+    }
+
+    /// Adds what the regions within leave.
+    fn take_sums(&self, bunches: &Bunches, bunch: &Bunch, below: &[f64], part: &mut [f64]) {
+        for (lane, &r) in bunch.regions.iter().enumerate() {
+            for child in self.tree.regions[r as usize].region.children.into_iter().flatten() {
+                let [k, column] = bunches.of[child];
+                let other = &bunches.all[k as usize];
+                let from = &below[other.numbers.start..];
+                for (i, &place) in self.tree.regions[child].lift.iter().enumerate() {
+                    for c in 0..6 {
+                        let sum = from[(other.own + 6 * i + c) * other.width + column as usize];
+                        part[(6 * place as usize + c) * bunch.width + lane] += sum;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Elimination or back substitution.
+    fn solve_bunch<T: Reads>(&self, bunch: &Bunch, factor: &SplitFactor, part: &mut [f64], forward: bool) {
+        let piece = &self.pieces[bunch.regions[0] as usize];
+        let tiles = T::of(&piece.tiles);
+        let (own, rest) = part.split_at_mut(bunch.own * bunch.width);
+        let (behind, buffer) = rest.split_at_mut(bunch.behind * bunch.width);
+        if bunch.width == 1 {
+            let changing = T::of(&factor.tiles[bunch.regions[0] as usize]);
+            match forward {
+                true => {
+                    piece.steady.forward(tiles, own, behind, buffer);
+                    piece.changing.forward(changing, own, behind, buffer);
+                }
+                false => {
+                    piece.changing.backward(changing, own, behind, buffer);
+                    piece.steady.backward(tiles, own, behind, buffer);
+                }
+            }
+            return;
+        }
+        let [own, behind, buffer] = [own, behind, buffer].map(|part| part.as_chunks_mut::<LANES>().0);
+        match forward {
+            true => piece.steady.forward_lanes(tiles, own, behind, buffer),
+            false => piece.steady.backward_lanes(tiles, own, behind, buffer),
+        }
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::linalg::elimination::{grouped, patterns};
 use crate::linalg::sparse::FactorError;
-use crate::projector::split::order::{Dissection, Region, grid_of};
+use crate::linalg::supernodes::Supernodes;
+use crate::linalg::tiles::Tile;
+use crate::projector::split::order::{Dissection, Region};
 use crate::tolerances::{BORDER, CUTS, NODE, OPERATION, READ, SOLVES};
 use std::ops::Range;
 
@@ -101,11 +103,16 @@ impl Node {
     }
 }
 
-/// The cheapest tree for changes of the active set and the solves between them.
-pub(crate) fn cheapest_tree(graph: &[Vec<u32>], centres: &[[f64; 3]], changing: &[bool]) -> Option<CoarseTree> {
-    let mut best = CoarseTree::new(graph, centres, changing, 0).ok()?;
+/// The cheapest tree for changes of the active set and the solves between them, by layers of a `grid` if there is one.
+pub(crate) fn cheapest_tree(
+    graph: &[Vec<u32>],
+    centres: &[[f64; 3]],
+    changing: &[bool],
+    grid: Option<&[[u32; 3]]>,
+) -> Option<CoarseTree> {
+    let mut best = CoarseTree::new(graph, centres, changing, 0, grid).ok()?;
     for cuts in 1..=CUTS {
-        let next = CoarseTree::new(graph, centres, changing, cuts).ok()?;
+        let next = CoarseTree::new(graph, centres, changing, cuts, grid).ok()?;
         if next.cost() >= best.cost() {
             break;
         }
@@ -115,25 +122,16 @@ pub(crate) fn cheapest_tree(graph: &[Vec<u32>], centres: &[[f64; 3]], changing: 
 }
 
 impl CoarseTree {
-    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set.
+    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set. Where
+    /// they stand in a `grid`, most regions are equal to others.
     pub(crate) fn new(
         graph: &[Vec<u32>],
         centres: &[[f64; 3]],
         changing: &[bool],
         cuts: usize,
+        grid: Option<&[[u32; 3]]>,
     ) -> Result<Self, FactorError> {
-        Self::cut(graph, changing, Dissection::new(graph, centres, changing, cuts, None)?)
-    }
-
-    /// For blocks none of which changes; where they stand in a grid, most regions are equal to others.
-    pub(crate) fn regular(graph: &[Vec<u32>], centres: &[[f64; 3]]) -> Result<Self, FactorError> {
-        let (changing, grid) = (vec![false; graph.len()], grid_of(centres));
-        let cuts = Dissection::new(graph, centres, &changing, 0, grid.as_deref())?;
-        Self::cut(graph, &changing, cuts)
-    }
-
-    fn cut(graph: &[Vec<u32>], changing: &[bool], cuts: Dissection) -> Result<Self, FactorError> {
-        let Dissection { blocks, regions } = cuts;
+        let Dissection { blocks, regions } = Dissection::new(graph, centres, changing, cuts, grid)?;
         let blocks = postorder(&blocks, &patterns(graph, &blocks), &regions, changing);
         let patterns = patterns(graph, &blocks);
         let mut place = vec![0; blocks.len()];
@@ -159,6 +157,34 @@ impl CoarseTree {
         6 * self.blocks.len()
     }
 
+    /// Numbers that a factor stores: exact and rounded tiles, and what is steady in the columns that change. Steady columns
+    /// count in regions with tiles of their `own`.
+    pub(crate) fn stored(&self, own: impl Iterator<Item = bool>) -> usize {
+        // a rounded tile is half a tile
+        let tiles = |node: &Node| Tile::NUMBERS * Supernodes::tiles_of(node.width(), node.height()) * 3 / 2;
+        let region = |(region, own): (&TreeRegion, bool)| {
+            let steady = if own { region.steady.clone() } else { 0..0 };
+            let changing = &self.nodes[region.changing.clone()];
+            let columns: usize = changing.iter().map(|n| tiles(n) + n.width() * n.height()).sum();
+            columns + self.nodes[steady].iter().map(tiles).sum::<usize>()
+        };
+        self.regions.iter().zip(own).map(region).sum()
+    }
+
+    /// Operations of an elimination; steady columns count in regions of their `own`.
+    pub(crate) fn operations(&self, own: impl Iterator<Item = bool>) -> f64 {
+        let region = |(region, own): (&TreeRegion, bool)| {
+            let first = if own {
+                region.steady.start
+            } else {
+                region.changing.start
+            };
+            let nodes = &self.nodes[first..region.changing.end];
+            nodes.iter().map(Node::operations).sum::<f64>()
+        };
+        self.regions.iter().zip(own).map(region).sum()
+    }
+
     /// Seconds on two threads: of the larger side only of the first cut.
     pub(crate) fn cost(&self) -> f64 {
         let Some(root) = self.regions.last() else {
@@ -173,6 +199,14 @@ impl CoarseTree {
     /// Whether anything changes.
     pub(crate) fn changes(&self) -> bool {
         self.nodes.iter().any(|n| n.changing)
+    }
+
+    /// Whether anything changes in a region or those within.
+    pub(crate) fn region_changes(&self, r: usize) -> bool {
+        let region = &self.regions[r];
+        self.nodes[region.first_node..region.changing.end]
+            .iter()
+            .any(|n| n.changing)
     }
 
     /// Places in a region of what is behind the regions within and in the borders that lead to it, for lists in any
@@ -205,6 +239,13 @@ impl CoarseTree {
     /// The node that holds a position.
     pub(crate) fn node_of(&self, position: usize) -> usize {
         self.nodes.partition_point(|n| n.columns.end <= position)
+    }
+
+    /// The node and the place in its columns of the block of two blocks, if its row does not stand before its column.
+    pub(crate) fn front(&self, row: u32, column: u32) -> Option<(usize, usize)> {
+        let (p, q) = (self.place[row as usize], self.place[column as usize]);
+        let k = self.node_of(q as usize);
+        (p >= q).then(|| (k, self.nodes[k].place(p, q)))
     }
 
     /// Groups the own blocks of a region where that saves time.
@@ -335,7 +376,7 @@ mod tests {
     fn check(size: [usize; 3], changing: impl Fn(&[f64; 3]) -> bool, cuts: usize) {
         let (graph, centres) = grid(size);
         let changing: Vec<bool> = centres.iter().map(changing).collect();
-        let tree = CoarseTree::new(&graph, &centres, &changing, cuts).unwrap();
+        let tree = CoarseTree::new(&graph, &centres, &changing, cuts, None).unwrap();
         let fill = filled(&graph, &tree);
         let mut next = 0;
         for (k, node) in tree.nodes.iter().enumerate() {

@@ -1,0 +1,201 @@
+//! An approximation `N` of the inverse of `G W G^T` that is cheap to make anew for other weights of the contact rows.
+//!
+//! Clusters `Z` of subdomains move as one, `C = Z (Z^T G W G^T Z)^-1 Z^T`. Between two such solves come sweeps that
+//! relax each subdomain by itself, `J = omega diag(G W G^T)^-1`. With `A = G W G^T`
+//! `I - N A = (I - C A) (I - J A)^k (I - C A)`: `N` is symmetric, and what it leaves is in balance on each cluster. The
+//! latter counts more than what is left: rows that are always free carry it, the further the smoother it is.
+
+use crate::coarse::blocks::{BLOCK, BlockTable, table_of};
+use crate::coarse::clusters::Clusters;
+use crate::coarse::matrix::{Block, CoarseMatrix, ModeTable};
+use crate::linalg::tiles::{Digits, LANES};
+use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
+use crate::projector::split::fronts::{ContactTerms, ContactWeights};
+use crate::projector::split::order::grid_of;
+use crate::projector::split::tree::cheapest_tree;
+use crate::rows::gluing::Gluing;
+use crate::tolerances::{RELAXED, SWEEPS};
+use nalgebra::Matrix6;
+use signorini_qp::internal::LineWeight;
+
+/// What does not depend on the weights of contact rows.
+#[derive(Debug)]
+pub(super) struct Model {
+    clusters: Clusters,
+    of_clusters: SplitBase,
+    /// Of the rows that are always free.
+    steady: (BlockTable, Vec<f64>),
+    /// Inverses of its diagonal blocks, relaxed.
+    inverses: Vec<Block>,
+    contact: ContactTerms,
+    table: BlockTable,
+    /// Subdomains with contact rows, and the places of their diagonal blocks.
+    touching: Vec<(u32, u32)>,
+    diagonal: Vec<Block>,
+}
+
+/// What follows the weights.
+#[derive(Debug)]
+pub(super) struct ModelFactor {
+    pub(super) clusters: SplitFactor,
+    /// Blocks of the contact rows.
+    contact: Vec<f64>,
+    /// Inverses of diagonal blocks of subdomains with contact rows.
+    inverses: Vec<Block>,
+}
+
+impl Model {
+    /// With the leading contact `rows`; `values` are those of the matrix without them.
+    pub(super) fn new(
+        clusters: Clusters,
+        (gluing, modes): (&Gluing, &ModeTable<'_>),
+        (matrix, values): (&CoarseMatrix, &[f64]),
+        changing: &[bool],
+        rows: usize,
+    ) -> Option<Self> {
+        let of_row = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
+        let on_clusters = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| {
+            let mut row = Vec::new();
+            of_row(nodal, &mut row);
+            clusters.join(&row, out);
+        };
+        let (sums, sum_values) = clusters.matrix(matrix, values);
+        let (graph, grid) = (sums.graph(), grid_of(clusters.centres()));
+        let tree = cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing), grid.as_deref())?;
+        let of_clusters = SplitBase::new(tree, &sums, &graph, &sum_values, rows, &on_clusters, true).ok()?;
+        let mut partners: Vec<Vec<u32>> = vec![Vec::new(); changing.len()];
+        let mut row = Vec::new();
+        for nodal in 0..rows {
+            row.clear();
+            of_row(nodal, &mut row);
+            for (a, b) in row.iter().flat_map(|(a, _)| row.iter().map(move |(b, _)| (a, b))) {
+                if !partners[*a as usize].contains(b) {
+                    partners[*a as usize].push(*b);
+                }
+            }
+        }
+        let mut starts = vec![0];
+        for list in &mut partners {
+            list.sort_unstable();
+            starts.push(starts[starts.len() - 1] + list.len() as u32);
+        }
+        let place = |a: u32, b: u32| {
+            let within = partners[a as usize].partition_point(|&other| other < b);
+            starts[a as usize] + within as u32
+        };
+        let contact = ContactTerms::new(1, rows, &|a, b| Some((0, BLOCK * place(a, b) as usize)), &of_row);
+        let table = BlockTable::new(
+            partners
+                .iter()
+                .zip(&starts)
+                .map(|(list, &start)| list.iter().copied().zip(start..)),
+        );
+        let mut blocks = vec![[[0.0; 6]; 6]; changing.len()];
+        matrix.for_blocks(values, |i, j, block| {
+            if i == j {
+                blocks[i as usize] = *block;
+            }
+        });
+        let touching = (0..changing.len() as u32).filter(|&s| !partners[s as usize].is_empty());
+        let touching: Vec<(u32, u32)> = touching.map(|s| (s, place(s, s))).collect();
+        Some(Self {
+            of_clusters,
+            steady: table_of(matrix, changing.len(), values),
+            inverses: blocks.iter().map(relaxed).collect(),
+            contact,
+            table,
+            diagonal: touching.iter().map(|(s, _)| blocks[*s as usize]).collect(),
+            touching,
+            clusters,
+        })
+    }
+
+    /// Factors for other weights of the contact rows; reuses the memory of `old`.
+    pub(super) fn factor(
+        &self,
+        weights: &ContactWeights,
+        old: Option<SplitFactor>,
+        fronts: &mut Fronts,
+    ) -> Result<ModelFactor, usize> {
+        let count = self.touching.last().map_or(0, |_| self.table.blocks());
+        let mut contact = vec![0.0; BLOCK * count];
+        self.contact.add(0, LANES, weights, &mut contact);
+        let inverse = |((_, place), steady): (&(u32, u32), &Block)| {
+            let own = &contact[BLOCK * *place as usize..];
+            relaxed(&std::array::from_fn(|r| {
+                std::array::from_fn(|c| steady[r][c] + own[c * LANES + r])
+            }))
+        };
+        Ok(ModelFactor {
+            clusters: self.of_clusters.factor(weights, old, fronts)?,
+            inverses: self.touching.iter().zip(&self.diagonal).map(inverse).collect(),
+            contact,
+        })
+    }
+
+    /// Whether pairs of contact rows may stand in these lines.
+    pub(super) fn allows(&self, lines: &[LineWeight]) -> bool {
+        self.contact.allow(lines)
+    }
+
+    /// Numbers stored.
+    pub(super) fn stored(&self) -> usize {
+        let inverses = self.inverses.len() + 2 * self.touching.len();
+        self.of_clusters.stored() + self.steady.1.len() + 36 * inverses + BLOCK * self.table.blocks()
+    }
+
+    /// Length of the work memory of a solve.
+    pub(super) fn work(&self) -> usize {
+        6 * (self.clusters.count() + 2 * self.inverses.len()) + self.of_clusters.work()
+    }
+
+    /// `y = N y`.
+    pub(super) fn solve(&self, factor: &ModelFactor, y: &mut [f64], work: &mut [f64], digits: Digits) {
+        let (sums, work) = work.split_at_mut(6 * self.clusters.count());
+        let (rest, work) = work.split_at_mut(y.len());
+        let (step, work) = work.split_at_mut(y.len());
+        rest.copy_from_slice(y);
+        let cluster = |rest: &[f64], step: &mut [f64], sums: &mut [f64], work: &mut [f64]| {
+            self.clusters.restrict(rest, sums);
+            self.of_clusters.solve(&factor.clusters, sums, work, false, digits);
+            self.clusters.prolong(sums, step);
+        };
+        cluster(rest, y, sums, work);
+        self.subtract(factor, y, rest);
+        for _ in 0..SWEEPS {
+            self.relax(factor, rest, step);
+            y.iter_mut().zip(&*step).for_each(|(y, s)| *y += s);
+            self.subtract(factor, step, rest);
+        }
+        cluster(rest, step, sums, work);
+        y.iter_mut().zip(&*step).for_each(|(y, s)| *y += s);
+    }
+
+    /// `y = y - G W G^T x`.
+    fn subtract(&self, factor: &ModelFactor, x: &[f64], y: &mut [f64]) {
+        self.steady.0.subtract(&self.steady.1, x, y);
+        self.table.subtract(&factor.contact, x, y);
+    }
+
+    /// `out = J rest`.
+    fn relax(&self, factor: &ModelFactor, rest: &[f64], out: &mut [f64]) {
+        let (rest, (out, _)) = (rest.as_chunks::<6>().0, out.as_chunks_mut::<6>());
+        for ((rest, out), inverse) in rest.iter().zip(&mut *out).zip(&self.inverses) {
+            *out = times(inverse, rest);
+        }
+        for ((s, _), inverse) in self.touching.iter().zip(&factor.inverses) {
+            out[*s as usize] = times(inverse, &rest[*s as usize]);
+        }
+    }
+}
+
+fn times(a: &Block, x: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|r| (0..6).map(|c| a[r][c] * x[c]).sum())
+}
+
+/// The relaxed inverse of a diagonal block; zero if there is none.
+fn relaxed(block: &Block) -> Block {
+    let inverse = Matrix6::from_fn(|r, c| block[r][c]).cholesky();
+    let inverse = inverse.map_or_else(Matrix6::zeros, |c| c.inverse());
+    std::array::from_fn(|r| std::array::from_fn(|c| RELAXED * inverse[(r, c)]))
+}

@@ -1,0 +1,126 @@
+//! Equal regions of a factor are solved together; those in which something changes are solved alone.
+//!
+//! The unknowns of up to eight equal regions stand next to one another in a *bunch*, their own first, then those behind
+//! them. A bunch takes what the bunches of the regions within leave to it, and on the way back what the regions around
+//! know of the unknowns behind. Bunches of one height do not touch one another and run on different threads; which
+//! regions stand together depends on the matrix only.
+
+use crate::dual::boundary::over_tasks;
+use crate::linalg::tiles::LANES;
+use crate::projector::split::tree::CoarseTree;
+use crate::tolerances::{SOLVE_READS, TOGETHER};
+use std::ops::Range;
+
+/// Which regions are solved together, from the innermost to the outermost.
+#[derive(Debug)]
+pub(crate) struct Bunches {
+    pub(super) all: Vec<Bunch>,
+    /// Bunches of each height.
+    pub(super) heights: Vec<Range<usize>>,
+    /// Bunch and column of each region.
+    pub(super) of: Vec<[u32; 2]>,
+    /// The region around each region; the whole has none.
+    pub(super) around: Vec<Option<u32>>,
+}
+
+#[derive(Debug)]
+pub(super) struct Bunch {
+    /// Equal regions.
+    pub(super) regions: Vec<u32>,
+    /// Columns: those of a register, or one.
+    pub(super) width: usize,
+    /// Rows: own unknowns, and those behind.
+    pub(super) own: usize,
+    pub(super) behind: usize,
+    /// Its numbers in the work memory, with a buffer of the kernels.
+    pub(super) numbers: Range<usize>,
+}
+
+impl Bunch {
+    pub(super) fn rows(&self) -> usize {
+        self.own + self.behind
+    }
+}
+
+impl Bunches {
+    /// For a tree whose region `r` equals the region `first[r]`; `buffer` is the length of that of a region's kernels.
+    pub(crate) fn new(tree: &CoarseTree, first: &[usize], buffer: impl Fn(usize) -> usize) -> Self {
+        let count = tree.regions.len();
+        let (mut height, mut around) = (vec![0_usize; count], vec![None; count]);
+        let mut families: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (r, region) in tree.regions.iter().enumerate() {
+            for child in region.region.children.into_iter().flatten() {
+                height[r] = height[r].max(height[child] + 1);
+                around[child] = Some(r as u32);
+            }
+            families[first[r]].push(r as u32);
+        }
+        let (mut all, mut heights, mut of) = (Vec::new(), Vec::new(), vec![[0; 2]; count]);
+        let mut next = 0;
+        for h in 0..=height.iter().copied().max().unwrap_or(0) {
+            let start = all.len();
+            for (r, family) in families
+                .iter()
+                .enumerate()
+                .filter(|(r, f)| height[*r] == h && !f.is_empty())
+            {
+                let bunches = match family.len() < TOGETHER {
+                    true => family.len(),
+                    false => family.len().div_ceil(LANES),
+                };
+                for k in 0..bunches {
+                    let at = |k: usize| k * family.len() / bunches;
+                    let regions = family[at(k)..at(k + 1)].to_vec();
+                    (0..)
+                        .zip(&regions)
+                        .for_each(|(c, &r)| of[r as usize] = [all.len() as u32, c]);
+                    let width = if regions.len() == 1 { 1 } else { LANES };
+                    let (own, behind) = (6 * tree.regions[r].region.own.len(), 6 * tree.regions[r].behind.len());
+                    let length = (own + behind + buffer(r)) * width;
+                    all.push(Bunch {
+                        regions,
+                        width,
+                        own,
+                        behind,
+                        numbers: next..next + length,
+                    });
+                    next += length;
+                }
+            }
+            heights.push(start..all.len());
+        }
+        Self {
+            all,
+            heights,
+            of,
+            around,
+        }
+    }
+
+    /// Length of the work memory.
+    pub(crate) fn work(&self) -> usize {
+        self.all.last().map_or(0, |b| b.numbers.end)
+    }
+
+    /// Runs `task` on the bunches of a height, with their numbers and all below (`up`), or all above.
+    pub(super) fn over_height(
+        &self,
+        height: &Range<usize>,
+        work: &mut [f64],
+        up: bool,
+        task: &(impl Fn(&Bunch, &mut [f64], &[f64]) + Sync),
+    ) {
+        let bunches = &self.all[height.clone()];
+        let (Some(first), Some(last)) = (bunches.first(), bunches.last()) else {
+            return;
+        };
+        let (start, end) = (first.numbers.start, last.numbers.end);
+        let (below, rest) = work.split_at_mut(start);
+        let (own, above) = rest.split_at_mut(end - start);
+        let others = if up { &*below } else { &*above };
+        let offset = |bunch: &Bunch| bunch.numbers.start;
+        over_tasks(bunches, own, &offset, end - start >= SOLVE_READS, &|bunch, part| {
+            task(bunch, &mut part[..bunch.numbers.len()], others);
+        });
+    }
+}
