@@ -57,7 +57,8 @@ pub struct MeshChoice {
     pub order: usize,
     /// Cells along each edge.
     pub cells: [usize; 3],
-    /// Exponent of the grading along each edge: cells of size `s^(grading - 1)` at the distance `s^grading` from an end.
+    /// Exponent of the grading along each edge: cells of size `s^(grading - 1)` at the distance `s^grading` from an
+    /// end.
     pub grading: [f64; 3],
 }
 
@@ -225,7 +226,7 @@ pub fn execute(options: &OrderOptions, out: &mut impl Write) -> Result<Vec<Row>,
         let (truth, estimate) = (slope(|row| row.energy), slope(|row| Some(row.estimate)));
         writeln!(
             out,
-            "order {order}, grading {grading}: strains fall with the cell size to the power {truth}, the estimate {estimate}"
+            "order {order}, grading {grading}: strains fall with cell size to the power {truth}, the estimate {estimate}"
         )?;
     }
     Ok(rows)
