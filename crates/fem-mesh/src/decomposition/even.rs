@@ -23,8 +23,8 @@ pub enum PartCount {
 /// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
 /// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
 /// number of parts allows it. What is not compact then is made so as by
-/// [`compact_parts`](crate::decomposition::compact_parts). Where cells are graded along an axis, slabs of long cells get
-/// fewer of them, so that parts are not flat, and groups that fell into boxes stay so. The parts are numbered by their
+/// [`compact_parts`](crate::decomposition::compact_parts). In a box with cells graded along an axis, slabs of long cells
+/// get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The parts are numbered by their
 /// first tetrahedra.
 ///
 /// # Errors
@@ -40,23 +40,27 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
     let (starts, members) = buckets(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
-    let cutter = Cutter {
+    let cutter = |shares| Cutter {
         mesh,
         centres: &centres,
-        shares: shares(mesh),
+        shares,
     };
-    let graded = cutter.shares.iter().any(Option::is_some);
+    let (plain, graded) = (cutter([const { None }; 3]), cutter(shares(mesh)));
+    let any = graded.shares.iter().any(Option::is_some);
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; starts.len() - 1];
     for group in 0..starts.len() - 1 {
         let own = &members[range(&starts, group)];
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
+        // elsewhere long cells along an axis are not layers
+        let layered = any && plain.is_box(own);
+        let cutter = if layered { &graded } else { &plain };
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
             PartCount::About(_) => cutter.nearest_to_cubes(own, share),
         };
-        whole[group] = graded && pieces.iter().all(|piece| cutter.is_box(piece));
+        whole[group] = layered && pieces.iter().all(|piece| cutter.is_box(piece));
         for piece in pieces {
             for tet in piece {
                 slabs[tet as usize] = next;
