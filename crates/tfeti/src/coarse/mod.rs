@@ -2,7 +2,8 @@
 //!
 //! Uses `linalg`, `subdomain`, `rows` and the tables of `dual`. In go gluing and rigid motions, out come products with
 //! `G` (`space`, by `products`), the values of `G W G^T` for row weights (`matrix`, `weights`) and rigid motions of
-//! bodies that rows do not stop (`mobility`; `joints` finds the bodies). What factors this matrix lives in `projector`.
+//! bodies that rows do not stop (`mobility`; `joints` finds the bodies), the matrix of `clusters` of subdomains, and
+//! products with these matrices (`blocks`). What factors this matrix lives in `projector`.
 
 pub(crate) mod blocks;
 pub(crate) mod clusters;

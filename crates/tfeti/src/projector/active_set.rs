@@ -120,10 +120,8 @@ impl ActiveSetProjector {
         };
         let pays = |base: &SplitBase| kind != ActiveSetFactor::Auto || base.pays(coarse.rows(), coarse.factor_size());
         let (basis, fixed) = match bases {
-            Some(Bases::Levels { model, always, free }) => {
-                (Some(Basis::Model(Arc::new(model))), Some((Arc::new(always), free)))
-            }
-            Some(Bases::One(base)) if pays(&base) => (Some(Basis::Split(Arc::new(base))), None),
+            Some(Bases::Levels { model, always, free }) => (Some(Basis::Model(model)), Some((always, free))),
+            Some(Bases::One(base)) if pays(&base) => (Some(Basis::Split(base)), None),
             _ => (None, None),
         };
         let mut parts = SplitParts {

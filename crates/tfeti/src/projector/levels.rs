@@ -1,10 +1,11 @@
 //! The projector of an active set by two levels: what changes is a small model, what is exact does not change.
 //!
 //! The factor of `G W G^T` that follows the contact rows grows with the third power of the number of subdomains that
-//! touch. Here it is that of [`Clusters`], an approximation `N` of the inverse: contact rows take `W G^T N g`, and the
-//! rows that are always free, with a factor `A^-1` that never changes, what is left of the equality: `P x = x - W_c G^T
-//! N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact whatever `N` is;
-//! iterations need the more steps the worse it is.
+//! touch. Here its place is taken by a [`Model`], an approximation `N` of the inverse: contact rows take `W G^T N g`, and
+//! the rows that are always free, with a factor `A^-1` that never changes, what is left of the equality: `P x = x - W_c
+//! G^T N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact whatever `N` is;
+//! iterations need the more steps the worse it is. Where contact alone holds bodies, `A` has springs: what `N` leaves is
+//! in balance on each body and does not load them.
 
 use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
@@ -17,14 +18,15 @@ use crate::projector::split::factor::SplitBase;
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
 use crate::tolerances::{FEW, GROWTH, MANY, OPERATION, ROW, SOLVES};
+use std::sync::Arc;
 
 /// What the factors of all active sets have in common.
 pub(super) enum Bases {
-    One(SplitBase),
+    One(Arc<SplitBase>),
     Levels {
-        model: Model,
+        model: Arc<Model>,
         /// Of the rows that are always free, and of springs where these leave motions free.
-        always: SplitBase,
+        always: Arc<SplitBase>,
         free: Vec<FreeMotion>,
     },
 }
@@ -70,7 +72,7 @@ impl Coarse {
         let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
         SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write, false)
             .ok()
-            .map(Bases::One)
+            .map(|base| Bases::One(Arc::new(base)))
     }
 
     /// The bases by two levels, if they exist.
@@ -92,11 +94,12 @@ impl Coarse {
         let mut values = values.to_vec();
         data.hold(&free, &mut values);
         let always = SplitBase::new(fixed, matrix, graph, &values, 0, &|_, _| {}, true).ok()?;
+        let (model, always) = (Arc::new(model), Arc::new(always));
         Some(Bases::Levels { model, always, free })
     }
 }
 
-/// Methods of a factor of clusters; `exact` is that of the rows that are always free.
+/// Methods of a model; `exact` is the factor of the rows that are always free.
 impl CoarseFactor {
     /// `x = P x`, or the point with `G x = e` that is reached that way.
     pub(super) fn project_with(&self, exact: &Self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
