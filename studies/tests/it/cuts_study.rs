@@ -26,7 +26,13 @@ fn compact_parts_take_at_most_a_quarter_more_products_than_boxes() {
             // the library's parts are the boxes
             assert!(line.cut != "library" || line.total() == boxes, "{line:?}");
             if line.cut.starts_with("library") || line.cut.ends_with("compact") {
-                assert!(4 * line.total() <= 5 * boxes, "{boxes}: {line:?}");
+                // a static step on boxes takes less than the 28 asked for
+                let asked = if line.case == Case::Static {
+                    boxes.max(28)
+                } else {
+                    boxes
+                };
+                assert!(4 * line.total() <= 5 * asked, "{boxes}: {line:?}");
             }
             assert!(spike(line) < 2.6, "{line:?}");
         }

@@ -76,9 +76,11 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     peak: f64,
     pub(crate) moved: LastMove,
     pub(crate) progress: Progress,
-    /// Estimated errors when the last set was left, and when it was entered.
+    /// Estimated errors when the last set was left, that of the constrained part when it was entered, and the least with
+    /// which a set was entered.
     left: Lengths,
-    first_error: Lengths,
+    first_error: f64,
+    least_error: f64,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -118,7 +120,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 waited: 0,
             },
             left: Lengths::INFINITE,
-            first_error: Lengths::INFINITE,
+            first_error: f64::INFINITY,
+            least_error: f64::INFINITY,
             safeguard: None,
             at: Iterate {
                 problem,
@@ -375,7 +378,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             forcing: at
                 .work
                 .coupling
-                .forcing(self.forcing, self.moved.jump, self.first_error.constrained),
+                .forcing(self.forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing
             expected: match settled {
                 true => self.left.zip(self.left, |left, _| expected(left)),
@@ -387,8 +390,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             step: self.settings.natural_step,
             size: place.x_norm.max(self.settings.error_floor),
         };
-        let falls = place.errors.all < self.first_error.all;
-        self.first_error = place.errors;
+        let falls = place.errors.all < self.least_error;
+        self.first_error = place.errors.constrained;
+        self.least_error = self.least_error.min(place.errors.all);
         let matters = place.limits.constrained > PASSING_PART * place.limits.all;
         let passes = steady && falls && matters && self.settings.joint_step_fraction > 0.0 && at.is_on_the_way();
         let length = if passes {
