@@ -30,7 +30,6 @@
 //! This package stands outside the workspace, because it needs an MPI and libclang to build.
 
 use mpi::Count;
-use mpi::Rank;
 use mpi::Threading;
 use mpi::datatype::PartitionMut;
 use mpi::topology::SimpleCommunicator;
@@ -89,11 +88,8 @@ pub fn run<E: Display>(work: impl FnOnce(Arc<dyn Communicator>) -> Result<(), E>
     let world = universe.world();
     let rank = world.rank();
     if threading < Threading::Serialized {
-        last_words(
-            rank,
-            "error: this MPI does not serve programs with threads; build or choose another one",
-        );
-        world.abort(1);
+        let why = "error: this MPI does not serve programs with threads; build or choose another one";
+        end_all(&world, why);
     }
     let communicator = World {
         rank: rank as usize,
@@ -102,20 +98,15 @@ pub fn run<E: Display>(work: impl FnOnce(Arc<dyn Communicator>) -> Result<(), E>
     };
     match catch_unwind(AssertUnwindSafe(|| work(Arc::new(communicator)))) {
         Ok(Ok(())) => ExitCode::SUCCESS,
-        Ok(Err(error)) => {
-            last_words(rank, &format!("error: {error}"));
-            world.abort(1)
-        }
-        Err(_) => {
-            last_words(rank, "panicked, see above");
-            world.abort(1)
-        }
+        Ok(Err(error)) => end_all(&world, &format!("error: {error}")),
+        Err(_) => end_all(&world, "panicked, see above"),
     }
 }
 
-/// Prints why a rank ends all, in one write: `mpirun` mixes what ranks and itself print, piece by piece.
-fn last_words(rank: Rank, why: &str) {
-    let line = format!("rank {rank}: {why}\n");
+/// Ends all ranks and prints why, in one write: `mpirun` mixes what ranks and itself print, piece by piece.
+fn end_all(world: &SimpleCommunicator, why: &str) -> ! {
+    let line = format!("rank {}: {why}\n", world.rank());
     // nobody is left to tell that the stream is closed
     let _ = std::io::stderr().lock().write_all(line.as_bytes());
+    world.abort(1)
 }

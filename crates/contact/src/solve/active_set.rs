@@ -202,20 +202,13 @@ impl ActiveSetSolver {
             false => paper.solve_within(most, task, iterate),
         };
         self.paper = Some(paper);
-        let second = outcome?;
-        report.fallback = true;
-        report.fallback_products = second.counters.products;
-        // SMALSE has no such estimate
-        report.estimated_error = None;
-        report.status = match second.status {
-            StepStatus::IterationLimit if not_held => StepStatus::NotHeld,
-            status => status,
-        };
-        report.iterations += second.iterations;
-        report.counters += second.counters;
-        report.steps += second.steps;
-        report.fixed_point = second.fixed_point;
+        let mut second = outcome?;
+        second.fallback = true;
+        second.fallback_products = second.counters.products;
+        if not_held && second.status == StepStatus::IterationLimit {
+            second.status = StepStatus::NotHeld;
+        }
         iterate.multiplier.clear();
-        Ok(report)
+        Ok(report.resumed(second))
     }
 }

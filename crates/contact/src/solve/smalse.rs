@@ -83,13 +83,9 @@ impl SmalseSolver {
         loop {
             let part = self.solve_within(left.min(BALANCING), task, iterate)?;
             left = left.saturating_sub(part.counters.products);
-            all.iterations += part.iterations;
-            all.counters += part.counters;
-            all.steps += part.steps;
-            all.fixed_point = part.fixed_point;
-            all.status = part.status;
+            all = all.resumed(part);
             let now = self.rows.imbalance(&iterate.lambda);
-            if part.status != StepStatus::IterationLimit || left == 0 || now > BALANCED * before {
+            if all.status != StepStatus::IterationLimit || left == 0 || now > BALANCED * before {
                 return Ok(all);
             }
             before = now;

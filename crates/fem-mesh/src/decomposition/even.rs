@@ -23,9 +23,9 @@ pub enum PartCount {
 /// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
 /// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
 /// number of parts allows it. What is not compact then is made so as by
-/// [`compact_parts`](crate::decomposition::compact_parts). In a box with cells graded along an axis, slabs of long cells
-/// get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The parts are numbered by their
-/// first tetrahedra.
+/// [`compact_parts`](crate::decomposition::compact_parts). In a box with cells graded along an axis, slabs of long
+/// cells get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The parts are
+/// numbered by their first tetrahedra.
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`]
@@ -45,22 +45,25 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         centres: &centres,
         shares,
     };
-    let (plain, graded) = (cutter([const { None }; 3]), cutter(shares(mesh)));
-    let any = graded.shares.iter().any(Option::is_some);
+    let own = |group: usize| &members[range(&starts, group)];
+    let plain = cutter([const { None }; 3]);
+    // elsewhere long cells along an axis are not layers
+    let boxes: Vec<bool> = (0..starts.len() - 1).map(|group| plain.is_box(own(group))).collect();
+    let graded = boxes.contains(&true).then(|| cutter(shares(mesh)));
+    let graded = graded.filter(|cutter| cutter.shares.iter().any(Option::is_some));
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; starts.len() - 1];
     for group in 0..starts.len() - 1 {
-        let own = &members[range(&starts, group)];
+        let own = own(group);
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
-        // elsewhere long cells along an axis are not layers
-        let layered = any && plain.is_box(own);
-        let cutter = if layered { &graded } else { &plain };
+        let layered = graded.as_ref().filter(|_| boxes[group]);
+        let cutter = layered.unwrap_or(&plain);
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
             PartCount::About(_) => cutter.nearest_to_cubes(own, share),
         };
-        whole[group] = layered && pieces.iter().all(|piece| cutter.is_box(piece));
+        whole[group] = layered.is_some() && pieces.iter().all(|piece| cutter.is_box(piece));
         for piece in pieces {
             for tet in piece {
                 slabs[tet as usize] = next;

@@ -76,8 +76,8 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     peak: f64,
     pub(crate) moved: LastMove,
     pub(crate) progress: Progress,
-    /// Estimated errors when the last set was left, that of the constrained part when it was entered, and the least with
-    /// which a set was entered.
+    /// Estimated errors when the last set was left, that of the constrained part when it was entered, and the least
+    /// with which a set was entered.
     left: Lengths,
     first_error: f64,
     least_error: f64,

@@ -179,8 +179,8 @@ impl CoarseMatrix {
         }
     }
 
-    /// A matrix of `count` parts to which the subdomains belong, or of which they are none, with the sums of what `block`
-    /// makes of the blocks of a matrix with these values.
+    /// A matrix of `count` parts to which the subdomains belong, or of which they are none, with the sums of what
+    /// `block` makes of the blocks of a matrix with these values.
     pub(crate) fn joined(
         &self,
         values: &[f64],

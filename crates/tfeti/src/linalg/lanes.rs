@@ -11,36 +11,17 @@ use pulp::{Arch, Simd, WithSimd};
 pub(crate) type Lanes = [f64; LANES];
 
 impl Supernodes {
-    /// [`forward`](Self::forward) for all right sides.
-    pub(crate) fn forward_lanes<T: Stored>(
+    /// [`forward`](Self::forward) or [`backward`](Self::backward) for all right sides.
+    pub(crate) fn solve_lanes<T: Stored>(
         &self,
         tiles: &[T],
         x: &mut [Lanes],
         behind: &mut [Lanes],
         buffer: &mut [Lanes],
+        forward: bool,
     ) {
-        let (factor, forward) = (self, true);
         Arch::new().dispatch(SolveLanes {
-            factor,
-            tiles,
-            x,
-            behind,
-            buffer,
-            forward,
-        });
-    }
-
-    /// [`backward`](Self::backward) for all right sides.
-    pub(crate) fn backward_lanes<T: Stored>(
-        &self,
-        tiles: &[T],
-        x: &mut [Lanes],
-        behind: &mut [Lanes],
-        buffer: &mut [Lanes],
-    ) {
-        let (factor, forward) = (self, false);
-        Arch::new().dispatch(SolveLanes {
-            factor,
+            factor: self,
             tiles,
             x,
             behind,

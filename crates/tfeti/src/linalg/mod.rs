@@ -5,8 +5,8 @@
 //! thread.
 //!
 //! `elimination` finds the pattern of a factor, `supernodes` and `tiles` store one for solves with one right-hand side
-//! (see `projector/split` for what they are worth) or, in `lanes`, with several, `block_rows` multiplies one matrix with
-//! many vectors.
+//! (see `projector/split` for what they are worth) or, in `lanes`, with several, `block_rows` multiplies one matrix
+//! with many vectors.
 
 pub(crate) mod block_rows;
 pub(crate) mod dense;

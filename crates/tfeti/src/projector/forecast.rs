@@ -26,8 +26,8 @@ pub struct LevelsForecast {
     pub flops: f64,
 }
 
-/// Forecast for two levels; `None` where one is used. `touching` are the nodes with contact rows, `supported` those with
-/// support rows, each once; `rows` is the number of rows of `B`.
+/// Forecast for two levels; `None` where one is used. `touching` are the nodes with contact rows, `supported` those
+/// with support rows, each once; `rows` is the number of rows of `B`.
 pub fn forecast_levels(
     forecast: &Forecast<'_>,
     touching: impl Iterator<Item = u32>,

@@ -1,11 +1,11 @@
 //! The projector of an active set by two levels: what changes is a small model, what is exact does not change.
 //!
 //! The factor of `G W G^T` that follows the contact rows grows with the third power of the number of subdomains that
-//! touch. Here its place is taken by a [`Model`], an approximation `N` of the inverse: contact rows take `W G^T N g`, and
-//! the rows that are always free, with a factor `A^-1` that never changes, what is left of the equality: `P x = x - W_c
-//! G^T N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact whatever `N` is;
-//! iterations need the more steps the worse it is. Where contact alone holds bodies, `A` has springs: what `N` leaves is
-//! in balance on each body and does not load them.
+//! touch. Here its place is taken by a [`Model`], an approximation `N` of the inverse: contact rows take `W G^T N g`,
+//! and the rows that are always free, with a factor `A^-1` that never changes, what is left of the equality: `P x = x -
+//! W_c G^T N g - W_f G^T A^-1 (g - G W_c G^T N g)`, `g = G x`. `P` is a projector to the kernel of `G`, exact whatever
+//! `N` is; iterations need the more steps the worse it is. Where contact alone holds bodies, `A` has springs: what `N`
+//! leaves is in balance on each body and does not load them.
 
 use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::ModeTable;
@@ -31,8 +31,8 @@ pub(super) enum Bases {
     },
 }
 
-/// Whether two levels pay for subdomains of which those that are `touching` have contact rows, with so many `rows` of `B`
-/// in all: a change of the active set with one level factors a dense matrix of those that touch.
+/// Whether two levels pay for subdomains of which those that are `touching` have contact rows, with so many `rows` of
+/// `B` in all: a change of the active set with one level factors a dense matrix of those that touch.
 pub(super) fn two_levels_pay(touching: &[bool], rows: usize) -> bool {
     let dense = 6.0 * touching.iter().filter(|t| **t).count() as f64;
     let slower = GROWTH * 0.5 * SOLVES * ROW * rows as f64;

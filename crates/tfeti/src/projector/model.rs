@@ -117,8 +117,7 @@ impl Model {
         old: Option<SplitFactor>,
         fronts: &mut Fronts,
     ) -> Result<ModelFactor, usize> {
-        let count = self.touching.last().map_or(0, |_| self.table.blocks());
-        let mut contact = vec![0.0; BLOCK * count];
+        let mut contact = vec![0.0; BLOCK * self.table.blocks()];
         self.contact.add(0, LANES, weights, &mut contact);
         let inverse = |((_, place), steady): (&(u32, u32), &Block)| {
             let own = &contact[BLOCK * *place as usize..];

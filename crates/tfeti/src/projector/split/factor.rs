@@ -66,8 +66,8 @@ pub(crate) struct SplitFactor {
 pub(crate) struct Fronts(Vec<Front>);
 
 impl SplitBase {
-    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions are
-    /// stored once and solved together if it `shares` or nothing changes.
+    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions
+    /// are stored once and solved together if it `shares` or nothing changes.
     pub(crate) fn new(
         mut tree: CoarseTree,
         matrix: &CoarseMatrix,

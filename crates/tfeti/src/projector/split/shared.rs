@@ -118,7 +118,8 @@ pub(super) fn bits<'a>(matrix: &'a CoarseMatrix, values: &'a [f64]) -> impl Fn(u
     }
 }
 
-/// For each region the first one that is equal; one in which something changes equals itself only. The others' lists of later blocks take its order.
+/// For each region the first one that is equal; one in which something changes equals itself only. The others' lists of
+/// later blocks take its order.
 pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits<'_>) -> Vec<usize> {
     let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut first: Vec<usize> = Vec::with_capacity(tree.regions.len());
@@ -132,10 +133,12 @@ pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits
         at.sort_unstable_by_key(|&p| tree.blocks[p as usize]);
         let all = || (own.start as u32..own.end as u32).chain(at.iter().copied());
         (0..).zip(all()).for_each(|(k, p)| place[p as usize] = k);
-        let key = key(tree, region, &first, &place, graph, write);
         let equal = match tree.region_changes(r) {
             true => r,
-            false => *known.entry(key).or_insert(r),
+            false => {
+                let key = key(tree, region, &first, &place, graph, write);
+                *known.entry(key).or_insert(r)
+            }
         };
         let rank = |p: &u32| place[*p as usize];
         ranks.push(region.behind.iter().map(rank).collect());

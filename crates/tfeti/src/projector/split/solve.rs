@@ -211,9 +211,6 @@ impl SplitBase {
             return;
         }
         let [own, behind, buffer] = [own, behind, buffer].map(|part| part.as_chunks_mut::<LANES>().0);
-        match forward {
-            true => piece.steady.forward_lanes(tiles, own, behind, buffer),
-            false => piece.steady.backward_lanes(tiles, own, behind, buffer),
-        }
+        piece.steady.solve_lanes(tiles, own, behind, buffer, forward);
     }
 }

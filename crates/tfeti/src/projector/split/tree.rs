@@ -122,8 +122,8 @@ pub(crate) fn cheapest_tree(
 }
 
 impl CoarseTree {
-    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set. Where
-    /// they stand in a `grid`, most regions are equal to others.
+    /// For the `graph` of the blocks (neighbours without itself); blocks that are `changing` follow the active set.
+    /// Where they stand in a `grid`, most regions are equal to others.
     pub(crate) fn new(
         graph: &[Vec<u32>],
         centres: &[[f64; 3]],
@@ -157,8 +157,8 @@ impl CoarseTree {
         6 * self.blocks.len()
     }
 
-    /// Numbers that a factor stores: exact and rounded tiles, and what is steady in the columns that change. Steady columns
-    /// count in regions with tiles of their `own`.
+    /// Numbers that a factor stores: exact and rounded tiles, and what is steady in the columns that change. Steady
+    /// columns count in regions with tiles of their `own`.
     pub(crate) fn stored(&self, own: impl Iterator<Item = bool>) -> usize {
         // a rounded tile is half a tile
         let tiles = |node: &Node| Tile::NUMBERS * Supernodes::tiles_of(node.width(), node.height()) * 3 / 2;
