@@ -37,6 +37,24 @@ pub fn dot_and_square(x: &[f64], y: &[f64]) -> (f64, f64) {
     (sums.0, sums.1)
 }
 
+/// Entries that a sum adds up one after another before it adds such sums: for those who keep parts of a vector.
+#[doc(hidden)]
+pub const CHUNK_LENGTH: usize = CHUNK;
+
+/// The dot product of vectors from those of their chunks, with the same bits as [`dot`].
+#[doc(hidden)]
+#[must_use]
+pub fn join(chunks: &[f64]) -> f64 {
+    match chunks {
+        [] => 0.0,
+        [one] => *one,
+        _ => {
+            let (low, high) = chunks.split_at(chunks.len().div_ceil(2));
+            join(low) + join(high)
+        }
+    }
+}
+
 /// Euclidean norm `|x|`.
 #[must_use]
 pub fn norm(x: &[f64]) -> f64 {
@@ -238,6 +256,15 @@ mod tests {
             assert!((dot(&x, &y) - plain).abs() <= 1e-12 * (1.0 + n as f64));
             let plain: f64 = x.iter().zip(&y).map(|(a, b)| (a - b).powi(2)).sum();
             assert!((distance_squared(&x, &y) - plain).abs() <= 1e-12 * (1.0 + n as f64));
+        }
+    }
+
+    #[test]
+    fn chunks_joined_have_the_bits_of_the_whole() {
+        for n in [0, 9, CHUNK, 3 * CHUNK + 5, 6 * CHUNK, 20 * CHUNK + 17] {
+            let (x, y) = (wave(n, 0.37), wave(n, 0.11));
+            let sums: Vec<f64> = x.chunks(CHUNK).zip(y.chunks(CHUNK)).map(|(x, y)| dot(x, y)).collect();
+            assert_eq!(join(&sums).to_bits(), dot(&x, &y).to_bits());
         }
     }
 

@@ -101,5 +101,6 @@ pub mod internal {
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
     pub use crate::subdomain::forecast::{Forecast, Rate};
     pub use crate::subdomain::kernel::Kernel;
+    pub use crate::system::part::SystemPart;
     pub use crate::tolerances::HELD;
 }

@@ -111,6 +111,14 @@ impl Model {
         })
     }
 
+    /// The feasible set with so many components that are free.
+    pub(crate) fn set_with(&self, free: usize) -> Result<ProductSet, ContactError> {
+        let mut segments = self.set.segments().to_vec();
+        segments.pop();
+        segments.push(Segment::Free(free));
+        Ok(ProductSet::new(segments).map_err(signorini_qp::QpError::from)?)
+    }
+
     /// Friction law of a point.
     pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
         self.scene.contacts[point.contact.surface].friction()

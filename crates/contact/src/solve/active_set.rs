@@ -18,12 +18,15 @@ use crate::status::StepStatus;
 use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, SymmetricOperator, active_set, vector};
+use signorini_tfeti::internal::SystemPart;
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
 
 pub(crate) struct ActiveSetSolver {
+    /// Of several processes, where vectors can be spread.
+    part: Option<SystemPart>,
     space: ActiveSetProjector,
     preconditioner: SelectedPreconditioner,
     scale: Vec<f64>,
@@ -38,8 +41,13 @@ pub(crate) struct ActiveSetSolver {
 impl ActiveSetSolver {
     pub(crate) fn new(model: &Model, settings: &Settings, own: &ActiveSetSettings) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
-        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
-        let mut scale = vec![0.0; model.tfeti.dual_dim()];
+        let part = model.tfeti.part();
+        let (dual, coarse) = match &part {
+            Some(part) => (part.dual(), part.coarse()),
+            None => (model.tfeti.dual(), model.tfeti.coarse()),
+        };
+        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner, part.as_ref())?;
+        let mut scale = vec![0.0; dual.dim()];
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
@@ -55,11 +63,12 @@ impl ActiveSetSolver {
             *scale *= SHARED_ROWS;
         }
         Ok(Self {
-            space: ActiveSetProjector::new(model.tfeti.coarse(), contact, model.tfeti.row_weights())?,
-            work: ActiveSetWorkspace::new(model.tfeti.dual(), &preconditioner),
+            space: ActiveSetProjector::new(coarse, contact, model.tfeti.row_weights())?,
+            work: ActiveSetWorkspace::new(dual, &preconditioner),
             preconditioner,
+            set: model.set_with(scale.len() - contact)?,
             scale,
-            set: model.set.clone(),
+            part,
             exchanges: Exchanges::new(model),
             settings: own.clone(),
             paper: None,
@@ -86,6 +95,9 @@ impl ActiveSetSolver {
         iterate.alpha.resize(task.problem.rhs.len(), 0.0);
         let mut residual = iterate.f_lambda.clone();
         vector::axpy(-1.0, &task.problem.linear, &mut residual);
+        if let Some(part) = &self.part {
+            residual = part.take(&residual);
+        }
         self.space.amplitudes(&residual, &mut iterate.alpha);
     }
 
@@ -100,11 +112,13 @@ impl ActiveSetSolver {
         problem.write_slip_bounds(model, &iterate.lambda, &mut self.set)?;
         let mut updates = usize::from(model.any_law(Friction::is_some));
         self.space.set_coarse_rhs(&problem.rhs);
+        let part = self.part.as_ref();
+        let linear = part.map(|part| part.take(&problem.linear));
         let dual = ActiveSetProblem {
-            operator: model.tfeti.dual(),
+            operator: part.map_or(model.tfeti.dual(), SystemPart::dual),
             preconditioner: &self.preconditioner,
             scale: &self.scale,
-            linear: &problem.linear,
+            linear: linear.as_ref().unwrap_or(&problem.linear),
             rhs: &problem.rhs,
         };
         let [least, least_contact] = problem.least();
@@ -125,17 +139,26 @@ impl ActiveSetSolver {
         };
         let mut turns = 0;
         let status = loop {
+            let mut own = part.map(|part| [&iterate.lambda, &iterate.f_lambda].map(|whole| part.take(whole)));
+            let (x, ax) = match &mut own {
+                Some([x, ax]) => (x, ax),
+                None => (&mut iterate.lambda, &mut iterate.f_lambda),
+            };
             let outcome = active_set(
                 &dual,
                 &mut self.space,
                 &mut self.set,
-                &mut iterate.lambda,
-                &mut iterate.f_lambda,
+                x,
+                ax,
                 iterate.known,
                 &settings,
                 &mut self.work,
                 &mut hook,
             );
+            if let (Some(part), Some([x, ax])) = (part, &own) {
+                part.complete(x, &mut iterate.lambda);
+                part.complete(ax, &mut iterate.f_lambda);
+            }
             let status = match outcome {
                 Ok(outcome) => {
                     report.iterations += outcome.active_sets;

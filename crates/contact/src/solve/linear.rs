@@ -23,7 +23,7 @@ pub(crate) struct LinearSolver {
 impl LinearSolver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let rows = OrthonormalRows::new(model)?;
-        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner)?;
+        let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner, None)?;
         let work = CgWorkspace::new(model.tfeti.dual(), &rows.coarse, &preconditioner);
         Ok(Self {
             rows,

@@ -6,7 +6,7 @@ use crate::settings::Preconditioner as Choice;
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView};
 use signorini_qp::{SymmetricOperator, vector};
 use signorini_tfeti::DualPreconditioner;
-use signorini_tfeti::internal::DualPreconditionerScratch;
+use signorini_tfeti::internal::{DualPreconditionerScratch, SystemPart};
 
 /// A preconditioner of the dual problem.
 #[derive(Debug)]
@@ -18,7 +18,8 @@ pub(crate) enum SelectedPreconditioner {
 }
 
 impl SelectedPreconditioner {
-    pub(crate) fn new(model: &Model, choice: Choice) -> Result<Self, ContactError> {
+    /// For whole vectors, or for the `part` that each rank keeps.
+    pub(crate) fn new(model: &Model, choice: Choice, part: Option<&SystemPart>) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
         Ok(match choice {
             Choice::None => {
@@ -28,11 +29,19 @@ impl SelectedPreconditioner {
                 let start = dim - sample.len();
                 tfeti.row_stiffness(start..dim, &mut sample);
                 let factor = sample.iter().sum::<f64>() / sample.len().max(1) as f64;
+                let dim = part.map_or(dim, SystemPart::rows);
                 Self::Scalar { dim, factor }
             }
-            Choice::Lumped => Self::Stiffness(Box::new(tfeti.lumped()?)),
-            Choice::Dirichlet => Self::Stiffness(Box::new(tfeti.dirichlet()?)),
+            Choice::Lumped => Self::stiffness(tfeti.lumped()?, part),
+            Choice::Dirichlet => Self::stiffness(tfeti.dirichlet()?, part),
         })
+    }
+
+    fn stiffness(own: DualPreconditioner, part: Option<&SystemPart>) -> Self {
+        Self::Stiffness(Box::new(match part {
+            Some(part) => own.of_part(part),
+            None => own,
+        }))
     }
 }
 

@@ -70,7 +70,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let next = self.precondition();
             // a direction that is coupled or rounded is kept conjugate to the last one
             let beta = if coupled || digits > 0.0 {
-                vector::dot(&self.work.z, &self.work.ap) / curvature
+                self.problem.operator.dot(&self.work.z, &self.work.ap) / curvature
             } else {
                 next / rho
             };
@@ -97,7 +97,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     fn stays(&self, goal: &Goal) -> bool {
         let work = &*self.work;
         let map = natural_map(self.problem, &work.residual, goal.step);
-        vector::norm(self.x) <= GROWN * goal.size
+        self.problem.operator.norm(self.x) <= GROWN * goal.size
             && !work.coupling.follows(self.set, self.x)
             && work.active.stays(self.set, self.x, &map)
     }
@@ -140,7 +140,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     /// `pᵀ (A q + kappa p)`; `None` where it is not positive, by rounding or because the coupling is too strong.
     fn curvature(&mut self, coupled: bool) -> Result<Option<f64>, QpError> {
         let work = &mut *self.work;
-        let plain = vector::dot(&work.p, &work.ap);
+        let operator = self.problem.operator;
+        let plain = operator.dot(&work.p, &work.ap);
         let curvature = plain + work.active.curvature(self.set, &work.p);
         if !curvature.is_finite() {
             return Err(self.not_finite("the curvature"));
@@ -152,8 +153,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             work.coupling.failed = true;
             return Ok(None);
         }
-        let pp = vector::dot(&work.p, &work.p);
-        if plain < -NEGATIVE_CURVATURE * vector::norm(&work.ap) * pp.sqrt() {
+        let pp = operator.dot(&work.p, &work.p);
+        if plain < -NEGATIVE_CURVATURE * operator.norm(&work.ap) * pp.sqrt() {
             return Err(QpError::Indefinite {
                 curvature: curvature / pp,
                 products: self.report.products(),

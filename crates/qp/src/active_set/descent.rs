@@ -11,7 +11,7 @@
 //! is solved. All this holds between feasible points only: where set and equality hardly meet, moves that do not
 //! descend are taken, too.
 
-use crate::problem::{ConvexSet, ProductSet};
+use crate::problem::{ConvexSet, ProductSet, SymmetricOperator};
 use crate::tolerances::{INSIDE, KEPT_DECREASE, PROGRESS, REACH, RELEASE, SHORT};
 use crate::vector;
 
@@ -67,12 +67,13 @@ impl DescentSafeguard {
     }
 
     /// Remembers the step to the minimum on the active set; whether less than ever is left to gain.
-    pub(crate) fn leave(&mut self, x: &[f64], ax: &[f64]) -> bool {
+    pub(crate) fn leave(&mut self, operator: &impl SymmetricOperator, (x, ax): (&[f64], &[f64])) -> bool {
         vector::copy(x, &mut self.step);
         vector::subtract(&self.x, &mut self.step);
         vector::copy(ax, &mut self.astep);
         vector::subtract(&self.ax, &mut self.astep);
-        self.full = vector::dot(&self.step, &self.residual) + 0.5 * vector::dot(&self.step, &self.astep);
+        let along = |v: &[f64]| operator.dot(&self.step, v);
+        self.full = along(&self.residual) + 0.5 * along(&self.astep);
         let progress = self.exact && -self.full < PROGRESS * self.best;
         if progress {
             self.best = -self.full;
@@ -96,22 +97,26 @@ impl DescentSafeguard {
     }
 
     /// Whether the cost at `x` has fallen enough for a step of length `t`.
-    pub(crate) fn descends(&self, x: &[f64], ax: &[f64], t: f64) -> bool {
-        let mut change = 0.0;
-        for (k, v) in x.iter().enumerate() {
-            change += (v - self.x[k]) * (self.residual[k] + 0.5 * (ax[k] - self.ax[k]));
-        }
-        change <= KEPT_DECREASE * t * self.full
+    pub(crate) fn descends(&self, operator: &impl SymmetricOperator, (x, ax): (&[f64], &[f64]), t: f64) -> bool {
+        let own = |(k, v): (usize, &f64)| (v - self.x[k]) * (self.residual[k] + 0.5 * (ax[k] - self.ax[k]));
+        let changes: Vec<f64> = x.iter().enumerate().map(own).collect();
+        operator.sum(&changes) <= KEPT_DECREASE * t * self.full
     }
 
     /// After a step of length `t`: whether it is one between feasible points that does not descend, and the part of the
     /// step within which blocks are to be held.
-    pub(crate) fn judge(&mut self, set: &ProductSet, x: &[f64], ax: &[f64], t: f64) -> (bool, f64) {
-        let limit = 2.0 * INSIDE * vector::norm(x);
+    pub(crate) fn judge(
+        &mut self,
+        operator: &impl SymmetricOperator,
+        set: &ProductSet,
+        (x, ax): (&[f64], &[f64]),
+        t: f64,
+    ) -> (bool, f64) {
+        let limit = 2.0 * INSIDE * operator.norm(x);
         self.exact = set.violation(&self.x) <= limit && set.violation(x) <= limit;
         self.stuck = false;
         let reach = if self.exact { (REACH * t).min(SHORT) } else { 0.0 };
-        (self.exact && !self.descends(x, ax, t), reach)
+        (self.exact && !self.descends(operator, (x, ax), t), reach)
     }
 
     /// Back to the last feasible point.
@@ -138,13 +143,13 @@ impl DescentSafeguard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Segment;
+    use crate::problem::{Identity, Segment};
 
     /// At zero with the cost `1/2 |x|² - sum x` on the way to its minimum, all ones.
     fn safeguard() -> DescentSafeguard {
         let mut safeguard = DescentSafeguard::new(2);
         safeguard.enter(&[0.0; 2], &[0.0; 2], &[-1.0; 2]);
-        assert!(!safeguard.leave(&[1.0; 2], &[1.0; 2]), "the first step tells nothing");
+        assert!(!safeguard.leave(&Identity(2), (&[1.0; 2], &[1.0; 2])), "the first step tells nothing");
         safeguard
     }
 
@@ -156,12 +161,12 @@ mod tests {
     fn a_move_has_to_keep_a_part_of_the_decrease() {
         let mut safeguard = safeguard();
         assert_eq!(safeguard.full, -1.0);
-        assert!(safeguard.descends(&[1.0; 2], &[1.0; 2], 1.0));
-        assert!(!safeguard.descends(&[2.0; 2], &[2.0; 2], 1.0), "as high as the start");
+        assert!(safeguard.descends(&Identity(2), (&[1.0; 2], &[1.0; 2]), 1.0));
+        assert!(!safeguard.descends(&Identity(2), (&[2.0; 2], &[2.0; 2]), 1.0), "as high as the start");
         let (mut x, mut ax) = ([9.0; 2], [9.0; 2]);
         safeguard.shorten(0.25, &mut x, &mut ax);
         assert_eq!((x, ax), ([0.25; 2], [0.25; 2]));
-        assert!(safeguard.descends(&x, &ax, 0.25));
+        assert!(safeguard.descends(&Identity(2), (&x, &ax), 0.25));
         safeguard.back(&mut x, &mut ax);
         assert_eq!((x, ax), ([0.0; 2], [0.0; 2]));
     }
@@ -171,10 +176,10 @@ mod tests {
         let (mut safeguard, set) = (safeguard(), half_space());
         // to the other side: feasible, and the cost rises
         let (x, ax) = ([-1.0, 0.0], [-1.0, 0.0]);
-        let (rises, reach) = safeguard.judge(&set, &x, &ax, 0.1);
+        let (rises, reach) = safeguard.judge(&Identity(2), &set, (&x, &ax), 0.1);
         assert!(rises && reach == REACH * 0.1 && safeguard.exact);
         // out of the set: nothing is held, nothing taken back
-        let (rises, reach) = safeguard.judge(&set, &[1.0; 2], &[1.0; 2], 0.1);
+        let (rises, reach) = safeguard.judge(&Identity(2), &set, (&[1.0; 2], &[1.0; 2]), 0.1);
         assert!(!rises && reach == 0.0 && !safeguard.exact);
     }
 
@@ -182,9 +187,9 @@ mod tests {
     fn less_to_gain_than_ever_is_progress() {
         let (mut safeguard, set) = (safeguard(), half_space());
         let step = |safeguard: &mut DescentSafeguard, gain: f64| {
-            safeguard.judge(&set, &[0.0; 2], &[0.0; 2], 1.0);
+            safeguard.judge(&Identity(2), &set, (&[0.0; 2], &[0.0; 2]), 1.0);
             safeguard.enter(&[0.0; 2], &[0.0; 2], &[0.0, -gain]);
-            safeguard.leave(&[0.0, 1.0], &[0.0; 2])
+            safeguard.leave(&Identity(2), (&[0.0, 1.0], &[0.0; 2]))
         };
         assert!(step(&mut safeguard, 4.0));
         assert!(!step(&mut safeguard, 3.9), "hardly less");
@@ -197,7 +202,7 @@ mod tests {
         assert!(!safeguard.releases(false, true, 1.0, 0.0), "there are none");
         // points that are not feasible: as the caller says
         assert!(safeguard.releases(true, true, 0.5, 0.0) && !safeguard.releases(true, false, 0.0, 1.0));
-        safeguard.judge(&half_space(), &[0.0; 2], &[0.0; 2], 1.0);
+        safeguard.judge(&Identity(2), &half_space(), (&[0.0; 2], &[0.0; 2]), 1.0);
         assert!(!safeguard.releases(true, true, 0.5, 0.0));
         assert!(
             safeguard.releases(true, false, RELEASE, 0.0),

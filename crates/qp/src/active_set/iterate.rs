@@ -67,10 +67,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         for (t, v) in work.t.iter_mut().zip(&*self.x) {
             *t = v - *t;
         }
-        if work.t.iter().all(|t| *t == 0.0) {
+        let operator = self.problem.operator;
+        if operator.dot(&work.t, &work.t) == 0.0 {
             return;
         }
-        let operator = self.problem.operator;
         operator.apply(&work.t, &mut work.ap, &mut work.operator);
         vector::axpy(1.0, &work.ap, self.ax);
         self.report.corrections += 1;
@@ -141,7 +141,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         self.projector.project_step(z);
         self.report.preconditionings += 1;
         residual[..constrained].copy_from_slice(restricted);
-        let (rho, square) = vector::dot_and_square(residual, z);
+        let (rho, square) = self.problem.operator.dot_and_square(residual, z);
         residual[..constrained].copy_from_slice(saved);
         *z_norm = square.sqrt();
         rho

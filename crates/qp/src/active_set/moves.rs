@@ -136,7 +136,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             return;
         }
         let mut t = 1.0;
-        while t > SHORTEST && !safeguard.descends(at.x, at.ax, t) {
+        while t > SHORTEST && !safeguard.descends(at.problem.operator, (at.x, at.ax), t) {
             safeguard.shorten(t, at.x, at.ax);
             at.mark();
             self.moved.jump = at.restore();
@@ -147,7 +147,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         } else {
             safeguard.held_up + 1
         };
-        let (rises, reach) = safeguard.judge(at.set, at.x, at.ax, t);
+        let (rises, reach) = safeguard.judge(at.problem.operator, at.set, (at.x, at.ax), t);
         if t >= SHORT {
             at.work.active.blocked.clear();
             return;

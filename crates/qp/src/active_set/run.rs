@@ -167,7 +167,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         } else {
             self.at.multiply();
         }
-        self.peak = vector::norm(self.at.x);
+        self.peak = self.at.problem.operator.norm(self.at.x);
         Ok(())
     }
 
@@ -221,7 +221,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let errors = at.errors();
         // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at
         // least
-        let x_norm = vector::norm(at.x);
+        let x_norm = at.problem.operator.norm(at.x);
         let all = x_norm.max(settings.error_floor);
         let part = vector::norm(&at.x[..at.constrained()]);
         let vanishes = part < settings.contact_error_floor;
@@ -294,7 +294,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let at = &mut self.at;
         at.mark();
         at.projector.repair(at.x, at.problem.rhs);
-        let drift = vector::distance(at.x, &at.work.t);
+        vector::copy(at.x, &mut at.work.ap);
+        vector::subtract(&at.work.t, &mut at.work.ap);
+        let drift = at.problem.operator.norm(&at.work.ap);
         if drift <= OFF_EQUALITY * place.limits.all {
             vector::copy(&at.work.t, at.x);
             return true;
@@ -404,7 +406,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         self.left = at.errors();
         at.report.active_sets += 1;
         if let Some(safeguard) = &mut self.safeguard
-            && safeguard.leave(at.x, at.ax)
+            && safeguard.leave(at.problem.operator, (at.x, at.ax))
         {
             self.progress.waited = 0;
         }

@@ -3,12 +3,17 @@
 //! Operators are immutable and shared; what a product writes to is a typed scratch that the caller owns and creates
 //! once, so that a product allocates nothing.
 
+use crate::vector;
+
 /// A symmetric linear operator `A` on vectors of length [`dim`](SymmetricOperator::dim).
 ///
 /// Implementations must be symmetric (`x·Ay = y·Ax`), deterministic (the same bits for the same
 /// input, whatever the number of threads) and must not allocate in
 /// [`apply`](SymmetricOperator::apply). [`check_operator_laws`](crate::laws::check_operator_laws)
 /// tests the first two.
+///
+/// Sums over the entries of vectors are asked of the operator, too: where several processes keep a part of each vector,
+/// it sums over all of them.
 pub trait SymmetricOperator: Sync {
     /// Work memory of one product.
     type Scratch: Send;
@@ -21,6 +26,30 @@ pub trait SymmetricOperator: Sync {
 
     /// `y = A x`. Both slices have length [`dim`](SymmetricOperator::dim); `y` is overwritten.
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut Self::Scratch);
+
+    /// `x · y`.
+    #[doc(hidden)]
+    fn dot(&self, x: &[f64], y: &[f64]) -> f64 {
+        vector::dot(x, y)
+    }
+
+    /// `x · y` and `y · y`.
+    #[doc(hidden)]
+    fn dot_and_square(&self, x: &[f64], y: &[f64]) -> (f64, f64) {
+        vector::dot_and_square(x, y)
+    }
+
+    /// The sum of the entries, one after another.
+    #[doc(hidden)]
+    fn sum(&self, x: &[f64]) -> f64 {
+        x.iter().sum()
+    }
+
+    /// Euclidean norm.
+    #[doc(hidden)]
+    fn norm(&self, x: &[f64]) -> f64 {
+        self.dot(x, x).sqrt()
+    }
 }
 
 /// A constraint matrix `C` with **orthonormal rows**: `C Cᵀ = I`.

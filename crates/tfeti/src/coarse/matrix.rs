@@ -247,7 +247,7 @@ impl CoarseMatrix {
         let mut matrix = self.interface.clone();
         let values = &mut matrix.values;
         let start = gluing.ranges().interface.start;
-        if let Some(weights) = weights {
+        if let Some(weights) = weights.filter(|w| !w.are_one(gluing.ranges().interface.clone())) {
             for block in 0..gluing.blocks() {
                 let triple = &weights.diagonal[start + 3 * block..][..3];
                 if triple == [1.0; 3] {
@@ -259,7 +259,7 @@ impl CoarseMatrix {
         let mut row = Vec::new();
         for nodal in 0..gluing.nodal_rows() {
             let number = gluing.nodal_row(nodal);
-            let weight = weights.map_or(1.0, |w| w.diagonal[number]);
+            let weight = weights.map_or(1.0, |w| w.of(number));
             let in_line = weights.is_some_and(|w| w.in_line(number));
             if weight != 0.0 && !in_line {
                 row.clear();

@@ -23,10 +23,11 @@ pub(crate) struct CoarseData {
     map: Arc<BoundaryMap>,
     tables: RigidTables,
     pub(crate) subdomains: Arc<Subdomains>,
+    /// All rows, also where vectors are parts.
     pub(crate) gluing: Arc<Gluing>,
-    pub(crate) matrix: CoarseMatrix,
-    pub(crate) symbolic: Symbolic,
-    pub(crate) mobility: Mobility,
+    pub(crate) matrix: Arc<CoarseMatrix>,
+    pub(crate) symbolic: Arc<Symbolic>,
+    pub(crate) mobility: Arc<Mobility>,
     /// Whether the support rows alone hold all bodies.
     supports_suffice: bool,
 }
@@ -69,7 +70,7 @@ impl Coarse {
             || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
             || {
                 let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
-                (mobility, RigidTables::new(&map, subdomains.clone(), &gluing))
+                (mobility, RigidTables::new(&map, subdomains.clone(), &gluing, Vec::new()))
             },
         );
         let symbolic = symbolic?;
@@ -78,15 +79,36 @@ impl Coarse {
             map,
             subdomains,
             gluing,
-            matrix,
-            symbolic,
-            mobility,
+            matrix: Arc::new(matrix),
+            symbolic: Arc::new(symbolic),
+            mobility: Arc::new(mobility),
             supports_suffice: false,
         };
         let mut supports = RowWeights::diagonal(vec![1.0; data.map.rows()]);
         supports.diagonal[data.gluing.ranges().contact()].fill(0.0);
         data.supports_suffice = data.free_motions(Some(&supports)).is_empty();
         Ok(Self(Arc::new(data)))
+    }
+
+    /// The same space for vectors of which each rank keeps a part, with the `rows` of this one.
+    pub(crate) fn of_part(&self, map: Arc<BoundaryMap>, rows: &Gluing) -> Self {
+        let data = &self.0;
+        let classes = &data.subdomains.classes;
+        let rank = |s: usize| {
+            let (class, member) = classes.place(s);
+            data.subdomains.ownership.rank_of(class, member) as u32
+        };
+        let ranks = (0..data.subdomains.count()).map(rank).collect();
+        Self(Arc::new(CoarseData {
+            tables: RigidTables::new(&map, data.subdomains.clone(), rows, ranks),
+            map,
+            subdomains: data.subdomains.clone(),
+            gluing: data.gluing.clone(),
+            matrix: data.matrix.clone(),
+            symbolic: data.symbolic.clone(),
+            mobility: data.mobility.clone(),
+            supports_suffice: data.supports_suffice,
+        }))
     }
 
     /// Number of rows of `G`: six per subdomain.
@@ -231,14 +253,13 @@ impl CoarseData {
         let gluing = &self.gluing;
         // The usual case needs no look at the contact rows.
         let supported = |w: &RowWeights| {
-            w.diagonal[gluing.ranges().dirichlet.clone()]
-                .iter()
-                .all(|w| *w >= SUPPORTED)
+            let mut rows = gluing.ranges().dirichlet.clone();
+            rows.all(|row| w.of(row) >= SUPPORTED)
         };
         if self.supports_suffice && weights.is_none_or(supported) {
             return Vec::new();
         }
-        let weight = |row: usize| weights.map_or(1.0, |w| w.diagonal[row]);
+        let weight = |row: usize| weights.map_or(1.0, |w| w.of(row));
         let lines = weights.map_or(&[][..], |w| &w.lines);
         let plain = (0..gluing.nodal_rows()).filter_map(|nodal| {
             let row = gluing.nodal_row(nodal);

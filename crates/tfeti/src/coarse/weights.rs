@@ -4,11 +4,12 @@ use crate::error::TfetiError;
 use crate::rows::kinds::RowRanges;
 use crate::tolerances::UNIT;
 use signorini_qp::internal::LineWeight;
+use std::ops::Range;
 
 /// Weights `W` of the rows of `B` in `G W G^T`: a diagonal, and for chosen pairs of tangential rows a single direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowWeights {
-    /// One non-negative weight per row.
+    /// Non-negative weights of the rows; of all, or of the contact rows alone: the others then weigh one.
     pub diagonal: Vec<f64>,
     /// Pairs of tangential rows of which one combination counts; they replace the diagonal there. Ascending by row.
     pub lines: Vec<LineWeight>,
@@ -29,6 +30,17 @@ impl RowWeights {
         Self { diagonal, lines }
     }
 
+    /// The weight of a row, but for lines.
+    pub(crate) fn of(&self, row: usize) -> f64 {
+        self.diagonal.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// Whether these rows weigh one.
+    pub(crate) fn are_one(&self, rows: Range<usize>) -> bool {
+        let end = self.diagonal.len();
+        self.diagonal[rows.start.min(end)..rows.end.min(end)].iter().all(|w| *w == 1.0)
+    }
+
     pub(crate) fn in_line(&self, row: usize) -> bool {
         let next = self.lines.partition_point(|l| l.row <= row);
         next > 0 && row - self.lines[next - 1].row < 2
@@ -36,7 +48,9 @@ impl RowWeights {
 
     /// Checks lengths, signs, and order and directions of the lines against the rows of `B`.
     pub(crate) fn validate(&self, ranges: &RowRanges) -> Result<(), TfetiError> {
-        TfetiError::check_length("row weights", self.diagonal.len(), ranges.total())?;
+        if self.diagonal.len() != ranges.contact().end {
+            TfetiError::check_length("row weights", self.diagonal.len(), ranges.total())?;
+        }
         let refuse = |name, value, range| Err(TfetiError::Setting { name, value, range });
         let mut all = self.diagonal.iter().chain(self.lines.iter().map(|l| &l.weight));
         if let Some(&value) = all.find(|w| !(w.is_finite() && **w >= 0.0)) {

@@ -110,6 +110,10 @@ impl BoundaryMap {
         }
     }
 
+    pub(crate) fn exchange(&self) -> &Exchange {
+        &self.exchange
+    }
+
     pub(crate) fn bytes(&self) -> u64 {
         let words = self.spread_pointers.len()
             + self.spread_blocks.len()
@@ -208,9 +212,11 @@ impl BoundaryMap {
                 place.write(*values, y);
             }
         }
-        for rows in &cut.shared {
-            self.collect_some(y, rows.clone(), &mut out[rows.clone()]);
-        }
+        let first = cut.here.first().map_or(0, |rows| rows.start);
+        let start = |rows: &Range<usize>| rows.start;
+        over_tasks(&cut.here, &mut out[first..], &start, self.is_large(), &|rows, out| {
+            self.collect_some(y, rows.clone(), &mut out[..rows.len()]);
+        });
     }
 
     /// Some consecutive rows of one kind of `B y`.

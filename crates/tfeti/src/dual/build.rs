@@ -2,6 +2,7 @@
 
 use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, shares};
 use super::cut::{Cut, CutBuilder, Place};
+use super::part::RowPart;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
 use crate::subdomain::ownership::Ownership;
@@ -45,13 +46,43 @@ impl BoundaryMap {
             ..Self::default()
         };
         map.fill_panels(ownership);
-        let copies = map.fill_collect(gluing, &map.numbering(classes));
-        map.fill_spread(gluing, &copies);
-        let place = |copy: usize| map.nodal_copies.partition_point(|&c| (c as usize) < copy);
-        for panel in &mut map.panels {
+        let numbering = map.numbering(classes);
+        map.cut = map.fill_cut(gluing, &numbering, None);
+        let computed = map.cut.computed(map.exchange.rank(), &map.interface);
+        map.fill_tables(gluing, &numbering, (map.exchange.ranks() > 1).then_some(computed));
+        map
+    }
+
+    /// The same panels for vectors of which each rank keeps a part; `own` are the rows of this one.
+    pub(crate) fn of_part(&self, classes: &Classes, gluing: &Gluing, (part, own): (&RowPart, &Gluing)) -> Self {
+        let mut map = Self {
+            classes: self.classes.clone(),
+            panels: self.panels.clone(),
+            lanes: self.lanes.clone(),
+            parts: self.parts.clone(),
+            copies: self.copies,
+            interface: own.ranges().interface.clone(),
+            rows: own.ranges().total(),
+            nodal_pointers: vec![0],
+            block_pointers: vec![0],
+            row_pointers: vec![0],
+            exchange: self.exchange.clone(),
+            ..Self::default()
+        };
+        let numbering = map.numbering(classes);
+        map.cut = map.fill_cut(gluing, &numbering, Some(part));
+        map.fill_tables(own, &numbering, None);
+        map
+    }
+
+    fn fill_tables(&mut self, gluing: &Gluing, numbering: &Numbering<'_>, computed: Option<Vec<Range<usize>>>) {
+        let copies = self.fill_collect(gluing, numbering, computed);
+        self.fill_spread(gluing, &copies);
+        let nodal = &self.nodal_copies;
+        let place = |copy: usize| nodal.partition_point(|&c| (c as usize) < copy);
+        for panel in &mut self.panels {
             panel.nodal = place(panel.copies.start)..place(panel.copies.end);
         }
-        map
     }
 
     /// Takes the panels of the ranks, and cuts those of this one into lanes of about equal work.
@@ -110,16 +141,20 @@ impl BoundaryMap {
     }
 
     /// Fills the tables by row; returns the copies of the blocks' entries and of the other rows' entries.
-    /// Of several ranks, each has those entries of blocks with which it computes.
-    fn fill_collect(&mut self, gluing: &Gluing, numbering: &Numbering<'_>) -> [Vec<u32>; 2] {
+    /// Of blocks only those that are `computed`, if that is given.
+    fn fill_collect(
+        &mut self,
+        gluing: &Gluing,
+        numbering: &Numbering<'_>,
+        computed: Option<Vec<Range<usize>>>,
+    ) -> [Vec<u32>; 2] {
         let mut copies = [Vec::new(), Vec::new()];
-        self.cut = self.fill_cut(gluing, numbering);
-        let mine = self.cut.computed(self.exchange.rank(), &self.interface);
-        let mut mine = mine.into_iter().peekable();
+        let all = computed.is_none();
+        let mut mine = computed.into_iter().flatten().peekable();
         for block in 0..gluing.blocks() {
             let row = self.interface.start + 3 * block;
             while mine.next_if(|rows| rows.end <= row).is_some() {}
-            if self.exchange.ranks() == 1 || mine.peek().is_some_and(|rows| rows.contains(&row)) {
+            if all || mine.peek().is_some_and(|rows| rows.contains(&row)) {
                 for e in gluing.block(block) {
                     let (copy, place) = numbering.copy(e.subdomain, e.local);
                     copies[0].push(copy);
@@ -142,12 +177,12 @@ impl BoundaryMap {
     }
 
     /// What the ranks compute alone and tell one another.
-    fn fill_cut(&self, gluing: &Gluing, numbering: &Numbering<'_>) -> Cut {
+    fn fill_cut(&self, gluing: &Gluing, numbering: &Numbering<'_>, part: Option<&RowPart>) -> Cut {
         let ranks = self.exchange.ranks();
         if ranks == 1 {
             return Cut::default();
         }
-        let mut cut = CutBuilder::new(ranks);
+        let mut cut = CutBuilder::new(ranks, part);
         let copy = |subdomain: u32, local: u32| {
             let (copy, place) = numbering.copy(subdomain, local);
             let rank = self.parts.partition_point(|part| part.end <= 3 * copy as usize);
@@ -158,13 +193,15 @@ impl BoundaryMap {
             let row = gluing.nodal_row(nodal);
             cut.enter(row..row + 1, &copies.collect::<Vec<_>>());
         };
-        (0..self.interface.start).for_each(&mut nodal);
-        (self.interface.start..gluing.nodal_rows()).for_each(nodal);
+        let interface = &gluing.ranges().interface;
+        (0..interface.start).for_each(&mut nodal);
+        (interface.start..gluing.nodal_rows()).for_each(nodal);
         for block in 0..gluing.blocks() {
             let copies = gluing.block(block).iter().map(|e| copy(e.subdomain, e.local));
-            let row = self.interface.start + 3 * block;
+            let row = interface.start + 3 * block;
             cut.enter(row..row + 3, &copies.collect::<Vec<_>>());
         }
+        // of the rows here
         cut.build(&self.interface)
     }
 

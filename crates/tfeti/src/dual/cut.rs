@@ -1,5 +1,7 @@
 //! Which rows of `B` a rank computes alone, and what it tells the others.
 
+use super::part::RowPart;
+use crate::tolerances::BLOCKS;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -31,7 +33,8 @@ pub(super) struct Run {
 }
 
 /// A message of a rank: the rows whose copies are all its own, then three components at each of its copies in rows that
-/// several ranks share. The latter are computed by all. Empty with one rank.
+/// several ranks share. Where ranks keep parts of vectors, only rows that others keep are told. What is shared, or told
+/// to nobody, is computed `here`. Empty with one rank.
 #[derive(Debug, Default)]
 pub(crate) struct Cut {
     /// By rank: its runs, and the copies.
@@ -39,23 +42,26 @@ pub(crate) struct Cut {
     pub(super) copies: Vec<Vec<Place>>,
     /// Part of each rank in the message of all.
     pub(super) parts: Vec<Range<usize>>,
-    pub(super) shared: Vec<Range<usize>>,
+    pub(super) here: Vec<Range<usize>>,
 }
 
 /// Rows and copies of the ranks as they are found.
 #[derive(Debug)]
-pub(super) struct CutBuilder {
-    rows: Vec<Vec<Range<usize>>>,
+pub(super) struct CutBuilder<'a> {
+    part: Option<&'a RowPart>,
+    /// By rank: consecutive rows, and where the first one stands here, if it does.
+    rows: Vec<Vec<(Range<usize>, Option<usize>)>>,
     copies: Vec<BTreeMap<u32, Place>>,
-    shared: Vec<Range<usize>>,
+    here: Vec<Range<usize>>,
 }
 
-impl CutBuilder {
-    pub(super) fn new(ranks: usize) -> Self {
+impl<'a> CutBuilder<'a> {
+    pub(super) fn new(ranks: usize, part: Option<&'a RowPart>) -> Self {
         Self {
+            part,
             rows: vec![Vec::new(); ranks],
             copies: vec![BTreeMap::new(); ranks],
-            shared: Vec::new(),
+            here: Vec::new(),
         }
     }
 
@@ -68,39 +74,50 @@ impl CutBuilder {
                 self.copies[rank].insert(copy, place);
             }
         }
-        let list = if alone { &mut self.rows[rank] } else { &mut self.shared };
-        match list.last_mut() {
-            Some(last) if last.end == rows.start => last.end = rows.end,
-            _ => list.push(rows),
+        let place = self.part.map_or(Some(rows.start), |part| part.place(rows.start));
+        let told = alone && self.part.is_none_or(|part| part.is_wanted(rows.start, rank));
+        if told {
+            let list = &mut self.rows[rank];
+            match list.last_mut() {
+                Some((last, first))
+                    if last.end == rows.start && first.map(|first| first + last.len()) == place =>
+                {
+                    last.end = rows.end;
+                }
+                _ => list.push((rows, place)),
+            }
+        } else if let Some(place) = place.filter(|_| !alone || self.part.is_some_and(|part| part.rank() == rank)) {
+            let rows = place..place + rows.len();
+            match self.here.last_mut() {
+                Some(last) if last.end == rows.start => last.end = rows.end,
+                _ => self.here.push(rows),
+            }
         }
     }
 
     /// Runs have rows of one kind, those of the `interface` or others.
     pub(super) fn build(self, interface: &Range<usize>) -> Cut {
         let ends = [interface.start, interface.end];
-        let split = |list: Vec<Range<usize>>| -> Vec<Range<usize>> {
-            let pieces = |rows: Range<usize>| {
-                let [a, b] = ends.map(|end| end.clamp(rows.start, rows.end));
-                [rows.start..a, a..b, b..rows.end]
-            };
-            list.into_iter()
-                .flat_map(pieces)
-                .filter(|rows| !rows.is_empty())
-                .collect()
+        let split = |rows: Range<usize>| {
+            let [a, b] = ends.map(|end| end.clamp(rows.start, rows.end));
+            [rows.start..a, a..b, b..rows.end].into_iter().filter(|rows| !rows.is_empty())
         };
-        let mut out = Cut {
-            shared: split(self.shared),
-            ..Cut::default()
-        };
+        let mut here: Vec<_> = self.here.into_iter().flat_map(split).flat_map(pieces).collect();
+        here.sort_by_key(|rows| rows.start);
+        let mut out = Cut { here, ..Cut::default() };
         let mut at = 0;
         for (rows, copies) in self.rows.into_iter().zip(self.copies) {
-            let start = at;
-            let run = |rows: Range<usize>| {
-                let run = Run { at, rows };
-                at += run.rows.len();
-                run
-            };
-            out.runs.push(split(rows).into_iter().map(run).collect());
+            let (start, mut runs) = (at, Vec::new());
+            for (rows, place) in rows {
+                let first = place.unwrap_or(0);
+                let kept = place.map(|_| split(first..first + rows.len())).into_iter().flatten();
+                runs.extend(kept.map(|rows| Run {
+                    at: at + rows.start - first,
+                    rows,
+                }));
+                at += rows.len();
+            }
+            out.runs.push(runs);
             out.copies.push(copies.into_values().collect());
             at += 3 * out.copies.last().map_or(0, Vec::len);
             out.parts.push(start..at);
@@ -109,11 +126,17 @@ impl CutBuilder {
     }
 }
 
+/// Rows in lengths that threads can share.
+fn pieces(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let end = rows.end;
+    rows.step_by(3 * BLOCKS).map(move |start| start..(start + 3 * BLOCKS).min(end))
+}
+
 impl Cut {
     /// Interface rows that a rank computes, alone or with others, ascending.
     pub(super) fn computed(&self, rank: usize, interface: &Range<usize>) -> Vec<Range<usize>> {
         let alone = self.runs.get(rank).into_iter().flatten().map(|run| run.rows.clone());
-        let mut all: Vec<_> = alone.chain(self.shared.iter().cloned()).collect();
+        let mut all: Vec<_> = alone.chain(self.here.iter().cloned()).collect();
         all.retain(|rows| interface.contains(&rows.start));
         all.sort_by_key(|rows| rows.start);
         all
@@ -127,6 +150,6 @@ impl Cut {
     pub(super) fn bytes(&self) -> usize {
         let runs: usize = self.runs.iter().map(Vec::len).sum();
         let copies: usize = self.copies.iter().map(Vec::len).sum();
-        24 * runs + 8 * copies + 16 * self.shared.len()
+        24 * runs + 8 * copies + 16 * self.here.len()
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::dual::boundary::{BoundaryMap, Panel, PanelScratch};
 use crate::dual::inverses::ClassInverse;
+use crate::dual::part::RowPart;
 use crate::linalg::dense;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::PRODUCT;
-use signorini_qp::SymmetricOperator;
+use signorini_qp::{SymmetricOperator, vector};
 use std::sync::Arc;
 
 /// `F = B K+ B^T`, applied without forming it; where springs or contact rows give way, with their compliance on the
@@ -21,6 +22,8 @@ pub struct DualOperator {
     pub(crate) inverses: Arc<Vec<Option<ClassInverse>>>,
     gluing: Arc<Gluing>,
     parallel: bool,
+    /// Where ranks keep parts of vectors.
+    part: Option<Arc<RowPart>>,
 }
 
 /// Work memory of a product with `F`.
@@ -41,6 +44,16 @@ impl DualOperator {
             inverses,
             gluing,
             parallel,
+            part: None,
+        }
+    }
+
+    /// The same for vectors of which each rank keeps a part; rows must not give way.
+    pub(crate) fn of_part(&self, map: Arc<BoundaryMap>, part: Arc<RowPart>) -> Self {
+        Self {
+            map,
+            part: Some(part),
+            ..self.clone()
         }
     }
 
@@ -132,5 +145,28 @@ impl SymmetricOperator for DualOperator {
                 }
             });
         self.gluing.add_compliance(x, y);
+    }
+
+    fn dot(&self, x: &[f64], y: &[f64]) -> f64 {
+        match &self.part {
+            Some(part) => part.dots([(x, y)])[0],
+            None => vector::dot(x, y),
+        }
+    }
+
+    fn dot_and_square(&self, x: &[f64], y: &[f64]) -> (f64, f64) {
+        match &self.part {
+            Some(part) => part.dots([(x, y), (y, y)]).into(),
+            None => vector::dot_and_square(x, y),
+        }
+    }
+
+    fn sum(&self, x: &[f64]) -> f64 {
+        let Some(part) = &self.part else {
+            return x.iter().sum();
+        };
+        let mut whole = vec![0.0; self.gluing.rows_full_rank()];
+        part.complete(x, &mut whole);
+        whole.iter().sum()
     }
 }

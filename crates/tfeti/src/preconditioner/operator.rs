@@ -13,6 +13,7 @@ use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, Spars
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
 use crate::preconditioner::springs::Springs;
 use crate::subdomain::matrices::ClassMatrices;
+use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{PANEL, PIVOT, SHARED};
 use rayon::prelude::*;
@@ -106,6 +107,14 @@ impl DualPreconditioner {
             scaling,
             springs,
         })
+    }
+
+    /// The same for vectors of which each rank keeps a part.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn of_part(self, part: &SystemPart) -> Self {
+        let map = part.map.clone();
+        Self { map, ..self }
     }
 
     fn stiffness_product(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {

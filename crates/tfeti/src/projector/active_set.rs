@@ -130,11 +130,10 @@ impl ActiveSetProjector {
             fronts: Fronts::default(),
             contact: ContactWeights::default(),
         };
-        let diagonal = weighted(&weights, metric.as_deref());
-        let weighted = RowWeights::diagonal(diagonal);
+        let own = row_weights(coarse, &weights, metric.as_deref());
         let factor = match fixed {
-            Some((base, free)) => steady(coarse, base, weighted, free)?,
-            None => parts.factor(coarse, weighted, None)?,
+            Some((base, free)) => steady(coarse, base, own, free)?,
+            None => parts.factor(coarse, own, None)?,
         };
         let mut scratch = factor.scratch();
         let motions = factor.free_motions().iter();
@@ -272,11 +271,14 @@ fn steady(
     }
 }
 
-fn weighted(free: &[f64], metric: Option<&[f64]>) -> Vec<f64> {
-    match metric {
+/// Weights of contact rows only where all others weigh one.
+fn row_weights(coarse: &Coarse, free: &[f64], metric: Option<&[f64]>) -> RowWeights {
+    let contact = coarse.0.gluing.ranges().contact().end;
+    RowWeights::diagonal(match metric {
         Some(metric) => free.iter().zip(metric).map(|(w, m)| w * m).collect(),
+        None if free[contact..].iter().all(|w| *w == 1.0) => free[..contact].to_vec(),
         None => free.to_vec(),
-    }
+    })
 }
 
 impl EqualityProjector for ActiveSetProjector {
@@ -301,7 +303,7 @@ impl EqualityProjector for ActiveSetProjector {
             let what = "the weights of an active set";
             return Err(QpError::Length { what, found, expected });
         }
-        let mut weights = RowWeights::diagonal(weighted(w, self.metric.as_deref()));
+        let mut weights = row_weights(&self.coarse, w, self.metric.as_deref());
         let metric = |row: usize| {
             let metric = self.metric.as_ref();
             metric.and_then(|m| m.get(row)).copied().unwrap_or(1.0)

@@ -11,7 +11,6 @@ use crate::linalg::tiles::Digits;
 use crate::projector::model::{Model, ModelFactor};
 use crate::projector::split::factor::{SplitBase, SplitFactor};
 use signorini_qp::internal::LineWeight;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// A Cholesky factor of `G W G^T` and the projectors that belong to it.
@@ -88,13 +87,9 @@ impl CoarseFactor {
             // products count these rows in full and are corrected by what the lines leave out
             lines.iter().for_each(|l| diagonal[l.row..l.row + 2].fill(1.0));
         }
-        let all = |range: Range<usize>, of: fn(&f64) -> bool| {
-            weights
-                .as_ref()
-                .is_none_or(|w: &RowWeights| w.diagonal[range].iter().all(of))
-        };
-        let plain = all(ranges.interface.clone(), |w| *w == 1.0);
-        let contact = weights.is_none() || !all(ranges.contact(), |w| *w == 0.0);
+        let plain = weights.as_ref().is_none_or(|w| w.are_one(ranges.interface.clone()));
+        let zero = |w: &RowWeights| w.diagonal[ranges.contact()].iter().all(|w| *w == 0.0);
+        let contact = weights.as_ref().is_none_or(|w| !zero(w));
         Self(Arc::new(FactorData {
             coarse,
             factor,
@@ -261,7 +256,7 @@ impl CoarseFactor {
             return;
         }
         keep(self.lines(), x, &mut s.pairs);
-        let weight = |row: usize| self.0.weights.as_ref().map_or(1.0, |w| w.diagonal[row]);
+        let weight = |row: usize| self.0.weights.as_ref().map_or(1.0, |w| w.of(row));
         data.with_transpose(
             &s.first,
             x,

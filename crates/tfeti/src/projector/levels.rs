@@ -62,7 +62,7 @@ impl Coarse {
         weights.diagonal[..rows].fill(0.0);
         let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
         let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
-        let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, self.dim()));
+        let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, gluing.rows_full_rank()));
         if wanted && rows > 0 && rows == gluing.ranges().contact().end {
             let free = data.free_motions(Some(&weights));
             if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes) {

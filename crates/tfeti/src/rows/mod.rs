@@ -5,12 +5,14 @@
 //! copies, with names (`kinds`), prescribed offsets and what was left out.
 //!
 //! `supports` merges what is prescribed at a node, `contact` reduces each constraint to the directions that are left,
-//! `build` spreads all over the copies, `dependencies` finds rows whose forces may replace one another.
+//! `build` spreads all over the copies, `dependencies` finds rows whose forces may replace one another,
+//! `part` takes some of the rows.
 
 pub(crate) mod build;
 pub(crate) mod contact;
 pub(crate) mod dependencies;
 pub(crate) mod gluing;
 pub(crate) mod kinds;
+pub(crate) mod part;
 pub(crate) mod side;
 pub(crate) mod supports;

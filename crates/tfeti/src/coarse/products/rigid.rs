@@ -27,10 +27,14 @@ pub(crate) struct RigidTables {
     nodal: Vec<[u32; 2]>,
     /// Consecutive subdomains with about equal work.
     tasks: Vec<Range<usize>>,
+    /// Where ranks keep parts of vectors: the rank of each subdomain, and the ranks of consecutive entries of `G x`.
+    ranks: Vec<u32>,
+    pieces: Vec<(usize, Range<usize>)>,
 }
 
 impl RigidTables {
-    pub(crate) fn new(map: &BoundaryMap, subdomains: Arc<Subdomains>, gluing: &Gluing) -> Self {
+    /// Of all rows, or of those of a rank's part; the latter with the rank of each subdomain.
+    pub(crate) fn new(map: &BoundaryMap, subdomains: Arc<Subdomains>, gluing: &Gluing, ranks: Vec<u32>) -> Self {
         let (mut arms, mut first, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for (class, base) in map.classes.iter().zip(&subdomains.bases) {
             first.push(arms.len());
@@ -66,6 +70,8 @@ impl RigidTables {
             nodal_pointers,
             nodal,
             tasks: vec![],
+            pieces: pieces(&ranks),
+            ranks,
         };
         let work = |s: usize| 4 * out.nodal_of(s).len() + out.globs.sides_of(s).len() + 4;
         let work: Vec<u64> = (0..out.subdomains.count()).map(|s| work(s) as u64).collect();
@@ -116,7 +122,7 @@ impl RigidTables {
         let (out, _) = out.as_chunks_mut();
         let offset = |task: &Range<usize>| task.start;
         over_tasks(&self.tasks, out, &offset, parallel, &|task, out| {
-            for (s, target) in task.clone().zip(out) {
+            for (s, target) in task.clone().zip(out).filter(|(s, _)| self.is_here(map, *s)) {
                 let mut wrench = self.globs.wrench(s, sides);
                 for &[nodal, arm] in self.nodal_of(s) {
                     let force = nodal_force(map, nodal as usize, x, weights);
@@ -125,6 +131,14 @@ impl RigidTables {
                 *target = on_modes(self.subdomains.kernel(s), &wrench);
             }
         });
+        if !self.pieces.is_empty() {
+            map.exchange().complete(out.as_flattened_mut(), &self.pieces);
+        }
+    }
+
+    fn is_here(&self, map: &BoundaryMap, subdomain: usize) -> bool {
+        let rank = self.ranks.get(subdomain);
+        rank.is_none_or(|rank| *rank as usize == map.exchange().rank())
     }
 
     /// The same for the contact rows `x` alone, where most are zero.
@@ -174,6 +188,16 @@ impl RigidTables {
     }
 }
 
+fn pieces(ranks: &[u32]) -> Vec<(usize, Range<usize>)> {
+    let mut at = 0;
+    let piece = |same: &[u32]| {
+        let start = at;
+        at += 6 * same.len();
+        (same[0] as usize, start..at)
+    };
+    ranks.chunk_by(|a, b| a == b).map(piece).collect()
+}
+
 /// Force of the rows that are no interface rows on one copy.
 #[inline]
 fn nodal_force(map: &BoundaryMap, nodal: usize, x: &[f64], weights: Option<&[f64]>) -> [f64; 3] {
@@ -181,7 +205,7 @@ fn nodal_force(map: &BoundaryMap, nodal: usize, x: &[f64], weights: Option<&[f64
     let pointers = &map.nodal_pointers[nodal..nodal + 2];
     for e in pointers[0] as usize..pointers[1] as usize {
         let row = map.nodal_rows[e] as usize;
-        let value = x[row] * weights.map_or(1.0, |w| w[row]);
+        let value = x[row] * weights.and_then(|w| w.get(row)).copied().unwrap_or(1.0);
         for c in 0..3 {
             force[c] += map.nodal_vectors[e][c] * value;
         }

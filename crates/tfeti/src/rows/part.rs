@@ -1,0 +1,39 @@
+//! Some of the rows of a gluing, for tables of a part of dual vectors.
+
+use super::gluing::{Gluing, Glob};
+use super::kinds::RowRanges;
+
+impl Gluing {
+    /// The rows of the globs and of the other rows that are marked, in their order; all contact rows have to be. Only
+    /// copies and coefficients come along, no names and no springs.
+    pub(crate) fn part(&self, globs: &[bool], nodal: &[bool]) -> Self {
+        let mut out = Self {
+            row_pointers: vec![0],
+            block_pointers: vec![0],
+            ..Self::default()
+        };
+        for (k, _) in nodal.iter().enumerate().filter(|(_, kept)| **kept) {
+            out.row_entries.extend_from_slice(self.nodal(k));
+            out.row_pointers.push(out.row_entries.len() as u32);
+        }
+        for (glob, _) in self.globs.iter().zip(globs).filter(|(_, kept)| **kept) {
+            let first_block = out.blocks() as u32;
+            for block in glob.block(0, 0)..glob.block(glob.runs as usize, 0) {
+                out.block_entries.extend_from_slice(self.block(block));
+                out.block_pointers.push(out.block_entries.len() as u32);
+            }
+            out.globs.push(Glob { first_block, ..*glob });
+        }
+        let (own, contact) = (&self.ranges, self.ranges.interface.start);
+        let end = contact + 3 * out.blocks();
+        let tied = nodal[contact..contact + own.tied.len()].iter().filter(|kept| **kept);
+        let tied = end..end + tied.count();
+        out.ranges = RowRanges {
+            interface: contact..end,
+            dirichlet: tied.end..end + out.nodal_rows() - contact,
+            tied,
+            ..own.clone()
+        };
+        out
+    }
+}
