@@ -11,7 +11,7 @@ use std::path::PathBuf;
 ///
 /// | file | holds |
 /// |---|---|
-/// | `NAME.pvd` | the bodies: displacement and von Mises stress |
+/// | `NAME.pvd` | the bodies: displacement and von Mises stress; of several processes each writes its subdomains |
 /// | `NAME_contact.pvd` | the contact surfaces, a piece each: displacement, contact pressure, friction stress, gap, slip, state |
 /// | `NAME.csv` | a row a step: time, products, status, certificate, numbers of points, contact forces, reactions, probes |
 ///
@@ -61,7 +61,9 @@ pub struct ResultWriter {
 struct Files {
     body: PvdSeries,
     contact: Option<PvdSeries>,
-    table: Table,
+    table: Option<Table>,
+    /// The process of each tetrahedron; empty with one process.
+    owners: Vec<u32>,
     /// The last step written.
     step: usize,
 }
@@ -129,16 +131,14 @@ impl ResultWriter {
     }
 
     /// Writes a step, for those who take the steps themselves; as an observer it does so unasked. A step that could not
-    /// be written can be written again. Of several processes rank 0 writes, the others do nothing.
+    /// be written can be written again. Of several processes each writes the tetrahedra of its subdomains, rank 0 the
+    /// rest, so that all need this writer.
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not
     /// finite; [`ContactError::Probe`] if a probe is no node; [`ContactError::ResultTable`] if the table of a run that
     /// is resumed is another one.
     pub fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
-        if result.model.plan.rank > 0 {
-            return Ok(());
-        }
         let files = self.files.take().filter(|files| files.step < result.step());
         let mut files = match files {
             Some(files) => files,
@@ -151,7 +151,9 @@ impl ResultWriter {
         if due {
             self.picture(&mut files, result, Moment::End)?;
         }
-        files.table.write(result)?;
+        if let Some(table) = &mut files.table {
+            table.write(result)?;
+        }
         files.step = result.step();
         self.files = Some(files);
         Ok(())
@@ -169,22 +171,29 @@ impl ResultWriter {
             false => PvdSeries::create(&self.folder, name),
         };
         let body = series(&self.name)?;
-        let contact = match result.surfaces() {
-            [] => None,
-            _ => Some(series(&self.contact_name)?),
-        };
-        let path = self.folder.join(format!("{}.csv", self.name));
-        let table = match result.step() {
-            0 => Table::new(path, &self.probes, result),
-            _ => Table::open(path, &self.probes, result)?,
-        };
-        let step = result.step();
+        let plan = &result.model.plan;
         let mut files = Files {
             body,
-            contact,
-            table,
-            step,
+            contact: None,
+            table: None,
+            owners: Vec::new(),
+            step: result.step(),
         };
+        if plan.ranks > 1 {
+            let rank = |p: &u32| result.model.tfeti.rank_of(*p as usize) as u32;
+            files.owners = result.decomposition().parts().iter().map(rank).collect();
+        }
+        if plan.rank == 0 {
+            files.contact = match result.surfaces() {
+                [] => None,
+                _ => Some(series(&self.contact_name)?),
+            };
+            let path = self.folder.join(format!("{}.csv", self.name));
+            files.table = Some(match result.step() {
+                0 => Table::new(path, &self.probes, result),
+                _ => Table::open(path, &self.probes, result)?,
+            });
+        }
         if self.every > 0 {
             self.picture(&mut files, result, Moment::Rest)?;
         }
@@ -198,7 +207,13 @@ impl ResultWriter {
         let time = if rest { 0.0 } else { result.time() };
         if !rest || files.body.times().is_empty() {
             let (at_nodes, in_tets) = body(result, &self.fields, moment)?;
-            files.body.write(time, mesh, &at_nodes, &in_tets)?;
+            match &files.owners[..] {
+                [] => files.body.write(time, mesh, &at_nodes, &in_tets)?,
+                owners => {
+                    let own = (owners, result.model.plan.rank as u32);
+                    files.body.write_part(time, mesh, own, &at_nodes, &in_tets)?;
+                }
+            }
         }
         if let Some(contact) = files.contact.as_mut().filter(|c| !rest || c.times().is_empty()) {
             let fields = surfaces(result, &self.fields, moment);

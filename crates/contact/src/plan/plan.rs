@@ -164,12 +164,11 @@ impl Plan {
             &settings.inverse,
             |node| fixed.contains_key(&node) || touching.contains(&node),
         )?;
-        if plan.method == MethodKind::ActiveSet {
-            let nodes: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
-            let (supported, rows) = (fixed.keys().copied(), plan.dual());
-            if let Some(levels) = forecast_levels(&forecast, nodes.into_iter(), supported, rows) {
-                (forecast.coarse_bytes, forecast.coarse_flops) = (levels.bytes, levels.flops);
-            }
+        let nodes: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+        let (supported, rows) = (fixed.keys().copied(), plan.dual());
+        let active_sets = plan.method == MethodKind::ActiveSet;
+        if let Some(levels) = forecast_levels(&forecast, nodes.into_iter(), supported, rows, active_sets) {
+            (forecast.coarse_bytes, forecast.coarse_flops) = (levels.bytes, levels.flops);
         }
         let vectors = match settings.method.kind() {
             MethodKind::Linear | MethodKind::ActiveSet => 16,

@@ -149,7 +149,10 @@ mod tests {
     fn safeguard() -> DescentSafeguard {
         let mut safeguard = DescentSafeguard::new(2);
         safeguard.enter(&[0.0; 2], &[0.0; 2], &[-1.0; 2]);
-        assert!(!safeguard.leave(&Identity(2), (&[1.0; 2], &[1.0; 2])), "the first step tells nothing");
+        assert!(
+            !safeguard.leave(&Identity(2), (&[1.0; 2], &[1.0; 2])),
+            "the first step tells nothing"
+        );
         safeguard
     }
 
@@ -162,7 +165,10 @@ mod tests {
         let mut safeguard = safeguard();
         assert_eq!(safeguard.full, -1.0);
         assert!(safeguard.descends(&Identity(2), (&[1.0; 2], &[1.0; 2]), 1.0));
-        assert!(!safeguard.descends(&Identity(2), (&[2.0; 2], &[2.0; 2]), 1.0), "as high as the start");
+        assert!(
+            !safeguard.descends(&Identity(2), (&[2.0; 2], &[2.0; 2]), 1.0),
+            "as high as the start"
+        );
         let (mut x, mut ax) = ([9.0; 2], [9.0; 2]);
         safeguard.shorten(0.25, &mut x, &mut ax);
         assert_eq!((x, ax), ([0.25; 2], [0.25; 2]));

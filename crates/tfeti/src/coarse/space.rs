@@ -70,7 +70,10 @@ impl Coarse {
             || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
             || {
                 let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
-                (mobility, RigidTables::new(&map, subdomains.clone(), &gluing, Vec::new()))
+                (
+                    mobility,
+                    RigidTables::new(&map, subdomains.clone(), &gluing, Vec::new()),
+                )
             },
         );
         let symbolic = symbolic?;

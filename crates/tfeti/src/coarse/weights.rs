@@ -38,7 +38,9 @@ impl RowWeights {
     /// Whether these rows weigh one.
     pub(crate) fn are_one(&self, rows: Range<usize>) -> bool {
         let end = self.diagonal.len();
-        self.diagonal[rows.start.min(end)..rows.end.min(end)].iter().all(|w| *w == 1.0)
+        self.diagonal[rows.start.min(end)..rows.end.min(end)]
+            .iter()
+            .all(|w| *w == 1.0)
     }
 
     pub(crate) fn in_line(&self, row: usize) -> bool {

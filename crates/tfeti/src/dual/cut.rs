@@ -79,9 +79,7 @@ impl<'a> CutBuilder<'a> {
         if told {
             let list = &mut self.rows[rank];
             match list.last_mut() {
-                Some((last, first))
-                    if last.end == rows.start && first.map(|first| first + last.len()) == place =>
-                {
+                Some((last, first)) if last.end == rows.start && first.map(|first| first + last.len()) == place => {
                     last.end = rows.end;
                 }
                 _ => list.push((rows, place)),
@@ -100,7 +98,9 @@ impl<'a> CutBuilder<'a> {
         let ends = [interface.start, interface.end];
         let split = |rows: Range<usize>| {
             let [a, b] = ends.map(|end| end.clamp(rows.start, rows.end));
-            [rows.start..a, a..b, b..rows.end].into_iter().filter(|rows| !rows.is_empty())
+            [rows.start..a, a..b, b..rows.end]
+                .into_iter()
+                .filter(|rows| !rows.is_empty())
         };
         let mut here: Vec<_> = self.here.into_iter().flat_map(split).flat_map(pieces).collect();
         here.sort_by_key(|rows| rows.start);
@@ -129,7 +129,8 @@ impl<'a> CutBuilder<'a> {
 /// Rows in lengths that threads can share.
 fn pieces(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
     let end = rows.end;
-    rows.step_by(3 * BLOCKS).map(move |start| start..(start + 3 * BLOCKS).min(end))
+    rows.step_by(3 * BLOCKS)
+        .map(move |start| start..(start + 3 * BLOCKS).min(end))
 }
 
 impl Cut {

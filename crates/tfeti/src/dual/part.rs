@@ -144,7 +144,9 @@ impl RowPart {
 
     fn find(&self, rank: usize, row: usize) -> Option<usize> {
         let kept = &self.kept[rank];
-        let (rows, place) = &kept[kept.partition_point(|(rows, _)| rows.end <= row).min(kept.len().checked_sub(1)?)];
+        let (rows, place) = &kept[kept
+            .partition_point(|(rows, _)| rows.end <= row)
+            .min(kept.len().checked_sub(1)?)];
         rows.contains(&row).then(|| place + row - rows.start)
     }
 
@@ -168,7 +170,8 @@ impl RowPart {
     pub(crate) fn take(&self, whole: &[f64]) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.len());
         let kept = &self.kept[self.rank()];
-        kept.iter().for_each(|(rows, _)| out.extend_from_slice(&whole[rows.clone()]));
+        kept.iter()
+            .for_each(|(rows, _)| out.extend_from_slice(&whole[rows.clone()]));
         out
     }
 

@@ -12,6 +12,7 @@ pub(crate) mod block_rows;
 pub(crate) mod dense;
 pub(crate) mod elimination;
 pub(crate) mod lanes;
+pub(crate) mod roots;
 pub(crate) mod sparse;
 pub(crate) mod supernodes;
 pub(crate) mod tiles;

@@ -69,6 +69,12 @@ impl Coarse {
         let modes = ModeTable::new(&data.subdomains);
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
         let free = data.free_motions(weights.as_ref());
+        if weights.is_none()
+            && free.is_empty()
+            && let Some(factor) = self.shared_factor(&matrix.values)
+        {
+            return Ok(CoarseFactor::new(self.clone(), factor, None, free));
+        }
         data.hold(&free, &mut matrix.values);
         let (what, count) = ("coarse unknowns", matrix.dim);
         let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
@@ -323,11 +329,31 @@ impl CoarseFactor {
         self.weigh(x);
     }
 
-    /// The sparse factor of a regular `G G^T`.
-    pub(super) fn unweighted(&self) -> Option<&Arc<SparseCholesky>> {
+    /// Whether it is one of a regular `G G^T`, of which halves can be applied.
+    pub(super) fn has_halves(&self) -> bool {
+        let halves = match &self.0.factor {
+            Factor::Sparse(_) => true,
+            Factor::Split(base, _) => base.has_halves(),
+            Factor::Model(..) => false,
+        };
+        halves && self.0.weights.is_none() && self.0.free.is_empty()
+    }
+
+    /// `out = L^-1 P` of the first vector of the memory.
+    pub(super) fn half_solve_first(&self, out: &mut [f64], s: &mut CoarseScratch) {
         match &self.0.factor {
-            Factor::Sparse(factor) if self.0.weights.is_none() && self.0.free.is_empty() => Some(factor),
-            _ => None,
+            Factor::Sparse(factor) => factor.half_solve(&s.first, out, &mut s.memory),
+            Factor::Split(base, factor) => base.half_solve(factor, &s.first, out, &mut s.split),
+            Factor::Model(..) => {}
+        }
+    }
+
+    /// `out = P^T L^-T` of the first vector of the memory, which is overwritten.
+    pub(super) fn half_solve_first_transpose(&self, out: &mut [f64], s: &mut CoarseScratch) {
+        match &self.0.factor {
+            Factor::Sparse(factor) => factor.half_solve_transpose(&mut s.first, out, &mut s.memory),
+            Factor::Split(base, factor) => base.half_solve_transpose(factor, &s.first, out, &mut s.split),
+            Factor::Model(..) => {}
         }
     }
 }

@@ -26,23 +26,28 @@ pub struct LevelsForecast {
     pub flops: f64,
 }
 
-/// Forecast for two levels; `None` where one is used. `touching` are the nodes with contact rows, `supported` those
-/// with support rows, each once; `rows` is the number of rows of `B`.
+/// Forecast for two levels, or, if the method does not follow `active_sets`, for one in which equal regions are stored
+/// once; `None` where neither is used. `touching` are the nodes with contact rows, `supported` those with support rows,
+/// each once; `rows` is the number of rows of `B`.
 pub fn forecast_levels(
     forecast: &Forecast<'_>,
     touching: impl Iterator<Item = u32>,
     supported: impl Iterator<Item = u32>,
     rows: usize,
+    active_sets: bool,
 ) -> Option<LevelsForecast> {
     let decomposition = forecast.decomposition;
     let count = decomposition.subdomains().len();
     let copies = |node: u32| decomposition.copies(node as usize).iter().map(|c| c.subdomain as usize);
-    let mut changing = vec![false; count];
-    touching.flat_map(copies).for_each(|s| changing[s] = true);
-    if !changing.contains(&true) || !two_levels_pay(&changing, rows) {
+    let mut contact = vec![0_u32; count];
+    touching.flat_map(copies).for_each(|s| contact[s] += 1);
+    let changing: Vec<bool> = contact.iter().map(|nodes| *nodes > 0).collect();
+    let follows = active_sets && changing.contains(&true);
+    if !two_levels_pay(&changing, rows) || active_sets && !follows {
         return None;
     }
-    let mut supports = vec![0_u32; count];
+    // rows that do not change are like those of supports
+    let mut supports = if follows { vec![0; count] } else { contact };
     supported.flat_map(copies).for_each(|s| supports[s] += 1);
     let graph = neighbours(&coarse_graph(decomposition));
     let points = forecast.mesh.points();
@@ -70,6 +75,13 @@ pub fn forecast_levels(
     let grid = grid_of(&centres);
     let mut fixed = CoarseTree::new(&graph, &centres, &vec![false; count], 0, grid.as_deref()).ok()?;
     let (numbers, flops) = count_tree(&mut fixed, &graph, &|a, b, key| key.push(block(a, b)));
+    let counted = |numbers: usize, flops: f64| LevelsForecast {
+        bytes: 8 * numbers as u64,
+        flops,
+    };
+    if !follows {
+        return Some(counted(numbers, flops));
+    }
 
     let mut bodies = DisjointSets::new(count);
     for (a, list) in graph.iter().enumerate() {
@@ -104,10 +116,7 @@ pub fn forecast_levels(
     let grid = grid_of(&centres);
     let mut tree = cheapest_tree(&graph, &centres, &marks, grid.as_deref())?;
     let clusters = count_tree(&mut tree, &graph, &|a, b, key| key.push(links[&(a, b)]));
-    Some(LevelsForecast {
-        bytes: 8 * (numbers + clusters.0) as u64,
-        flops: flops + clusters.1,
-    })
+    Some(counted(numbers + clusters.0, flops + clusters.1))
 }
 
 /// Numbers and operations of a factor.

@@ -12,9 +12,10 @@ use crate::coarse::matrix::ModeTable;
 use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
-use crate::projector::factor::CoarseFactor;
+use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::model::Model;
-use crate::projector::split::factor::SplitBase;
+use crate::projector::split::factor::{Fronts, SplitBase};
+use crate::projector::split::fronts::ContactWeights;
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
 use crate::tolerances::{FEW, GROWTH, MANY, OPERATION, ROW, SOLVES};
@@ -32,12 +33,13 @@ pub(super) enum Bases {
 }
 
 /// Whether two levels pay for subdomains of which those that are `touching` have contact rows, with so many `rows` of
-/// `B` in all: a change of the active set with one level factors a dense matrix of those that touch.
+/// `B` in all: a change of the active set with one level factors a dense matrix of those that touch. Where none do
+/// there is one level, in which equal regions are stored once.
 pub(super) fn two_levels_pay(touching: &[bool], rows: usize) -> bool {
     let dense = 6.0 * touching.iter().filter(|t| **t).count() as f64;
     let slower = GROWTH * 0.5 * SOLVES * ROW * rows as f64;
     let pays = OPERATION * dense.powi(3) / 3.0 > slower;
-    touching.len() > MANY || touching.len() >= FEW && pays
+    touching.len() > MANY || touching.len() >= FEW && (pays || dense == 0.0)
 }
 
 impl Coarse {
@@ -87,15 +89,39 @@ impl Coarse {
         let data = &self.0;
         let (mobility, matrix) = (&data.mobility, &data.matrix);
         let grid = grid_of(mobility.centres());
-        let nothing = vec![false; changing.len()];
-        let fixed = CoarseTree::new(graph, mobility.centres(), &nothing, 0, grid.as_deref()).ok()?;
         let clusters = Clusters::new(mobility, &data.subdomains, grid.as_deref());
         let model = Model::new(clusters, (&data.gluing, modes), (matrix, values), changing, rows)?;
         let mut values = values.to_vec();
         data.hold(&free, &mut values);
-        let always = SplitBase::new(fixed, matrix, graph, &values, 0, &|_, _| {}, true).ok()?;
-        let (model, always) = (Arc::new(model), Arc::new(always));
+        let always = self.fixed_base(graph, &values)?;
+        let model = Arc::new(model);
         Some(Bases::Levels { model, always, free })
+    }
+
+    /// The factor of the matrix with these values, in which nothing changes: equal regions are stored once.
+    fn fixed_base(&self, graph: &[Vec<u32>], values: &[f64]) -> Option<Arc<SplitBase>> {
+        let data = &self.0;
+        let centres = data.mobility.centres();
+        let nothing = vec![false; graph.len()];
+        let tree = CoarseTree::new(graph, centres, &nothing, 0, grid_of(centres).as_deref()).ok()?;
+        let base = SplitBase::new(tree, &data.matrix, graph, values, 0, &|_, _| {}, true);
+        base.ok().map(Arc::new)
+    }
+
+    /// The factor of `G G^T`, with these values, where subdomains are as many as for two levels, and the factor does
+    /// without springs.
+    pub(super) fn shared_factor(&self, values: &[f64]) -> Option<Factor> {
+        let data = &self.0;
+        let mut touching = vec![false; data.subdomains.count()];
+        for e in data.gluing.ranges().contact().flat_map(|row| data.gluing.nodal(row)) {
+            touching[e.subdomain as usize] = true;
+        }
+        if !two_levels_pay(&touching, data.gluing.rows_full_rank()) {
+            return None;
+        }
+        let base = self.fixed_base(&data.matrix.graph(), values)?;
+        let factor = base.factor(&ContactWeights::default(), None, &mut Fronts::default());
+        Some(Factor::Split(base, factor.ok()?))
     }
 }
 

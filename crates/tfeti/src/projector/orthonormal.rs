@@ -1,31 +1,26 @@
 //! Orthonormal rows that span those of `G`.
 
 use crate::coarse::space::CoarseScratch;
-use crate::linalg::sparse::SparseCholesky;
 use crate::projector::factor::CoarseFactor;
 use signorini_qp::Equality;
-use std::sync::Arc;
 
 /// The constraint `G x = e` with orthonormal rows: `C x = L^-1 P e` with `C = L^-1 P G`, `C C^T = I`,
 /// where `P G G^T P^T = L L^T`.
 #[derive(Debug, Clone)]
-pub struct OrthonormalCoarse {
-    factor: CoarseFactor,
-    cholesky: Arc<SparseCholesky>,
-}
+pub struct OrthonormalCoarse(CoarseFactor);
 
 impl CoarseFactor {
     /// The orthonormal basis of the row space of `G`. `None` if there are weights or free motions.
     pub fn orthonormal(&self) -> Option<OrthonormalCoarse> {
-        let (factor, cholesky) = (self.clone(), self.unweighted()?.clone());
-        Some(OrthonormalCoarse { factor, cholesky })
+        self.has_halves().then(|| OrthonormalCoarse(self.clone()))
     }
 }
 
 impl OrthonormalCoarse {
     /// Right-hand side of the orthonormal rows: `out = L^-1 P e`.
     pub fn rhs(&self, e: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        self.cholesky.half_solve(e, out, &mut s.memory);
+        s.first.copy_from_slice(e);
+        self.0.half_solve_first(out, s);
     }
 
     /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
@@ -35,12 +30,12 @@ impl OrthonormalCoarse {
     /// If `beta` or `alpha` does not have one entry for each row.
     pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(beta);
-        self.cholesky.half_solve_transpose(&mut s.first, alpha, &mut s.memory);
+        self.0.half_solve_first_transpose(alpha, s);
     }
 
     /// The factor.
     pub fn factor(&self) -> &CoarseFactor {
-        &self.factor
+        &self.0
     }
 }
 
@@ -48,28 +43,29 @@ impl Equality for OrthonormalCoarse {
     type Scratch = CoarseScratch;
 
     fn dim(&self) -> usize {
-        self.factor.coarse().dim()
+        self.0.coarse().dim()
     }
 
     fn rows(&self) -> usize {
-        self.factor.coarse().rows()
+        self.0.coarse().rows()
     }
 
     fn scratch(&self) -> CoarseScratch {
-        self.factor.scratch()
+        self.0.scratch()
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.factor.coarse().0;
+        let data = &self.0.coarse().0;
         data.product(x, None, &mut s.first, &mut s.sides);
-        self.cholesky.half_solve(&s.first, y, &mut s.memory);
+        self.0.half_solve_first(y, s);
     }
 
     fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
         s.first.copy_from_slice(y);
-        self.cholesky
-            .half_solve_transpose(&mut s.first, &mut s.second, &mut s.memory);
-        let data = &self.factor.coarse().0;
+        let mut motions = std::mem::take(&mut s.second);
+        self.0.half_solve_first_transpose(&mut motions, s);
+        s.second = motions;
+        let data = &self.0.coarse().0;
         data.product_transpose(&s.second, x, &mut s.motions);
     }
 }

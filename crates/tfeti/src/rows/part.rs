@@ -1,6 +1,6 @@
 //! Some of the rows of a gluing, for tables of a part of dual vectors.
 
-use super::gluing::{Gluing, Glob};
+use super::gluing::{Glob, Gluing};
 use super::kinds::RowRanges;
 
 impl Gluing {

@@ -3,10 +3,13 @@
 use crate::common::{Brick, distance, noise, norm, steel};
 use signorini_fem_mesh::decomposition::{PartCount, even_parts};
 use signorini_fem_mesh::{Decomposition, FacetTag, SurfaceFrame, brick};
+use signorini_qp::laws::check_equality_laws;
 use signorini_qp::vector::dot;
-use signorini_qp::{EqualityProjector, QpError};
+use signorini_qp::{Equality, EqualityProjector, QpError};
 use signorini_tfeti::internal::{ActiveSetFactor, Forecast, forecast_levels};
-use signorini_tfeti::{ActiveSetProjector, ContactConstraint, InverseSettings, NodeSupport, Tfeti, TfetiBuilder};
+use signorini_tfeti::{
+    ActiveSetProjector, ContactConstraint, InverseSettings, NodeSupport, RowWeights, Tfeti, TfetiBuilder,
+};
 
 fn space(system: &Tfeti, kind: ActiveSetFactor) -> ActiveSetProjector {
     let contact = system.gluing().ranges().contact().end;
@@ -208,7 +211,7 @@ fn a_forecast_counts_what_two_levels_store() {
         let system = b.system();
         let settings = InverseSettings::default();
         let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, |_| false).unwrap();
-        let forecast = |rows| forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), rows);
+        let forecast = |rows| forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), rows, true);
         let mut space = space(&system, ActiveSetFactor::Auto);
         assert!(space.has_levels());
         let always = space.factor().stored();
@@ -222,9 +225,50 @@ fn a_forecast_counts_what_two_levels_store() {
     let (materials, settings) = (steel(), InverseSettings::default());
     let found = Forecast::new(&b.mesh, &b.decomposition, &materials, true, &settings, |_| false).unwrap();
     assert_eq!(
-        forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), 5000),
+        forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), 5000, true),
         None
     );
+}
+
+/// Methods that keep all rows have the factor in which equal regions are stored once, too: its rows are orthonormal, and
+/// project as those of the sparse factor do. The forecast counts it.
+#[test]
+fn methods_without_active_sets_share_equal_regions() {
+    for (n, perturbation) in [(8, 0.0), (7, 0.1)] {
+        let b = Brick::of(n, 1, perturbation);
+        let system = b.system();
+        let shared = system.coarse_factor().unwrap();
+        let ones = RowWeights::diagonal(vec![1.0; system.dual_dim()]);
+        let sparse = system.coarse().factor_weighted(ones).unwrap();
+        assert!(shared.stored() != sparse.stored() && sparse.orthonormal().is_none());
+        let rows = shared.orthonormal().expect("regular");
+        check_equality_laws(&rows, 3, 1e-11).unwrap();
+        let (mut memory, mut other) = (rows.scratch(), sparse.scratch());
+        let (x, e) = (noise(system.dual_dim(), 5), noise(system.coarse().rows(), 6));
+        let (mut c, mut along) = (e.clone(), x.clone());
+        rows.apply(&x, &mut c, &mut memory);
+        rows.apply_transpose(&c, &mut along, &mut memory);
+        let projected: Vec<f64> = x.iter().zip(&along).map(|(x, a)| x - a).collect();
+        let mut expected = x.clone();
+        sparse.project(&mut expected, None, &mut other);
+        assert!(distance(&projected, &expected) < 1e-11 * norm(&x));
+        // C x = rhs is G x = e, and multipliers of both belong together
+        let (mut rhs, mut alpha, mut motion) = (e.clone(), e.clone(), x.clone());
+        shared.particular(&e, &mut expected, &mut memory);
+        rows.rhs(&e, &mut rhs, &mut memory);
+        rows.apply(&expected, &mut c, &mut memory);
+        assert!(distance(&c, &rhs) < 1e-11 * norm(&rhs));
+        rows.amplitudes(&c, &mut alpha, &mut memory);
+        system.coarse().apply_transpose(&alpha, &mut motion, &mut memory);
+        rows.apply_transpose(&c, &mut along, &mut memory);
+        assert!(distance(&motion, &along) < 1e-11 * norm(&along));
+        let settings = InverseSettings::default();
+        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, |_| false).unwrap();
+        let (bottom, fixed) = (b.bottom.iter().copied(), b.fixed.iter().copied());
+        let counted = forecast_levels(&found, bottom, fixed, system.dual_dim(), false).unwrap();
+        let ratio = counted.bytes as f64 / (8 * shared.stored()) as f64;
+        assert!((0.75..1.25).contains(&ratio), "n = {n}: {ratio}");
+    }
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Several ranks, here threads, build and apply one system: the same bits, the work spread evenly, one exchange a
-//! product.
+//! product, of whole vectors or of the part that each rank keeps.
 
 use crate::common::*;
-use signorini_qp::SymmetricOperator;
-use signorini_tfeti::internal::{InverseKind, on_ranks};
-use signorini_tfeti::{Communicator, InverseSettings, SetupReport, Tfeti, Traffic};
+use signorini_qp::{EqualityProjector, SymmetricOperator};
+use signorini_tfeti::internal::{InverseKind, SystemPart, on_ranks};
+use signorini_tfeti::{ActiveSetProjector, Communicator, InverseSettings, SetupReport, Tfeti, Traffic};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 fn system(b: &Brick, kind: InverseKind, share: bool, communicator: &Arc<dyn Communicator>) -> Tfeti {
@@ -59,9 +60,12 @@ fn any_number_of_ranks_computes_the_same_bits() {
                 let found = on_ranks(ranks, |c| {
                     let system = system(&b, kind, share, &c);
                     let bits = all_bits(&system);
-                    let before = system.traffic().exchanges;
+                    let before = system.traffic();
                     product(&system, &noise(system.dual_dim(), 6));
-                    assert_eq!(system.traffic().exchanges - before, u64::from(ranks > 1));
+                    let after = system.traffic();
+                    assert_eq!(after.exchanges - before.exchanges, u64::from(ranks > 1));
+                    let bytes = after.sent + after.received - before.sent - before.received;
+                    assert_eq!(bytes, if ranks > 1 { message(&system) } else { 0 });
                     (bits, system.dual().flops(), system.report().clone())
                 });
                 let what = format!("n = {n}, {kind:?}, {ranks} ranks");
@@ -94,5 +98,125 @@ fn spread(ranks: &[&SetupReport], whole: &SetupReport, what: &str) {
     // where a rank has more than a few subdomains
     if ranks.len() > 1 && whole.subdomains > 100 {
         assert!(ranks.iter().all(|r| r.table_bytes < whole.table_bytes), "{what}");
+    }
+}
+
+/// Bytes of all messages of a product of whole vectors: a number for each row that one rank computes alone, three for
+/// each copy of a node in the others.
+fn message(system: &Tfeti) -> u64 {
+    let (mut alone, mut copies) = (0, BTreeSet::new());
+    for row in 0..system.dual_dim() {
+        let entries = system.gluing().row(row);
+        let ranks: BTreeSet<usize> = entries.iter().map(|e| system.rank_of(e.0)).collect();
+        match ranks.len() {
+            1 => alone += 1,
+            _ => copies.extend(entries.iter().map(|e| (e.0, e.1 / 3))),
+        }
+    }
+    8 * (alone + 3 * copies.len() as u64)
+}
+
+/// What the default method asks of a system, of whole vectors or of the rank's part of them, which is completed. The
+/// largest number of exchanges of a call comes along.
+fn asked(system: &Tfeti, part: Option<&SystemPart>) -> (Vec<u64>, u64) {
+    let mut most = 0;
+    let (dual, coarse) = part.map_or((system.dual(), system.coarse()), |part| (part.dual(), part.coarse()));
+    let take = |whole: &[f64]| part.map_or(whole.to_vec(), |part| part.take(whole));
+    let contact = system.gluing().ranges().contact().end;
+    let mut space = ActiveSetProjector::new(coarse, contact, None).unwrap();
+    let mut weights = vec![1.0; dual.dim()];
+    weights[..contact].iter_mut().step_by(3).for_each(|w| *w = 0.0);
+    space.set_weights(&weights).unwrap();
+    let mut all = Vec::new();
+    let mut before = system.traffic().exchanges;
+    let mut tell = |found: &[f64]| {
+        most = most.max(system.traffic().exchanges - before);
+        let mut whole = vec![0.0; system.dual_dim()];
+        match part {
+            Some(part) if found.len() == dual.dim() => part.complete(found, &mut whole),
+            _ => whole = found.to_vec(),
+        }
+        all.extend(whole);
+        before = system.traffic().exchanges;
+    };
+    let [x, g] = [3, 4].map(|seed| take(&noise(system.dual_dim(), seed)));
+    let mut y = vec![0.0; dual.dim()];
+    dual.apply(&x, &mut y, &mut dual.scratch());
+    tell(&y);
+    for own in [system.lumped().unwrap(), system.dirichlet().unwrap()] {
+        let own = match part {
+            Some(part) => own.of_part(part),
+            None => own,
+        };
+        own.apply(&x, &mut y, &mut own.scratch());
+        tell(&y);
+    }
+    tell(&[dual.dot(&x, &g)]);
+    tell(&[dual.norm(&x)]);
+    tell(&[dual.dot_and_square(&x, &g).0]);
+    tell(&[dual.dot_and_square(&g, &x).1]);
+    tell(&[dual.sum(&g)]);
+    let e = noise(space.rows(), 5);
+    let works: [fn(&mut ActiveSetProjector, &mut [f64], &[f64]); 6] = [
+        |s, x, _| s.project(x),
+        |s, x, _| s.project_step(x),
+        |s, x, _| s.project_transpose(x),
+        |s, x, _| s.project_step_transpose(x),
+        |s, x, e| s.repair(x, e),
+        |s, x, e| s.balance(x, e),
+    ];
+    for work in works {
+        y.copy_from_slice(&x);
+        work(&mut space, &mut y, &e);
+        tell(&y);
+    }
+    space.compensate(&x, &noise(contact, 6), &mut y);
+    tell(&y);
+    let mut alpha = vec![0.0; space.rows()];
+    space.amplitudes(&x, &mut alpha);
+    tell(&alpha);
+    (all.into_iter().map(f64::to_bits).collect(), most)
+}
+
+/// Parts of vectors, which are shorter, give the bits of whole ones, with one exchange a call and less in it.
+#[test]
+fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
+    for (n, cells, perturbation, ranks) in [
+        (5, 4, 0.0, 2),
+        (4, 4, 0.0, 3),
+        (4, 2, 0.1, 4),
+        (2, 2, 0.0, 2),
+        (1, 3, 0.0, 5),
+    ] {
+        let b = Brick::of(n, cells, perturbation);
+        let plain = build(&b, InverseKind::Auto, true);
+        assert!(plain.part().is_none(), "one process has whole vectors");
+        let expected = asked(&plain, None).0;
+        let found = on_ranks(ranks, |c| {
+            let system = system(&b, InverseKind::Auto, true, &c);
+            let part = system.part().expect("nothing in the way");
+            let (bits, exchanges) = asked(&system, Some(&part));
+            let before = system.traffic().received;
+            let x = vec![1.0; part.rows()];
+            part.dual().apply(&x, &mut x.clone(), &mut part.dual().scratch());
+            let received = system.traffic().received - before;
+            (bits, exchanges, part.rows(), received)
+        });
+        for rank in found {
+            let (bits, exchanges, rows, received) = rank.expect("no panic");
+            let what = format!("n = {n}, {ranks} ranks");
+            assert!(bits == expected && exchanges == 1, "{what}: {exchanges} exchanges");
+            assert!(rows <= plain.dual_dim());
+            if n > 4 {
+                let (share, sent) = (
+                    rows as f64 / plain.dual_dim() as f64,
+                    received as f64 / message(&plain) as f64,
+                );
+                assert!(
+                    share < 0.7 && sent < 0.3,
+                    "{what}: {share} of the rows, {sent} of the bytes"
+                );
+            }
+        }
     }
 }

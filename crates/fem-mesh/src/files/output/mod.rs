@@ -1,7 +1,7 @@
 //! VTU files and PVD time series for ParaView (feature `vtu`).
 //!
 //! Arrays are binary: base64 inside the XML, 64-bit headers, little endian, compressed by zlib. `vtu` writes one
-//! file, `pvd` a series of them that can be continued.
+//! file, `pvd` a series of them that can be continued, also by several processes, each with its piece.
 
 mod pvd;
 mod vtu;

@@ -1,5 +1,6 @@
 //! A time series: one VTU file a step and a PVD file that lists them.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom};
@@ -7,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
 
+use super::vtu::{write_pvtu, write_vtu_part};
 use super::{Field, OutputError, SurfaceFields, write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces};
 use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
@@ -54,6 +56,8 @@ pub struct PvdSeries {
     folder: PathBuf,
     name: String,
     times: Vec<f64>,
+    /// Whether a step is a list of pieces of several processes.
+    lists: Vec<bool>,
 }
 
 impl PvdSeries {
@@ -107,6 +111,7 @@ impl PvdSeries {
         }
         let limit = time - SAME_TIME * time.abs();
         series.times.retain(|&t| t < limit);
+        series.lists.truncate(series.times.len());
         series.check_files()?;
         Ok(series)
     }
@@ -114,7 +119,7 @@ impl PvdSeries {
     /// No file is cut short. One that is not there is not missed: its owner has put it elsewhere.
     fn check_files(&self) -> Result<(), OutputError> {
         for step in 0..self.times.len() {
-            let path = self.folder.join(self.file_name(step));
+            let path = self.folder.join(self.file_name(step, self.lists[step]));
             let end = match File::open(&path) {
                 Ok(file) => last_bytes(file).map_err(|source| OutputError::Read {
                     path: path.clone(),
@@ -138,6 +143,7 @@ impl PvdSeries {
             folder: folder.to_path_buf(),
             name: name.into(),
             times: Vec::new(),
+            lists: Vec::new(),
         })
     }
 
@@ -154,7 +160,41 @@ impl PvdSeries {
     ) -> Result<(), OutputError> {
         self.check(time)?;
         write_vtu(self.next_file(), mesh, point_fields, cell_fields)?;
-        self.list(time)
+        self.list(time, false)
+    }
+
+    /// As [`PvdSeries::write`] by several processes, of which each calls this with its number `rank`, from 0, and the
+    /// process of each tetrahedron: each writes its tetrahedra into `name_0000_RANK.vtu`, process 0 lists these in
+    /// `name_0000.pvtu` and that in `name.pvd`. A list is complete when all processes have written.
+    ///
+    /// # Errors
+    /// [`OutputError`] as [`PvdSeries::write`], and if there are not as many `owners` as tetrahedra.
+    pub fn write_part(
+        &mut self,
+        time: f64,
+        mesh: &TetMesh,
+        (owners, rank): (&[u32], u32),
+        point_fields: &[Field],
+        cell_fields: &[Field],
+    ) -> Result<(), OutputError> {
+        self.check(time)?;
+        if owners.len() != mesh.tets().len() {
+            return Err(OutputError::Foreign { what: "list of owners" });
+        }
+        let step = self.times.len();
+        let name = |rank: u32| format!("{}_{step:04}_{rank}.vtu", self.name);
+        let path = self.folder.join(name(rank));
+        write_vtu_part(&path, mesh, (owners, rank), point_fields, cell_fields)?;
+        if rank > 0 {
+            self.times.push(time);
+            self.lists.push(true);
+            return Ok(());
+        }
+        let all: BTreeSet<u32> = owners.iter().copied().collect();
+        let pieces: Vec<String> = all.into_iter().map(name).collect();
+        let path = self.folder.join(self.file_name(step, true));
+        write_pvtu(&path, &pieces, point_fields, cell_fields)?;
+        self.list(time, true)
     }
 
     /// As [`PvdSeries::write`], each subdomain as a piece (see [`write_vtu_pieces`]).
@@ -171,7 +211,7 @@ impl PvdSeries {
     ) -> Result<(), OutputError> {
         self.check(time)?;
         write_vtu_pieces(self.next_file(), mesh, decomposition, point_fields, cell_fields)?;
-        self.list(time)
+        self.list(time, false)
     }
 
     /// Writes a surface and its fields at a time (see [`write_surface_vtu`]), and the list.
@@ -188,7 +228,7 @@ impl PvdSeries {
     ) -> Result<(), OutputError> {
         self.check(time)?;
         write_surface_vtu(self.next_file(), mesh, surface, point_fields, cell_fields)?;
-        self.list(time)
+        self.list(time, false)
     }
 
     /// Writes surfaces and their fields at a time (see [`write_surfaces_vtu`]), and the list.
@@ -203,7 +243,7 @@ impl PvdSeries {
     ) -> Result<(), OutputError> {
         self.check(time)?;
         write_surfaces_vtu(self.next_file(), mesh, surfaces)?;
-        self.list(time)
+        self.list(time, false)
     }
 
     /// The file to open in ParaView.
@@ -231,18 +271,20 @@ impl PvdSeries {
         self.times.last().copied().unwrap_or(f64::NEG_INFINITY)
     }
 
-    fn file_name(&self, step: usize) -> String {
-        format!("{}_{step:04}.vtu", self.name)
+    fn file_name(&self, step: usize, is_list: bool) -> String {
+        let kind = if is_list { "pvtu" } else { "vtu" };
+        format!("{}_{step:04}.{kind}", self.name)
     }
 
     fn next_file(&self) -> PathBuf {
-        self.folder.join(self.file_name(self.times.len()))
+        self.folder.join(self.file_name(self.times.len(), false))
     }
 
-    fn list(&mut self, time: f64) -> Result<(), OutputError> {
+    fn list(&mut self, time: f64, is_list: bool) -> Result<(), OutputError> {
         let mut xml = HEAD.join("\n");
-        for (step, time) in self.times.iter().chain([&time]).enumerate() {
-            let [before, after] = self.entry(step);
+        let steps = self.times.iter().zip(&self.lists).chain([(&time, &is_list)]);
+        for (step, (time, is_list)) in steps.enumerate() {
+            let [before, after] = self.entry(step, *is_list);
             // Writing to a string cannot fail.
             let _ = write!(xml, "\n{before}{time}{after}");
         }
@@ -252,12 +294,13 @@ impl PvdSeries {
         xml.push('\n');
         replace(&self.path(), xml.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })?;
         self.times.push(time);
+        self.lists.push(is_list);
         Ok(())
     }
 
     /// The line of a step in the list, before and after its time.
-    fn entry(&self, step: usize) -> [String; 2] {
-        let file = escape(&self.file_name(step));
+    fn entry(&self, step: usize, is_list: bool) -> [String; 2] {
+        let file = escape(&self.file_name(step, is_list));
         [
             "    <DataSet timestep=\"".into(),
             format!("\" group=\"\" part=\"0\" file=\"{file}\"/>"),
@@ -280,19 +323,20 @@ impl PvdSeries {
         for (line, expected) in HEAD.into_iter().enumerate() {
             same(line, expected)?;
         }
-        let mut times: Vec<f64> = Vec::new();
+        let (mut times, mut lists): (Vec<f64>, Vec<bool>) = Default::default();
         loop {
             let line = HEAD.len() + times.len();
             if lines.get(line) == Some(&FOOT[0]) {
                 break;
             }
-            let [before, after] = self.entry(times.len());
-            let time = lines
-                .get(line)
-                .and_then(|found| found.strip_prefix(&*before)?.strip_suffix(&*after))
-                .and_then(|time| time.parse().ok())
-                .filter(|&t: &f64| t.is_finite() && times.last().is_none_or(|&last| t > last));
-            let Some(time) = time else {
+            let time = |is_list: bool| {
+                let [before, after] = self.entry(times.len(), is_list);
+                let time = lines.get(line)?.strip_prefix(&*before)?.strip_suffix(&*after)?.parse();
+                let later = |&t: &f64| t.is_finite() && times.last().is_none_or(|&last| t > last);
+                Some((time.ok().filter(later)?, is_list))
+            };
+            let Some((time, is_list)) = time(false).or_else(|| time(true)) else {
+                let [before, after] = self.entry(times.len(), false);
                 let expected = format!(
                     "a line {:?} with a time later than the one before, or {:?},",
                     format!("{before}...{after}"),
@@ -301,13 +345,14 @@ impl PvdSeries {
                 return Err(broken(line, expected));
             };
             times.push(time);
+            lists.push(is_list);
         }
         let end = HEAD.len() + times.len() + FOOT.len();
         same(end - 1, FOOT[1])?;
         if lines.len() > end {
             return Err(broken(end, "the end of the file".into()));
         }
-        self.times = times;
+        (self.times, self.lists) = (times, lists);
         Ok(())
     }
 }

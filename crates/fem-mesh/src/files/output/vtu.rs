@@ -70,6 +70,66 @@ pub fn write_vtu_pieces(
     file.write(path.as_ref())
 }
 
+/// Writes those tetrahedra that belong to one of several processes, `owners` being the process of each, as a piece with
+/// the nodes that they use. The fields are those of the mesh.
+pub(super) fn write_vtu_part(
+    path: &Path,
+    mesh: &TetMesh,
+    (owners, rank): (&[u32], u32),
+    point_fields: &[Field],
+    cell_fields: &[Field],
+) -> Result<(), OutputError> {
+    check(point_fields, mesh.points().len(), "nodes")?;
+    check(cell_fields, mesh.tets().len(), "cells")?;
+    let own: Vec<usize> = (0..owners.len()).filter(|&t| owners[t] == rank).collect();
+    if own.is_empty() {
+        return Ok(());
+    }
+    let mut file = File::new();
+    match mesh.order() {
+        1 => file.part(mesh, mesh.tets(), &own, (point_fields, cell_fields)),
+        _ => file.part(mesh, &mesh.quadratic_tets(), &own, (point_fields, cell_fields)),
+    }
+    file.write(path)
+}
+
+/// Writes the list of the pieces of several processes, which stand beside it.
+pub(super) fn write_pvtu(
+    path: &Path,
+    pieces: &[String],
+    point_fields: &[Field],
+    cell_fields: &[Field],
+) -> Result<(), OutputError> {
+    let mut file = File(HEAD.replace("UnstructuredGrid", "PUnstructuredGrid"));
+    file.0 = file
+        .0
+        .replace("<PUnstructuredGrid>", "<PUnstructuredGrid GhostLevel=\"0\">");
+    let mut arrays = |tag: &str, list: &mut dyn Iterator<Item = (&str, usize)>| {
+        file.open(tag, "");
+        for (name, components) in list {
+            file.0 += &format!(
+                "<PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{components}\"/>\n",
+                escape(name)
+            );
+        }
+        file.close(tag);
+    };
+    arrays(
+        "PPointData",
+        &mut point_fields.iter().map(|f| (&f.name[..], f.components)),
+    );
+    arrays(
+        "PCellData",
+        &mut cell_fields.iter().map(|f| (&f.name[..], f.components)),
+    );
+    arrays("PPoints", &mut std::iter::once(("Points", 3)));
+    for piece in pieces {
+        file.0 += &format!("<Piece Source=\"{}\"/>\n", escape(piece));
+    }
+    file.close("PUnstructuredGrid");
+    file.save(path)
+}
+
 /// Writes a surface as triangles. The fields have one value for each of [`Surface::nodes`] and
 /// [`Surface::triangles`].
 ///
@@ -154,12 +214,34 @@ fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), Outpu
 /// A file of unstructured grids: XML with binary arrays.
 struct File(String);
 
+const HEAD: &str = "<?xml version=\"1.0\"?>\n\
+    <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+    compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+
 impl File {
     fn new() -> Self {
-        let head = "<?xml version=\"1.0\"?>\n\
-            <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
-            compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
-        Self(head.into())
+        Self(HEAD.into())
+    }
+
+    /// Some of the cells of a mesh, with the nodes that they use.
+    fn part<const N: usize>(
+        &mut self,
+        mesh: &TetMesh,
+        cells: &[[u32; N]],
+        own: &[usize],
+        (point_fields, cell_fields): (&[Field], &[Field]),
+    ) {
+        let mut place = vec![u32::MAX; mesh.points().len()];
+        own.iter().flat_map(|&t| cells[t]).for_each(|n| place[n as usize] = 0);
+        let nodes: Vec<usize> = (0..place.len()).filter(|&n| place[n] == 0).collect();
+        nodes.iter().zip(0..).for_each(|(&n, k)| place[n] = k);
+        let points: Vec<_> = nodes.iter().map(|&n| mesh.points()[n]).collect();
+        let cells: Vec<_> = own.iter().map(|&t| cells[t].map(|n| place[n as usize])).collect();
+        let fields = (
+            (point_fields, nodes.iter().copied()),
+            (cell_fields, own.iter().copied()),
+        );
+        self.piece(&points, &cells, fields.0, fields.1);
     }
 
     /// Cells of `N` nodes, and of each field the chosen values.
@@ -240,6 +322,10 @@ impl File {
 
     fn write(mut self, path: &Path) -> Result<(), OutputError> {
         self.close("UnstructuredGrid");
+        self.save(path)
+    }
+
+    fn save(mut self, path: &Path) -> Result<(), OutputError> {
         self.close("VTKFile");
         replace(path, self.0.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })
     }

@@ -147,6 +147,11 @@ impl SplitBase {
         Bunches::new(&self.tree, first, buffer)
     }
 
+    /// Whether [`half_solve`](Self::half_solve) does something.
+    pub(crate) fn has_halves(&self) -> bool {
+        self.bunches.is_some() && self.rows == 0
+    }
+
     /// Length of the work memory of a solve.
     pub(crate) fn work(&self) -> usize {
         match &self.bunches {

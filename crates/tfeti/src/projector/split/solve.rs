@@ -117,8 +117,45 @@ impl SplitBase {
 
     /// The same by bunches.
     fn solve_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
-        let tree = &self.tree;
         let work = &mut work[..bunches.work()];
+        self.eliminate_bunches::<T>(bunches, factor, y, work);
+        self.substitute_bunches::<T>(bunches, factor, work);
+        self.scatter(bunches, work, y);
+    }
+
+    /// `out = L^-1 y` where nothing changes, `L` Cholesky's factor in its order of the unknowns, which keep their places;
+    /// else nothing.
+    pub(crate) fn half_solve(&self, factor: &SplitFactor, y: &[f64], out: &mut [f64], work: &mut [f64]) {
+        if let Some(bunches) = &self.bunches {
+            let work = &mut work[..bunches.work()];
+            self.eliminate_bunches::<Tile>(bunches, factor, y, work);
+            self.apply_roots(bunches, work, false);
+            self.scatter(bunches, work, out);
+        }
+    }
+
+    /// `out = L^-T y`, likewise.
+    pub(crate) fn half_solve_transpose(&self, factor: &SplitFactor, y: &[f64], out: &mut [f64], work: &mut [f64]) {
+        if let Some(bunches) = &self.bunches {
+            let work = &mut work[..bunches.work()];
+            for bunch in &bunches.all {
+                self.gather(bunch, y, &mut work[bunch.numbers.clone()]);
+            }
+            self.apply_roots(bunches, work, true);
+            self.substitute_bunches::<Tile>(bunches, factor, work);
+            self.scatter(bunches, work, out);
+        }
+    }
+
+    fn apply_roots(&self, bunches: &Bunches, work: &mut [f64], before: bool) {
+        for bunch in &bunches.all {
+            let piece = &self.pieces[bunch.regions[0] as usize];
+            let own = &mut work[bunch.numbers.start..][..bunch.own * bunch.width];
+            piece.steady.apply_roots(&piece.tiles.exact, own, bunch.width, before);
+        }
+    }
+
+    fn eliminate_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, y: &[f64], work: &mut [f64]) {
         for height in &bunches.heights {
             bunches.over_height(height, work, true, &|bunch, part, below| {
                 self.gather(bunch, y, part);
@@ -126,6 +163,10 @@ impl SplitBase {
                 self.solve_bunch::<T>(bunch, factor, part, true);
             });
         }
+    }
+
+    fn substitute_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, work: &mut [f64]) {
+        let tree = &self.tree;
         let end = work.len();
         for height in bunches.heights.iter().rev() {
             bunches.over_height(height, work, false, &|bunch, part, above| {
@@ -147,10 +188,14 @@ impl SplitBase {
                 self.solve_bunch::<T>(bunch, factor, part, false);
             });
         }
+    }
+
+    /// Own unknowns of all regions to `y`.
+    fn scatter(&self, bunches: &Bunches, work: &[f64], y: &mut [f64]) {
         for bunch in &bunches.all {
             let part = &work[bunch.numbers.clone()];
             for (lane, &r) in bunch.regions.iter().enumerate() {
-                let blocks = &tree.blocks[tree.regions[r as usize].region.own.clone()];
+                let blocks = &self.tree.blocks[self.tree.regions[r as usize].region.own.clone()];
                 for (i, &block) in blocks.iter().enumerate() {
                     for c in 0..6 {
                         y[6 * block as usize + c] = part[(6 * i + c) * bunch.width + lane];
