@@ -11,6 +11,8 @@ mod merge;
 mod mesh;
 #[cfg(feature = "vtu")]
 mod output;
+#[cfg(feature = "vtu")]
+mod output_together;
 mod quadratic;
 mod recovery;
 mod refusals;

@@ -157,7 +157,8 @@ fn asked(system: &Tfeti, part: Option<&SystemPart>) -> (Vec<u64>, u64) {
     tell(&[dual.dot_and_square(&g, &x).1]);
     tell(&[dual.sum(&g)]);
     let e = noise(space.rows(), 5);
-    let works: [fn(&mut ActiveSetProjector, &mut [f64], &[f64]); 6] = [
+    type Work = fn(&mut ActiveSetProjector, &mut [f64], &[f64]);
+    let works: [Work; 6] = [
         |s, x, _| s.project(x),
         |s, x, _| s.project_step(x),
         |s, x, _| s.project_transpose(x),
