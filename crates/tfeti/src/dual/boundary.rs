@@ -202,6 +202,7 @@ impl BoundaryMap {
         for (place, values) in cut.copies[rank].iter().zip(copies.as_chunks_mut().0) {
             *values = place.read(y);
         }
+        self.collect_ranges(y, &cut.own, out);
         self.exchange.gather(message, &cut.parts);
         for (k, (runs, copies)) in cut.runs.iter().zip(&cut.copies).enumerate() {
             for run in runs {
@@ -212,9 +213,13 @@ impl BoundaryMap {
                 place.write(*values, y);
             }
         }
-        let first = cut.here.first().map_or(0, |rows| rows.start);
+        self.collect_ranges(y, &cut.shared, out);
+    }
+
+    fn collect_ranges(&self, y: &[f64], all: &[Range<usize>], out: &mut [f64]) {
+        let first = all.first().map_or(0, |rows| rows.start);
         let start = |rows: &Range<usize>| rows.start;
-        over_tasks(&cut.here, &mut out[first..], &start, self.is_large(), &|rows, out| {
+        over_tasks(all, &mut out[first..], &start, self.is_large(), &|rows, out| {
             self.collect_some(y, rows.clone(), &mut out[..rows.len()]);
         });
     }

@@ -33,8 +33,8 @@ pub(super) struct Run {
 }
 
 /// A message of a rank: the rows whose copies are all its own, then three components at each of its copies in rows that
-/// several ranks share. Where ranks keep parts of vectors, only rows that others keep are told. What is shared, or told
-/// to nobody, is computed `here`. Empty with one rank.
+/// several ranks share, which are computed after the exchange. Where ranks keep parts of vectors, only rows that others
+/// keep are told; the rank's `own` ones are told to nobody. Empty with one rank.
 #[derive(Debug, Default)]
 pub(crate) struct Cut {
     /// By rank: its runs, and the copies.
@@ -42,7 +42,8 @@ pub(crate) struct Cut {
     pub(super) copies: Vec<Vec<Place>>,
     /// Part of each rank in the message of all.
     pub(super) parts: Vec<Range<usize>>,
-    pub(super) here: Vec<Range<usize>>,
+    pub(super) own: Vec<Range<usize>>,
+    pub(super) shared: Vec<Range<usize>>,
 }
 
 /// Rows and copies of the ranks as they are found.
@@ -52,7 +53,8 @@ pub(super) struct CutBuilder<'a> {
     /// By rank: consecutive rows, and where the first one stands here, if it does.
     rows: Vec<Vec<(Range<usize>, Option<usize>)>>,
     copies: Vec<BTreeMap<u32, Place>>,
-    here: Vec<Range<usize>>,
+    own: Vec<Range<usize>>,
+    shared: Vec<Range<usize>>,
 }
 
 impl<'a> CutBuilder<'a> {
@@ -61,7 +63,8 @@ impl<'a> CutBuilder<'a> {
             part,
             rows: vec![Vec::new(); ranks],
             copies: vec![BTreeMap::new(); ranks],
-            here: Vec::new(),
+            own: Vec::new(),
+            shared: Vec::new(),
         }
     }
 
@@ -86,9 +89,10 @@ impl<'a> CutBuilder<'a> {
             }
         } else if let Some(place) = place.filter(|_| !alone || self.part.is_some_and(|part| part.rank() == rank)) {
             let rows = place..place + rows.len();
-            match self.here.last_mut() {
+            let list = if alone { &mut self.own } else { &mut self.shared };
+            match list.last_mut() {
                 Some(last) if last.end == rows.start => last.end = rows.end,
-                _ => self.here.push(rows),
+                _ => list.push(rows),
             }
         }
     }
@@ -102,9 +106,16 @@ impl<'a> CutBuilder<'a> {
                 .into_iter()
                 .filter(|rows| !rows.is_empty())
         };
-        let mut here: Vec<_> = self.here.into_iter().flat_map(split).flat_map(pieces).collect();
-        here.sort_by_key(|rows| rows.start);
-        let mut out = Cut { here, ..Cut::default() };
+        let sorted = |list: Vec<Range<usize>>| {
+            let mut rows: Vec<_> = list.into_iter().flat_map(split).flat_map(pieces).collect();
+            rows.sort_by_key(|rows| rows.start);
+            rows
+        };
+        let mut out = Cut {
+            own: sorted(self.own),
+            shared: sorted(self.shared),
+            ..Cut::default()
+        };
         let mut at = 0;
         for (rows, copies) in self.rows.into_iter().zip(self.copies) {
             let (start, mut runs) = (at, Vec::new());
@@ -137,7 +148,7 @@ impl Cut {
     /// Interface rows that a rank computes, alone or with others, ascending.
     pub(super) fn computed(&self, rank: usize, interface: &Range<usize>) -> Vec<Range<usize>> {
         let alone = self.runs.get(rank).into_iter().flatten().map(|run| run.rows.clone());
-        let mut all: Vec<_> = alone.chain(self.here.iter().cloned()).collect();
+        let mut all: Vec<_> = alone.chain(self.shared.iter().cloned()).collect();
         all.retain(|rows| interface.contains(&rows.start));
         all.sort_by_key(|rows| rows.start);
         all
@@ -151,6 +162,6 @@ impl Cut {
     pub(super) fn bytes(&self) -> usize {
         let runs: usize = self.runs.iter().map(Vec::len).sum();
         let copies: usize = self.copies.iter().map(Vec::len).sum();
-        24 * runs + 8 * copies + 16 * self.here.len()
+        24 * runs + 8 * copies + 16 * (self.own.len() + self.shared.len())
     }
 }
