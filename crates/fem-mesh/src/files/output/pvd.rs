@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
 
-use super::vtu::{write_pvtu, write_vtu_part};
+use super::vtu::{escape, write_pvtu, write_vtu_part};
 use super::{Field, OutputError, SurfaceFields, write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces};
 use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
@@ -364,9 +364,4 @@ fn last_bytes(mut file: File) -> std::io::Result<Vec<u8>> {
     let mut end = Vec::new();
     file.take(END_OF_FILE.len() as u64).read_to_end(&mut end)?;
     Ok(end)
-}
-
-/// The characters that XML reserves inside an attribute.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }

@@ -10,7 +10,6 @@ use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
 use crate::mesh::{Surface, TetMesh};
 
-use super::pvd::escape;
 use super::{Field, OutputError, SurfaceFields};
 
 /// Writes the mesh as one piece with fields at its nodes and in its tetrahedra, which are quadratic cells if it has
@@ -352,4 +351,9 @@ fn base64(bytes: &[u8], out: &mut String) {
             out.push(if k <= three.len() { char::from(digit) } else { '=' });
         }
     }
+}
+
+/// The characters that XML reserves inside an attribute.
+pub(super) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
