@@ -11,7 +11,8 @@ use std::path::PathBuf;
 /// first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known.
 ///
 /// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for the
-/// turn of normals, the body for gaps, 3 for coefficients and 10 % for the error of the mesh. A body is as long as the
+/// turn of normals, the body for gaps, 3 for coefficients, 0.45 for Poisson's ratios of
+/// linear tetrahedra and 10 % for the error of the mesh. A body is as long as the
 /// longest side of the box around it. By them the brick of the benchmark, pressed down by 0.1 m and 3 m long, does not
 /// warn of its displacement, as it would from a thirtieth on; it does of its strain, 6 % at the free corner, and of its
 /// mesh. Strain is judged tetrahedron by tetrahedron: at clamped edges that of linear theory grows without bound as the
@@ -102,6 +103,13 @@ pub enum Warning {
         regions: Vec<u32>,
         /// Those that the mesh has.
         present: Vec<u32>,
+    },
+    /// Linear tetrahedra of a nearly incompressible material bend too little.
+    Locking {
+        /// Region of the material.
+        region: u32,
+        /// Its Poisson's ratio.
+        poisson: f64,
     },
     /// The estimated error of the mesh is large at the end of a run.
     CoarseMesh {
@@ -213,6 +221,11 @@ impl fmt::Display for Warning {
                  materials has so much: {coefficient} in per cent is {}",
                 at(place),
                 0.01 * coefficient
+            ),
+            Self::Locking { region, poisson } => write!(
+                f,
+                "region {region} has a Poisson's ratio of {poisson} and linear tetrahedra, which hardly bend without a \
+                 change of volume: displacements come out too small; take quadratic ones (TetMesh::raise_order)"
             ),
             Self::UnusedMaterials { regions, present } => write!(
                 f,

@@ -356,3 +356,27 @@ fn progress_is_a_line_a_step() {
     let failed = set_up().run(&mut Progress::new(Full(100))).expect_err("a full disk");
     assert!(failed.to_string().contains("full"), "{failed}");
 }
+
+/// Linear tetrahedra lock where the material hardly changes its volume; quadratic ones do not.
+#[test]
+fn a_mesh_that_locks_is_told() {
+    let plan = |scene: &Scene| Plan::new(scene, &Settings::default()).expect("plan");
+    let rubber = |poisson: f64| Hooke::isotropic(1e6, poisson).expect("Hooke");
+    let scene = |mesh: TetMesh, poisson: f64| {
+        Scene::new(mesh, Materials::uniform(rubber(poisson))).with_support(Support::fixed(brick::X_MIN))
+    };
+    let mesh = || block([2.0, 1.0, 1.0], [4, 2, 2]);
+    assert_eq!(plan(&scene(mesh(), 0.45)).warnings(), []);
+    assert_eq!(
+        plan(&scene(mesh().raise_order().expect("order 2"), 0.499)).warnings(),
+        []
+    );
+    let locked = plan(&scene(mesh(), 0.499));
+    let [warning @ Warning::Locking { region: 0, poisson }] = locked.warnings() else {
+        panic!("{:?}", locked.warnings());
+    };
+    assert!(
+        (poisson - 0.499).abs() < 1e-9 && warning.to_string().contains("raise_order"),
+        "{warning}"
+    );
+}
