@@ -22,7 +22,6 @@ errors! {
 ///
 /// let phi_c = History::table(vec![(0.0, 0.0), (0.4, 1.0), (0.7, 0.0), (1.0, 1.0)])?;
 /// assert_eq!(phi_c.value(0.2), 0.5);
-/// assert_eq!(phi_c.breakpoints(), [0.0, 0.4, 0.7, 1.0]);
 /// # Ok::<(), signorini_fem_mesh::HistoryError>(())
 /// ```
 #[derive(Clone)]
@@ -82,16 +81,6 @@ impl History {
         match &self.0 {
             Kind::Table(points) => interpolate(points, time),
             Kind::Function(value) => value(time),
-        }
-    }
-
-    /// Times at which the slope may jump: the points of a table with more than one, none for a
-    /// constant or a function. Time steps should not stride over them.
-    #[must_use]
-    pub fn breakpoints(&self) -> Vec<f64> {
-        match &self.0 {
-            Kind::Table(points) if points.len() > 1 => points.iter().map(|p| p.0).collect(),
-            _ => Vec::new(),
         }
     }
 }
