@@ -114,15 +114,6 @@ impl DeckError {
         }
     }
 
-    /// What is wrong with the word.
-    #[must_use]
-    pub fn fault(&self) -> Option<&Fault> {
-        match self {
-            Self::At { fault, .. } => Some(fault),
-            _ => None,
-        }
-    }
-
     pub(crate) fn at(location: &Location, word: &str, fault: Fault) -> Self {
         let word = match word.char_indices().nth(WORD) {
             Some((end, _)) => format!("{}...", &word[..end]),

@@ -124,14 +124,6 @@ pub enum Warning {
     },
 }
 
-impl Warning {
-    /// Whether another one is of the same kind, at whatever place.
-    #[must_use]
-    pub fn is_kind_of(&self, other: &Self) -> bool {
-        std::mem::discriminant(self) == std::mem::discriminant(other)
-    }
-}
-
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
