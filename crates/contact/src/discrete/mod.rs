@@ -22,6 +22,7 @@ mod springs;
 mod supports;
 mod turn;
 
+pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;

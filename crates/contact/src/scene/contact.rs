@@ -5,6 +5,7 @@ use super::gap::Gap;
 use super::obstacle::Obstacle;
 use super::pose::{Pose, Rotation};
 use crate::error::ContactError;
+use crate::vec3::norm;
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
@@ -183,7 +184,7 @@ impl Contact {
     /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
     #[must_use]
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
-        let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let length = norm(&outward);
         // what has no direction stays as it is, and is refused with the scene
         let unit = outward.map(|c| if length > 0.0 { c / length } else { c });
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
