@@ -32,7 +32,7 @@ fn later_steps_name_the_first_step_that_did_not_converge() {
     let mut seen = Vec::new();
     while !simulation.is_finished() {
         let frame = simulation.step().expect("step");
-        seen.push((frame.report().status, frame.unconverged_history()));
+        seen.push((frame.report().status, frame.report().unconverged_history));
         let strict = frame.require_converged();
         match frame.step() {
             0 => assert!(matches!(
@@ -112,7 +112,7 @@ fn scenes_without_memory_never_set_it() {
     assert_eq!(report.unconverged_history, None);
     assert_eq!(simulation.state().unconverged_history(), None);
     let frame = simulation.result().expect("frame");
-    assert_eq!(frame.unconverged_history(), None);
+    assert_eq!(frame.report().unconverged_history, None);
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn other_pairs_do_not_fit() {
         let mut judges: Vec<ApartJudge<'_>> = other.iter().map(ApartJudge::new).collect();
         let mut worst = [0.0_f64; APART_CHANGES.len()];
         let outcome = each_apart_level(&scene, |simulation, frame| {
-            let solved = frame.report().status.converged() && frame.unconverged_history().is_none();
+            let solved = frame.report().status.converged() && frame.report().unconverged_history.is_none();
             for (judge, worst) in judges.iter_mut().zip(&mut worst) {
                 let violations = judge.step(simulation.constrained_points(), frame)?;
                 if solved {
