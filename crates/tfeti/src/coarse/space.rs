@@ -110,7 +110,7 @@ impl Coarse {
     }
 
     /// Numbers stored for a factor of `G W G^T`.
-    pub(crate) fn factor_size(&self) -> usize {
+    pub fn factor_size(&self) -> usize {
         self.0.symbolic.stored()
     }
 
