@@ -5,6 +5,7 @@
 
 pub mod blocks;
 pub mod crack;
+pub mod curved;
 pub mod meshes;
 pub mod mindlin;
 pub mod orthotropic;
@@ -31,7 +32,7 @@ use signorini_studies::{Failure, aligned, exit, save};
     about = "Published problems with known answers, on meshes that do not match"
 )]
 pub struct CasesOptions {
-    /// Only these: blocks, plate, press-fit, wedge, orthotropic, crack, punch, spheres, mindlin, rigid-sphere.
+    /// Only these: blocks, curved, plate, press-fit, wedge, orthotropic, crack, punch, spheres, mindlin, rigid-sphere.
     #[arg(long, value_delimiter = ',')]
     pub case: Vec<String>,
     /// Coarse meshes: seconds in place of minutes, and larger errors.
@@ -125,8 +126,9 @@ fn main() -> ExitCode {
 }
 
 type Case = fn(bool) -> Result<Vec<Finding>, Failure>;
-const CASES: [(&str, Case); 10] = [
+const CASES: [(&str, Case); 11] = [
     ("blocks", blocks::findings),
+    ("curved", curved::findings),
     ("plate", plate::findings),
     ("press-fit", press_fit::findings),
     ("wedge", wedge::findings),
