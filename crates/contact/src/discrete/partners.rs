@@ -147,8 +147,9 @@ fn nodes(
     Ok(found.filter(|found| match_facets(mesh, surface, found, &other.surface, rounding)))
 }
 
-/// Whether facets match where nodes have partners: those of other nodes differ, and the edges of each facet are edges of
-/// the other side. With other diagonals the areas of nodes differ, and uniform pressure would not pass.
+/// Whether facets match where nodes have partners: those of other nodes differ, and of each facet two edges at least
+/// are edges of the other side. There may be other diagonals, but no nodes between; in a mesh of order 2, which has
+/// nodes on diagonals, all three.
 fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Surface, rounding: f64) -> bool {
     let place = |node: u32| &mesh.points()[node as usize];
     let mut owners = HashMap::new();
@@ -168,7 +169,7 @@ fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Su
     }
     surface.triangles().iter().all(|triangle| {
         let seen = edges(triangle.map(|n| found[n as usize].node));
-        seen.iter().all(|e| there.contains(e))
+        seen.iter().filter(|e| there.contains(*e)).count() > mesh.order()
     })
 }
 
