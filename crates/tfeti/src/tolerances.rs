@@ -45,6 +45,9 @@ pub(crate) const ALIKE: f64 = 4.0;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;
+/// The same in a group of many rows, where contact points share nodes: on few is there a null space, and what is added
+/// makes long waves along a thin body stiff.
+pub(crate) const DEPENDENT_JOINED: f64 = 0.03;
 /// Nodes of a class without dense inverse at which it is asked for its compliance.
 pub(crate) const SAMPLE: usize = 3;
 /// Pivots of the Gram matrix of rows from which on they are independent, relative to the largest.
@@ -116,3 +119,5 @@ pub(crate) const GROUP: usize = 4;
 
 /// Least scale of the row of a spring: softer ones are still seen as holding.
 pub(crate) const SOFTEST: f64 = 1e-3;
+/// Part of a direction of a row beside those of the same node, over its length, below which it is one of them.
+pub(crate) const SAME_DIRECTION: f64 = 1e-9;

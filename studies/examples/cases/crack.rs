@@ -15,7 +15,7 @@ const STRESS: f64 = 100.0;
 /// Tags of the crack's sides and of what is tied.
 const CRACK: FacetTag = FacetTag(100);
 
-/// Thickness of the plate over the cells of the crack: flat cells, whose supports hold all nodes, cost products.
+/// Thickness of the plate over the cells of the crack.
 const THICK: f64 = 20.0;
 
 /// Half of a plate: the crack at y = 0, |x| < 1, on so many cells; graded beside and above.

@@ -12,7 +12,7 @@ const RADII: [f64; 3] = [10.0, 20.0, 30.0];
 const WIDTH: f64 = 4.0;
 
 /// A quarter of a tube: x of the brick becomes the radius, y the angle.
-fn quarter(inner: f64, outer: f64, cells: [usize; 3]) -> Result<TetMesh, Failure> {
+pub fn quarter(inner: f64, outer: f64, cells: [usize; 3]) -> Result<TetMesh, Failure> {
     let brick = Brick::new([outer - inner, FRAC_PI_2, WIDTH], cells).build()?;
     Ok(brick.map_points(|[x, y, z]| {
         let radius = inner + x;

@@ -28,11 +28,16 @@ fn short_cases_come_near_their_targets() {
             Some("plate") => 5e-3,
             Some("press") => 0.1,
             Some("crack" | "punch") => 0.1,
+            Some("rigid") if finding.target == 0.0 => 2.5,
+            Some("curved") => 0.04,
             Some("orthotropic") => 1e-6,
             Some("Cattaneo") => 0.04,
             _ => 0.25,
         };
-        assert!(finding.error() < most, "{finding:?}");
+        assert!(
+            finding.error() < most || finding.quantity.starts_with("order"),
+            "{finding:?}"
+        );
         assert!(finding.run.certificate < 1e-6, "{finding:?}");
         if finding.case.starts_with("pulled") {
             assert!(finding.run.products <= 19, "{finding:?}");
@@ -41,14 +46,24 @@ fn short_cases_come_near_their_targets() {
     // contact that grows from a point: 68 products is the linear problem with the last active set on the full mesh
     let hertz = findings.iter().find(|f| f.case == "two spheres").expect("two spheres");
     assert!(hertz.run.products <= 80, "{hertz:?}");
+    // what supports of a thin body leave free is eliminated
+    for (start, most) in [("plate", 260), ("crack", 65), ("punch", 65)] {
+        let own = findings.iter().filter(|f| f.case.starts_with(start));
+        let products: Vec<usize> = own.map(|f| f.run.products).collect();
+        assert!(products.iter().all(|p| *p <= most), "{start}: {products:?}");
+    }
+    // facets that do not coincide: errors fall with the cells
+    for finding in findings.iter().filter(|f| f.quantity == "order of the mean error") {
+        assert!(finding.value > 0.9, "{finding:?}");
+    }
     // no locking, and products that do not explode
     let spheres: Vec<&Finding> = findings.iter().filter(|f| f.case.starts_with("rigid")).collect();
     assert!(
-        spheres.len() == 2 && spheres.iter().all(|f| f.error() < 0.04),
+        spheres.len() == 3 && spheres[..2].iter().all(|f| f.error() < 0.04),
         "{spheres:?}"
     );
     let products = [0, 1].map(|k| spheres[k].run.products);
-    assert!(products[0] <= 340 && products[1] <= 860, "{spheres:?}");
+    assert!(2 * products[1] <= 5 * products[0] && products[1] <= 80, "{spheres:?}");
     let mean = findings
         .iter()
         .find(|f| f.quantity == "pressure, mean, MPa")

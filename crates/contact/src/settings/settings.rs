@@ -8,6 +8,9 @@ use signorini_tfeti::{Alone, Communicator, InverseSettings};
 use std::sync::Arc;
 
 /// The preconditioner of the default method.
+///
+/// Thin bodies between two planes, whose supports touch most nodes in one direction, have the Schur complement in either
+/// case, on the unknowns that rows touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Preconditioner {

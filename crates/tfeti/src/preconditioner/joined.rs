@@ -8,7 +8,7 @@ use crate::error::TfetiError;
 use crate::linalg::sparse::{Columns, FactorError, SolveMemory, SparseCholesky, Symbolic};
 use crate::rows::gluing::TangentialRows;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{DEPENDENT, HELD_ROWS};
+use crate::tolerances::{DEPENDENT_JOINED, HELD_ROWS};
 use signorini_qp::active_set::{ActiveSetView, Freedom};
 use std::collections::HashMap;
 
@@ -64,7 +64,7 @@ impl JoinedGroups {
         for (k, &row) in rows.iter().enumerate() {
             let dependent = gluing.node(row as usize).is_some_and(|n| gluing.is_dependent(n));
             if let Some(diagonal) = matrix.find(k, k).filter(|_| dependent) {
-                matrix.values[diagonal] *= 1.0 + DEPENDENT;
+                matrix.values[diagonal] *= 1.0 + DEPENDENT_JOINED;
             }
             if let (Some(own), Some(diagonal)) = (gives_way.get(&(row as usize)), matrix.find(k, k)) {
                 matrix.values[diagonal] += own;

@@ -1,16 +1,20 @@
 //! The lumped and the Dirichlet preconditioner.
 //!
 //! Both are `B_D S B_D^T` with a stiffness `S` on the boundary nodes: the block `K_bb` (lumped) or the Schur complement
-//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet). With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D`
+//! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet), with the directions of boundary nodes that no row touches in the interior.
+//! Thin bodies between two planes, whose supports touch most nodes in one direction, have the Schur complement always:
+//! the block alone is stiffer than them by the square of length over thickness. With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D`
 //! distributes forces by stiffness, see [`Scaling`].
 
-use crate::dual::boundary::{BoundaryMap, PanelScratch};
+use crate::dual::boundary::{BoundaryClass, BoundaryMap, PanelScratch};
 use crate::dual::operator::multiply_members;
 use crate::error::TfetiError;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
+use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
+use crate::preconditioner::split::{ClassRows, Eliminated, Split, Touched};
 use crate::preconditioner::springs::Springs;
 use crate::subdomain::matrices::ClassMatrices;
 use crate::system::part::SystemPart;
@@ -19,6 +23,7 @@ use crate::tolerances::{PANEL, PIVOT, SHARED};
 use rayon::prelude::*;
 use signorini_qp::SymmetricOperator;
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,17 +49,15 @@ enum BoundaryStiffness {
     Lumped(BlockRows),
     Schur {
         boundary: BlockRows,
-        coupling: Coupling,
+        /// `K_ib`.
+        coupling: Columns,
         factor: SparseCholesky,
+        released: Option<Released>,
     },
 }
 
-/// `K_ib` by columns.
-#[derive(Debug)]
-struct Coupling {
-    interior: usize,
-    columns: Columns,
-}
+/// Factors of classes on an active set.
+type Factors = HashMap<usize, SparseCholesky>;
 
 /// Work memory of a preconditioner.
 #[derive(Debug)]
@@ -64,6 +67,8 @@ pub struct DualPreconditionerScratch {
     /// What springs leave of a vector; empty without.
     scaled: Vec<f64>,
     scaling: Option<ScalingScratch>,
+    /// By class: its factor on an active set.
+    factors: Factors,
 }
 
 impl Tfeti {
@@ -88,11 +93,13 @@ impl Tfeti {
 impl DualPreconditioner {
     fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
         let map = system.parts.map.clone();
+        let touched = Touched::new(system);
         let classes = (0..map.classes.len())
             .into_par_iter()
             .map(|k| {
                 let held = system.parts.subdomains.held(k);
-                held.map(|own| BoundaryStiffness::new(own, &map, k, kind)).transpose()
+                let class = (&map.classes[k], touched.class(k));
+                held.map(|own| BoundaryStiffness::new(own, class, kind)).transpose()
             })
             .collect::<Result<_, _>>()?;
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
@@ -117,7 +124,7 @@ impl DualPreconditioner {
         Self { map, ..self }
     }
 
-    fn stiffness_product(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {
+    fn stiffness_product(&self, x: &[f64], y: &mut [f64], (s, factors): (&mut PanelScratch, &Factors)) {
         let divide = self.scaling.as_ref().map(Scaling::weights);
         self.map
             .by_panels(x, y, self.map.is_large(), s, &|panel, x, y, interior, memory| {
@@ -125,7 +132,7 @@ impl DualPreconditioner {
                 let weights = divide.map(|w| &w[panel.copies.clone()]);
                 scale_nodes(weights, x, columns);
                 if let Some(class) = &self.classes[panel.class] {
-                    class.apply(x, y, columns, interior, memory);
+                    class.apply(x, y, columns, factors.get(&panel.class), (interior, memory));
                 }
                 scale_nodes(weights, y, columns);
             });
@@ -158,6 +165,7 @@ impl SymmetricOperator for DualPreconditioner {
             dual: vec![0.0; dual],
             scaled: vec![0.0; if self.springs.factors.is_empty() { 0 } else { self.dim() }],
             scaling: self.scaling.as_ref().map(Scaling::scratch),
+            factors: HashMap::new(),
         }
     }
 
@@ -178,11 +186,11 @@ impl SymmetricOperator for DualPreconditioner {
 impl DualPreconditioner {
     fn apply_without_springs(&self, x: &[f64], y: &mut [f64], s: &mut DualPreconditionerScratch) {
         let (Some(scaling), Some(scratch)) = (&self.scaling, &mut s.scaling) else {
-            self.stiffness_product(x, y, &mut s.panels);
+            self.stiffness_product(x, y, (&mut s.panels, &s.factors));
             return;
         };
         scaling.solve(x, y, scratch);
-        self.stiffness_product(y, &mut s.dual, &mut s.panels);
+        self.stiffness_product(y, &mut s.dual, (&mut s.panels, &s.factors));
         scaling.add_compliance(y, &mut s.dual);
         scaling.solve(&s.dual, y, scratch);
     }
@@ -193,34 +201,68 @@ impl ActiveSetPreconditioner for DualPreconditioner {
         if let (Some(scaling), Some(scratch)) = (&self.scaling, &mut s.scaling) {
             scaling.on_active_set(view, scratch);
         }
+        for (k, class) in self.classes.iter().enumerate() {
+            if let Some(BoundaryStiffness::Schur {
+                released: Some(released),
+                ..
+            }) = class
+            {
+                s.factors.remove(&k);
+                s.factors.extend(released.on_active_set(view).map(|factor| (k, factor)));
+            }
+        }
     }
 }
 
 impl BoundaryStiffness {
-    fn new(base: &ClassMatrices, map: &BoundaryMap, class: usize, kind: Kind) -> Result<Self, TfetiError> {
-        let layout = &map.classes[class];
-        let split = Split::new(base.preconditioning(), &layout.nodes);
+    fn new(base: &ClassMatrices, class: (&BoundaryClass, &ClassRows), kind: Kind) -> Result<Self, TfetiError> {
+        let (layout, rows) = class;
         let shared = layout.members.len() >= SHARED;
-        if kind == Kind::Lumped || split.coupling.interior == 0 {
-            // Sparse also for shared classes: a tenth of the operations of a dense product.
-            return Ok(Self::Lumped(BlockRows::new(&split.boundary)));
-        }
-        let subdomain = layout.members.first().map_or(0, |&s| s as usize);
-        let factor = match Symbolic::new(&split.interior, 3).and_then(|s| SparseCholesky::new(&s, &split.interior)) {
-            Ok(factor) => factor,
-            Err(FactorError::Pivot(_)) => return Ok(Self::Lumped(BlockRows::new(&split.boundary))),
-            Err(error) => return Err(TfetiError::pattern(error, subdomain)),
+        let thin = rows.is_thin();
+        let eliminated = match kind {
+            _ if thin && !shared && !rows.contact.is_empty() => Eliminated::Contact,
+            Kind::Lumped if !thin => Eliminated::Nodes,
+            _ => Eliminated::Directions,
         };
-        let (smallest, _, largest) = factor.pivots();
-        if smallest <= PIVOT * largest {
-            return Ok(Self::Lumped(BlockRows::new(&split.boundary)));
+        let stiffness = base.preconditioning();
+        let split = Split::new(stiffness, rows, eliminated);
+        let lumped = || Self::Lumped(BlockRows::new(&split.boundary));
+        if kind == Kind::Lumped && !thin || split.interior.dim == 0 {
+            // Sparse also for shared classes: a tenth of the operations of a dense product.
+            return Ok(lumped());
         }
+        let error = |error| TfetiError::pattern(error, layout.members.first().map_or(0, |&s| s as usize));
+        let released = match eliminated {
+            Eliminated::Contact => Some(Released::new(&split, &rows.contact).map_err(error)?),
+            _ => None,
+        };
+        let factor = match &released {
+            Some(released) => released.with_all(),
+            None => Self::factor(&split).map_err(error)?,
+        };
+        let Some(factor) = factor else {
+            return Ok(lumped());
+        };
         let sparse = Self::Schur {
             boundary: BlockRows::new(&split.boundary),
             coupling: split.coupling,
             factor,
+            released,
         };
         Ok(if shared { Self::Dense(sparse.dense()) } else { sparse })
+    }
+
+    /// The factor of the interior; `None` where the boundary does not hold it.
+    fn factor(split: &Split) -> Result<Option<SparseCholesky>, FactorError> {
+        let symbolic = Symbolic::new(&split.interior, split.block)?;
+        match SparseCholesky::new(&symbolic, &split.interior) {
+            Ok(factor) => {
+                let (smallest, _, largest) = factor.pivots();
+                Ok((smallest > PIVOT * largest).then_some(factor))
+            }
+            Err(FactorError::Pivot(_)) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     fn dim(&self) -> usize {
@@ -233,7 +275,7 @@ impl BoundaryStiffness {
     /// Numbers and memory of solves that products with so many members need.
     fn need(&self, members: usize) -> Option<(usize, MemoryNeed)> {
         match self {
-            Self::Schur { coupling, factor, .. } => Some((coupling.interior * members, factor.need(members))),
+            Self::Schur { factor, .. } => Some((factor.dim() * members, factor.need(members))),
             _ => None,
         }
     }
@@ -250,7 +292,7 @@ impl BoundaryStiffness {
             let (x, y) = (&mut x[..dim * columns], &mut y[..dim * columns]);
             x.fill(0.0);
             (0..columns).for_each(|j| x[(start + j) * columns + j] = 1.0);
-            self.apply(x, y, columns, &mut interior, memory.as_mut());
+            self.apply(x, y, columns, None, (&mut interior, memory.as_mut()));
             for (i, row) in y.chunks_exact(columns).enumerate() {
                 row.iter()
                     .enumerate()
@@ -261,8 +303,15 @@ impl BoundaryStiffness {
         out
     }
 
-    /// `y = S x` for the members of a panel, which are next to one another.
-    fn apply(&self, x: &[f64], y: &mut [f64], members: usize, interior: &mut [f64], memory: Option<&mut SolveMemory>) {
+    /// `y = S x` for the members of a panel, which are next to one another, with the `other` factor if there is one.
+    fn apply(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        members: usize,
+        other: Option<&SparseCholesky>,
+        (interior, memory): (&mut [f64], Option<&mut SolveMemory>),
+    ) {
         match self {
             Self::Dense(values) => multiply_members(y, x, values, members, y.len() / members),
             Self::Lumped(matrix) => matrix.apply(x, y, members),
@@ -270,13 +319,15 @@ impl BoundaryStiffness {
                 boundary,
                 coupling,
                 factor,
+                ..
             } => {
+                let factor = other.unwrap_or(factor);
                 boundary.apply(x, y, members);
-                let dim = coupling.interior;
+                let dim = factor.dim();
                 let interior = &mut interior[..dim * members];
                 interior.fill(0.0);
                 for (j, x) in x.chunks_exact(members).enumerate() {
-                    let (rows, values) = coupling.columns.column(j);
+                    let (rows, values) = coupling.column(j);
                     for (&i, v) in rows.iter().zip(values) {
                         x.iter().enumerate().for_each(|(m, x)| interior[m * dim + i] += v * x);
                     }
@@ -285,7 +336,7 @@ impl BoundaryStiffness {
                     factor.solve(interior, members, memory);
                 }
                 for (j, y) in y.chunks_exact_mut(members).enumerate() {
-                    let (rows, values) = coupling.columns.column(j);
+                    let (rows, values) = coupling.column(j);
                     for (&i, v) in rows.iter().zip(values) {
                         y.iter_mut()
                             .enumerate()
@@ -293,56 +344,6 @@ impl BoundaryStiffness {
                     }
                 }
             }
-        }
-    }
-}
-
-/// The blocks of a stiffness matrix by boundary and interior.
-struct Split {
-    boundary: Columns,
-    interior: Columns,
-    coupling: Coupling,
-}
-
-impl Split {
-    fn new(stiffness: &Columns, nodes: &[u32]) -> Self {
-        let dim = stiffness.dim;
-        // Place of each unknown: boundary ones first, with the interior ones counted on their own.
-        let mut on_boundary = vec![false; dim];
-        for &node in nodes {
-            on_boundary[3 * node as usize..3 * node as usize + 3].fill(true);
-        }
-        let mut place = vec![0; dim];
-        let (mut boundary, mut interior) = (0, 0);
-        for i in 0..dim {
-            let counter = if on_boundary[i] { &mut boundary } else { &mut interior };
-            place[i] = *counter;
-            *counter += 1;
-        }
-        let [mut bb, mut ii, mut ib] = [boundary, interior, boundary].map(Columns::empty);
-        for j in 0..dim {
-            let (rows, values) = stiffness.column(j);
-            for (&i, &v) in rows.iter().zip(values) {
-                let target = match (on_boundary[i], on_boundary[j]) {
-                    (true, true) => &mut bb,
-                    (false, false) => &mut ii,
-                    (false, true) => &mut ib,
-                    (true, false) => continue,
-                };
-                target.rows.push(place[i]);
-                target.values.push(v);
-            }
-            if on_boundary[j] {
-                bb.pointers.push(bb.rows.len());
-                ib.pointers.push(ib.rows.len());
-            } else {
-                ii.pointers.push(ii.rows.len());
-            }
-        }
-        Self {
-            boundary: bb,
-            interior: ii,
-            coupling: Coupling { interior, columns: ib },
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The lumped and the Dirichlet preconditioner.
 
-use crate::common::{Brick, build, dot, noise, norm};
-use signorini_fem_mesh::{Hooke, Materials};
+use crate::common::{Brick, build, dot, noise, norm, steel};
+use signorini_fem_mesh::{Decomposition, Hooke, Materials, brick};
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::internal::InverseKind;
-use signorini_tfeti::{DualPreconditioner, Tfeti};
+use signorini_tfeti::{Directions, DualPreconditioner, NodeSupport, Tfeti, TfetiBuilder};
 
 /// Iterations of preconditioned projected conjugate gradients to a relative residual of 1e-8.
 fn preconditioned_iterations(system: &Tfeti, preconditioner: Option<&DualPreconditioner>) -> usize {
@@ -79,4 +79,30 @@ fn stiffness_scaling_copes_with_several_materials() {
     let dirichlet = system.dirichlet().unwrap();
     let [with, without] = [Some(&dirichlet), None].map(|m| preconditioned_iterations(&system, m));
     assert!(3 * with < without, "{with} {without}");
+}
+
+/// A plate one cell thick between two planes: supports hold one direction of all nodes, and with the others eliminated
+/// the preconditioner is the inverse. With the others held, as in a block that is not thin, a plate twice as long would
+/// take about twice the iterations.
+#[test]
+fn a_thin_body_between_two_planes_is_no_dearer_where_it_is_long() {
+    let iterations = |length: usize, planes: Directions| {
+        let cells = [length, 4, 1];
+        let mesh = brick::Brick::new(cells.map(|c| c as f64), cells).build().unwrap();
+        let mut between = mesh.nodes_on(brick::Z_MIN);
+        between.extend(mesh.nodes_on(brick::Z_MAX));
+        let ends = mesh.nodes_on(brick::X_MIN);
+        between.retain(|node| !ends.contains(node));
+        let supports = [NodeSupport::fixed(ends), NodeSupport::partial(between, planes)];
+        let (whole, materials) = (Decomposition::whole(&mesh), steel());
+        let builder = TfetiBuilder::new(&mesh, &whole, &materials).with_supports(&supports);
+        let system = builder.build().unwrap();
+        preconditioned_iterations(&system, Some(&system.lumped().unwrap()))
+    };
+    let normal = Directions::Components([false, false, true]);
+    let oblique = Directions::Vectors(vec![[0.0, 0.6, 0.8]]);
+    for planes in [normal, oblique] {
+        let [short, long] = [8, 32].map(|length| iterations(length, planes.clone()));
+        assert!(short <= 4 && long <= 4, "{planes:?}: {short} {long}");
+    }
 }
