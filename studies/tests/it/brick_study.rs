@@ -45,7 +45,7 @@ fn table_6_1_has_exactly_the_papers_sizes() {
     }
 }
 
-/// Quadratic elements with about as many unknowns take a tenth more products, at any size.
+/// Quadratic elements with about as many unknowns take up to a fifth more products, at any size.
 #[test]
 fn elements_of_order_two_need_little_more_products() {
     let products = |line: &str| {
