@@ -157,7 +157,7 @@ impl StepRecord {
             certificate: finite(result.certificate().largest()),
             certificate_parts: parts(result.certificate()),
             status: report.status.to_string(),
-            unconverged_history: result.unconverged_history().map(|step| step + 1),
+            unconverged_history: result.report().unconverged_history.map(|step| step + 1),
             fallback: report.fallback,
             faces: report.counters.active_sets,
             quadratic_programs: report.counters.quadratic_programs,

@@ -65,8 +65,9 @@
 //! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads
 //! that nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a step
 //! then ends with another [`StepStatus`] than `Converged`, its result holds the last iterate, and the certificate says
-//! how far it is. Later steps whose friction depends on its slip name it ([`StepResult::unconverged_history`]). Who
-//! wants errors instead asks [`RunReport::require_converged`] or [`StepResult::require_converged`].
+//! how far it is. Later steps whose friction depends on its slip name it
+//! ([`unconverged_history`](report::StepReport::unconverged_history)). Who wants errors instead asks
+//! [`RunReport::require_converged`] or [`StepResult::require_converged`].
 //!
 //! Work runs on the current [`rayon`] pool, and results have the same bits for any number of threads.
 

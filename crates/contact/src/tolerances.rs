@@ -234,6 +234,10 @@ pub(crate) const LONG_SLIP: f64 = 1.0;
 /// rather a mistake in units.
 pub(crate) const LARGE_GAP: f64 = 1.0;
 
+/// Poisson's ratio above which linear tetrahedra lock: at 0.45 a clamped brick of four cells across has lost a tenth of
+/// its deflection.
+pub(crate) const LOCKING: f64 = 0.45;
+
 /// Coefficient of friction above which it is rather one in per cent. Rubber has up to 2.
 pub(crate) const LARGE_COEFFICIENT: f64 = 3.0;
 

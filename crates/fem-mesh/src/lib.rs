@@ -114,7 +114,7 @@ pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, 
 #[doc(hidden)]
 pub mod internal {
     pub use crate::loads::interpolate;
-    pub use crate::mesh::{EDGES, facet_shape};
+    pub use crate::mesh::{EDGES, facet_shape, tag_list};
     pub use crate::quadrature::triangle;
     pub use crate::tables::{DisjointSets, buckets};
 }

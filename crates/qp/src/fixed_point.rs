@@ -28,12 +28,6 @@ pub struct Contraction {
 }
 
 impl Contraction {
-    /// No iterate yet.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     /// Forgets all changes.
     fn clear(&mut self) {
         self.changes.clear();
@@ -100,9 +94,9 @@ pub fn successive_approximations<E>(
     max_evaluations: usize,
     mut map: impl FnMut(&mut [f64], f64) -> Result<bool, E>,
 ) -> Result<FixedPointReport, E> {
-    let mut contraction = Contraction::new();
+    let mut contraction = Contraction::default();
     // differences of evaluations with full accuracy only: loose ones say nothing about the map
-    let mut sharp = Contraction::new();
+    let mut sharp = Contraction::default();
     let mut old = x.to_vec();
     let mut change = 1.0;
     let mut verdict = Verdict::Unknown;

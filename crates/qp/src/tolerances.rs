@@ -77,6 +77,11 @@ pub(crate) const CG_ROUNDING: f64 = 1e-8;
 /// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round
 /// more.
 pub(crate) const MAY_SLIDE: f64 = 1e-9;
+/// Part of what the natural map moves `x = 0` by that is rounding, in `x` and in its errors.
+pub(crate) const ROUNDED: f64 = 1e-14;
+/// Way inwards by the natural map, over the radius, that takes a point across its circle. Points that give way together
+/// give way more than one alone: flat elements by as much.
+pub(crate) const ACROSS: f64 = 100.0;
 /// Least size of the constrained part, over `|x|`, that its errors are relative to.
 pub(crate) const SMALL_PART: f64 = 1e-4;
 /// Largest `|x|` so far over the present one from which on `A x` is computed afresh.

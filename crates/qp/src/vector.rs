@@ -115,7 +115,7 @@ pub fn scale(a: f64, y: &mut [f64]) {
 }
 
 /// `y = a` in every entry.
-pub fn fill(a: f64, y: &mut [f64]) {
+pub(crate) fn fill(a: f64, y: &mut [f64]) {
     each(y, move |yi| *yi = a);
 }
 

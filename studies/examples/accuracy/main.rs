@@ -209,7 +209,7 @@ fn write_field(path: &Path, short: bool) -> Result<(), Failure> {
     let stress = error.stress_errors(scene.mesh(), scene.materials())?;
     let points = [Field::vector("displacement", &result.displacement())];
     let cells = [
-        Field::scalar("error_energy", error.energies().to_vec()),
+        Field::scalar("error_energy", error.energies.clone()),
         Field::scalar("error_stress", stress),
     ];
     Ok(write_vtu(path, scene.mesh(), &points, &cells)?)

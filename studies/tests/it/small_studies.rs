@@ -125,6 +125,21 @@ fn a_bracket_that_its_friction_holds_costs_the_same_in_any_fine_partition() {
     assert!(parts::execute(&none, &mut Vec::new()).is_err());
 }
 
+/// No load at all, and both faces touch from the first: what presses is a plate that moves.
+#[test]
+fn a_pad_that_nothing_but_a_motion_presses_costs_no_more_in_few_parts() {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes/plates-3.5.msh");
+    for run in parts(&format!("parts {mesh} --subdomains 1,2,3,4,5,8")) {
+        let dearest = run.steps.iter().map(|s| s.n_m).max().expect("steps");
+        assert!(
+            dearest <= 115,
+            "{} to {} tetrahedra: {dearest}",
+            run.tets[0],
+            run.tets[1]
+        );
+    }
+}
+
 #[test]
 fn quadratic_elements_are_nearer_with_fewer_unknowns() {
     let options = options::<OrderOptions>("order --mesh 1/10,2/3,2/4/1.3 --rounds 1");

@@ -129,6 +129,18 @@ fn a_static_step_costs_hardly_more_than_a_linear_problem_twice() {
     }
 }
 
+/// 2,200 points, thousands of them on the way: those of tiny circles that come to their far side do not spoil a set
+/// (38 products otherwise).
+#[test]
+fn a_static_step_does_not_grow_with_the_mesh() {
+    let m = run_block(Block {
+        steps: 0,
+        ..Block::benchmark(10, Loading::B)
+    });
+    assert!(m.complaint(Expect::Certified(1e-7)).is_none(), "{}", outcome(&m));
+    assert!(m.products <= 29 && m.fallbacks == 0, "{}", m.products);
+}
+
 #[test]
 fn names_are_unique_and_references_exist() {
     let cases = cases();

@@ -90,6 +90,6 @@ fn sides(surface: &Surface, vectors: &[[f64; 3]], triangles: &[u32], limit: f64)
 }
 
 /// Outward vector of a triangle, of the length of its area.
-pub(super) fn area_vector(mesh: &TetMesh, surface: &Surface, triangle: &[u32; 3]) -> [f64; 3] {
+pub(crate) fn area_vector(mesh: &TetMesh, surface: &Surface, triangle: &[u32; 3]) -> [f64; 3] {
     vec3::area_vector(&triangle.map(|n| mesh.points()[surface.nodes()[n as usize] as usize]))
 }

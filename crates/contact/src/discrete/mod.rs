@@ -1,9 +1,9 @@
 //! The scene at the nodes of its mesh, made and checked once: contact points with their sides, supports node by node.
 //!
 //! A node of a contact surface becomes a contact point for each direction in which it meets an obstacle (`points`,
-//! `creases`, `normals`) or a node of another body (`partners`); in a mesh of order 2 it is a mean around the node
-//! (`means`). What cannot be meant is refused here, before any stiffness is made (`scene`, `overflow`, `penetration`,
-//! `turn`). `side` says which nodes a contact point moves; all above asks it.
+//! `creases`, `normals`; the scene says the gap) or a node of another body (`partners`, with the gap); in a mesh of
+//! order 2 it is a mean around the node (`means`). What cannot be meant is refused here, before any stiffness is made
+//! (`scene`, `overflow`, `penetration`, `turn`). `side` says which nodes a contact point moves; all above asks it.
 //!
 //! Uses: `scene`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
@@ -22,6 +22,7 @@ mod springs;
 mod supports;
 mod turn;
 
+pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;

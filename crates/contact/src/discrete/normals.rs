@@ -70,7 +70,7 @@ pub(super) fn shape_frames(
     contact: &Contact,
     surface: &Surface,
 ) -> Result<Vec<SurfaceFrame>, ContactError> {
-    let (Some(shape), ContactNormal::Obstacle) = (contact.shape(), contact.normal) else {
+    let (Some(shape), ContactNormal::Obstacle) = (&contact.shape, contact.normal) else {
         return Ok(Vec::new());
     };
     let frame = |&node: &u32| {

@@ -18,20 +18,20 @@ pub(super) fn check_turn(
     poses: &[Pose],
 ) -> Result<(), ContactError> {
     let contact = &scene.contacts[index];
-    match (contact.shape(), contact.normal) {
+    match (&contact.shape, contact.normal) {
         (Some(_), ContactNormal::Obstacle) => return check_shape(scene, index, own, poses),
         // measured along the normals of the nodes at each step
         (Some(_), _) => return Ok(()),
         (None, normal) => {
             let along_body = normal == ContactNormal::Body && contact.carries_field();
-            if !along_body && contact.rotation().is_none() {
+            if !along_body && contact.rotation.is_none() {
                 return Ok(());
             }
         }
     }
     // a motion in one direction is worst where it is largest
     let mut poses: Vec<&Pose> = poses.iter().collect();
-    if contact.rotation().is_none() {
+    if contact.rotation.is_none() {
         let size = |pose: &&Pose| vec3::norm(pose.small(&[0.0; 3]));
         let largest = poses.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)));
         poses = largest.into_iter().collect();
@@ -103,7 +103,7 @@ fn check_shape(scene: &Scene, index: usize, own: &[ContactPoint], poses: &[Pose]
 
 /// The angle between the normal of a point and that of its obstacle at a place, radians; zero without a shape.
 pub(crate) fn turned(scene: &Scene, point: &ContactPoint, pose: &Pose, place: &[f64; 3]) -> f64 {
-    let Some(shape) = scene.contacts[point.surface].shape() else {
+    let Some(shape) = &scene.contacts[point.surface].shape else {
         return 0.0;
     };
     let (_, gradient) = shape.distance(pose.origin(place));

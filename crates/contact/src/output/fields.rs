@@ -231,7 +231,7 @@ fn number(state: ContactState) -> f64 {
 fn gap_at_rest(result: &StepResult, point: usize) -> f64 {
     let point = &result.model.points[point];
     let contact = &result.scene().contacts()[point.surface()];
-    contact.gap_history().map_or(1.0, |h| h.value(0.0)) * point.gap()
+    contact.gap_history.as_ref().map_or(1.0, |h| h.value(0.0)) * point.gap()
 }
 
 /// The way of a contact point along the obstacle or the partner, m.

@@ -104,20 +104,7 @@ impl Plan {
         let (elements, nodes) = (scene.mesh.tets().len(), scene.mesh.points().len());
         let (subdomains, primal) = (decomposition.subdomains().len(), decomposition.torn_dofs());
         let fixed = fixed_directions(&discrete.supports);
-        // an estimate at nodes with one or two fixed directions: the set-up counts exactly
-        let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
-        let free = |p: &ContactPoint| match (p.sides.own.nodes(), &p.sides.partner) {
-            // a side of several nodes is held where a good part of it is
-            (&[own], Some(partner)) => {
-                let part = |least: usize| {
-                    let nodes = partner.nodes().iter().filter(|n| held(**n) >= least);
-                    nodes.map(|n| n.1).sum::<f64>()
-                };
-                let partner = (1..=3).rev().find(|&least| part(least) >= HELD);
-                3 - held(own).min(partner.unwrap_or(0))
-            }
-            _ => 3 - p.sides.nodes().map(held).min().unwrap_or(3),
-        };
+        let free = |point: &ContactPoint| free_directions(point, &fixed);
         let points = discrete.points.iter().filter(|point| free(point) > 0);
         let points: Vec<&ContactPoint> = points.collect();
         let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
@@ -180,6 +167,24 @@ impl Plan {
         let tets = elements as f64 / subdomains.max(1) as f64;
         plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast);
         Ok((plan, forecast))
+    }
+}
+
+/// Number of directions of a point that supports leave free: an estimate at nodes with one or two fixed directions; the
+/// set-up counts exactly.
+fn free_directions(point: &ContactPoint, fixed: &BTreeMap<u32, usize>) -> usize {
+    let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
+    match (point.sides.own.nodes(), &point.sides.partner) {
+        // a side of several nodes is held where a good part of it is
+        (&[own], Some(partner)) => {
+            let part = |least: usize| {
+                let nodes = partner.nodes().iter().filter(|n| held(**n) >= least);
+                nodes.map(|n| n.1).sum::<f64>()
+            };
+            let partner = (1..=3).rev().find(|&least| part(least) >= HELD);
+            3 - held(own).min(partner.unwrap_or(0))
+        }
+        _ => 3 - point.sides.nodes().map(held).min().unwrap_or(3),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::discrete::{ContactPoint, DiscreteScene, Extents};
 use crate::report::Warning;
 use crate::scene::{Friction, Scene};
-use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP};
+use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
 
 /// Warnings of a scene, each kind once. One pass over the contact points; bodies are measured only where a contact
 /// begins nowhere near its obstacle.
@@ -11,6 +11,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
     let points = &discrete.points;
     let found = [
         unused_materials(scene),
+        locking(scene),
         large_gap(scene, discrete),
         large_coefficient(scene, points),
     ];
@@ -27,6 +28,20 @@ fn unused_materials(scene: &Scene) -> Option<Warning> {
     present.dedup();
     regions.retain(|region| present.binary_search(region).is_err());
     (!regions.is_empty()).then_some(Warning::UnusedMaterials { regions, present })
+}
+
+/// The region of linear tetrahedra that is least compressible, if it is too little so.
+fn locking(scene: &Scene) -> Option<Warning> {
+    if scene.mesh.order() > 1 {
+        return None;
+    }
+    let mut regions = scene.mesh.regions().to_vec();
+    regions.sort_unstable();
+    regions.dedup();
+    let poisson = |region: u32| scene.materials.get(region).ok()?.poisson();
+    let ratios = regions.into_iter().filter_map(|r| Some((r, poisson(r)?)));
+    let (region, poisson) = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    (poisson > LOCKING).then_some(Warning::Locking { region, poisson })
 }
 
 /// The first contact whose nearest point is further away than its body is long.

@@ -20,7 +20,7 @@ use crate::status::StepFailure;
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
-#[must_use = "steps may not have converged: see `first_failure`, or ask `require_converged`"]
+#[must_use = "steps may not have converged: see `failures`, or ask `require_converged`"]
 pub struct RunReport {
     /// Steps solved.
     pub steps: usize,
@@ -81,12 +81,6 @@ impl RunReport {
         self.failures.is_empty() && self.unconverged_history.is_none()
     }
 
-    /// The first step of this run that did not converge.
-    #[must_use]
-    pub fn first_failure(&self) -> Option<&StepFailure> {
-        self.failures.first()
-    }
-
     /// For those who want every step to converge: an error unless [all did](Self::converged).
     ///
     /// # Errors
@@ -94,7 +88,7 @@ impl RunReport {
     /// one.
     pub fn require_converged(&self) -> Result<(), ContactError> {
         require(None, self.unconverged_history)?;
-        require(self.first_failure().copied(), None)
+        require(self.failures.first().copied(), None)
     }
 }
 

@@ -1,5 +1,5 @@
-//! What a step ended with: states of contact points, sums over them, contact stresses, reactions, and the certificate
-//! of all conditions.
+//! What a step ended with: states of contact points (`points`), sums over them (`summary`), contact stresses
+//! (`surface_stress`), `reactions`, and the `certificate` of all conditions, measured by `certify`.
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing is taken from a solver's word.
 //!

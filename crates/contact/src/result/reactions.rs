@@ -11,6 +11,7 @@ use crate::step::StepProblem;
 use crate::tolerances::{NO_SPRING, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{Matrix3, Vector3};
+use signorini_fem_mesh::vec3::cross;
 use signorini_tfeti::internal::PrescribedDirection;
 use signorini_tfeti::{NodeSupport, TiedRows};
 use std::collections::BTreeMap;
@@ -27,11 +28,8 @@ pub struct Resultant {
 
 impl Resultant {
     fn add(&mut self, arm: [f64; 3], force: [f64; 3]) {
-        for c in 0..3 {
-            let (a, b) = ((c + 1) % 3, (c + 2) % 3);
-            self.force[c] += force[c];
-            self.moment[c] += arm[a] * force[b] - arm[b] * force[a];
-        }
+        let moment = cross(arm, force);
+        *self += Self { force, moment };
     }
 }
 

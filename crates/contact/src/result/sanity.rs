@@ -12,6 +12,7 @@ use crate::step::StepProblem;
 use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LONG_SLIP, REST, RIGID, TURN};
 use crate::vec3::norm;
 use signorini_fem_mesh::recovery::DiscretisationError;
+use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Element, TetMesh, fields};
 
 /// Lengths of a mesh that results are compared with.
@@ -111,7 +112,7 @@ fn large_strain(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize) -> Op
     (strain > LARGE_STRAIN).then(|| Warning::LargeStrain {
         step,
         tet,
-        place: centroid(mesh, tet),
+        place: centroid(&mesh.tet_points(tet)),
         strain,
     })
 }
@@ -176,16 +177,11 @@ pub(crate) fn is_strained(model: &Model, lengths: &Lengths, problem: &StepProble
 /// What is to be said of the error of the mesh.
 pub(crate) fn coarse_mesh(model: &Model, error: &DiscretisationError, step: usize) -> Option<Warning> {
     let relative = error.relative();
-    let (tet, _) = worst(error.energies().iter().copied().enumerate())?;
+    let (tet, _) = worst(error.energies.iter().copied().enumerate())?;
     (relative > COARSE_MESH).then(|| Warning::CoarseMesh {
         step,
         error: relative,
         tet,
-        place: centroid(&model.scene.mesh, tet),
+        place: centroid(&model.scene.mesh.tet_points(tet)),
     })
-}
-
-fn centroid(mesh: &TetMesh, tet: usize) -> [f64; 3] {
-    let points = mesh.tet_points(tet);
-    [0, 1, 2].map(|c| points.iter().map(|p| p[c]).sum::<f64>() / 4.0)
 }

@@ -8,8 +8,9 @@
 //! 2 there is nothing to damp: 0.3 % before.
 
 use super::points::PointState;
-use crate::discrete::ContactPoint;
+use crate::discrete::{ContactPoint, area_vector};
 use crate::model::Model;
+use crate::vec3::norm;
 use signorini_fem_mesh::Surface;
 use std::collections::HashMap;
 
@@ -109,21 +110,15 @@ impl<'a> Conditions<'a> {
 
     /// Each triangle of the surface with its three conditions and its area: at a crease those of its own side.
     fn facets(&self, model: &Model, surface: &Surface) -> Vec<([usize; 3], f64)> {
-        let places = model.scene.mesh.points();
         let facet = |triangle: &[u32; 3]| {
             let nodes = triangle.map(|n| surface.nodes()[n as usize]);
-            let [a, b, c] = nodes.map(|n| places[n as usize]);
-            let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-            let normal = [0, 1, 2].map(|k| {
-                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                0.5 * (u[i] * v[j] - u[j] * v[i])
-            });
+            let normal = area_vector(&model.scene.mesh, surface, triangle);
             let facing = |k: &usize| self.all[*k].frame.normal_part(normal);
             let side = |node: u32| self.at(node).max_by(|a, b| facing(a).total_cmp(&facing(b)));
             let [Some(i), Some(j), Some(k)] = nodes.map(side) else {
                 return None;
             };
-            Some(([i, j, k], normal.iter().map(|c| c * c).sum::<f64>().sqrt()))
+            Some(([i, j, k], norm(&normal)))
         };
         surface.triangles().iter().filter_map(facet).collect()
     }

@@ -5,6 +5,8 @@ use super::gap::Gap;
 use super::obstacle::Obstacle;
 use super::pose::{Pose, Rotation};
 use crate::error::ContactError;
+use crate::vec3::norm;
+use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
 use std::sync::Arc;
@@ -182,7 +184,7 @@ impl Contact {
     /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
     #[must_use]
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
-        let length = outward.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let length = norm(&outward);
         // what has no direction stays as it is, and is refused with the scene
         let unit = outward.map(|c| if length > 0.0 { c / length } else { c });
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
@@ -208,7 +210,7 @@ impl Contact {
     /// the obstacle [moves](Self::with_motion) along the surface it is also asked at places beside the surface.
     #[must_use]
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
-        self.gap = Gap::Field(Arc::new(gap));
+        self.gap = Gap::Field(Function(Arc::new(gap)));
         self
     }
 
@@ -331,12 +333,6 @@ impl Contact {
         self
     }
 
-    /// Whether both sides are [bonded](Self::tied).
-    #[must_use]
-    pub fn is_tied(&self) -> bool {
-        self.tied
-    }
-
     /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles
     /// to it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its
     /// normal (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
@@ -350,18 +346,11 @@ impl Contact {
     /// let floor = Contact::rigid(brick::Z_MIN)
     ///     .with_friction(Friction::coulomb(0.3))
     ///     .with_friction_axis([1.0, 0.0, 0.0], 0.6 / 0.3);
-    /// assert_eq!(floor.friction_axis(), Some(([1.0, 0.0, 0.0], 2.0)));
     /// ```
     #[must_use]
     pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
         self.friction_axis = Some((axis, ratio));
         self
-    }
-
-    /// The axis of a friction that differs by direction, and the ratio of friction across it to that along it.
-    #[must_use]
-    pub fn friction_axis(&self) -> Option<([f64; 3], f64)> {
-        self.friction_axis
     }
 
     /// The friction law.
@@ -376,12 +365,6 @@ impl Contact {
         &self.tags
     }
 
-    /// The tags of the facets of the other body; none for a rigid obstacle.
-    #[must_use]
-    pub fn partner(&self) -> &[FacetTag] {
-        &self.partner
-    }
-
     /// The distance to the obstacle.
     #[must_use]
     pub fn gap(&self) -> &Gap {
@@ -392,37 +375,6 @@ impl Contact {
     #[must_use]
     pub fn normal(&self) -> ContactNormal {
         self.normal
-    }
-
-    /// The angle of a crease, degrees.
-    #[must_use]
-    pub fn crease(&self) -> f64 {
-        self.crease
-    }
-
-    /// Displacement of the obstacle (m) and its history; `None` if it does not move.
-    #[must_use]
-    pub fn motion(&self) -> Option<([f64; 3], &History)> {
-        let (displacement, history) = self.motion.as_ref()?;
-        Some((*displacement, history))
-    }
-
-    /// The factor of the gap in time; `None` if it stays.
-    #[must_use]
-    pub fn gap_history(&self) -> Option<&History> {
-        self.gap_history.as_ref()
-    }
-
-    /// How the obstacle turns.
-    #[must_use]
-    pub fn rotation(&self) -> Option<&Rotation> {
-        self.rotation.as_ref()
-    }
-
-    /// The shape of the obstacle, if it has one.
-    #[must_use]
-    pub fn shape(&self) -> Option<&Obstacle> {
-        self.shape.as_ref()
     }
 
     /// The gap at a place, m, checked; `contact` is the position of the surface in the scene, `measured` the distance

@@ -2,14 +2,14 @@
 
 use crate::error::ContactError;
 use signorini_fem_mesh::internal::interpolate;
-use std::fmt;
+use signorini_fem_mesh::loads::Function;
 use std::sync::Arc;
 
 /// A value that depends on the place only.
-pub type PlaceField = Arc<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
+pub type PlaceField = Function<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
 
 /// A value that depends on the place and the slip rate in m/s.
-pub type RateField = Arc<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
+pub type RateField = Function<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
 
 /// The friction on a contact surface.
 #[derive(Debug, Clone, Default)]
@@ -44,8 +44,7 @@ impl Friction {
     }
 
     /// Whether the bound or coefficient is a constant zero.
-    #[must_use]
-    pub fn is_zero(&self) -> bool {
+    pub(super) fn is_zero(&self) -> bool {
         match self {
             Self::None => true,
             Self::Tresca(SlipBound::Stress(value)) | Self::Coulomb(Coefficient::Constant(value)) => *value == 0.0,
@@ -54,14 +53,13 @@ impl Friction {
     }
 
     /// Whether the coefficient depends on the slip rate.
-    #[must_use]
-    pub fn depends_on_rate(&self) -> bool {
+    pub(crate) fn depends_on_rate(&self) -> bool {
         matches!(self, Self::Coulomb(c) if c.depends_on_rate())
     }
 }
 
 /// Bound of the friction stress in given friction.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum SlipBound {
     /// The same bound everywhere, in Pa; a node carries it times its area.
@@ -71,6 +69,12 @@ pub enum SlipBound {
 }
 
 impl SlipBound {
+    /// A function of the place.
+    #[must_use]
+    pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
+        Self::StressField(Function(Arc::new(f)))
+    }
+
     /// The bound in Pa at a place, checked.
     pub(crate) fn stress(&self, node: u32, place: [f64; 3]) -> Result<f64, ContactError> {
         let value = match self {
@@ -82,20 +86,11 @@ impl SlipBound {
     }
 }
 
-impl fmt::Debug for SlipBound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Stress(value) => f.debug_tuple("Stress").field(value).finish(),
-            Self::StressField(_) => f.write_str("StressField(..)"),
-        }
-    }
-}
-
 /// The coefficient of Coulomb friction, script F of the paper.
 ///
 /// A coefficient that depends on the slip rate is evaluated with the rate of the step before, and with
 /// rate 0 in the first step, as in the paper (after (2.11)).
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Coefficient {
     /// The same everywhere.
@@ -121,18 +116,17 @@ impl Coefficient {
     /// A function of the place.
     #[must_use]
     pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
-        Self::Field(Arc::new(f))
+        Self::Field(Function(Arc::new(f)))
     }
 
     /// A function of place and slip rate.
     #[must_use]
     pub fn rate_field(f: impl Fn([f64; 3], f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self::RateField(Arc::new(f))
+        Self::RateField(Function(Arc::new(f)))
     }
 
     /// Whether the slip rate matters; if not, none is computed.
-    #[must_use]
-    pub fn depends_on_rate(&self) -> bool {
+    pub(crate) fn depends_on_rate(&self) -> bool {
         matches!(self, Self::Exponential { .. } | Self::Table(_) | Self::RateField(_))
     }
 
@@ -199,23 +193,6 @@ fn is_good(value: f64) -> bool {
     value.is_finite() && value >= 0.0
 }
 
-impl fmt::Debug for Coefficient {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Constant(value) => f.debug_tuple("Constant").field(value).finish(),
-            Self::Field(_) => f.write_str("Field(..)"),
-            Self::Exponential { fixed, kinetic, decay } => f
-                .debug_struct("Exponential")
-                .field("fixed", fixed)
-                .field("kinetic", kinetic)
-                .field("decay", decay)
-                .finish(),
-            Self::Table(points) => f.debug_tuple("Table").field(points).finish(),
-            Self::RateField(_) => f.write_str("RateField(..)"),
-        }
-    }
-}
-
 /// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any
 /// work.
 pub(crate) fn check_laws<'a>(
@@ -266,7 +243,7 @@ mod tests {
             (Friction::coulomb(1e-9), false),
             (Friction::tresca(1e-9), false),
             (Friction::Coulomb(Coefficient::field(zero)), false),
-            (Friction::Tresca(SlipBound::StressField(Arc::new(zero))), false),
+            (Friction::Tresca(SlipBound::field(zero)), false),
         ] {
             assert_eq!(law.is_zero(), is_zero, "{law:?}");
             let contact = crate::Contact::rigid(signorini_fem_mesh::FacetTag(1));

@@ -1,6 +1,7 @@
 //! The scene: plain data that say what is to be simulated, and nothing about how.
 //!
-//! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the body is cut, and the times.
+//! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the body is cut, and the times
+//! with their difference formula (`time`).
 //! Everything here is what a user writes; nodes, rows and numbers of the mesh come in `discrete`.
 //!
 //! Uses: errors only (and `fem-mesh` for meshes and histories).

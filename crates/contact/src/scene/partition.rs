@@ -32,10 +32,7 @@ pub enum Partition {
 }
 
 impl Partition {
-    /// The subdomains of a mesh.
-    ///
-    /// # Errors
-    /// [`ContactError::Decomposition`] for a zero count, and for part numbers with gaps or disconnected parts.
+    /// The subdomains of a mesh; refuses a zero count, and part numbers with gaps or disconnected parts.
     pub(crate) fn decompose(&self, mesh: &TetMesh, materials: &Materials) -> Result<Decomposition, ContactError> {
         let even = |count| -> Result<Decomposition, ContactError> {
             let parts = even_parts(mesh, &same_material(mesh, materials)?, count)?;

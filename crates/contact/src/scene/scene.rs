@@ -134,12 +134,6 @@ impl Scene {
         &self.supports
     }
 
-    /// The elastic foundations, in the order in which they were added.
-    #[must_use]
-    pub fn springs(&self) -> &[Spring] {
-        &self.springs
-    }
-
     /// The loads, in the order in which they were added.
     #[must_use]
     pub fn loads(&self) -> &[Load] {
@@ -165,11 +159,7 @@ impl Scene {
     }
 
     /// The decomposition that the scene asks for.
-    ///
-    /// # Errors
-    /// [`ContactError::Decomposition`] for a zero count, and for part numbers with gaps or disconnected parts; for a
-    /// region without material.
-    pub fn decompose(&self) -> Result<Decomposition, ContactError> {
+    pub(crate) fn decompose(&self) -> Result<Decomposition, ContactError> {
         self.partition.decompose(&self.mesh, &self.materials)
     }
 }

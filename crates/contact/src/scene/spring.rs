@@ -60,12 +60,6 @@ impl Spring {
         }
     }
 
-    /// The tag of its facets.
-    #[must_use]
-    pub fn tag(&self) -> FacetTag {
-        self.tag
-    }
-
     /// Stiffness at a facet with this unit normal, as the rows of a matrix, N/m³.
     pub(crate) fn matrix(&self, normal: [f64; 3]) -> [[f64; 3]; 3] {
         match self.stiffness {

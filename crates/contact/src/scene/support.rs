@@ -63,11 +63,7 @@ impl Support {
     /// ```
     #[must_use]
     pub fn fixed(place: impl Into<Place>) -> Self {
-        Self {
-            place: place.into(),
-            directions: Directions::All,
-            motion: None,
-        }
+        Self::partial(place, Directions::All)
     }
 
     /// Some directions are zero.

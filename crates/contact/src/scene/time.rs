@@ -202,8 +202,7 @@ impl Analysis {
     }
 
     /// Length of a step, s; `None` for a static scene.
-    #[must_use]
-    pub fn step_size(&self, step: usize) -> Option<f64> {
+    fn step_size(&self, step: usize) -> Option<f64> {
         let Self::Quasistatic { times, .. } = self else {
             return None;
         };

@@ -9,6 +9,7 @@ use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
 use signorini_fem_mesh::FacetTag;
+use signorini_fem_mesh::internal::tag_list;
 use signorini_fem_mesh::vec3::{is_finite, norm};
 
 impl Scene {
@@ -42,15 +43,11 @@ impl Scene {
     }
 
     fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
-        let known: Vec<String> = self.mesh.tags().iter().map(|t| t.0.to_string()).collect();
         ContactError::UnknownTag {
             what,
             index,
             tag: tag.0,
-            known: match &known[..] {
-                [] => "no tags".into(),
-                known => format!("the tags {}", known.join(", ")),
-            },
+            known: tag_list(&self.mesh.tags()),
         }
     }
 
@@ -110,7 +107,7 @@ impl Scene {
         if contact.tied && (loose || turned) {
             return Err(ContactError::Tied { contact: index });
         }
-        if (contact.moves() && !contact.tied || contact.shape().is_some()) && !contact.partner.is_empty() {
+        if (contact.moves() && !contact.tied || contact.shape.as_ref().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         if let Some((displacement, _)) = contact.motion
@@ -132,7 +129,7 @@ impl Scene {
                 });
             }
         }
-        if let Some((name, value)) = contact.shape().and_then(Obstacle::flaw) {
+        if let Some((name, value)) = contact.shape.as_ref().and_then(Obstacle::flaw) {
             let range = "(0, inf)";
             return Err(ContactError::Setting { name, value, range });
         }

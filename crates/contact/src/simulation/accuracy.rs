@@ -155,7 +155,7 @@ impl Simulation {
         let found = discretisation_error(&self.model, &self.caches, recovered)?;
         self.controller.discretisation = Discretisation {
             relative: if own.scale > own.elastic {
-                relative(found.energy(), own.scale)
+                relative(found.energy, own.scale)
             } else {
                 found.relative()
             },

@@ -63,13 +63,6 @@ impl StepResult {
         &self.report
     }
 
-    /// The first earlier step that did not converge and on whose displacement this one depends
-    /// ([`StepReport::unconverged_history`]).
-    #[must_use]
-    pub fn unconverged_history(&self) -> Option<usize> {
-        self.report.unconverged_history
-    }
-
     /// What there is to say of a step that did not converge.
     #[must_use]
     pub fn failure(&self) -> Option<StepFailure> {

@@ -1,4 +1,5 @@
-//! The data of one step: the dual problem at a time, with offsets and slip bounds.
+//! The data of one step: the dual problem at a time, with offsets and coefficients (`problem`), and how slip bounds
+//! follow the normal forces (`slip_bounds`).
 //!
 //! Uses: `state`, `model`, `scene`.
 //! In: a model, the state before the step and its number. Out: a [`StepProblem`], which solvers and results read.

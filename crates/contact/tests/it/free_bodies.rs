@@ -256,3 +256,50 @@ fn a_block_pulled_out_of_a_clamp_is_not_held() {
     assert_eq!(out.certificate.worst().0, "equilibrium");
     assert!(out.report.fallback_products <= 6100, "{}", out.report.fallback_products);
 }
+
+/// A block between plates that close on it, without any load: nothing tells the size of forces before they touch. The
+/// stress is that of a block squeezed without friction; with friction the forces of both plates balance.
+#[test]
+fn plates_that_close_press_what_no_load_does() {
+    let ramp = History::ramp(1.0, 1.0).expect("ramp");
+    for (gap, boxes, friction) in [
+        (0.0, [1; 3], Friction::None),
+        (0.0, [2, 1, 1], Friction::coulomb(0.3)),
+        (0.6e-3, [1; 3], Friction::coulomb(0.3)),
+        (0.6e-3, [2, 2, 1], Friction::None),
+        (0.6e-3, [2, 2, 2], Friction::coulomb(0.3)),
+    ] {
+        let below = Contact::rigid(brick::Z_MIN).with_friction(friction.clone());
+        let above = Contact::rigid(brick::Z_MAX)
+            .with_gap(gap)
+            .with_motion([0.0, 0.0, -1e-3], ramp.clone())
+            .with_friction(friction.clone());
+        let scene = free(block([1.0; 3], [4; 3]))
+            .with_contact(below)
+            .with_contact(above)
+            .with_boxes(boxes)
+            .with_analysis(Analysis::quasistatic(1.0, 2));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        for depth in [0.5e-3 - gap, 1e-3 - gap] {
+            let result = simulation.step().expect("step");
+            let (report, summary) = (result.report(), result.summary());
+            assert!(
+                report.status.converged() && result.certificate().largest() < 1e-6,
+                "{report:?}"
+            );
+            assert!(
+                report.counters.products <= 20,
+                "{gap} {boxes:?}: {}",
+                report.counters.products
+            );
+            // of both plates; friction hinders what the block grows by sideways
+            let squeezed = 2.0 * 211.9e9 * depth.max(0.0);
+            let more = if friction.is_some() { 1.1 } else { 1.0 + 1e-6 };
+            let force = summary.normal_force;
+            assert!(
+                force >= squeezed * (1.0 - 1e-6) && force <= squeezed * more,
+                "{force:e}, {squeezed:e}"
+            );
+        }
+    }
+}

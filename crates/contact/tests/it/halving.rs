@@ -115,7 +115,7 @@ fn nothing_is_halved_unless_asked_for_or_needed() {
     // too few halvings: the step says so, and so do those that depend on it
     let mut simulation = hard(1);
     let report = simulation.run(&mut Silent).expect("run");
-    assert_eq!(report.first_failure().map(|f| (f.step, f.time)), Some((0, 1.0)));
+    assert_eq!(report.failures.first().map(|f| (f.step, f.time)), Some((0, 1.0)));
     assert_eq!((report.steps, simulation.state().unconverged_history()), (4, Some(0)));
     assert!(report.counters.halvings >= 1);
     let out = Settings::default().with_step_halving(21).with_tolerance(1e-6);

@@ -5,7 +5,6 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::TangentialRows;
-use std::sync::Arc;
 
 const GAP: f64 = 1e-3;
 
@@ -51,7 +50,7 @@ fn scene(case: &Case) -> Scene {
         .with_contact(
             Contact::rigid(brick::Z_MIN)
                 .with_gap(GAP)
-                .with_friction(Friction::Tresca(SlipBound::StressField(Arc::new(field)))),
+                .with_friction(Friction::Tresca(SlipBound::field(field))),
         )
         .with_boxes([3, 1, 1]);
     for load in &case.loads {

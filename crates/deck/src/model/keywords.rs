@@ -197,10 +197,6 @@ fn other(model: &mut Model, card: &Card, key: &str) -> Result<(), DeckError> {
             None => Fault::UnknownKeyword { known: READ.into() },
         }));
     };
-    model.ignored.push(Ignored {
-        location: card.location.clone(),
-        word: card.word.clone(),
-        why,
-    });
+    model.ignored.push(Ignored::new(&card.location, &card.word, why));
     Ok(())
 }

@@ -32,6 +32,13 @@ pub struct Ignored {
     pub why: &'static str,
 }
 
+impl Ignored {
+    pub(crate) fn new(location: &Location, word: &str, why: &'static str) -> Self {
+        let (location, word) = (location.clone(), word.to_owned());
+        Self { location, word, why }
+    }
+}
+
 impl std::fmt::Display for Ignored {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: {}: ignored: {}", self.location, self.word, self.why)

@@ -110,11 +110,11 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
     card.lines_at_most(1, wanted)?;
     if let Some(line) = card.lines.first() {
         line.optional(&line.at_most(1, wanted)?, 0, wanted)?;
-        model.ignored.push(Ignored {
-            location: line.location.clone(),
-            word: line.text.trim().to_owned(),
-            why: "a thickness has a meaning in plane models only",
-        });
+        model.ignored.push(Ignored::new(
+            &line.location,
+            line.text.trim(),
+            "a thickness has a meaning in plane models only",
+        ));
     }
     if let Some(at) = model.interactions.position(&name) {
         return Err(twice(card, model.interactions.at(at).location.line));
@@ -152,11 +152,11 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     interaction.compliance[0] = inverse(line, &fields, 0, wanted)?;
     for at in [1, 2] {
         if line.optional(&fields, at, "a number")?.is_some() {
-            model.ignored.push(Ignored {
-                location: line.location.clone(),
-                word: fields[at].to_owned(),
-                why: "pulling stress and reach of contact springs: there are none here where sides are apart",
-            });
+            model.ignored.push(Ignored::new(
+                &line.location,
+                fields[at],
+                "pulling stress and reach of contact springs: there are none here where sides are apart",
+            ));
         }
     }
     Ok(())
@@ -194,11 +194,10 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     if line.optional(&fields, 1, slope)?.is_some() {
         interaction.compliance[1] = inverse(line, &fields, 1, slope)?;
     }
-    let ignored = card.params.iter().map(|param| Ignored {
-        location: card.location.clone(),
-        word: param.word.clone(),
-        why: PENALTY,
-    });
+    let ignored = card
+        .params
+        .iter()
+        .map(|param| Ignored::new(&card.location, &param.word, PENALTY));
     model.ignored.extend(ignored);
     Ok(())
 }
@@ -219,11 +218,11 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     ];
     let wanted = "NODE TO SURFACE, SURFACE TO SURFACE, MORTAR, LINMORTAR or PGLINMORTAR";
     if card.choice("TYPE", &types, wanted)?.is_some() {
-        model.ignored.push(Ignored {
-            location: card.location.clone(),
-            word: word(card.param("TYPE")),
-            why: "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here",
-        });
+        model.ignored.push(Ignored::new(
+            &card.location,
+            &word(card.param("TYPE")),
+            "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here",
+        ));
     }
     surfaces(model, card, Some(interaction))
 }
@@ -240,11 +239,11 @@ pub(super) fn tie(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         return Err(card.param_fault(param, Fault::Cannot(why.to_owned())));
     }
     if card.value("POSITIONTOLERANCE")?.is_some() {
-        model.ignored.push(Ignored {
-            location: card.location.clone(),
-            word: word(card.param("POSITIONTOLERANCE")),
-            why: "what faces the other surface is tied, at any distance; tie surfaces that lie on one another",
-        });
+        model.ignored.push(Ignored::new(
+            &card.location,
+            &word(card.param("POSITIONTOLERANCE")),
+            "what faces the other surface is tied, at any distance; tie surfaces that lie on one another",
+        ));
     }
     surfaces(model, card, None)
 }

@@ -160,11 +160,9 @@ impl Step {
             return Err(card.param_fault(param, Fault::Unsupported(why)));
         }
         if let Some(param) = card.param("UNSYMM") {
-            model.ignored.push(Ignored {
-                location: card.location.clone(),
-                word: param.word.clone(),
-                why: "a setting of another solver",
-            });
+            model
+                .ignored
+                .push(Ignored::new(&card.location, &param.word, "a setting of another solver"));
         }
         let amplitude = card.choice("AMPLITUDE", &["RAMP", "STEP"], "RAMP or STEP")?;
         let mut increments = None;
@@ -190,11 +188,9 @@ impl Step {
         card.allow(&["DIRECT", "SOLVER"])?;
         card.flag("DIRECT")?;
         if let Some(param) = card.param("SOLVER") {
-            model.ignored.push(Ignored {
-                location: card.location.clone(),
-                word: param.word.clone(),
-                why: "a setting of another solver",
-            });
+            model
+                .ignored
+                .push(Ignored::new(&card.location, &param.word, "a setting of another solver"));
         }
         if let Some((first, ..)) = &self.time {
             let first = first.line;

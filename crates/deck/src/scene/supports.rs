@@ -165,11 +165,11 @@ impl Table {
             }
         }
         if let Some(word) = turned {
-            self.ignored.push(Ignored {
-                location: line.location.clone(),
-                word: word.clone(),
-                why: "nodes of solid elements have no rotations to be held",
-            });
+            self.ignored.push(Ignored::new(
+                &line.location,
+                word,
+                "nodes of solid elements have no rotations to be held",
+            ));
         }
         if !found {
             let text = "no elastic element uses these nodes; hold nodes of the body";

@@ -28,20 +28,14 @@ impl Element {
     }
 
     /// Gradient of the displacement, `h[i][j]` = d u_i / d x_j, from the nodal displacements.
-    #[must_use]
-    pub fn displacement_gradient(&self, u: &[[f64; 3]; 4]) -> [[f64; 3]; 3] {
+    pub(crate) fn displacement_gradient(&self, u: &[[f64; 3]; 4]) -> [[f64; 3]; 3] {
         let entry = |i: usize, j: usize| (0..4).map(|a| u[a][i] * self.gradients[a][j]).sum();
         std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
     }
-
-    /// Strain in Voigt order xx, yy, zz, yz, xz, xy with engineering shear.
-    #[must_use]
-    pub fn strain(&self, u: &[[f64; 3]; 4]) -> [f64; 6] {
-        strain_of(&self.displacement_gradient(u))
-    }
 }
 
-/// Strain of a displacement gradient `h[i][j]` = d u_i / d x_j.
+/// Strain of a displacement gradient `h[i][j]` = d u_i / d x_j, in Voigt order xx, yy, zz, yz, xz, xy with engineering
+/// shear.
 pub(crate) fn strain_of(h: &[[f64; 3]; 3]) -> [f64; 6] {
     let shear = |i: usize, j: usize| h[i][j] + h[j][i];
     [h[0][0], h[1][1], h[2][2], shear(1, 2), shear(0, 2), shear(0, 1)]

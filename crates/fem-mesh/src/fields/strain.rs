@@ -1,6 +1,6 @@
 //! Strain, stress and energy of a displacement of the mesh.
 
-use crate::element::{Element, Piece, over_quadratic};
+use crate::element::{Piece, over_quadratic};
 use crate::material::{Hooke, MaterialError, Materials};
 use crate::mesh::{NODES, TetMesh};
 use crate::quadrature::FOUR_POINTS;
@@ -18,6 +18,9 @@ errors! {
         Material(#[from] MaterialError) = "{0}";
     }
 }
+
+/// Barycentric coordinates of the centroid.
+const CENTROID: [f64; 4] = [0.25; 4];
 
 /// Checks the length of a table.
 pub(crate) fn expect_entries(what: &'static str, given: usize, expected: usize) -> Result<(), FieldError> {
@@ -46,13 +49,7 @@ pub(crate) fn nodal_vectors(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 3]>, 
 /// [`FieldError`] if the displacement has the wrong length or is not finite.
 pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     let u = nodal_vectors(mesh, u)?;
-    let strain = |tet: usize| {
-        if mesh.order() == 2 {
-            return Piece::new(mesh, tet, &u).strain(&[0.25; 4]);
-        }
-        let nodal = mesh.tets()[tet].map(|n| u[n as usize]);
-        Element::new(&mesh.tet_points(tet)).strain(&nodal)
-    };
+    let strain = |tet: usize| Piece::new(mesh, tet, &u).strain(&CENTROID);
     Ok((0..mesh.tets().len()).into_par_iter().map(strain).collect())
 }
 
@@ -62,20 +59,12 @@ pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
 /// [`FieldError`] as [`strains`], and if a region has no material.
 pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
-    if mesh.order() == 2 {
-        let u = nodal_vectors(mesh, u)?;
-        let stress = |(tet, law): (usize, &&Hooke)| {
-            let piece = Piece::new(mesh, tet, &u).with_law(law);
-            law.stress(&piece.strain(&[0.25; 4]))
-        };
-        return Ok(laws.par_iter().enumerate().map(stress).collect());
-    }
-    let strains = strains(mesh, u)?;
-    Ok(strains
-        .par_iter()
-        .zip(laws)
-        .map(|(strain, law)| law.stress(strain))
-        .collect())
+    let u = nodal_vectors(mesh, u)?;
+    let stress = |(tet, law): (usize, &&Hooke)| {
+        let piece = Piece::new(mesh, tet, &u).with_law(law);
+        law.stress(&piece.strain(&CENTROID))
+    };
+    Ok(laws.par_iter().enumerate().map(stress).collect())
 }
 
 /// Elastic energy, half of stress times strain integrated over the mesh: that of the stiffness matrix.
@@ -84,19 +73,18 @@ pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<
 /// [`FieldError`] as [`stresses`].
 pub fn strain_energy(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<f64, FieldError> {
     let laws = materials.of_tets(mesh.regions())?;
-    if mesh.order() == 2 {
-        let u = nodal_vectors(mesh, u)?;
-        let rule = FOUR_POINTS.map(|l| (l, 0.25));
-        let energy = |tet: usize| {
-            let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
-            over_quadratic(mesh, tet, &rule, |l| laws[tet].energy_density(&piece.strain(l)))
-        };
-        let energies: Vec<f64> = (0..mesh.tets().len()).into_par_iter().map(energy).collect();
-        return Ok(energies.iter().sum());
-    }
-    let strains = strains(mesh, u)?;
-    let energy = |tet: usize| mesh.volume(tet) * laws[tet].energy_density(&strains[tet]);
-    Ok((0..strains.len()).map(energy).sum())
+    let u = nodal_vectors(mesh, u)?;
+    let rule = FOUR_POINTS.map(|l| (l, 0.25));
+    let energy = |tet: usize| {
+        let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
+        let density = |l: &[f64; 4]| laws[tet].energy_density(&piece.strain(l));
+        match mesh.order() {
+            1 => mesh.volume(tet) * density(&CENTROID),
+            _ => over_quadratic(mesh, tet, &rule, density),
+        }
+    };
+    let energies: Vec<f64> = (0..mesh.tets().len()).into_par_iter().map(energy).collect();
+    Ok(energies.iter().sum())
 }
 
 /// The von Mises stress sqrt(3/2 s : s), with s the stress deviator.

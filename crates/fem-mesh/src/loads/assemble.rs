@@ -66,27 +66,27 @@ enum Density<'a> {
     Varying(&'a (dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Sync)),
 }
 
-/// What an integral over a curved element needs at a point: values of its shape functions, the place, the normal (zero
-/// inside the body), and its measure (area or volume) there.
+/// What an integral over an element needs at a point: values of its shape functions, the place, the normal (zero inside
+/// the body), and its measure (area or volume) there.
 type At<const N: usize> = ([f64; N], Vec3, Vec3, f64);
 
-/// Forces of the nodes of a curved element with `N` nodes, from each point with its weight.
-fn curved_forces<'a, const N: usize>(
+/// Forces of the nodes of an element with `N` nodes, from each point with its weight.
+fn forces<'a, const N: usize>(
     points: impl Iterator<Item = (At<N>, f64)>,
     density: impl Fn(Vec3) -> Density<'a>,
 ) -> Result<[Vec3; N], LoadError> {
-    let mut forces = [[0.0; 3]; N];
+    let mut sums = [[0.0; 3]; N];
     for ((shape, place, normal, measure), weight) in points {
         let value = match density(normal) {
             Density::Constant(value) => value,
             Density::Varying(of) => of(place, normal),
         };
         let value = finite(place, value)?;
-        for (force, value_of_shape) in forces.iter_mut().zip(shape) {
-            *force = add(*force, scale(measure * weight * value_of_shape, value));
+        for (sum, value_of_shape) in sums.iter_mut().zip(shape) {
+            *sum = add(*sum, scale(measure * weight * value_of_shape, value));
         }
     }
-    Ok(forces)
+    Ok(sums)
 }
 
 impl Density<'_> {
@@ -104,17 +104,9 @@ impl Density<'_> {
                 let value = finite(place, *value)?;
                 Ok([scale(measure / N as f64, value); N])
             }
-            Self::Varying(density) => {
-                let mut forces = [[0.0; 3]; N];
-                for (barycentric, weight) in rule {
-                    let place = quadrature::at(points, barycentric);
-                    let value = finite(place, density(place, normal))?;
-                    for a in 0..N {
-                        let share = scale(measure * weight * barycentric[a], value);
-                        forces[a] = add(forces[a], share);
-                    }
-                }
-                Ok(forces)
+            Self::Varying(_) => {
+                let at = |(l, weight): &([f64; N], f64)| ((*l, quadrature::at(points, l), normal, measure), *weight);
+                forces(rule.iter().map(at), |_| *self)
             }
         }
     }
@@ -128,9 +120,9 @@ fn finite(place: [f64; 3], value: [f64; 3]) -> Result<[f64; 3], LoadError> {
     }
 }
 
-fn accumulate(vector: &mut [f64], node: u32, force: [f64; 3]) {
-    for i in 0..3 {
-        vector[3 * node as usize + i] += force[i];
+fn accumulate<const N: usize>(vector: &mut [f64], nodes: &[u32; N], forces: [[f64; 3]; N]) {
+    for (&node, force) in nodes.iter().zip(forces) {
+        (0..3).for_each(|i| vector[3 * node as usize + i] += force[i]);
     }
 }
 
@@ -145,10 +137,7 @@ fn body(mesh: &TetMesh, decomposition: &Decomposition, density: Density<'_>) -> 
                 let volume = tet_volume(&tangents(&points, l));
                 ((shape, quadrature::at(&points, &shape), [0.0; 3], volume), *weight)
             };
-            let forces = curved_forces(rule.iter().map(at), |_| density)?;
-            tet.iter()
-                .zip(forces)
-                .for_each(|(&node, force)| accumulate(&mut vector, node, force));
+            accumulate(&mut vector, &tet, forces(rule.iter().map(at), |_| density)?);
         }
         if mesh.order() == 2 {
             return Ok(vector);
@@ -156,14 +145,17 @@ fn body(mesh: &TetMesh, decomposition: &Decomposition, density: Density<'_>) -> 
         for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
             let points = mesh.tet_points(element as usize);
             let volume = mesh.volume(element as usize);
-            let forces = density.nodal_forces(&points, [0.0; 3], volume, &rule)?;
-            for (&node, force) in tet.iter().zip(forces) {
-                accumulate(&mut vector, node, force);
-            }
+            accumulate(
+                &mut vector,
+                tet,
+                density.nodal_forces(&points, [0.0; 3], volume, &rule)?,
+            );
         }
         Ok(vector)
     };
-    first_error(decomposition.subdomains().par_iter().map(of_subdomain).collect())
+    let each: Vec<_> = decomposition.subdomains().par_iter().map(of_subdomain).collect();
+    // the error of the lowest subdomain, whichever thread met one first
+    each.into_iter().collect()
 }
 
 fn traction<'a>(
@@ -185,6 +177,8 @@ fn traction<'a>(
     let rule = quadrature::triangle();
     let of_subdomain = |(subdomain, facets): (&Subdomain, &Vec<usize>)| {
         let mut vector = vec![0.0; subdomain.dofs()];
+        // nodes of a facet are nodes of its owner
+        let local = |node: u32| subdomain.local(node).unwrap_or_default() as u32;
         for &facet in facets {
             if mesh.order() == 2 {
                 let points = mesh.quadratic_facet_points(facet);
@@ -193,29 +187,26 @@ fn traction<'a>(
                     let size = norm(area);
                     ((facet_shape(l), place, scale(1.0 / size, area), size), *weight)
                 };
-                let forces = curved_forces(rule.iter().map(at), &density)?;
-                for (node, force) in mesh.quadratic_facet(facet).into_iter().zip(forces) {
-                    if let Some(local) = subdomain.local(node) {
-                        accumulate(&mut vector, local as u32, force);
-                    }
-                }
+                let nodes = mesh.quadratic_facet(facet).map(local);
+                accumulate(&mut vector, &nodes, forces(rule.iter().map(at), &density)?);
                 continue;
             }
             let points = mesh.facet_points(facet);
             let vector_area = facet_area_vector(mesh, facet);
             let area = norm(vector_area);
             let normal = scale(1.0 / area, vector_area);
-            let forces = density(normal).nodal_forces(&points, normal, area, &rule)?;
-            for (&node, force) in mesh.facets()[facet].nodes.iter().zip(forces) {
-                if let Some(local) = subdomain.local(node) {
-                    accumulate(&mut vector, local as u32, force);
-                }
-            }
+            let nodes = mesh.facets()[facet].nodes.map(local);
+            accumulate(
+                &mut vector,
+                &nodes,
+                density(normal).nodal_forces(&points, normal, area, &rule)?,
+            );
         }
         Ok(vector)
     };
     let pairs = decomposition.subdomains().par_iter().zip(&facets);
-    first_error(pairs.map(of_subdomain).collect())
+    let each: Vec<_> = pairs.map(of_subdomain).collect();
+    each.into_iter().collect()
 }
 
 fn nodal(
@@ -231,13 +222,8 @@ fn nodal(
         let place = place.ok_or(LoadError::UnknownNode { node, nodes })?;
         let force = finite(place, force)?;
         if let Some(copy) = decomposition.copies(node as usize).first() {
-            accumulate(&mut vectors[copy.subdomain as usize], copy.local, force);
+            accumulate(&mut vectors[copy.subdomain as usize], &[copy.local], [force]);
         }
     }
     Ok(vectors)
-}
-
-/// The error of the lowest subdomain, whichever thread met one first.
-fn first_error(results: Vec<Result<Vec<f64>, LoadError>>) -> Result<Vec<Vec<f64>>, LoadError> {
-    results.into_iter().collect()
 }

@@ -4,14 +4,16 @@ use std::sync::Arc;
 
 use crate::mesh::{FacetTag, tag_list};
 
+use super::function::Function;
+
 /// A vector that depends on the point.
-pub type PointField = Arc<dyn Fn([f64; 3]) -> [f64; 3] + Send + Sync>;
+pub type PointField = Function<dyn Fn([f64; 3]) -> [f64; 3] + Send + Sync>;
 
 /// A vector that depends on the point and the outward unit normal there.
-pub type SurfaceField = Arc<dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync>;
+pub type SurfaceField = Function<dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync>;
 
 /// A load in space; a [`History`](crate::History) says how it changes in time.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum LoadDensity {
     /// The same force per volume everywhere (F of the paper).
@@ -62,7 +64,7 @@ impl LoadDensity {
     /// Force per volume that depends on the point.
     #[must_use]
     pub fn body_field(value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
-        Self::BodyField(Arc::new(value))
+        Self::BodyField(Function(Arc::new(value)))
     }
 
     /// The same force per area on all facets of a tag.
@@ -79,7 +81,7 @@ impl LoadDensity {
     ) -> Self {
         Self::TractionField {
             tag,
-            value: Arc::new(value),
+            value: Function(Arc::new(value)),
         }
     }
 
@@ -99,31 +101,6 @@ impl LoadDensity {
     #[must_use]
     pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
         Self::NodalForces(forces)
-    }
-}
-
-impl std::fmt::Debug for LoadDensity {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Body(value) => f.debug_tuple("Body").field(value).finish(),
-            Self::BodyField(_) => f.write_str("BodyField(..)"),
-            Self::Traction { tag, value } => f
-                .debug_struct("Traction")
-                .field("tag", tag)
-                .field("value", value)
-                .finish(),
-            Self::TractionField { tag, .. } => f
-                .debug_struct("TractionField")
-                .field("tag", tag)
-                .finish_non_exhaustive(),
-            Self::Pressure { tag, value } => f
-                .debug_struct("Pressure")
-                .field("tag", tag)
-                .field("value", value)
-                .finish(),
-            Self::Force { tag, value } => f.debug_struct("Force").field("tag", tag).field("value", value).finish(),
-            Self::NodalForces(forces) => f.debug_tuple("NodalForces").field(forces).finish(),
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! How a load changes in time.
 
+use super::function::Function;
 use std::sync::Arc;
 
 errors! {
@@ -15,23 +16,22 @@ errors! {
     }
 }
 
-/// A factor that depends on time.
+/// A factor that depends on time. Equal tables are equal; a function is equal to its clones only.
 ///
 /// ```
 /// use signorini_fem_mesh::History;
 ///
 /// let phi_c = History::table(vec![(0.0, 0.0), (0.4, 1.0), (0.7, 0.0), (1.0, 1.0)])?;
 /// assert_eq!(phi_c.value(0.2), 0.5);
-/// assert_eq!(phi_c.breakpoints(), [0.0, 0.4, 0.7, 1.0]);
 /// # Ok::<(), signorini_fem_mesh::HistoryError>(())
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct History(Kind);
 
-#[derive(Clone)]
+#[derive(Debug, Clone, PartialEq)]
 enum Kind {
     Table(Vec<(f64, f64)>),
-    Function(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
+    Function(Function<dyn Fn(f64) -> f64 + Send + Sync>),
 }
 
 impl History {
@@ -73,7 +73,7 @@ impl History {
     /// Any function of time. Whoever evaluates it must reject values that are not finite.
     #[must_use]
     pub fn function(value: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self(Kind::Function(Arc::new(value)))
+        Self(Kind::Function(Function(Arc::new(value))))
     }
 
     /// The value at a time. At the points of a table it is exactly the value given.
@@ -82,16 +82,6 @@ impl History {
         match &self.0 {
             Kind::Table(points) => interpolate(points, time),
             Kind::Function(value) => value(time),
-        }
-    }
-
-    /// Times at which the slope may jump: the points of a table with more than one, none for a
-    /// constant or a function. Time steps should not stride over them.
-    #[must_use]
-    pub fn breakpoints(&self) -> Vec<f64> {
-        match &self.0 {
-            Kind::Table(points) if points.len() > 1 => points.iter().map(|p| p.0).collect(),
-            _ => Vec::new(),
         }
     }
 }
@@ -106,25 +96,5 @@ pub fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
         (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)),
         (Some(p), None) | (None, Some(p)) => p.1,
         (None, None) => f64::NAN,
-    }
-}
-
-/// Equal tables are equal; a function is equal to its clones only, since functions cannot be compared.
-impl PartialEq for History {
-    fn eq(&self, other: &Self) -> bool {
-        match (&self.0, &other.0) {
-            (Kind::Table(a), Kind::Table(b)) => a == b,
-            (Kind::Function(a), Kind::Function(b)) => Arc::ptr_eq(a, b),
-            _ => false,
-        }
-    }
-}
-
-impl std::fmt::Debug for History {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match &self.0 {
-            Kind::Table(points) => f.debug_tuple("Table").field(points).finish(),
-            Kind::Function(_) => f.write_str("Function(..)"),
-        }
     }
 }

@@ -1,17 +1,19 @@
 //! Loads: in space, in time, and as nodal forces of the subdomains.
 //!
-//! `density` says where a load acts, `history` how it changes in time, `assemble` turns it into consistent nodal
-//! forces.
+//! `density` says where a load acts, `history` how it changes in time, `function` is what a user gives for either,
+//! `assemble` turns it into consistent nodal forces.
 //!
 //! Uses: `decomposition`, `element`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force vector a
 //! subdomain.
 
 mod assemble;
 mod density;
+mod function;
 mod history;
 
 pub use assemble::assemble_load;
 pub use density::{LoadDensity, LoadError, PointField, SurfaceField};
+pub use function::Function;
 #[doc(hidden)]
 pub use history::interpolate;
 pub use history::{History, HistoryError};

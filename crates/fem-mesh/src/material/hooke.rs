@@ -3,9 +3,6 @@
 use crate::tolerances::{ASYMMETRY, ELLIPTICITY, INCOMPRESSIBLE};
 use nalgebra::SMatrix;
 
-/// Position of the tensor indices (i, j) in the Voigt order xx, yy, zz, yz, xz, xy.
-const VOIGT: [[usize; 3]; 3] = [[0, 5, 4], [5, 1, 3], [4, 3, 2]];
-
 errors! {
     /// An elastic law that is not admissible.
     #[derive(Clone, PartialEq)]
@@ -32,7 +29,6 @@ errors! {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hooke {
     voigt: [[f64; 6]; 6],
-    smallest: f64,
     largest: f64,
 }
 
@@ -100,46 +96,13 @@ impl Hooke {
         Self::isotropic(young, INCOMPRESSIBLE).ok()
     }
 
-    /// A general law from c_ijkl; see (2.8) for the conditions.
+    /// A general law from its 6 x 6 matrix (Voigt order xx, yy, zz, yz, xz, xy with engineering
+    /// shear): the entry of (xx, yz) is c_xxyz; see (2.8) for the conditions. Deviations from symmetry at rounding level
+    /// are averaged away.
     ///
     /// # Errors
     /// [`HookeError`] if an entry is not finite, a symmetry is missing by more than 1e-9 of the
     /// largest entry, or the tensor is not elliptic.
-    pub fn from_tensor(c: &[[[[f64; 3]; 3]; 3]; 3]) -> Result<Self, HookeError> {
-        let at = |[i, j, k, l]: [usize; 4]| c[i][j][k][l];
-        let mut voigt = [[0.0; 6]; 6];
-        let mut largest: f64 = 0.0;
-        for_all_indices(|index @ [i, j, k, l]| {
-            let (row, column, value) = (VOIGT[i][j], VOIGT[k][l], at(index));
-            if !value.is_finite() {
-                return Err(HookeError::NotFinite { row, column, value });
-            }
-            largest = largest.max(value.abs());
-            voigt[row][column] = value;
-            Ok(())
-        })?;
-        for_all_indices(|left @ [i, j, k, l]| {
-            for right in [[j, i, k, l], [k, l, i, j]] {
-                let (left_value, right_value) = (at(left), at(right));
-                if (left_value - right_value).abs() > ASYMMETRY * largest {
-                    return Err(HookeError::NotSymmetric {
-                        left,
-                        left_value,
-                        right,
-                        right_value,
-                    });
-                }
-            }
-            Ok(())
-        })?;
-        Self::from_voigt(&voigt)
-    }
-
-    /// A general law from its 6 x 6 matrix (Voigt order xx, yy, zz, yz, xz, xy with engineering
-    /// shear). Deviations from symmetry at rounding level are averaged away.
-    ///
-    /// # Errors
-    /// As [`Hooke::from_tensor`].
     pub fn from_voigt(c: &[[f64; 6]; 6]) -> Result<Self, HookeError> {
         let mut scale: f64 = 0.0;
         for (row, entries) in c.iter().enumerate() {
@@ -169,11 +132,7 @@ impl Hooke {
         if !(largest > 0.0 && smallest > ELLIPTICITY * largest) {
             return Err(HookeError::NotElliptic { smallest, largest });
         }
-        Ok(Self {
-            voigt,
-            smallest,
-            largest,
-        })
+        Ok(Self { voigt, largest })
     }
 
     /// The 6 x 6 matrix in Voigt order xx, yy, zz, yz, xz, xy with engineering shear.
@@ -182,14 +141,7 @@ impl Hooke {
         &self.voigt
     }
 
-    /// The constant of (2.8): the largest alpha with c_ijkl x_ij x_kl >= alpha x_ij x_ij.
-    #[must_use]
-    pub fn ellipticity(&self) -> f64 {
-        self.smallest
-    }
-
-    /// The counterpart from above: the smallest bound of c_ijkl x_ij x_kl / (x_ij x_ij). A scale
-    /// of the stiffness of the material.
+    /// The smallest bound of c_ijkl x_ij x_kl / (x_ij x_ij). A scale of the stiffness of the material.
     #[must_use]
     pub fn bound(&self) -> f64 {
         self.largest
@@ -212,10 +164,6 @@ impl Hooke {
         let stress = self.stress(strain);
         0.5 * (0..6).map(|i| stress[i] * strain[i]).sum::<f64>()
     }
-}
-
-fn for_all_indices(mut visit: impl FnMut([usize; 4]) -> Result<(), HookeError>) -> Result<(), HookeError> {
-    (0..81).try_for_each(|n| visit([n / 27, n / 9 % 3, n / 3 % 3, n % 3]))
 }
 
 /// Tensor indices of an entry of the 6 x 6 matrix.

@@ -26,4 +26,6 @@ pub use curved::{EDGES, facet_shape};
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};
 pub(crate) use faces::{NONE, connected_sets};
 pub(crate) use quadratic::quadratic_tets;
-pub(crate) use tet_mesh::{facet_area_vector, tag_list};
+pub(crate) use tet_mesh::facet_area_vector;
+#[doc(hidden)]
+pub use tet_mesh::tag_list;

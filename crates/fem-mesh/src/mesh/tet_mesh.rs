@@ -19,7 +19,7 @@ impl std::fmt::Display for FacetTag {
 }
 
 /// The tags of a mesh in the words of an error: "the tags 1, 2" or "no tags".
-pub(crate) fn tag_list(tags: &[FacetTag]) -> String {
+pub fn tag_list(tags: &[FacetTag]) -> String {
     if tags.is_empty() {
         return "no tags".into();
     }

@@ -15,38 +15,24 @@ use super::quadratic::energies;
 
 /// Estimated discretisation error, tetrahedron by tetrahedron.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct DiscretisationError {
-    energies: Vec<f64>,
-    total: f64,
-    elastic: f64,
+    /// Error energy of each tetrahedron, half of error stress times error strain, J.
+    pub energies: Vec<f64>,
+    /// Their sum, J.
+    pub energy: f64,
+    /// Elastic energy of the displacement, J.
+    pub elastic_energy: f64,
 }
 
 impl DiscretisationError {
-    /// Error energy of each tetrahedron, half of error stress times error strain, J.
-    #[must_use]
-    pub fn energies(&self) -> &[f64] {
-        &self.energies
-    }
-
-    /// Their sum, J.
-    #[must_use]
-    pub fn energy(&self) -> f64 {
-        self.total
-    }
-
-    /// Elastic energy of the displacement, J.
-    #[must_use]
-    pub fn elastic_energy(&self) -> f64 {
-        self.elastic
-    }
-
     /// Error relative to the displacement, both in the energy norm; 0 without elastic energy. Of a body that is at
-    /// rest but for rounding it is noise over noise, about one: compare [`energy`](Self::energy) with a scale of your
+    /// rest but for rounding it is noise over noise, about one: compare `energy` with a scale of your
     /// own.
     #[must_use]
     pub fn relative(&self) -> f64 {
-        if self.elastic > 0.0 {
-            (self.total / self.elastic).sqrt()
+        if self.elastic_energy > 0.0 {
+            (self.energy / self.elastic_energy).sqrt()
         } else {
             0.0
         }
@@ -79,9 +65,9 @@ impl StrainRecovery {
             let all = energies(mesh, &laws, &nodal_vectors(mesh, u)?, &self.fits, &self.corners);
             let energies: Vec<f64> = all.iter().map(|e| e[0]).collect();
             return Ok(DiscretisationError {
-                total: energies.iter().sum(),
+                energy: energies.iter().sum(),
                 energies,
-                elastic: all.iter().map(|e| e[1]).sum(),
+                elastic_energy: all.iter().map(|e| e[1]).sum(),
             });
         }
         let strains = strains(mesh, u)?;
@@ -106,13 +92,13 @@ impl StrainRecovery {
             self.volumes[tet] * (squares + laws[tet].energy_density(&sum)) / 20.0
         };
         let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
-        let elastic = (0..strains.len())
+        let elastic_energy = (0..strains.len())
             .map(|tet| self.volumes[tet] * laws[tet].energy_density(&strains[tet]))
             .sum();
         Ok(DiscretisationError {
-            total: energies.iter().sum(),
+            energy: energies.iter().sum(),
             energies,
-            elastic,
+            elastic_energy,
         })
     }
 }

@@ -44,16 +44,16 @@ impl DiscretisationError {
     /// [`FieldError::Length`] if the mesh has another number of tetrahedra, [`FieldError::Target`] if the target is not
     /// positive.
     pub fn wanted_sizes(&self, mesh: &TetMesh, target: f64) -> Result<Vec<f64>, FieldError> {
-        expect_entries("table of tetrahedra", self.energies().len(), mesh.tets().len())?;
+        expect_entries("table of tetrahedra", self.energies.len(), mesh.tets().len())?;
         if !(target.is_finite() && target > 0.0) {
             return Err(FieldError::Target { value: target });
         }
         let twice = 2.0 * mesh.order() as f64;
         let whole = twice + 3.0;
-        let parts: f64 = self.energies().iter().map(|e| e.powf(3.0 / whole)).sum();
-        let each = (target * target * self.elastic_energy() / parts).powf(whole / twice);
+        let parts: f64 = self.energies.iter().map(|e| e.powf(3.0 / whole)).sum();
+        let each = (target * target * self.elastic_energy / parts).powf(whole / twice);
         let mut logs = vec![(0.0, 0.0); mesh.points().len()];
-        for (tet, (nodes, energy)) in mesh.tets().iter().zip(self.energies()).enumerate() {
+        for (tet, (nodes, energy)) in mesh.tets().iter().zip(&self.energies).enumerate() {
             let factor = if *energy > 0.0 {
                 (each / energy).powf(whole.recip()).clamp(1.0 / REFINED, COARSENED)
             } else {

@@ -2,10 +2,8 @@
 
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, X_MAX, Z_MIN};
-use signorini_fem_mesh::output::{
-    Field, OutputError, PvdSeries, write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces,
-};
-use signorini_fem_mesh::{Decomposition, Surface, TetMesh};
+use signorini_fem_mesh::output::{Field, OutputError, PvdSeries, write_surfaces_vtu, write_vtu};
+use signorini_fem_mesh::{Surface, TetMesh};
 use vtkio::model::{Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, Vtk};
 
 fn pieces(path: &std::path::Path) -> Vec<UnstructuredGridPiece> {
@@ -69,39 +67,13 @@ fn one_piece() {
 }
 
 #[test]
-fn a_piece_for_each_subdomain() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("parts.vtu");
-    let mesh = mesh();
-    let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
-    let (points, cells) = fields(&mesh);
-    write_vtu_pieces(&path, &mesh, &parts, &points, &cells).unwrap();
-    let pieces = pieces(&path);
-    assert_eq!(pieces.len(), 3);
-    for (number, (piece, subdomain)) in pieces.iter().zip(parts.subdomains()).enumerate() {
-        assert_eq!(piece.num_points(), subdomain.nodes.len());
-        assert_eq!(piece.cells.num_cells(), subdomain.tets.len());
-        let height = values(&piece.data.point, "height");
-        let expected = subdomain.points(&mesh);
-        assert!(height.iter().zip(&expected).all(|(h, p)| *h == p[2]));
-        assert!(values(&piece.data.cell, "part").iter().all(|&p| p == number as f64));
-    }
-    let clash = [Field::scalar("part", vec![0.0; mesh.tets().len()])];
-    let error = write_vtu_pieces(&path, &mesh, &parts, &[], &clash).unwrap_err();
-    assert!(matches!(error, OutputError::RepeatedName { .. }));
-    let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
-    let error = write_vtu_pieces(&path, &other, &parts, &[], &[]).unwrap_err();
-    assert!(matches!(error, OutputError::Foreign { what: "decomposition" }));
-}
-
-#[test]
 fn surface() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("contact.vtu");
     let mesh = mesh();
     let surface = Surface::new(&mesh, &[Z_MIN]).unwrap();
     let area = Field::scalar("area", surface.areas().to_vec());
-    write_surface_vtu(&path, &mesh, &surface, &[area], &[]).unwrap();
+    write_surfaces_vtu(&path, &mesh, &[(&surface, &[area], &[])]).unwrap();
     let [piece] = &pieces(&path)[..] else {
         panic!("one piece is expected")
     };
@@ -113,7 +85,7 @@ fn surface() {
     );
     let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     assert!(matches!(
-        write_surface_vtu(&path, &other, &surface, &[], &[]),
+        write_surfaces_vtu(&path, &other, &[(&surface, &[], &[])]),
         Err(OutputError::Foreign { what: "surface" })
     ));
 }
@@ -127,8 +99,7 @@ fn series() {
         let time = Field::scalar("time", vec![f64::from(step); mesh.points().len()]);
         series.write(0.5 * f64::from(step), &mesh, &[time], &[]).unwrap();
     }
-    let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
-    series.write_pieces(2.0, &mesh, &parts, &[], &[]).unwrap();
+    series.write(2.0, &mesh, &[], &[]).unwrap();
     assert_eq!(series.times(), [0.0, 0.5, 1.0, 2.0]);
     let list = std::fs::read_to_string(series.path()).unwrap();
     assert_eq!(list.matches("<DataSet").count(), 4);
@@ -289,7 +260,7 @@ fn series_of_a_surface() {
     for step in 0..2 {
         let gap = Field::scalar("gap", vec![f64::from(step); surface.nodes().len()]);
         series
-            .write_surface(f64::from(step), &mesh, &surface, &[gap], &[])
+            .write_surfaces(f64::from(step), &mesh, &[(&surface, &[gap], &[])])
             .unwrap();
     }
     assert_eq!(series.times(), [0.0, 1.0]);
@@ -300,10 +271,10 @@ fn series_of_a_surface() {
     };
     assert_eq!(piece.cells.num_cells(), surface.triangles().len());
     assert!(values(&piece.data.point, "gap").iter().all(|&g| g == 1.0));
-    let error = series.write_surface(1.0, &mesh, &surface, &[], &[]);
+    let error = series.write_surfaces(1.0, &mesh, &[(&surface, &[], &[])]);
     assert!(matches!(error, Err(OutputError::Time { .. })));
     let short = [Field::scalar("gap", vec![0.0])];
-    let error = series.write_surface(2.0, &mesh, &surface, &short, &[]);
+    let error = series.write_surfaces(2.0, &mesh, &[(&surface, &short, &[])]);
     assert!(matches!(error, Err(OutputError::FieldLength { .. })));
     assert_eq!(series.times().len(), 2);
 }
@@ -424,12 +395,9 @@ fn meshes_of_order_two_are_quadratic_cells() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = mesh().raise_order().unwrap();
     let (points, cells) = fields(&mesh);
-    let parts = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
-    let [whole, cut] = ["whole.vtu", "cut.vtu"].map(|name| folder.path().join(name));
+    let whole = folder.path().join("whole.vtu");
     write_vtu(&whole, &mesh, &points, &cells).unwrap();
-    write_vtu_pieces(&cut, &mesh, &parts, &points, &cells).unwrap();
-    assert_eq!(pieces(&cut).len(), 3);
-    for piece in pieces(&whole).into_iter().chain(pieces(&cut)) {
+    for piece in pieces(&whole) {
         assert!(piece.cells.types.iter().all(|&t| t == CellType::QuadraticTetra));
         let places = piece.points.cast_into::<f64>().unwrap();
         let (connectivity, offsets) = piece.cells.cell_verts.clone().into_xml();

@@ -245,10 +245,6 @@ fn materials() {
         Hooke::from_voigt(&[[0.0; 6]; 6]),
         Err(HookeError::NotElliptic { .. })
     ));
-    let mut tensor = [[[[0.0; 3]; 3]; 3]; 3];
-    tensor[0][1][0][1] = 1.0;
-    let error = Hooke::from_tensor(&tensor).unwrap_err();
-    assert!(matches!(error, HookeError::NotSymmetric { left: [0, 1, 0, 1], .. }));
 
     let table = vec![(3, good), (1, good), (3, good)];
     assert_eq!(Materials::new(table), Err(MaterialError::Repeated { region: 3 }));

@@ -9,25 +9,7 @@
 use crate::problem::{LineWeight, ProductSet, for_bounds, for_discs};
 use crate::tolerances::MAY_SLIDE;
 
-/// State of a disc.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Disc {
-    /// Radius 0.
-    Fixed,
-    /// Both components free.
-    Free,
-    /// On the circle: free along `tau` only, with extra curvature `kappa`.
-    Sliding {
-        tau: [f64; 2],
-        kappa: f64,
-        /// `1 / (1 + kappa m)`, `m` the scale: share of the preconditioner that the curvature leaves.
-        damp: f64,
-        /// `kappa (m damp)^2`: what it adds on its own.
-        own: f64,
-        /// `-g·n`.
-        slip: f64,
-    },
-}
+use super::disc::Disc;
 
 /// Classification of all blocks; unconstrained components are free and not stored.
 #[derive(Debug, Default)]
@@ -43,6 +25,8 @@ pub(crate) struct ActiveSet {
     pub(crate) foreseen: Vec<bool>,
     /// Whether they stay where they are inside of their boundary, too.
     pub(crate) near: bool,
+    /// Largest radius of a disc that is held until a move takes it across its circle.
+    pub(crate) crossing: f64,
     /// Bounded components that changed between free and active in the last [`classify`](Self::classify).
     pub(crate) changed: usize,
     /// Those of them that are free now.

@@ -10,7 +10,8 @@
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, for_discs};
 use crate::tolerances::{COUPLED_GROWTH, COUPLED_LEAST, COUPLED_LOST, COUPLED_NEAR, COUPLED_STEPS, COUPLED_WAIT};
 
-use super::blocks::{ActiveSet, Disc};
+use super::blocks::ActiveSet;
+use super::disc::Disc;
 
 /// The radius of a disc changes by `slope` times the change of another component.
 #[derive(Debug, Clone, Copy, PartialEq)]

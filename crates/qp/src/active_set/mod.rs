@@ -3,7 +3,7 @@
 //!
 //! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent`
 //! (safeguard where predictions run in circles), `cg` and `weights` (the linear problem), `iterate` (the point),
-//! `balance` (modes that constraints alone stop), `coupling` (radii that follow), `natural_map`, `blocks` (states);
+//! `balance` (modes that constraints alone stop), `coupling` (radii that follow), `natural_map`, `blocks` and `disc` (states);
 //! `problem`, `settings`, `view`.
 //!
 //! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector,
@@ -14,6 +14,7 @@ mod blocks;
 mod cg;
 mod coupling;
 mod descent;
+mod disc;
 mod iterate;
 mod moves;
 mod natural_map;

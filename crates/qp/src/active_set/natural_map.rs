@@ -10,7 +10,8 @@
 use crate::problem::{ProductSet, for_bounds, for_discs};
 use crate::tolerances::MAY_SLIDE;
 
-use super::blocks::{ActiveSet, Disc};
+use super::blocks::ActiveSet;
+use super::disc::{Disc, along_circle, crosses, disc_state, settle_disc};
 
 /// Gradient and lengths of the natural map.
 #[derive(Clone, Copy)]
@@ -48,7 +49,7 @@ impl ActiveSet {
         let near = *near;
         let bounds = free.len();
         let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
-        let (mut changed, mut freed, mut free_bounds) = (0, 0, 0);
+        let (mut changed, mut freed, mut free_bounds, mut crossing) = (0, 0, 0, 0.0_f64);
         for_bounds(set, |i, k, lo, hi| {
             let s = map.of(x, i);
             // a component is active only if it also is at its bound
@@ -62,7 +63,12 @@ impl ActiveSet {
         });
         for_discs(set, |i, k, radius| {
             let at = [x[i], x[i + 1]];
-            let state = disc_state(at, map.on_disc(i), radius, map.scale[i]);
+            let g = map.on_disc(i);
+            let mut state = disc_state(at, g, radius, map.scale[i]);
+            if state == Disc::Free && discs[k] != Disc::Fixed && crosses(at, g, radius, map.step * map.scale[i]) {
+                state = Disc::Fixed;
+                crossing = crossing.max(radius);
+            }
             discs[k] = match (foreseen.get(bounds + k), state) {
                 (Some(true), Disc::Free) => along_circle(at, radius),
                 (Some(false), Disc::Sliding { .. }) => Disc::Free,
@@ -71,6 +77,7 @@ impl ActiveSet {
             };
         });
         foreseen.clear();
+        self.crossing = crossing;
         self.changed = changed;
         self.freed = freed;
         self.free_bounds = free_bounds;
@@ -120,7 +127,7 @@ impl ActiveSet {
         });
         for_discs(set, |i, k, radius| {
             stays &= match self.discs[k] {
-                Disc::Fixed => true,
+                Disc::Fixed => radius <= 0.0,
                 Disc::Free => map.of(x, i).hypot(map.of(x, i + 1)) <= radius && x[i].hypot(x[i + 1]) <= radius,
                 Disc::Sliding { .. } => false,
             };
@@ -197,66 +204,12 @@ pub(crate) fn settle_bounds(set: &ProductSet, x: &mut [f64], map: &NaturalMap<'_
     });
 }
 
-/// Free along the circle, without curvature; free everywhere inside of it. With radius 0 along the circle through `x`.
-fn along_circle(x: [f64; 2], radius: f64) -> Disc {
-    let length = x[0].hypot(x[1]);
-    if length <= 0.0 || length < radius * (1.0 - MAY_SLIDE) {
-        return Disc::Free;
-    }
-    slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)
-}
-
-/// Sliding with outward normal `n`.
-fn slides(n: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
-    let kappa = slip / radius;
-    let damp = 1.0 / (1.0 + kappa * scale);
-    Disc::Sliding {
-        tau: [-n[1], n[0]],
-        kappa,
-        damp,
-        own: (kappa * scale * damp) * (scale * damp),
-        slip,
-    }
-}
-
-fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> Disc {
-    if radius <= 0.0 {
-        return Disc::Fixed;
-    }
-    let length = x[0].hypot(x[1]);
-    if length < radius * (1.0 - MAY_SLIDE) {
-        return Disc::Free;
-    }
-    let n = [x[0] / length, x[1] / length];
-    let outward = g[0] * n[0] + g[1] * n[1];
-    if outward >= 0.0 {
-        return Disc::Free;
-    }
-    slides(n, -outward, radius, scale)
-}
-
-fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {
-    if radius <= 0.0 {
-        return [0.0; 2];
-    }
-    let to = |v: [f64; 2], length: f64| [v[0] * (radius / length), v[1] * (radius / length)];
-    let length = x[0].hypot(x[1]);
-    if sliding {
-        return if length > 0.0 { to(x, length) } else { x };
-    }
-    let s = [x[0] - a * g[0], x[1] - a * g[1]];
-    let reach = s[0].hypot(s[1]);
-    match (reach > radius, length > radius) {
-        (true, _) => to(s, reach),
-        (_, true) => to(x, length),
-        _ => x,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::active_set::disc::slides;
     use crate::problem::Segment;
+    use crate::tolerances::ACROSS;
 
     /// The map of a set of one segment, with scale 2 and step 0.5: `s = x - g`.
     fn with<T>(segment: Segment, g: &[f64], f: impl Fn(&ProductSet, &NaturalMap<'_>) -> T) -> T {
@@ -354,7 +307,6 @@ mod tests {
             (Disc::Free, [1.0, 0.0], [0.1, 0.0], true),
             (Disc::Free, [1.0, 0.0], [-1.1, 0.0], false),
             (Disc::Free, [2.1, 0.0], [1.0, 0.0], false),
-            (Disc::Fixed, [0.0, 0.0], [9.0, 0.0], true),
             (sliding, [2.0, 0.0], [-1.0, 0.0], false),
         ] {
             with(Segment::discs(vec![2.0]), &g, |set, map| {
@@ -438,6 +390,20 @@ mod tests {
         assert_eq!(state(radius, [0.6, 0.8], [-6.0, -8.0], false, false), Disc::Free);
         // drawn inward
         assert_eq!(state(radius, on, [0.6, 0.8], false, false), Disc::Free);
+        // far beyond the other side: held for the move across, once
+        let far = n.map(|c| 4.0 * ACROSS * radius * c);
+        with(Segment::discs(vec![radius]), &far, |set, map| {
+            let mut own = active_set(set, &[], false);
+            own.discs = vec![Disc::Free];
+            for (expected, crossing) in [(Disc::Fixed, radius), (Disc::Free, 0.0), (Disc::Fixed, radius)] {
+                own.classify(set, &on, map);
+                assert_eq!((own.discs[0], own.crossing), (expected, crossing));
+                assert!(!own.stays(set, &on, map));
+            }
+            let mut x = on;
+            own.settle_discs(set, &mut x, map);
+            assert!((x[0] + on[0]).abs() + (x[1] + on[1]).abs() < 1e-14, "{x:?}");
+        });
         // pushed out with 3 N: curvature 3 / 2, scale 2
         let pushed = state(radius, on, [-1.8, -2.4], false, false);
         let Disc::Sliding {

@@ -6,8 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PASSING_PART, PRESSED, PROGRESS, SHRUNK, SINK_ROUNDS,
-    SMALL_PART,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
+    SINK_ROUNDS, SMALL_PART,
 };
 use crate::vector;
 
@@ -72,6 +72,10 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     /// Whether unconstrained components alone stop every mode of the equality.
     pub(crate) repairs_suffice: bool,
     forcing: f64,
+    /// How far the natural map moves the constrained part of `x = 0`.
+    reach: f64,
+    /// Whether gaps alone can call for forces.
+    unloaded: bool,
     /// Largest norm of `x` since `A x` was computed afresh.
     peak: f64,
     pub(crate) moved: LastMove,
@@ -100,12 +104,19 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         work.coupling.start(set, constrained);
         work.length = 0.0;
         work.active.resize(set);
+        let map = problem.scale[..constrained].iter().zip(problem.linear);
+        let reach = map.map(|(a, b)| (a * b).powi(2)).sum::<f64>().sqrt();
         Self {
             shape: set.shape().collect(),
             repairs_suffice: projector.loose().is_empty(),
             settings,
             hook,
             forcing: settings.forcing,
+            reach,
+            unloaded: problem.linear[constrained..]
+                .iter()
+                .chain(problem.rhs)
+                .all(|f| *f == 0.0),
             peak: 0.0,
             moved: LastMove {
                 jump: f64::INFINITY,
@@ -142,7 +153,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let stopped = if self.repairs_suffice {
             self.at.set_weights(false)?.is_some()
         } else {
-            self.at.project_start()
+            self.is_known() && self.at.project_start()
         };
         if !stopped {
             // only constraints stop a mode: a balance with all of them at work tells the first active set
@@ -171,19 +182,24 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         Ok(())
     }
 
+    /// Whether constrained components are more than rounding.
+    fn is_known(&self) -> bool {
+        vector::norm(&self.at.x[..self.at.constrained()]) > ROUNDED * self.reach
+    }
+
     /// Where nothing is known of the contact, bodies that constraints alone hold sink into springs until they balance,
     /// rigid and without gluing. A spring alone has the stiffness of the preconditioner; `n` that are pressed at once
     /// are softer by the root of `n`, for a patch of `n` points is softer than its points by as much. Where most are
-    /// pressed at once the gaps tell nothing, and `x` stays.
+    /// pressed at once the gaps tell nothing, and `x` stays if it tells something.
     fn sink(&mut self) -> Result<(), QpError> {
-        let from = self.at.x.to_vec();
+        let (from, told) = (self.at.x.to_vec(), self.is_known());
         let mut stiffness = 1.0;
         for _ in 0..SINK_ROUNDS {
             let balances = self.at.sink(stiffness);
             let active = &mut self.at.work.active;
             active.guess(self.at.set, self.at.x);
             let pressed = active.free_bounds;
-            if !balances || pressed as f64 > PRESSED * active.free.len() as f64 {
+            if !balances || told && pressed as f64 > PRESSED * active.free.len() as f64 {
                 vector::copy(&from, self.at.x);
                 return self.follow();
             }
@@ -203,6 +219,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Classifies the blocks by the natural map, and enters the active set with projector and preconditioner. `None`
     /// if no choice of blocks allows for the equality.
     pub(crate) fn enter(&mut self) -> Result<Option<Place>, QpError> {
+        // without loads and contact nothing else tells what is small
+        let nothing = self.unloaded && !self.is_known();
+        let rounding = if nothing { ROUNDED * self.reach } else { 0.0 };
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
         at.classify(settings.natural_step);
@@ -227,8 +246,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let vanishes = part < settings.contact_error_floor;
         let part = part.max(SMALL_PART * all).max(settings.contact_error_floor);
         let limits = Lengths {
-            all: settings.tolerance * all,
-            constrained: settings.tolerance * part,
+            all: (settings.tolerance * all).max(rounding),
+            constrained: (settings.tolerance * part).max(rounding),
         };
         at.report.error = ratio(errors.all, limits.all / settings.tolerance);
         at.report.constrained_error = ratio(errors.constrained, limits.constrained / settings.tolerance);
@@ -271,8 +290,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         releases
     }
 
-    /// Whether `x` solves the problem with the present set: errors, last move and violation are small, and active
-    /// bounds, judged by the residual on this set, which the last classification did not have, stay active.
+    /// Whether `x` solves the problem with the present set: errors, last move, violation and circles to be crossed are
+    /// small, and active bounds, judged by the residual on this set, which the last classification did not have, stay active.
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
         let current = self.safeguard.as_ref().is_none_or(|safeguard| safeguard.current);
@@ -282,6 +301,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         place.errors.within(place.limits)
             && settled
             && at.set.violation(at.x) <= limit
+            && 2.0 * at.work.active.crossing <= limit
             && !at.work.active.contradicted(at.set, at.x, &map, limit)
     }
 

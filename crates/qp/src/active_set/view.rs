@@ -2,7 +2,8 @@
 
 use crate::problem::{Constrained, DenseOperator, Identity, ProductSet, SymmetricOperator, for_constrained};
 
-use super::blocks::{ActiveSet, Disc};
+use super::blocks::ActiveSet;
+use super::disc::Disc;
 
 /// How a block may move on an active set.
 #[derive(Debug, Clone, Copy, PartialEq)]

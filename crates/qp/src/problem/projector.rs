@@ -116,16 +116,6 @@ pub struct LineWeight {
     pub weight: f64,
 }
 
-impl LineWeight {
-    /// `weight * c cᵀ` times a pair.
-    #[must_use]
-    pub fn along(&self, pair: [f64; 2]) -> [f64; 2] {
-        let [c, d] = self.direction;
-        let value = self.weight * (c * pair[0] + d * pair[1]);
-        [value * c, value * d]
-    }
-}
-
 /// A mode that no unconstrained component stops: a combination of the rows of `G` that vanishes on all of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LooseMode {

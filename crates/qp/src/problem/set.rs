@@ -35,8 +35,7 @@ pub enum BlockState {
 
 impl BlockState {
     /// Whether all components of the block may move in both directions.
-    #[must_use]
-    pub fn is_free(self) -> bool {
+    pub(crate) fn is_free(self) -> bool {
         matches!(self, Self::Free | Self::Interior)
     }
 }
@@ -69,15 +68,13 @@ pub struct GradientNorms {
 
 impl GradientNorms {
     /// Norm of the projected gradient `phi + beta`, the K-gradient of the paper.
-    #[must_use]
-    pub fn projected(&self) -> f64 {
+    pub(crate) fn projected(&self) -> f64 {
         (self.free + self.chopped).sqrt()
     }
 
     /// Norm of the reduced gradient `(x - P(x - a g)) / a`; never larger than
     /// [`projected`](Self::projected) and, unlike it, a continuous function of `x`.
-    #[must_use]
-    pub fn reduced(&self) -> f64 {
+    pub(crate) fn reduced(&self) -> f64 {
         (self.reduced_free + self.reduced_chopped).sqrt()
     }
 }

@@ -95,12 +95,6 @@ impl<A: SymmetricOperator, C: Equality> SmalseWorkspace<A, C> {
         }
     }
 
-    /// Gradient of the augmented Lagrangian at the end of the last solve.
-    #[must_use]
-    pub fn gradient(&self) -> &[f64] {
-        &self.vectors.g
-    }
-
     /// `A y - b` at the end of the last solve, `y = x - Cᵀ(C x - e)` being `x` moved onto the equality;
     /// kept by recurrence, no product is spent on it.
     #[must_use]

@@ -172,7 +172,7 @@ fn levels(run: impl FnOnce(&mut Take<'_>) -> Result<Option<Refusal>, Error>) -> 
             products: report.counters.products,
             faces: report.counters.active_sets,
             fallback: report.fallback,
-            inherited: frame.unconverged_history().is_some(),
+            inherited: frame.report().unconverged_history.is_some(),
             certificate: frame.certificate().largest(),
             limit: LIMIT.max(10.0 * certified),
             violations,

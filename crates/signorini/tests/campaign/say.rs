@@ -34,9 +34,7 @@ pub(crate) fn friction(law: &Law) -> Friction {
     match law.clone() {
         Law::None => Friction::None,
         Law::Given(stress) => Friction::tresca(stress),
-        Law::GivenField(field) => {
-            Friction::Tresca(SlipBound::StressField(std::sync::Arc::new(move |x| field.value(x))))
-        }
+        Law::GivenField(field) => Friction::Tresca(SlipBound::field(move |x| field.value(x))),
         Law::Coulomb(value) => Friction::coulomb(value),
         Law::CoulombField(field) => Friction::Coulomb(Coefficient::field(move |x| field.value(x))),
         Law::Exponential { fixed, kinetic, decay } => {

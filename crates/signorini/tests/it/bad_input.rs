@@ -234,7 +234,7 @@ fn contact_and_friction() {
         "an empty table": attempt(coulomb(Coefficient::Table(Vec::new()))) => Error::Contact(ContactError::EmptyTable { .. }), "contact 0", "table", "at least one";
         "a table out of order": attempt(coulomb(Coefficient::Table(vec![(1.0, 0.3), (0.0, 0.2)]))) => Error::Contact(ContactError::TableRate { entry: 1, .. }), "order";
         "a negative slip bound": attempt(given(SlipBound::Stress(-1.0))) => Error::Contact(ContactError::SlipBound { .. }), "node", "slip bound";
-        "a slip bound that is NaN": attempt(given(SlipBound::StressField(std::sync::Arc::new(|x| (x[0] - 1.5).sqrt())))) => Error::Contact(ContactError::SlipBound { .. }), "node";
+        "a slip bound that is NaN": attempt(given(SlipBound::field(|x| (x[0] - 1.5).sqrt()))) => Error::Contact(ContactError::SlipBound { .. }), "node";
         "a free body": attempt(
             Scene::new(mesh(), steel()).with_load(Load::body([0.0, 0.0, -1e3]))
         ) => Error::Contact(ContactError::NotHeld { step: 0, body: 0, .. }), "step 0", "body 0", "translation";

@@ -31,10 +31,7 @@ impl Gluing {
 
     /// The same with springs to the ground, whose rows are the last of the support rows, and the stiffness of all
     /// copies, with which springs are compared: the row of a soft one is as much smaller as it is softer.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); springs at unknown nodes, or without a stiffness.
-    pub fn with_springs(
+    pub(crate) fn with_springs(
         decomposition: &Decomposition,
         supports: &[NodeSupport],
         contact: &[ContactConstraint],

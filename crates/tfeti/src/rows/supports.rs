@@ -80,11 +80,7 @@ impl NodeSupport {
     /// Fixes all components of the nodes at zero.
     #[must_use]
     pub fn fixed(nodes: Vec<u32>) -> Self {
-        Self {
-            nodes,
-            directions: Directions::All,
-            motion: None,
-        }
+        Self::partial(nodes, Directions::All)
     }
 
     /// Fixes some directions of the nodes at zero.

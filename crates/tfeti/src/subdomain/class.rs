@@ -44,7 +44,7 @@ impl Classes {
     }
 
     /// Number of subdomains.
-    pub fn subdomains(&self) -> usize {
+    pub(crate) fn subdomains(&self) -> usize {
         self.place.len()
     }
 

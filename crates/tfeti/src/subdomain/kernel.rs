@@ -114,13 +114,13 @@ impl Kernel {
     }
 
     /// Number of nodes.
-    pub fn nodes(&self) -> usize {
+    pub(crate) fn nodes(&self) -> usize {
         self.arms.len()
     }
 
     /// Root mean square distance of the nodes from their mean, in metres. Rotations are measured by the displacement
     /// at this distance.
-    pub fn radius(&self) -> f64 {
+    pub(crate) fn radius(&self) -> f64 {
         self.radius
     }
 

@@ -72,10 +72,8 @@ impl Subdomains {
                 let matrix = matrix.map_err(|e| material(e.to_string()))?;
                 Ok::<_, TfetiError>(Columns::from_symmetric(&matrix))
             };
-            let softer = || hooke.iter().map(|law| law.compressible()).collect::<Vec<_>>();
-            let softer = (!subdomain.mids.is_empty()).then(softer);
-            let softer = softer.filter(|laws| laws.iter().any(Option::is_some));
-            let compressible = softer.map(|softer| {
+            let softer: Vec<_> = hooke.iter().map(|law| law.compressible()).collect();
+            let compressible = softer.iter().any(Option::is_some).then(|| {
                 let laws = softer
                     .iter()
                     .zip(&hooke)

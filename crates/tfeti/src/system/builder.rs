@@ -138,22 +138,7 @@ impl<'a> TfetiBuilder<'a> {
         let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes, ownership)?;
         let subdomains = Arc::new(subdomains);
         let assembly_seconds = clock.lap();
-        let mut stiffness = CopyStiffness::new(&subdomains);
-        let all = match self.springs {
-            [] => CopyStiffness::default(),
-            _ => stiffness.clone(),
-        };
-        if !has_several_laws(mesh, self.materials) {
-            stiffness = stiffness.unless_alike(decomposition);
-        }
-        let gluing = Gluing::with_springs(
-            decomposition,
-            self.supports,
-            self.contact,
-            &stiffness,
-            (self.springs, &all),
-        )?;
-        let gluing = Arc::new(gluing);
+        let (gluing, stiffness) = self.glue(&subdomains)?;
         let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing, &subdomains.ownership));
         let gluing_seconds = clock.lap();
         let points = mesh.points();
@@ -205,6 +190,18 @@ impl<'a> TfetiBuilder<'a> {
             inverses,
         };
         Ok(Tfeti::new(parts, dual, coarse, report, decomposition, stiffness))
+    }
+
+    /// The rows, and the stiffness of copies by which they weigh these.
+    fn glue(&self, subdomains: &Subdomains) -> Result<(Arc<Gluing>, CopyStiffness), TfetiError> {
+        let all = CopyStiffness::new(subdomains);
+        let stiffness = match has_several_laws(self.mesh, self.materials) {
+            true => all.clone(),
+            false => all.clone().unless_alike(self.decomposition),
+        };
+        let springs = (self.springs, &all);
+        let gluing = Gluing::with_springs(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
+        Ok((Arc::new(gluing), stiffness))
     }
 }
 

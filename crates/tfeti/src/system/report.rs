@@ -47,13 +47,6 @@ pub struct SetupReport {
     pub coarse_seconds: f64,
 }
 
-impl SetupReport {
-    /// Seconds of the whole set-up.
-    pub fn seconds(&self) -> f64 {
-        self.classes_seconds + self.gluing_seconds + self.assembly_seconds + self.inverse_seconds + self.coarse_seconds
-    }
-}
-
 pub(super) fn count(removed: &[RemovedRow]) -> Vec<(RowKind, RemovalReason, usize)> {
     let mut sorted: Vec<_> = removed.iter().map(|r| (r.kind, r.reason)).collect();
     sorted.sort();

@@ -9,7 +9,7 @@ mod vtu;
 use std::path::PathBuf;
 
 pub use pvd::PvdSeries;
-pub use vtu::{write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces};
+pub use vtu::{write_surfaces_vtu, write_vtu};
 
 use crate::mesh::Surface;
 
@@ -73,12 +73,6 @@ impl Field {
             components: 6,
             values,
         }
-    }
-
-    /// Name of the field.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        &self.name
     }
 }
 

@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
 
-use super::{Field, OutputError, SurfaceFields, write_surface_vtu, write_surfaces_vtu, write_vtu, write_vtu_pieces};
-use crate::decomposition::Decomposition;
+use super::{Field, OutputError, SurfaceFields, write_surfaces_vtu, write_vtu};
 use crate::files::replace::replace;
-use crate::mesh::Surface;
 use crate::mesh::TetMesh;
 
 const HEAD: [&str; 3] = [
@@ -154,40 +152,6 @@ impl PvdSeries {
     ) -> Result<(), OutputError> {
         self.check(time)?;
         write_vtu(self.next_file(), mesh, point_fields, cell_fields)?;
-        self.list(time)
-    }
-
-    /// As [`PvdSeries::write`], each subdomain as a piece (see [`write_vtu_pieces`]).
-    ///
-    /// # Errors
-    /// [`OutputError`] as [`write_vtu_pieces`], and if the time does not follow the last one.
-    pub fn write_pieces(
-        &mut self,
-        time: f64,
-        mesh: &TetMesh,
-        decomposition: &Decomposition,
-        point_fields: &[Field],
-        cell_fields: &[Field],
-    ) -> Result<(), OutputError> {
-        self.check(time)?;
-        write_vtu_pieces(self.next_file(), mesh, decomposition, point_fields, cell_fields)?;
-        self.list(time)
-    }
-
-    /// Writes a surface and its fields at a time (see [`write_surface_vtu`]), and the list.
-    ///
-    /// # Errors
-    /// [`OutputError`] as [`write_surface_vtu`], and if the time does not follow the last one.
-    pub fn write_surface(
-        &mut self,
-        time: f64,
-        mesh: &TetMesh,
-        surface: &Surface,
-        point_fields: &[Field],
-        cell_fields: &[Field],
-    ) -> Result<(), OutputError> {
-        self.check(time)?;
-        write_surface_vtu(self.next_file(), mesh, surface, point_fields, cell_fields)?;
         self.list(time)
     }
 

@@ -6,9 +6,8 @@ use std::path::Path;
 use flate2::Compression;
 use flate2::read::ZlibEncoder;
 
-use crate::decomposition::Decomposition;
 use crate::files::replace::replace;
-use crate::mesh::{Surface, TetMesh};
+use crate::mesh::TetMesh;
 
 use super::pvd::escape;
 use super::{Field, OutputError, SurfaceFields};
@@ -27,66 +26,18 @@ pub fn write_vtu(
     check(point_fields, mesh.points().len(), "nodes")?;
     check(cell_fields, mesh.tets().len(), "cells")?;
     let mut file = File::new();
-    let all = (0..mesh.points().len(), 0..mesh.tets().len());
-    let fields = ((point_fields, all.0), (cell_fields, all.1));
     match mesh.order() {
-        1 => file.piece(mesh.points(), mesh.tets(), fields.0, fields.1),
-        _ => file.piece(mesh.points(), &mesh.quadratic_tets(), fields.0, fields.1),
+        1 => file.piece(mesh.points(), mesh.tets(), point_fields, cell_fields),
+        _ => file.piece(mesh.points(), &mesh.quadratic_tets(), point_fields, cell_fields),
     }
     file.write(path.as_ref())
 }
 
-/// Writes each subdomain as a piece. The fields are those of the mesh, as for [`write_vtu`]; a
-/// cell field `part` with the number of the subdomain is added.
+/// Writes surfaces as triangles, each as a piece, with one value of its fields for each of [`Surface::nodes`] and
+/// [`Surface::triangles`]. All have the same fields.
 ///
-/// # Errors
-/// [`OutputError`] if a field or the decomposition does not fit the mesh, a cell field is already
-/// named `part`, or the file cannot be written.
-pub fn write_vtu_pieces(
-    path: impl AsRef<Path>,
-    mesh: &TetMesh,
-    decomposition: &Decomposition,
-    point_fields: &[Field],
-    cell_fields: &[Field],
-) -> Result<(), OutputError> {
-    if decomposition.nodes() != mesh.points().len() || decomposition.parts().len() != mesh.tets().len() {
-        return Err(OutputError::Foreign { what: "decomposition" });
-    }
-    let part = Field::scalar("part", decomposition.parts().iter().map(|&p| p.into()).collect());
-    let cell_fields = [cell_fields, &[part]].concat();
-    check(point_fields, mesh.points().len(), "nodes")?;
-    check(&cell_fields, mesh.tets().len(), "cells")?;
-    let mut file = File::new();
-    for subdomain in decomposition.subdomains() {
-        let nodes = subdomain.nodes.iter().map(|&n| n as usize);
-        let elements = subdomain.elements.iter().map(|&e| e as usize);
-        let points = subdomain.points(mesh);
-        let fields = ((point_fields, nodes), (&cell_fields[..], elements));
-        match mesh.order() {
-            1 => file.piece(&points, &subdomain.tets, fields.0, fields.1),
-            _ => file.piece(&points, &subdomain.quadratic_tets(), fields.0, fields.1),
-        }
-    }
-    file.write(path.as_ref())
-}
-
-/// Writes a surface as triangles. The fields have one value for each of [`Surface::nodes`] and
-/// [`Surface::triangles`].
-///
-/// # Errors
-/// [`OutputError`] if a field or the surface does not fit, or the file cannot be written.
-pub fn write_surface_vtu(
-    path: impl AsRef<Path>,
-    mesh: &TetMesh,
-    surface: &Surface,
-    point_fields: &[Field],
-    cell_fields: &[Field],
-) -> Result<(), OutputError> {
-    write_surfaces_vtu(path, mesh, &[(surface, point_fields, cell_fields)])
-}
-
-/// Writes surfaces as triangles, each as a piece: a surface with the fields at its nodes and on its triangles, as for
-/// [`write_surface_vtu`]. All have the same fields.
+/// [`Surface::nodes`]: crate::Surface::nodes
+/// [`Surface::triangles`]: crate::Surface::triangles
 ///
 /// # Errors
 /// [`OutputError`] if a field or a surface does not fit, the fields of two surfaces differ, or the file cannot be
@@ -113,8 +64,7 @@ pub fn write_surfaces_vtu(
         let point = |&n: &u32| mesh.points().get(n as usize).copied();
         let points: Option<Vec<_>> = nodes.iter().map(point).collect();
         let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
-        let all = (0..nodes.len(), 0..triangles.len());
-        file.piece(&points, triangles, (point_fields, all.0), (cell_fields, all.1));
+        file.piece(&points, triangles, point_fields, cell_fields);
     }
     file.write(path.as_ref())
 }
@@ -162,13 +112,13 @@ impl File {
         Self(head.into())
     }
 
-    /// Cells of `N` nodes, and of each field the chosen values.
+    /// Cells of `N` nodes, with fields.
     fn piece<const N: usize>(
         &mut self,
         points: &[[f64; 3]],
         cells: &[[u32; N]],
-        (point_fields, nodes): (&[Field], impl Iterator<Item = usize> + Clone),
-        (cell_fields, chosen): (&[Field], impl Iterator<Item = usize> + Clone),
+        point_fields: &[Field],
+        cell_fields: &[Field],
     ) {
         let numbers = |n: u64| n.to_le_bytes();
         let counts = [points.len(), cells.len()];
@@ -177,10 +127,10 @@ impl File {
             &format!("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", counts[0], counts[1]),
         );
         self.open("PointData", "");
-        point_fields.iter().for_each(|field| self.field(field, nodes.clone()));
+        point_fields.iter().for_each(|field| self.field(field));
         self.close("PointData");
         self.open("CellData", "");
-        cell_fields.iter().for_each(|field| self.field(field, chosen.clone()));
+        cell_fields.iter().for_each(|field| self.field(field));
         self.close("CellData");
         self.open("Points", "");
         let coordinates = points.iter().flatten().flat_map(|x| x.to_le_bytes());
@@ -202,11 +152,9 @@ impl File {
         self.close("Piece");
     }
 
-    fn field(&mut self, field: &Field, chosen: impl Iterator<Item = usize>) {
-        let n = field.components;
-        let values = chosen.flat_map(|i| &field.values[n * i..n * (i + 1)]);
-        let bytes = values.flat_map(|x| x.to_le_bytes()).collect();
-        self.array("Float64", &escape(&field.name), n, bytes);
+    fn field(&mut self, field: &Field) {
+        let bytes = field.values.iter().flat_map(|x| x.to_le_bytes()).collect();
+        self.array("Float64", &escape(&field.name), field.components, bytes);
     }
 
     fn open(&mut self, tag: &str, attributes: &str) {
