@@ -43,7 +43,11 @@ impl ActiveSetSolver {
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
-        let stiff = if model.scene.mesh.order() == 2 { STIFF_MEANS } else { STIFF_ROWS };
+        let stiff = if model.scene.mesh.order() == 2 {
+            STIFF_MEANS
+        } else {
+            STIFF_ROWS
+        };
         for (scale, compliance) in scale.iter_mut().zip(compliance) {
             *scale = scale.min(stiff / compliance);
         }
