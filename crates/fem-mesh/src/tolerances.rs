@@ -48,6 +48,10 @@ pub(crate) const BOX: f64 = 1.0 - 1e-9;
 /// How much longer some cells are along an axis than others, each relative to itself, where a mesh is graded along it:
 /// the ratio of the quantiles at 0.95 and 0.05. Meshes of Gmsh have 1.8 to 2.1.
 pub(crate) const GRADED: f64 = 2.5;
+/// The same ratio along all three axes above which the parts of a box are so many times larger: between flat cells many
+/// parts are flat, too, and take ten times the iterations.
+pub(crate) const STRONGLY: f64 = 10.0;
+pub(crate) const LARGER: usize = 6;
 /// Part of a slab by which its end may move to a plane between layers of graded cells: a ragged cut through long cells
 /// costs more than parts of unequal size.
 pub(crate) const PLANE: f64 = 0.5;

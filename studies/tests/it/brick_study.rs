@@ -45,7 +45,7 @@ fn table_6_1_has_exactly_the_papers_sizes() {
     }
 }
 
-/// Quadratic elements with about as many unknowns take a third more products, at any size; most of it is friction.
+/// Quadratic elements with about as many unknowns take up to a fifth more products, at any size.
 #[test]
 fn elements_of_order_two_need_little_more_products() {
     let products = |line: &str| {
@@ -62,7 +62,7 @@ fn elements_of_order_two_need_little_more_products() {
         let (linear, one) = products(&format!("brick --n {n} --loading b --cells 4 --quiet"));
         let (quadratic, two) = products(&format!("brick --n {n} --loading b --cells 2 --order 2 --quiet"));
         assert!((quadratic / linear - 1.0).abs() < 0.1, "{linear} {quadratic}");
-        assert!(two <= 1.4 * one, "n = {n}: {two} products, {one} with order 1");
+        assert!(two <= 1.2 * one, "n = {n}: {two} products, {one} with order 1");
     }
     let bad = BrickOptions::try_parse_from(["brick", "--order", "3"]).expect_err("order");
     assert!(bad.to_string().contains("order 1 or 2"));

@@ -166,6 +166,14 @@ fn quadratic_elements_are_nearer_with_fewer_unknowns() {
     }
 }
 
+/// Long cells: the points step by their compliance, or sets run in circles and take twice the products.
+#[test]
+fn graded_quadratic_elements_do_not_run_in_circles() {
+    let line = "order --rounds 1 --mesh 2/8/1.8";
+    let rows = order::execute(&options::<OrderOptions>(line), &mut Vec::new()).expect("run");
+    assert!(rows[0].products < 170, "{}", rows[0].products);
+}
+
 /// Meshes graded towards edges and rims: the errors of forces that issue 17 asks for, products that stay moderate where
 /// cells are a hundred times as long as wide, and an error of the strains that falls faster than the singular edges
 /// allow on equal cells.

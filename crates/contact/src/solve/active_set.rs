@@ -15,7 +15,7 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
-use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_ROWS};
+use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_MEANS, STIFF_ROWS};
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, SymmetricOperator, active_set, vector};
 use signorini_tfeti::internal::SystemPart;
@@ -51,8 +51,13 @@ impl ActiveSetSolver {
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
+        let stiff = if model.scene.mesh.order() == 2 {
+            STIFF_MEANS
+        } else {
+            STIFF_ROWS
+        };
         for (scale, compliance) in scale.iter_mut().zip(compliance) {
-            *scale = scale.min(STIFF_ROWS / compliance);
+            *scale = scale.min(stiff / compliance);
         }
         let gluing = model.tfeti.gluing();
         for (scale, own) in scale.iter_mut().zip(gluing.contact_compliance()) {

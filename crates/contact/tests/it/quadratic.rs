@@ -236,3 +236,76 @@ fn a_bar_of_rubber_bends_as_it_should() {
         assert!(*products as f64 <= 2.5 * *few as f64, "{poisson}: {products} {few}");
     }
 }
+
+/// Bits do not hang on threads, and the answer not on units: half loaded, in millimetres and with forces in kN.
+#[test]
+fn threads_and_units_change_nothing() {
+    let run_with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("pool");
+        pool.install(|| {
+            solve(
+                half_loaded(quadratic([3.0, 1.0, 1.0], [6, 2, 2])).with_boxes([3, 1, 1]),
+                at(1e-9),
+            )
+        })
+    };
+    let one = run_with(1);
+    let bits = |result: &Solved| result.displacement.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&one), bits(&run_with(3)));
+    let (length, force) = (1e3, 1e-3);
+    let stress = force / (length * length);
+    let q = 0.5e8 * stress;
+    let floor = Contact::rigid(brick::Z_MIN).with_gap(0.1 * length);
+    let scene = Scene::new(
+        quadratic([3.0 * length, length, length], [6, 2, 2]),
+        uniform(211.9e9 * stress, 0.277),
+    )
+    .with_support(Support::fixed(brick::X_MIN))
+    .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -30.0 * q]))
+    .with_load(Load::traction(brick::X_MAX, [9.0 * q, 0.0, -15.0 * q]))
+    .with_contact(floor.with_friction(Friction::coulomb(0.2)))
+    .with_boxes([3, 1, 1]);
+    let other = solve(scene, at(1e-9));
+    let metres: Vec<f64> = other.displacement.iter().map(|v| v / length).collect();
+    assert_close(&metres, &one.displacement, 1e-7, "units");
+    let newtons = floor_forces(&other).map(|f| f / force);
+    assert_close(&newtons, &floor_forces(&one), 1e-7, "units");
+}
+
+/// Pressed into a corner of three walls, which alone hold it: hydrostatic pressure at each point, edges and the corner
+/// too, with tetrahedra a hundred times as long as thick as well.
+#[test]
+fn corners_edges_and_slivers_pass_hydrostatic_pressure() {
+    let (young, poisson, pressure) = (1e6, 0.3, 1e3);
+    let strain = -(1.0 - 2.0 * poisson) * pressure / young;
+    for thin in [1.0, 0.01] {
+        let mesh = block([1.0; 3], [2; 3]);
+        // the middle layer of nodes goes down to the floor
+        let mesh = mesh.map_points(|[x, y, z]| [x, y, if z == 0.5 { 0.5 * thin } else { z }]);
+        let mesh = mesh.expect("flat").raise_order().expect("quadratic");
+        let mut scene = Scene::new(mesh.clone(), uniform(young, poisson));
+        for (wall, loaded) in [
+            (brick::X_MIN, brick::X_MAX),
+            (brick::Y_MIN, brick::Y_MAX),
+            (brick::Z_MIN, brick::Z_MAX),
+        ] {
+            scene = scene.with_contact(Contact::rigid(wall));
+            scene = scene.with_load(Load::pressure(loaded, pressure));
+        }
+        let result = solve(scene, at(1e-10));
+        let exact: Vec<f64> = mesh.points().iter().flatten().map(|c| strain * c).collect();
+        assert_close(&result.displacement, &exact, 1e-6, "displacement");
+        assert_eq!(result.points.iter().filter(|p| p.node == 0).count(), 3);
+        for point in &result.points {
+            let found = -point.normal_force / point.area;
+            assert!(
+                (found / pressure - 1.0).abs() < 1e-5,
+                "{thin}: {found} at {}",
+                point.node
+            );
+        }
+    }
+}

@@ -5,7 +5,7 @@ use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets};
 use crate::tables::{buckets, range};
-use crate::tolerances::{BOX, FILLED, GRADED, PLANE, REACH, SNAP};
+use crate::tolerances::{BOX, FILLED, GRADED, LARGER, PLANE, REACH, SNAP, STRONGLY};
 use crate::vec3::{self, Vec3};
 
 /// How many parts [`even_parts`] makes.
@@ -13,7 +13,8 @@ use crate::vec3::{self, Vec3};
 pub enum PartCount {
     /// So many, but where bodies or groups are more.
     Exactly(usize),
-    /// A number near by for which the parts of a body that fills its box are nearest to cubes.
+    /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
+    /// cells are graded so strongly along all axes that many parts would be flat.
     About(usize),
 }
 
@@ -49,8 +50,11 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let plain = cutter([const { None }; 3]);
     // elsewhere long cells along an axis are not layers
     let boxes: Vec<bool> = (0..starts.len() - 1).map(|group| plain.is_box(own(group))).collect();
-    let graded = boxes.contains(&true).then(|| cutter(shares(mesh)));
-    let graded = graded.filter(|cutter| cutter.shares.iter().any(Option::is_some));
+    let (grading, shares) = match boxes.contains(&true) {
+        true => shares(mesh),
+        false => ([1.0; 3], [const { None }; 3]),
+    };
+    let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; starts.len() - 1];
     for group in 0..starts.len() - 1 {
@@ -58,10 +62,11 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
         let layered = graded.as_ref().filter(|_| boxes[group]);
+        let flat = layered.is_some() && grading.iter().all(|ratio| *ratio > STRONGLY);
         let cutter = layered.unwrap_or(&plain);
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
-            PartCount::About(_) => cutter.nearest_to_cubes(own, share),
+            PartCount::About(_) => cutter.nearest_to_cubes(own, if flat { share.div_ceil(LARGER) } else { share }),
         };
         whole[group] = layered.is_some() && pieces.iter().all(|piece| cutter.is_box(piece));
         for piece in pieces {
@@ -83,20 +88,24 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     Ok(renumbered(&parts))
 }
 
-/// What each tetrahedron counts in a cut across each axis, where cells are graded along it; none where all count alike.
-fn shares(mesh: &TetMesh) -> [Option<Vec<f64>>; 3] {
+/// How strongly cells are graded along each axis, and what each tetrahedron counts in a cut across it; none where all
+/// count alike.
+fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
     let lengths = |tet: usize| [0, 1, 2].map(|d| reach(mesh, tet, d)).map(|[low, high]| high - low);
     let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
-    [0, 1, 2].map(|d| {
+    let mut grading = [1.0; 3];
+    let shares = [0, 1, 2].map(|d| {
         // relative to the tetrahedron itself: cells that are small all round count alike
         let lengths: Vec<f64> = all.iter().map(|l| l[d] / l.iter().product::<f64>().cbrt()).collect();
         let mut sorted = lengths.clone();
         sorted.sort_unstable_by(f64::total_cmp);
         let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
+        grading[d] = at(0.95) / at(0.05);
         // between equal numbers and equal lengths
         let share = |length: f64| length.powf(0.75);
-        (at(0.95) > GRADED * at(0.05)).then(|| lengths.into_iter().map(share).collect())
-    })
+        (grading[d] > GRADED).then(|| lengths.into_iter().map(share).collect())
+    });
+    (grading, shares)
 }
 
 /// Where a tetrahedron begins and ends along an axis.

@@ -84,10 +84,10 @@ impl Scaling {
     pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
         let all;
-        let stiffness = match gluing.is_compliant() {
-            false => system.copy_stiffness(),
-            // ratios are not enough
-            true => {
+        let stiffness = match gluing.is_aligned() && !gluing.is_compliant() {
+            true => system.copy_stiffness(),
+            // rows join nodes, corners and mid-nodes too, or end in springs: ratios of copies are not enough
+            false => {
                 all = system.all_copy_stiffness();
                 &all
             }

@@ -23,7 +23,7 @@ pub(crate) struct Subdomains {
 #[derive(Debug)]
 pub(crate) struct ClassBase {
     pub(crate) held: Option<ClassMatrices>,
-    /// Of the stiffness.
+    /// Of the stiffness that preconditioners are made of.
     pub(crate) diagonal: Vec<f64>,
     pub(crate) kernel: Kernel,
 }
@@ -91,7 +91,7 @@ impl Subdomains {
             let nodes = decomposition.subdomains()[s].nodes.iter();
             let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
             let held = ownership.holds(k).then(|| matrices(class, &points)).transpose()?;
-            let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.stiffness.diagonal(i)).collect();
+            let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.preconditioning().diagonal(i)).collect();
             Ok(ClassBase {
                 diagonal: held.as_ref().map_or_else(|| vec![0.0; 3 * class.nodes], diagonal),
                 held,
