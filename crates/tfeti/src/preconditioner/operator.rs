@@ -52,7 +52,7 @@ enum BoundaryStiffness {
         /// `K_ib`.
         coupling: Columns,
         factor: SparseCholesky,
-        released: Option<Released>,
+        released: Option<Box<Released>>,
     },
 }
 
@@ -233,7 +233,7 @@ impl BoundaryStiffness {
         }
         let error = |error| TfetiError::pattern(error, layout.members.first().map_or(0, |&s| s as usize));
         let released = match eliminated {
-            Eliminated::Contact => Some(Released::new(&split, &rows.contact).map_err(error)?),
+            Eliminated::Contact => Some(Box::new(Released::new(&split, &rows.contact).map_err(error)?)),
             _ => None,
         };
         let factor = match &released {
