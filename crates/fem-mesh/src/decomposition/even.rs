@@ -14,7 +14,7 @@ pub enum PartCount {
     /// So many, but where bodies or groups are more.
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
-    /// cells are graded so strongly along all axes that many parts would be flat.
+    /// quadratic cells are graded so strongly along all axes that many parts would be flat.
     About(usize),
 }
 
@@ -62,7 +62,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
         let layered = graded.as_ref().filter(|_| boxes[group]);
-        let flat = layered.is_some() && grading.iter().all(|ratio| *ratio > STRONGLY);
+        let flat = mesh.order() == 2 && layered.is_some() && grading.iter().all(|ratio| *ratio > STRONGLY);
         let cutter = layered.unwrap_or(&plain);
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),

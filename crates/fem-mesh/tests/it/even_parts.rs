@@ -70,9 +70,17 @@ fn graded_bricks_fall_into_boxes_that_are_not_flat() {
                 .map_points(|[x, y, z]| [3.0 * towards(x / 3.0), towards(y), towards(z)])
                 .expect("graded");
             let labels = vec![0; mesh.tets().len()];
-            let parts = even_parts(&mesh, &labels, PartCount::About(mesh.tets().len() / 120)).expect("parts");
+            let about = PartCount::About(mesh.tets().len() / 120);
+            let linear = sizes(&even_parts(&mesh, &labels, about).expect("parts")).len();
+            assert_eq!(
+                linear < 40,
+                mesh.tets().len() < 40 * 120,
+                "{cells:?} {grading}: {linear}"
+            );
+            let mesh = mesh.raise_order().expect("order 2");
+            let parts = even_parts(&mesh, &labels, about).expect("parts");
             let count = sizes(&parts).len();
-            // between cells fifty times as long as thick they are six times larger
+            // between quadratic cells fifty times as long as thick they are six times larger
             let strongly = grading == 2.2 && cells[0] == 30;
             assert_eq!(
                 count < 40,
