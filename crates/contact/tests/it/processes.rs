@@ -99,6 +99,23 @@ fn other_scenes_and_methods_have_the_same_bits() {
         .with_subdomains(10)
         .with_analysis(paper_steps(1.0, 3));
     the_same_on(&[2, 3, 4], &bodies, Settings::default(), "bodies");
+    // one body between plates that close, where nothing tells the size of forces; another whose load is on one rank
+    let plate = |tag, way| Contact::rigid(tag).with_motion([0.0, 0.0, way], ramp());
+    let squeezed = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [3; 3]), 3.0));
+    let squeezed = Scene::new(squeezed, steel())
+        .with_contact(plate(brick::Z_MIN, 0.0))
+        .with_contact(plate(brick::Z_MAX, -1e-3))
+        .with_support(Support::fixed(second(brick::Z_MIN)))
+        .with_subdomains(8)
+        .with_analysis(paper_steps(1.0, 2));
+    let pulled = Load::traction(second(brick::Z_MAX), [1e6, 0.0, 0.0]).with_history(ramp());
+    the_same_on(&[2, 3], &squeezed, Settings::default(), "nothing but motions");
+    the_same_on(
+        &[2, 3],
+        &squeezed.with_load(pulled),
+        Settings::default(),
+        "a load on one rank",
+    );
 }
 
 /// Exchanges of a step: for each product, preconditioning, projection and dot product one.

@@ -106,6 +106,12 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         work.active.resize(set);
         let map = problem.scale[..constrained].iter().zip(problem.linear);
         let reach = map.map(|(a, b)| (a * b).powi(2)).sum::<f64>().sqrt();
+        // asked of the operator: where processes keep parts of vectors, loads may be on another one
+        let unloaded = problem.rhs.iter().all(|f| *f == 0.0) && {
+            vector::copy(problem.linear, &mut work.ap);
+            work.ap[..constrained].fill(0.0);
+            problem.operator.norm(&work.ap) == 0.0
+        };
         Self {
             shape: set.shape().collect(),
             repairs_suffice: projector.loose().is_empty(),
@@ -113,10 +119,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             hook,
             forcing: settings.forcing,
             reach,
-            unloaded: problem.linear[constrained..]
-                .iter()
-                .chain(problem.rhs)
-                .all(|f| *f == 0.0),
+            unloaded,
             peak: 0.0,
             moved: LastMove {
                 jump: f64::INFINITY,
@@ -291,7 +294,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     }
 
     /// Whether `x` solves the problem with the present set: errors, last move, violation and circles to be crossed are
-    /// small, and active bounds, judged by the residual on this set, which the last classification did not have, stay active.
+    /// small, and active bounds, judged by the residual on this set, which the last classification did not have, stay
+    /// active.
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
         let current = self.safeguard.as_ref().is_none_or(|safeguard| safeguard.current);
