@@ -118,14 +118,7 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
             }
         }
     })?;
-    let of = |quantity, value, target| Finding {
-        case: "crack under compression".to_owned(),
-        quantity,
-        value,
-        target,
-        asked: 1e-2,
-        run,
-    };
+    let of = |quantity, value, target| Finding::new("crack under compression", quantity, value, target, 1e-2, run);
     Ok(vec![
         of("normal traction, MPa", sums[1] / sums[0], normal),
         of("friction, MPa", sums[2] / sums[0], normal * friction),

@@ -44,22 +44,14 @@ fn pressed([inside, outside]: [usize; 2]) -> Result<([f64; 2], RunFacts), Failur
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
     let n = if short { 4 } else { 8 };
     let mut all = Vec::new();
-    let finding = |case: String, quantity, value, target, asked, run| Finding {
-        case,
-        quantity,
-        value,
-        target,
-        asked,
-        run,
-    };
     for [inside, outside] in [[n, n], [n, n + 1], [n, 3 * n / 2], [n, 3 * n], [3 * n, n]] {
         let case = |k: usize| format!("curved patch, {} in {} cells", k * inside, k * outside);
         let (first, run) = pressed([inside, outside])?;
         if inside == outside {
             let between = FRAC_PI_2 / inside as f64;
             let facets = 1.0 - (0.5 * between).cos();
-            all.push(finding(
-                case(1),
+            all.push(Finding::new(
+                &case(1),
                 "pressure, error of its facets",
                 first[0],
                 facets,
@@ -67,14 +59,21 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
                 run,
             ));
         } else {
-            all.push(finding(case(1), "pressure, error", first[0], 0.0, 0.0, run));
+            all.push(Finding::new(&case(1), "pressure, error", first[0], 0.0, 0.0, run));
             let (second, run) = pressed([2 * inside, 2 * outside])?;
-            all.push(finding(case(2), "pressure, error", second[0], 0.0, 0.0, run));
+            all.push(Finding::new(&case(2), "pressure, error", second[0], 0.0, 0.0, run));
             for (k, quantity) in ["order of the largest error", "order of the mean error"]
                 .into_iter()
                 .enumerate()
             {
-                all.push(finding(case(2), quantity, (first[k] / second[k]).log2(), 1.0, 0.0, run));
+                all.push(Finding::new(
+                    &case(2),
+                    quantity,
+                    (first[k] / second[k]).log2(),
+                    1.0,
+                    0.0,
+                    run,
+                ));
             }
         }
     }

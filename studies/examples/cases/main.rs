@@ -61,6 +61,18 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// All fields in their order.
+    pub fn new(case: &str, quantity: &'static str, value: f64, target: f64, asked: f64, run: RunFacts) -> Self {
+        Self {
+            case: case.to_owned(),
+            quantity,
+            value,
+            target,
+            asked,
+            run,
+        }
+    }
+
     /// Relative error, or the value where the target is 0.
     pub fn error(&self) -> f64 {
         match self.target {

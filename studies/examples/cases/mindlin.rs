@@ -185,21 +185,8 @@ fn cycle(shape: Shape, [near, far]: [usize; 2], [sink, way]: [f64; 2]) -> Result
             ["half width of contact", "half width that sticks"],
         ),
     };
-    let of = |case: String, quantity, value, target, asked| Finding {
-        case,
-        quantity,
-        value,
-        target,
-        asked,
-        run,
-    };
-    let mut all = vec![of(
-        case.to_owned(),
-        what[0],
-        steps[1].touches,
-        shape.radius(steps[1].normal),
-        1e-2,
-    )];
+    let of = |case: &str, quantity, value, target, asked| Finding::new(case, quantity, value, target, asked, run);
+    let mut all = vec![of(case, what[0], steps[1].touches, shape.radius(steps[1].normal), 1e-2)];
     for (k, when) in [(3, "loaded"), (4, "half unloaded"), (5, "reversed")] {
         let Step {
             normal,
@@ -213,7 +200,7 @@ fn cycle(shape: Shape, [near, far]: [usize; 2], [sink, way]: [f64; 2]) -> Result
             _ => (tangential - steps[3].tangential).abs() / (2.0 * full),
         };
         let target = shape.radius(normal) * shape.sticks(share);
-        all.push(of(format!("{case}, {when}"), what[1], sticks, target, 1e-2));
+        all.push(of(&format!("{case}, {when}"), what[1], sticks, target, 1e-2));
     }
     let (normal, k) = (
         steps[7].normal,
@@ -231,7 +218,7 @@ fn cycle(shape: Shape, [near, far]: [usize; 2], [sink, way]: [f64; 2]) -> Result
         }
     };
     let work = steps[4..8].iter().map(|s| s.work).sum();
-    all.push(of(case.to_owned(), "energy lost in a cycle", work, target, 2e-2));
+    all.push(of(case, "energy lost in a cycle", work, target, 2e-2));
     Ok(all)
 }
 

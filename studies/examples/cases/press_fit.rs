@@ -55,14 +55,7 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
         let off = |p: &PointState| (-p.normal_force / p.area / mean - 1.0).abs();
         found = (mean, result.points().iter().map(off).fold(0.0, f64::max));
     })?;
-    let of = |quantity, value, target, asked, run| Finding {
-        case: "press fit".to_owned(),
-        quantity,
-        value,
-        target,
-        asked,
-        run,
-    };
+    let of = |quantity, value, target, asked, run| Finding::new("press fit", quantity, value, target, asked, run);
     let mut all = vec![
         of("pressure, mean, MPa", found.0, pressure, 5e-3, run),
         of("pressure, largest deviation from its mean", found.1, 0.0, 2e-2, run),

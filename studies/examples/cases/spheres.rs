@@ -110,15 +110,7 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
     } else {
         pressed([22, 17], 9, false)?
     };
-    let named = |case: &str, quantity, value, target, asked, run| Finding {
-        case: case.to_owned(),
-        quantity,
-        value,
-        target,
-        asked,
-        run,
-    };
-    let of = |quantity, value, target, asked, run| named("two spheres", quantity, value, target, asked, run);
+    let of = |quantity, value, target, asked, run| Finding::new("two spheres", quantity, value, target, asked, run);
     let ([peak, radius], run) = (formula(), finest.run);
     let mut all = vec![
         of("largest pressure", finest.values[0], peak, 2e-2, run),
@@ -157,7 +149,7 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
     let cells = if short { [3, 2] } else { [8, 6] };
     let quadratic = pressed(cells, if short { 2 } else { 6 }, true)?;
     let of = |quantity, value, target, asked| {
-        named(
+        Finding::new(
             "two spheres, quadratic elements",
             quantity,
             value,

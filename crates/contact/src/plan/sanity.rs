@@ -9,37 +9,44 @@ use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
 /// begins nowhere near its obstacle.
 pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> {
     let points = &discrete.points;
+    let listed = scene.materials.listed();
+    let present = regions(scene, &listed);
     let found = [
-        unused_materials(scene),
-        locking(scene),
+        unused_materials(listed, &present),
+        locking(scene, &present),
         large_gap(scene, discrete),
         large_coefficient(scene, points),
     ];
     found.into_iter().flatten().collect()
 }
 
-fn unused_materials(scene: &Scene) -> Option<Warning> {
-    let mut regions = scene.materials.listed();
-    if regions.is_empty() {
-        return None;
+/// The regions of the mesh, ascending; one of them where one law fills all.
+fn regions(scene: &Scene, listed: &[u32]) -> Vec<u32> {
+    let all = scene.mesh.regions();
+    if listed.is_empty() {
+        return all.first().copied().into_iter().collect();
     }
-    let mut present = scene.mesh.regions().to_vec();
+    let mut present = all.to_vec();
     present.sort_unstable();
     present.dedup();
-    regions.retain(|region| present.binary_search(region).is_err());
-    (!regions.is_empty()).then_some(Warning::UnusedMaterials { regions, present })
+    present
+}
+
+fn unused_materials(mut listed: Vec<u32>, present: &[u32]) -> Option<Warning> {
+    listed.retain(|region| present.binary_search(region).is_err());
+    (!listed.is_empty()).then(|| Warning::UnusedMaterials {
+        regions: listed,
+        present: present.to_vec(),
+    })
 }
 
 /// The region of linear tetrahedra that is least compressible, if it is too little so.
-fn locking(scene: &Scene) -> Option<Warning> {
+fn locking(scene: &Scene, present: &[u32]) -> Option<Warning> {
     if scene.mesh.order() > 1 {
         return None;
     }
-    let mut regions = scene.mesh.regions().to_vec();
-    regions.sort_unstable();
-    regions.dedup();
     let poisson = |region: u32| scene.materials.get(region).ok()?.poisson();
-    let ratios = regions.into_iter().filter_map(|r| Some((r, poisson(r)?)));
+    let ratios = present.iter().filter_map(|&r| Some((r, poisson(r)?)));
     let (region, poisson) = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
     (poisson > LOCKING).then_some(Warning::Locking { region, poisson })
 }

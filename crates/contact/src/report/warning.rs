@@ -56,9 +56,13 @@ pub enum Warning {
         extent: f64,
     },
     /// The strain is not small.
-    #[error("step {step}: the strain of tetrahedron {tet} at {} is {:.1} %; strains count as small here, up to 5 %: \
+    #[error(
+        "step {step}: the strain of tetrahedron {tet} at {} is {:.1} %; strains count as small here, up to 5 %: \
         look at the units of loads and material; where it is a corner or a clamped edge alone, its neighbourhood \
-        is not to be trusted", at(place), 100.0 * strain)]
+        is not to be trusted",
+        at(place),
+        100.0 * strain
+    )]
     LargeStrain {
         step: usize,
         tet: usize,
@@ -100,8 +104,13 @@ pub enum Warning {
         turn: f64,
     },
     /// All of a contact begins further from its obstacle, or deeper inside it, than the body is long.
-    #[error("contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body \
-        is {extent:.3e} long; look at the unit of the gap and at the places of the bodies", gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, at(place))]
+    #[error(
+        "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body \
+        is {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
+        gap.abs(),
+        if *gap < 0.0 { "inside" } else { "from" },
+        at(place)
+    )]
     LargeGap {
         contact: usize,
         /// The nearest point.
@@ -113,8 +122,12 @@ pub enum Warning {
         extent: f64,
     },
     /// The coefficient of friction is one that no pair of materials has.
-    #[error("friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; no pair of \
-        materials has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient)]
+    #[error(
+        "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; no pair of \
+        materials has so much: {coefficient} in per cent is {}",
+        at(place),
+        0.01 * coefficient
+    )]
     LargeCoefficient {
         contact: usize,
         node: u32,
@@ -143,8 +156,12 @@ pub enum Warning {
         poisson: f64,
     },
     /// The estimated error of the mesh is large at the end of a run.
-    #[error("step {step}: the mesh leaves an estimated error of {:.0} % in the energy norm, most of it at tetrahedron \
-        {tet}, {}; linear tetrahedra are too stiff, in bending above all: refine there, and compare", 100.0 * error, at(place))]
+    #[error(
+        "step {step}: the mesh leaves an estimated error of {:.0} % in the energy norm, most of it at tetrahedron \
+        {tet}, {}; linear tetrahedra are too stiff, in bending above all: refine there, and compare",
+        100.0 * error,
+        at(place)
+    )]
     CoarseMesh {
         step: usize,
         /// Estimated error over the displacement, both in the energy norm.
@@ -155,8 +172,12 @@ pub enum Warning {
         place: [f64; 3],
     },
     /// A checkpoint is damaged; the run goes on from the one before.
-    #[error("the newest checkpoint is damaged ({reason}); the run goes on from the one before, {}, and the damaged \
-        one is kept as {}: look at the disk", taken.display(), path.display())]
+    #[error(
+        "the newest checkpoint is damaged ({reason}); the run goes on from the one before, {}, and the damaged \
+        one is kept as {}: look at the disk",
+        taken.display(),
+        path.display()
+    )]
     DamagedCheckpoint {
         /// The damaged file, under the name that it now has.
         path: PathBuf,

@@ -3,8 +3,8 @@
 //! Both are `B_D S B_D^T` with a stiffness `S` on the boundary nodes: the block `K_bb` (lumped) or the Schur complement
 //! `K_bb - K_bi K_ii^-1 K_ib` (Dirichlet), with the directions of boundary nodes that no row touches in the interior.
 //! Thin bodies between two planes, whose supports touch most nodes in one direction, have the Schur complement always:
-//! the block alone is stiffer than them by the square of length over thickness. With orthonormal rows and copies that are alike `B_D = B`; otherwise `B_D`
-//! distributes forces by stiffness, see [`Scaling`].
+//! the block alone is stiffer than them by the square of length over thickness. With orthonormal rows and copies that
+//! are alike `B_D = B`; otherwise `B_D` distributes forces by stiffness, see [`Scaling`].
 
 use crate::dual::boundary::{BoundaryClass, BoundaryMap, PanelScratch};
 use crate::dual::operator::multiply_members;
@@ -14,7 +14,7 @@ use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
-use crate::preconditioner::split::{ClassRows, Eliminated, Split, Touched};
+use crate::preconditioner::split::{ClassRows, Eliminated, Split, Touched, is_thin};
 use crate::preconditioner::springs::Springs;
 use crate::subdomain::matrices::ClassMatrices;
 use crate::system::part::SystemPart;
@@ -218,14 +218,15 @@ impl BoundaryStiffness {
     fn new(base: &ClassMatrices, class: (&BoundaryClass, &ClassRows), kind: Kind) -> Result<Self, TfetiError> {
         let (layout, rows) = class;
         let shared = layout.members.len() >= SHARED;
-        let thin = rows.is_thin();
+        let touched = rows.all();
+        let thin = is_thin(&touched);
         let eliminated = match kind {
             _ if thin && !shared && !rows.contact.is_empty() => Eliminated::Contact,
             Kind::Lumped if !thin => Eliminated::Nodes,
             _ => Eliminated::Directions,
         };
         let stiffness = base.preconditioning();
-        let split = Split::new(stiffness, rows, eliminated);
+        let split = Split::new(stiffness, (touched, &rows.always), eliminated);
         let lumped = || Self::Lumped(BlockRows::new(&split.boundary));
         if kind == Kind::Lumped && !thin || split.interior.dim == 0 {
             // Sparse also for shared classes: a tenth of the operations of a dense product.

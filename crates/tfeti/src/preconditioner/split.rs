@@ -116,21 +116,20 @@ impl Touched {
 }
 
 impl ClassRows {
-    /// By all rows.
-    fn all(&self) -> Vec<Directions> {
+    /// What all rows touch, by node.
+    pub(super) fn all(&self) -> Vec<Directions> {
         let mut all = self.always.clone();
         self.contact
             .iter()
             .for_each(|(_, node, vector)| all[*node].touch(*vector));
         all
     }
+}
 
-    /// Whether far more nodes are touched in part than not at all: a thin body between two planes.
-    pub(super) fn is_thin(&self) -> bool {
-        let all = self.all();
-        let partly = all.iter().filter(|d| matches!(d.count, 1 | 2)).count();
-        2 * partly > 3 * all.iter().filter(|d| d.count == 0).count()
-    }
+/// Whether far more nodes are touched in part than not at all: a thin body between two planes.
+pub(super) fn is_thin(touched: &[Directions]) -> bool {
+    let partly = touched.iter().filter(|d| matches!(d.count, 1 | 2)).count();
+    2 * partly > 3 * touched.iter().filter(|d| d.count == 0).count()
 }
 
 /// What a Schur complement eliminates besides the nodes that no row touches.
@@ -158,8 +157,12 @@ pub(super) struct Split {
 }
 
 impl Split {
-    pub(super) fn new(stiffness: &Columns, rows: &ClassRows, eliminated: Eliminated) -> Self {
-        let mut touched = rows.all();
+    /// From what all rows touch, and what those that are no contact rows do.
+    pub(super) fn new(
+        stiffness: &Columns,
+        (mut touched, always): (Vec<Directions>, &[Directions]),
+        eliminated: Eliminated,
+    ) -> Self {
         let on_boundary: Vec<bool> = touched.iter().map(|d| d.count > 0).collect();
         if eliminated == Eliminated::Nodes {
             touched
@@ -168,7 +171,7 @@ impl Split {
                 .for_each(|d| *d = Directions::ALL);
         }
         let free = match eliminated {
-            Eliminated::Contact => &rows.always,
+            Eliminated::Contact => always,
             _ => &touched,
         };
         let projectors: Vec<_> = touched.iter().map(Directions::projector).collect();
