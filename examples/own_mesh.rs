@@ -10,15 +10,13 @@ fn main() -> Result<(), Error> {
     run("out/own_mesh")
 }
 
-/// Writes a series into a folder.
-pub fn run(folder: &str) -> Result<(), Error> {
+/// The roller of a mesh file on the floor.
+pub fn scene(file: &str) -> Result<Scene, Error> {
     // physical surfaces and volumes of the file by their names
-    let (mesh, names) = read_named_gmsh(concat!(env!("CARGO_MANIFEST_DIR"), "/roller.msh"))?;
+    let (mesh, names) = read_named_gmsh(file)?;
     let (top, rim) = (names.surface("top")?, names.surface("rim")?);
     let rubber = Hooke::isotropic(5.0, 0.45)?;
     let materials = Materials::new(vec![(names.volume("roller")?, rubber)])?;
-    let (nodes, tets) = (mesh.points().len(), mesh.tets().len());
-    println!("{nodes} nodes, {tets} tetrahedra");
 
     let down = History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, 1.0)])?;
     let along = History::table(vec![(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)])?;
@@ -27,12 +25,18 @@ pub fn run(folder: &str) -> Result<(), Error> {
     // the floor is the half-space below z = 0
     let floor = Contact::half_space(rim, [0.0; 3], [0.0, 0.0, 1.0]);
     let steps = Analysis::quasistatic(1.0, 10);
-    let scene = Scene::new(mesh, materials)
+    Ok(Scene::new(mesh, materials)
         .with_support(press.with_motion([0.0, 0.0, -0.8], down))
         .with_support(drag.with_motion([0.4, 0.0, 0.0], along))
         .with_contact(floor.with_friction(Friction::coulomb(0.5)))
-        .with_analysis(steps.with_formula(DifferenceFormula::BACKWARD_EULER));
+        .with_analysis(steps.with_formula(DifferenceFormula::BACKWARD_EULER)))
+}
 
+/// Writes a series into a folder.
+pub fn run(folder: &str) -> Result<(), Error> {
+    let scene = scene(concat!(env!("CARGO_MANIFEST_DIR"), "/roller.msh"))?;
+    let (nodes, tets) = (scene.mesh().points().len(), scene.mesh().tets().len());
+    println!("{nodes} nodes, {tets} tetrahedra");
     let mut simulation = Simulation::new(scene, Settings::default())?;
     let mut writer = ResultWriter::new(folder, "roller").with_field(ResultField::Stress);
     println!("  t in s  touch  slide  normal in N  friction in N");

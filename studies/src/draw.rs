@@ -54,6 +54,7 @@ pub fn result(result: &StepResult, shown: Shown, eye: [f64; 3]) -> String {
         flat: false,
         scale,
         factor: 1.0,
+        unit: "",
     };
     picture(&style, &[panel])
 }

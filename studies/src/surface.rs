@@ -65,6 +65,8 @@ pub struct Style<'a> {
     pub scale: &'a str,
     /// From values to that unit.
     pub factor: f64,
+    /// Unit of length, with a space before it; empty where it is not known.
+    pub unit: &'a str,
 }
 
 /// One panel below the other, with one scale of colours and of lengths.
@@ -93,7 +95,7 @@ pub fn picture(style: &Style<'_>, panels: &[Panel<'_>]) -> String {
         shapes(&mut svg, &view, &panel.behind);
         surface(&mut svg, &view, style.flat, panel, &scale);
         shapes(&mut svg, &view, &panel.before);
-        axes(&mut svg, &view, [left + 12.0, top + panel_height - 24.0]);
+        axes(&mut svg, &view, style.unit, [left + 12.0, top + panel_height - 24.0]);
         scale.bar(&mut svg, [WIDTH - 84.0, top + above + 10.0], height - 10.0, style);
     }
     svg.finish()
@@ -192,7 +194,7 @@ fn surface(svg: &mut Svg, view: &View, flat: bool, panel: &Panel<'_>, scale: &Sc
 }
 
 /// Directions of the axes that are seen, and their length: a round one of 30 to 75 pixels.
-fn axes(svg: &mut Svg, view: &View, origin: [f64; 2]) {
+fn axes(svg: &mut Svg, view: &View, unit: &str, origin: [f64; 2]) {
     let length = round_step(30.0 / view.zoom);
     let local = View {
         origin,
@@ -210,7 +212,7 @@ fn axes(svg: &mut Svg, view: &View, origin: [f64; 2]) {
             svg.text([beyond(0) - 5.0, beyond(1) + 4.0], 12.0, &format!("x{}", axis + 1));
         }
     }
-    let note = format!("axes: {} m", number(length, length));
+    let note = format!("axes: {}{unit}", number(length, length));
     svg.text([origin[0] + view.zoom * length + 30.0, origin[1] + 12.0], 11.0, &note);
 }
 

@@ -93,6 +93,7 @@ fn deformed(snapshots: &[&Snapshot]) -> String {
         flat: false,
         scale: "|u| in mm",
         factor: 1e3,
+        unit: " m",
     };
     picture(&style, &panels)
 }
@@ -118,6 +119,7 @@ fn floor_map(snapshots: &[&Snapshot], values: &[Vec<f64>], unit: &str, factor: f
             flat: true,
             scale: unit,
             factor,
+            unit: " m",
         },
         &panels,
     )

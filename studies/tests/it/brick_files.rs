@@ -120,6 +120,7 @@ fn a_surface_of_ones_own_is_drawn() {
         flat: false,
         scale: "m",
         factor: 1.0,
+        unit: " m",
     };
     let text = picture(&style, &[panel.clone(), panel]);
     assert!(text.starts_with("<svg") && text.ends_with("</svg>\n") && !text.contains("NaN"));
