@@ -3,7 +3,7 @@
 
 use crate::common::*;
 use signorini_qp::{EqualityProjector, SymmetricOperator};
-use signorini_tfeti::internal::{InverseKind, SystemPart, on_ranks};
+use signorini_tfeti::internal::{ActiveSetFactor, InverseKind, SystemPart, on_ranks};
 use signorini_tfeti::{ActiveSetProjector, Communicator, InverseSettings, SetupReport, Tfeti, Traffic};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -117,20 +117,20 @@ fn message(system: &Tfeti) -> u64 {
 }
 
 /// What the default method asks of a system, of whole vectors or of the rank's part of them, which is completed. The
-/// largest number of exchanges of a call comes along.
-fn asked(system: &Tfeti, part: Option<&SystemPart>) -> (Vec<u64>, u64) {
-    let mut most = 0;
+/// exchanges of each call come along.
+fn asked(system: &Tfeti, part: Option<&SystemPart>, kind: ActiveSetFactor) -> (Vec<u64>, Vec<u64>) {
+    let mut exchanges = Vec::new();
     let (dual, coarse) = part.map_or((system.dual(), system.coarse()), |part| (part.dual(), part.coarse()));
     let take = |whole: &[f64]| part.map_or(whole.to_vec(), |part| part.take(whole));
     let contact = system.gluing().ranges().contact().end;
-    let mut space = ActiveSetProjector::new(coarse, contact, None).unwrap();
+    let mut space = ActiveSetProjector::with_factor(coarse, contact, None, kind).unwrap();
     let mut weights = vec![1.0; dual.dim()];
     weights[..contact].iter_mut().step_by(3).for_each(|w| *w = 0.0);
     space.set_weights(&weights).unwrap();
     let mut all = Vec::new();
     let mut before = system.traffic().exchanges;
     let mut tell = |found: &[f64]| {
-        most = most.max(system.traffic().exchanges - before);
+        exchanges.push(system.traffic().exchanges - before);
         let mut whole = vec![0.0; system.dual_dim()];
         match part {
             Some(part) if found.len() == dual.dim() => part.complete(found, &mut whole),
@@ -176,10 +176,13 @@ fn asked(system: &Tfeti, part: Option<&SystemPart>) -> (Vec<u64>, u64) {
     let mut alpha = vec![0.0; space.rows()];
     space.amplitudes(&x, &mut alpha);
     tell(&alpha);
-    (all.into_iter().map(f64::to_bits).collect(), most)
+    (all.into_iter().map(f64::to_bits).collect(), exchanges)
 }
 
-/// Parts of vectors, which are shorter, give the bits of whole ones, with one exchange a call and less in it.
+const KINDS: [ActiveSetFactor; 3] = [ActiveSetFactor::Auto, ActiveSetFactor::Split, ActiveSetFactor::Levels];
+
+/// Parts of vectors, which are shorter, give the bits of whole ones, with one exchange a call and less in it. Where the
+/// factor is spread a solve adds two exchanges, a model of it four.
 #[test]
 fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
     for (n, cells, perturbation, ranks) in [
@@ -192,21 +195,34 @@ fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
         let b = Brick::of(n, cells, perturbation);
         let plain = build(&b, InverseKind::Auto, true);
         assert!(plain.part().is_none(), "one process has whole vectors");
-        let expected = asked(&plain, None).0;
+        let expected = KINDS.map(|kind| asked(&plain, None, kind).0);
         let found = on_ranks(ranks, |c| {
             let system = system(&b, InverseKind::Auto, true, &c);
             let part = system.part().expect("nothing in the way");
-            let (bits, exchanges) = asked(&system, Some(&part));
+            let asked = KINDS.map(|kind| asked(&system, Some(&part), kind));
             let before = system.traffic().received;
             let x = vec![1.0; part.rows()];
             part.dual().apply(&x, &mut x.clone(), &mut part.dual().scratch());
             let received = system.traffic().received - before;
-            (bits, exchanges, part.rows(), received)
+            (asked, part.rows(), received)
         });
         for rank in found {
-            let (bits, exchanges, rows, received) = rank.expect("no panic");
+            let (asked, rows, received) = rank.expect("no panic");
+            for ((kind, expected), (bits, exchanges)) in KINDS.iter().zip(&expected).zip(asked) {
+                let what = format!("n = {n}, {ranks} ranks, {kind:?}");
+                assert!(bits == *expected, "{what}");
+                // small trees have no branches, nor has the sparse factor
+                let model = if *kind == ActiveSetFactor::Levels { 4 } else { 0 };
+                let spread = match (n, kind) {
+                    (4.., _) => 2,
+                    _ => 0,
+                };
+                let calls = [vec![1; 8], vec![1 + model + spread; 4], vec![1 + spread]].concat();
+                assert_eq!(exchanges[..13], calls, "{what}");
+                let rest = [1 + model + spread, spread, 1 + model + spread];
+                assert_eq!(exchanges[13..], rest, "{what}");
+            }
             let what = format!("n = {n}, {ranks} ranks");
-            assert!(bits == expected && exchanges == 1, "{what}: {exchanges} exchanges");
             assert!(rows <= plain.dual_dim());
             if n > 4 {
                 let (share, sent) = (
