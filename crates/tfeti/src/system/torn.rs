@@ -95,10 +95,11 @@ impl Tfeti {
         }
         let (mut list, mut pieces) = (Vec::new(), Vec::new());
         for (class, own) in self.classes().classes().iter().enumerate() {
-            for (k, members) in own.members.chunks(PANEL).enumerate() {
-                let rank = ownership.rank_of(class, k * PANEL);
+            for members in own.members.chunks(PANEL) {
+                let first = members[0] as usize;
+                let rank = self.torn_ranks.get(first).map_or(0, |rank| *rank as usize);
                 pieces.extend(members.iter().map(|&s| (rank, self.torn_range(s as usize))));
-                if rank != ownership.exchange.rank() {
+                if !self.is_here(first) {
                     continue;
                 }
                 let columns: Vec<&mut [f64]> = members.iter().filter_map(|&s| targets[s as usize].take()).collect();

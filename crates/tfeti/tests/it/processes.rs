@@ -44,9 +44,11 @@ fn all_bits(system: &Tfeti) -> Vec<u64> {
 
 #[test]
 fn any_number_of_ranks_computes_the_same_bits() {
-    // 192 translates in panels of 24, 24 different subdomains, 3 translates in one panel, of which four ranks are idle
+    // 192 translates in panels of 24, 81 in panels of 20 and 21, 24 different subdomains, 3 translates in one panel, of
+    // which four ranks are idle
     for (n, cells, perturbation, share, counts) in [
         (4, 2, 0.0, true, &[1, 2, 3, 4][..]),
+        (3, 2, 0.0, true, &[2, 3]),
         (2, 3, 0.0, false, &[2, 3]),
         (2, 2, 0.1, true, &[2, 4]),
         (1, 3, 0.0, true, &[5]),
