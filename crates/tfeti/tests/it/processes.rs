@@ -2,7 +2,7 @@
 //! product, of whole vectors or of the part that each rank keeps.
 
 use crate::common::*;
-use signorini_qp::{EqualityProjector, SymmetricOperator};
+use signorini_qp::{Equality, EqualityProjector, SymmetricOperator};
 use signorini_tfeti::internal::{ActiveSetFactor, InverseKind, SystemPart, on_ranks};
 use signorini_tfeti::{ActiveSetProjector, Communicator, InverseSettings, SetupReport, Tfeti, Traffic};
 use std::collections::BTreeSet;
@@ -236,6 +236,54 @@ fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
                     "{what}: {share} of the rows, {sent} of the bytes"
                 );
             }
+        }
+    }
+}
+
+/// Of a factor that is spread a rank holds its branches and the top. That of methods without active sets gives the bits of
+/// one process, too: a half solve tells sums and unknowns, a transposed one unknowns.
+#[test]
+fn ranks_hold_their_branches_of_a_factor() {
+    let changing = Brick::of(5, 1, 0.0);
+    let held = |system: &Tfeti| {
+        let contact = system.gluing().ranges().contact().end;
+        let kind = ActiveSetFactor::Split;
+        let space = ActiveSetProjector::with_factor(system.coarse(), contact, None, kind).unwrap();
+        (space.factor().held(), space.factor().stored())
+    };
+    let (whole, stored) = held(&build(&changing, InverseKind::Auto, true));
+    assert_eq!(whole, stored);
+    for (ranks, most) in [(2, 0.55), (4, 0.55)] {
+        let found = on_ranks(ranks, |c| held(&system(&changing, InverseKind::Auto, true, &c)));
+        for (held, counted) in found.into_iter().map(|rank| rank.expect("no panic")) {
+            assert_eq!(counted, stored, "all ranks together");
+            let share = held as f64 / whole as f64;
+            assert!(share < most, "{ranks} ranks: {share}");
+        }
+    }
+    let steady = Brick::of(8, 1, 0.0);
+    let asked = |system: &Tfeti| {
+        let rows = system.coarse_factor().unwrap().orthonormal().expect("regular");
+        let (x, e, mut memory) = (
+            noise(system.dual_dim(), 5),
+            noise(system.coarse().rows(), 6),
+            rows.scratch(),
+        );
+        let (mut c, mut alpha, mut along) = (e.clone(), e.clone(), x.clone());
+        let before = system.traffic().exchanges;
+        rows.apply(&x, &mut c, &mut memory);
+        let halfway = system.traffic().exchanges;
+        rows.amplitudes(&e, &mut alpha, &mut memory);
+        let told = [halfway - before, system.traffic().exchanges - halfway];
+        rows.factor().project(&mut along, Some(&e), &mut memory);
+        let all = [c, alpha, along].concat();
+        (all.into_iter().map(f64::to_bits).collect::<Vec<u64>>(), told)
+    };
+    let expected = asked(&build(&steady, InverseKind::Auto, true)).0;
+    for ranks in [2, 3] {
+        for rank in on_ranks(ranks, |c| asked(&system(&steady, InverseKind::Auto, true, &c))) {
+            let (bits, told) = rank.expect("no panic");
+            assert!(bits == expected && told == [2, 1], "{ranks} ranks: {told:?}");
         }
     }
 }

@@ -190,6 +190,17 @@ impl SplitBase {
         self.stored
     }
 
+    /// Numbers that this process holds of a factor.
+    pub(crate) fn held(&self, factor: &SplitFactor) -> usize {
+        let mut known: HashSet<*const Tiles> = HashSet::new();
+        let own = self
+            .pieces
+            .iter()
+            .filter(|piece| known.insert(Arc::as_ptr(&piece.tiles)));
+        let tiles = own.map(|piece| &*piece.tiles).chain(&factor.tiles);
+        tiles.map(Tiles::numbers).sum::<usize>() + self.base.iter().map(Vec::len).sum::<usize>()
+    }
+
     fn count_stored(&self) -> usize {
         // equal regions share theirs
         let mut known: HashSet<*const Tiles> = HashSet::new();
