@@ -107,6 +107,10 @@ pub(crate) const ROW: f64 = 2e-8;
 /// make the matrix up to twice its diagonal blocks.
 pub(crate) const SWEEPS: usize = 3;
 pub(crate) const RELAXED: f64 = 0.9;
+/// Least subdomains that a thread measures at a time.
+pub(crate) const SUBDOMAINS: usize = 16;
+/// Most branches of a coarse factor on a rank.
+pub(crate) const BRANCHES: usize = 4;
 /// Equal regions of a coarse factor from which on they are solved together.
 pub(crate) const TOGETHER: usize = 3;
 /// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.

@@ -56,20 +56,25 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
     let mut out = vec![Sizes::default(); bodies.count().max(1)];
     // where nothing moves, what its load would do to a single node is the scale
     let copies = model.copies();
-    for subdomain in 0..model.tfeti.subdomains() {
-        let own = &mut out[bodies.of_subdomain(subdomain)];
+    let of_subdomains = model.tfeti.of_subdomains(|subdomain| {
         let range = model.tfeti.torn_range(subdomain);
-        for (k, f) in m.force[range.clone()].chunks_exact(3).enumerate() {
-            let alone = vector::max_abs(f) / copies.weight(range.start / 3 + k);
-            own.displacement = own.displacement.max(alone);
+        let (u, force, residual) = (&m.u[range.clone()], &m.force[range.clone()], &m.residual[range.clone()]);
+        let (mut displacement, mut stiff) = (vector::max_abs(u), 0.0);
+        let nodes = force.chunks_exact(3).zip(u.chunks_exact(3));
+        for ((f, u), copy) in nodes.zip(range.start / 3..) {
+            let stiffness = copies.weight(copy);
+            displacement = displacement.max(vector::max_abs(f) / stiffness);
+            stiff += stiffness * stiffness * vector::dot(u, u);
         }
-        for (k, u) in m.u[range.clone()].chunks_exact(3).enumerate() {
-            let stiffness = copies.weight(range.start / 3 + k);
-            own.stiff += stiffness * stiffness * vector::dot(u, u);
-        }
-        own.displacement = own.displacement.max(vector::max_abs(&m.u[range.clone()]));
-        own.residual += vector::dot(&m.residual[range.clone()], &m.residual[range.clone()]);
-        own.forces += vector::dot(&m.force[range.clone()], &m.force[range]);
+        let [residual, force] = [residual, force].map(|v| vector::dot(v, v));
+        [displacement, stiff, residual, force]
+    });
+    for (subdomain, [displacement, stiff, residual, force]) in of_subdomains.into_iter().enumerate() {
+        let own = &mut out[bodies.of_subdomain(subdomain)];
+        own.displacement = own.displacement.max(displacement);
+        own.stiff += stiff;
+        own.residual += residual;
+        own.forces += force;
     }
     for point in &model.points {
         let mut sum = (point.scale * lambda[point.row]).powi(2);

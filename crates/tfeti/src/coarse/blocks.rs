@@ -6,6 +6,7 @@ use crate::tolerances::BLOCKS;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Numbers of a block: six columns, each as long as a register.
 pub(crate) const BLOCK: usize = 6 * LANES;
@@ -65,11 +66,16 @@ impl BlockTable {
         self.columns.len()
     }
 
-    /// `y = y - A x`.
-    pub(crate) fn subtract(&self, numbers: &[f64], x: &[f64], y: &mut [f64]) {
-        let chunks = y.par_chunks_mut(6 * BLOCKS).enumerate();
+    /// Columns of the blocks of some rows.
+    pub(crate) fn columns(&self, rows: Range<usize>) -> &[u32] {
+        &self.columns[self.pointers[rows.start] as usize..self.pointers[rows.end] as usize]
+    }
+
+    /// `y = y - A x` on some rows of blocks.
+    pub(crate) fn subtract(&self, numbers: &[f64], rows: Range<usize>, x: &[f64], y: &mut [f64]) {
+        let chunks = y[6 * rows.start..6 * rows.end].par_chunks_mut(6 * BLOCKS).enumerate();
         chunks.for_each(|(k, y)| {
-            let pointers = &self.pointers[k * BLOCKS..][..=y.len() / 6];
+            let pointers = &self.pointers[rows.start + k * BLOCKS..][..=y.len() / 6];
             Arch::new().dispatch(Subtract {
                 table: self,
                 pointers,

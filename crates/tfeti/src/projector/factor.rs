@@ -115,12 +115,21 @@ impl CoarseFactor {
         }
     }
 
-    /// Numbers stored.
+    /// Numbers stored, by all processes together.
     pub fn stored(&self) -> usize {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.stored(),
             Factor::Split(base, _) => base.stored(),
             Factor::Model(model, _) => model.stored(),
+        }
+    }
+
+    /// Numbers that this process holds: of several each holds its branches and what is around them.
+    #[doc(hidden)]
+    pub fn held(&self) -> usize {
+        match &self.0.factor {
+            Factor::Split(base, factor) => base.held(factor),
+            _ => self.stored(),
         }
     }
 

@@ -12,6 +12,7 @@ use crate::coarse::matrix::ModeTable;
 use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
+use crate::processes::exchange::Exchange;
 use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::model::Model;
 use crate::projector::split::factor::{Fronts, SplitBase};
@@ -72,9 +73,18 @@ impl Coarse {
             }
         }
         let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
-        SplitBase::new(tree, &data.matrix, &graph, &values, rows, &write, false)
-            .ok()
-            .map(|base| Bases::One(Arc::new(base)))
+        SplitBase::new(
+            tree,
+            &data.matrix,
+            &graph,
+            &values,
+            rows,
+            &write,
+            false,
+            Some(self.exchange()),
+        )
+        .ok()
+        .map(|base| Bases::One(Arc::new(base)))
     }
 
     /// The bases by two levels, if they exist.
@@ -90,12 +100,23 @@ impl Coarse {
         let (mobility, matrix) = (&data.mobility, &data.matrix);
         let grid = grid_of(mobility.centres());
         let clusters = Clusters::new(mobility, &data.subdomains, grid.as_deref());
-        let model = Model::new(clusters, (&data.gluing, modes), (matrix, values), changing, rows)?;
+        let model = Model::new(
+            clusters,
+            (&data.gluing, modes),
+            (matrix, values),
+            changing,
+            rows,
+            self.exchange(),
+        )?;
         let mut values = values.to_vec();
         data.hold(&free, &mut values);
         let always = self.fixed_base(graph, &values)?;
         let model = Arc::new(model);
         Some(Bases::Levels { model, always, free })
+    }
+
+    fn exchange(&self) -> &Arc<Exchange> {
+        &self.0.subdomains.ownership.exchange
     }
 
     /// The factor of the matrix with these values, in which nothing changes: equal regions are stored once.
@@ -104,7 +125,16 @@ impl Coarse {
         let centres = data.mobility.centres();
         let nothing = vec![false; graph.len()];
         let tree = CoarseTree::new(graph, centres, &nothing, 0, grid_of(centres).as_deref()).ok()?;
-        let base = SplitBase::new(tree, &data.matrix, graph, values, 0, &|_, _| {}, true);
+        let base = SplitBase::new(
+            tree,
+            &data.matrix,
+            graph,
+            values,
+            0,
+            &|_, _| {},
+            true,
+            Some(self.exchange()),
+        );
         base.ok().map(Arc::new)
     }
 

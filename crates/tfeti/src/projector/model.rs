@@ -9,6 +9,7 @@ use crate::coarse::blocks::{BLOCK, BlockTable, table_of};
 use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::{Block, CoarseMatrix, ModeTable};
 use crate::linalg::tiles::{Digits, LANES};
+use crate::processes::exchange::Exchange;
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::{ContactTerms, ContactWeights};
 use crate::projector::split::order::grid_of;
@@ -17,6 +18,8 @@ use crate::rows::gluing::Gluing;
 use crate::tolerances::{RELAXED, SWEEPS};
 use nalgebra::Matrix6;
 use signorini_qp::internal::LineWeight;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// What does not depend on the weights of contact rows.
 #[derive(Debug)]
@@ -29,9 +32,98 @@ pub(super) struct Model {
     inverses: Vec<Block>,
     contact: ContactTerms,
     table: BlockTable,
+    spread: Spread,
     /// Subdomains with contact rows, and the places of their diagonal blocks.
     touching: Vec<(u32, u32)>,
     diagonal: Vec<Block>,
+}
+
+/// Which process sweeps over which subdomains.
+#[derive(Debug)]
+struct Spread {
+    exchange: Arc<Exchange>,
+    /// Subdomains of each rank.
+    rows: Vec<Range<usize>>,
+    /// By rank: those of them that others read, and their numbers in the message of all.
+    told: Vec<Vec<u32>>,
+    parts: Vec<Range<usize>>,
+}
+
+impl Spread {
+    /// Rows of these tables, as many on each rank.
+    fn new(exchange: &Arc<Exchange>, tables: [&BlockTable; 2], count: usize) -> Self {
+        let ranks = exchange.ranks();
+        let rows: Vec<Range<usize>> = (0..ranks).map(|r| count * r / ranks..count * (r + 1) / ranks).collect();
+        let mut read = vec![false; count];
+        for own in rows.iter().filter(|_| ranks > 1) {
+            let columns = tables.iter().flat_map(|table| table.columns(own.clone()));
+            let others = columns.map(|&s| s as usize).filter(|s| !own.contains(s));
+            others.for_each(|s| read[s] = true);
+        }
+        let told = |own: &Range<usize>| own.clone().filter(|&s| read[s]).map(|s| s as u32).collect();
+        let told: Vec<Vec<u32>> = rows.iter().map(told).collect();
+        let mut end = 0;
+        let part = |list: &Vec<u32>| {
+            end += 6 * list.len();
+            end - 6 * list.len()..end
+        };
+        Self {
+            parts: told.iter().map(part).collect(),
+            exchange: exchange.clone(),
+            rows,
+            told,
+        }
+    }
+
+    /// Subdomains of this rank.
+    fn own(&self) -> Range<usize> {
+        self.rows[self.exchange.rank()].clone()
+    }
+
+    /// Length of the longest message.
+    fn message(&self) -> usize {
+        match self.rows.len() {
+            1 => 0,
+            _ => 12 * self.rows.last().map_or(0, |rows| rows.end),
+        }
+    }
+
+    /// Brings what other ranks read of a vector to them.
+    fn tell(&self, x: &mut [f64], message: &mut [f64]) {
+        if self.rows.len() == 1 {
+            return;
+        }
+        let (x, message) = (x.as_chunks_mut::<6>().0, message.as_chunks_mut::<6>().0);
+        let rank = self.exchange.rank();
+        let places = |r: usize| (self.parts[r].start / 6..).zip(self.told[r].iter().map(|&s| s as usize));
+        places(rank).for_each(|(k, s)| message[k] = x[s]);
+        self.exchange.gather(message.as_flattened_mut(), &self.parts);
+        let others = (0..self.rows.len()).filter(|&r| r != rank);
+        others.flat_map(places).for_each(|(k, s)| x[s] = message[k]);
+    }
+
+    /// Completes two vectors.
+    fn complete(&self, vectors: [&mut [f64]; 2], message: &mut [f64]) {
+        if self.rows.len() == 1 {
+            return;
+        }
+        let rank = self.exchange.rank();
+        let parts: Vec<Range<usize>> = self.rows.iter().map(|r| 12 * r.start..12 * r.end).collect();
+        let places = |r: usize, k: usize| {
+            let (length, first) = (6 * self.rows[r].len(), parts[r].start);
+            first + k * length..first + (k + 1) * length
+        };
+        let unknowns = |r: usize| 6 * self.rows[r].start..6 * self.rows[r].end;
+        for (k, x) in vectors.iter().enumerate() {
+            message[places(rank, k)].copy_from_slice(&x[unknowns(rank)]);
+        }
+        self.exchange.gather(message, &parts);
+        for (k, x) in vectors.into_iter().enumerate() {
+            for r in (0..self.rows.len()).filter(|&r| r != rank) {
+                x[unknowns(r)].copy_from_slice(&message[places(r, k)]);
+            }
+        }
+    }
 }
 
 /// What follows the weights.
@@ -45,13 +137,15 @@ pub(super) struct ModelFactor {
 }
 
 impl Model {
-    /// With the leading contact `rows`; `values` are those of the matrix without them.
+    /// With the leading contact `rows`; `values` are those of the matrix without them. The processes of an `exchange`
+    /// sweep over their part of the subdomains each.
     pub(super) fn new(
         clusters: Clusters,
         (gluing, modes): (&Gluing, &ModeTable<'_>),
         (matrix, values): (&CoarseMatrix, &[f64]),
         changing: &[bool],
         rows: usize,
+        exchange: &Arc<Exchange>,
     ) -> Option<Self> {
         let of_row = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
         let on_clusters = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| {
@@ -62,7 +156,7 @@ impl Model {
         let (sums, sum_values) = clusters.matrix(matrix, values);
         let (graph, grid) = (sums.graph(), grid_of(clusters.centres()));
         let tree = cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing), grid.as_deref())?;
-        let of_clusters = SplitBase::new(tree, &sums, &graph, &sum_values, rows, &on_clusters, true).ok()?;
+        let of_clusters = SplitBase::new(tree, &sums, &graph, &sum_values, rows, &on_clusters, true, None).ok()?;
         let mut partners: Vec<Vec<u32>> = vec![Vec::new(); changing.len()];
         let mut row = Vec::new();
         for nodal in 0..rows {
@@ -98,9 +192,11 @@ impl Model {
         });
         let touching = (0..changing.len() as u32).filter(|&s| !partners[s as usize].is_empty());
         let touching: Vec<(u32, u32)> = touching.map(|s| (s, place(s, s))).collect();
+        let steady = table_of(matrix, changing.len(), values);
         Some(Self {
             of_clusters,
-            steady: table_of(matrix, changing.len(), values),
+            spread: Spread::new(exchange, [&steady.0, &table], changing.len()),
+            steady,
             inverses: blocks.iter().map(relaxed).collect(),
             contact,
             table,
@@ -145,7 +241,8 @@ impl Model {
 
     /// Length of the work memory of a solve.
     pub(super) fn work(&self) -> usize {
-        6 * (self.clusters.count() + 2 * self.inverses.len()) + self.of_clusters.work()
+        let vectors = 6 * (self.clusters.count() + 2 * self.inverses.len());
+        vectors + self.of_clusters.work() + self.spread.message()
     }
 
     /// `y = N y`.
@@ -153,6 +250,9 @@ impl Model {
         let (sums, work) = work.split_at_mut(6 * self.clusters.count());
         let (rest, work) = work.split_at_mut(y.len());
         let (step, work) = work.split_at_mut(y.len());
+        let (work, message) = work.split_at_mut(self.of_clusters.work());
+        let own = self.spread.own();
+        let unknowns = 6 * own.start..6 * own.end;
         rest.copy_from_slice(y);
         let cluster = |rest: &[f64], step: &mut [f64], sums: &mut [f64], work: &mut [f64]| {
             self.clusters.restrict(rest, sums);
@@ -160,29 +260,33 @@ impl Model {
             self.clusters.prolong(sums, step);
         };
         cluster(rest, y, sums, work);
-        self.subtract(factor, y, rest);
+        self.subtract(factor, own.clone(), y, rest);
         for _ in 0..SWEEPS {
-            self.relax(factor, rest, step);
-            y.iter_mut().zip(&*step).for_each(|(y, s)| *y += s);
-            self.subtract(factor, step, rest);
+            self.relax(factor, own.clone(), rest, step);
+            let both = y[unknowns.clone()].iter_mut().zip(&step[unknowns.clone()]);
+            both.for_each(|(y, s)| *y += s);
+            self.spread.tell(step, message);
+            self.subtract(factor, own.clone(), step, rest);
         }
+        self.spread.complete([y, rest], message);
         cluster(rest, step, sums, work);
         y.iter_mut().zip(&*step).for_each(|(y, s)| *y += s);
     }
 
-    /// `y = y - G W G^T x`.
-    fn subtract(&self, factor: &ModelFactor, x: &[f64], y: &mut [f64]) {
-        self.steady.0.subtract(&self.steady.1, x, y);
-        self.table.subtract(&factor.contact, x, y);
+    /// `y = y - G W G^T x` on some subdomains.
+    fn subtract(&self, factor: &ModelFactor, own: Range<usize>, x: &[f64], y: &mut [f64]) {
+        self.steady.0.subtract(&self.steady.1, own.clone(), x, y);
+        self.table.subtract(&factor.contact, own, x, y);
     }
 
-    /// `out = J rest`.
-    fn relax(&self, factor: &ModelFactor, rest: &[f64], out: &mut [f64]) {
+    /// `out = J rest` on some subdomains.
+    fn relax(&self, factor: &ModelFactor, own: Range<usize>, rest: &[f64], out: &mut [f64]) {
         let (rest, (out, _)) = (rest.as_chunks::<6>().0, out.as_chunks_mut::<6>());
-        for ((rest, out), inverse) in rest.iter().zip(&mut *out).zip(&self.inverses) {
-            *out = times(inverse, rest);
+        for s in own.clone() {
+            out[s] = times(&self.inverses[s], &rest[s]);
         }
-        for ((s, _), inverse) in self.touching.iter().zip(&factor.inverses) {
+        let touching = self.touching.iter().zip(&factor.inverses);
+        for ((s, _), inverse) in touching.filter(|((s, _), _)| own.contains(&(*s as usize))) {
             out[*s as usize] = times(inverse, &rest[*s as usize]);
         }
     }

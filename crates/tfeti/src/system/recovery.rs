@@ -79,21 +79,35 @@ impl Tfeti {
     /// # Panics
     /// If a vector is too short.
     pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
+        self.add_some_transposed(x, f, |_| true);
+    }
+
+    /// The same on the subdomains that are told.
+    fn add_some_transposed(&self, x: &[f64], f: &mut [f64], is_told: impl Fn(u32) -> bool) {
         let gluing = self.gluing();
         let interface = &x[gluing.ranges().interface.clone()];
         for (block, value) in interface.chunks_exact(3).enumerate() {
-            for e in gluing.block(block) {
+            for e in gluing.block(block).iter().filter(|e| is_told(e.subdomain)) {
                 let target = &mut f[self.place(e.subdomain, e.local)];
                 (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
             }
         }
         for nodal in 0..gluing.nodal_rows() {
             let value = x[gluing.nodal_row(nodal)];
-            for e in gluing.nodal(nodal) {
+            for e in gluing.nodal(nodal).iter().filter(|e| is_told(e.subdomain)) {
                 let target = &mut f[self.place(e.subdomain, e.local)];
                 (0..3).for_each(|c| target[c] += e.vector[c] * value);
             }
         }
+    }
+
+    /// `f + B^T lambda` where this process works.
+    fn loaded(&self, force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
+        let mut total = force.to_vec();
+        self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
+        Ok(total)
     }
 
     /// Sum of loads: `sum factor * force`.
@@ -113,18 +127,36 @@ impl Tfeti {
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
     pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.check("force", force, self.torn_dim())?;
-        self.check("multipliers", lambda, self.dual_dim())?;
+        self.displaced(&self.loaded(force, lambda)?, alpha)
+    }
+
+    fn displaced(&self, total: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
-        let mut total = force.to_vec();
-        self.add_rows_transposed(lambda, &mut total);
         let mut u = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(&total, &mut u);
+        self.generalised_inverse(total, &mut u);
         for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
             let range = self.torn_range(s);
             self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
         }
         Ok(u)
+    }
+
+    /// The displacement of [`recover`](Self::recover) and its residual, that of
+    /// [`equilibrium_residual`](Self::equilibrium_residual).
+    ///
+    /// # Errors
+    /// As these.
+    #[doc(hidden)]
+    pub fn recover_with_residual(
+        &self,
+        force: &[f64],
+        lambda: &[f64],
+        alpha: &[f64],
+    ) -> Result<[Vec<f64>; 2], TfetiError> {
+        let total = self.loaded(force, lambda)?;
+        let u = self.displaced(&total, alpha)?;
+        let residual = self.unbalanced(&u, &total)?;
+        Ok([u, residual])
     }
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
@@ -153,14 +185,13 @@ impl Tfeti {
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
     pub fn equilibrium_residual(&self, u: &[f64], force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
+        self.unbalanced(u, &self.loaded(force, lambda)?)
+    }
+
+    fn unbalanced(&self, u: &[f64], total: &[f64]) -> Result<Vec<f64>, TfetiError> {
         self.check("displacement", u, self.torn_dim())?;
-        self.check("force", force, self.torn_dim())?;
-        self.check("multipliers", lambda, self.dual_dim())?;
-        let mut known = force.to_vec();
-        self.add_rows_transposed(lambda, &mut known);
         let mut residual = vec![0.0; u.len()];
-        self.stiffness_times(u, &mut residual);
-        signorini_qp::vector::subtract(&known, &mut residual);
+        self.stiffness_less(u, Some(total), &mut residual);
         Ok(residual)
     }
 

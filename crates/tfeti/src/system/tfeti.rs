@@ -13,6 +13,8 @@ use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::matrices::Subdomains;
 use crate::system::report::SetupReport;
+use crate::tolerances::{PANEL, SUBDOMAINS};
+use rayon::prelude::*;
 use signorini_fem_mesh::Decomposition;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -38,6 +40,8 @@ pub struct Tfeti {
     factor: OnceLock<CoarseFactor>,
     report: SetupReport,
     stiffness: CopyStiffness,
+    /// Rank that works on the part of torn vectors of each subdomain; empty of one process.
+    pub(super) torn_ranks: Vec<u32>,
     /// First unknown of each subdomain in torn vectors, and their length.
     offsets: Vec<usize>,
     /// Mesh node of each node copy, in torn order.
@@ -61,7 +65,17 @@ impl Tfeti {
             offsets.push(3 * node_of.len());
         }
         let nodes = decomposition.nodes();
+        let (classes, ownership) = (&parts.subdomains.classes, &parts.subdomains.ownership);
+        // some members of a class at a time, cut otherwise than panels
+        let rank = |s: usize| {
+            let (class, member) = classes.place(s);
+            ownership.rank_of(class, member / PANEL * PANEL) as u32
+        };
+        let spread = ownership.exchange.ranks() > 1;
         Self {
+            torn_ranks: (0..if spread { parts.subdomains.count() } else { 0 })
+                .map(rank)
+                .collect(),
             parts,
             dual,
             coarse,
@@ -131,6 +145,29 @@ impl Tfeti {
     pub fn rank_of(&self, subdomain: usize) -> usize {
         let (class, member) = self.classes().place(subdomain);
         self.parts.subdomains.ownership.rank_of(class, member)
+    }
+
+    /// Whether this process works on the part of torn vectors of a subdomain.
+    pub(super) fn is_here(&self, subdomain: usize) -> bool {
+        let rank = self.torn_ranks.get(subdomain);
+        rank.is_none_or(|rank| *rank as usize == self.exchange().rank())
+    }
+
+    /// What is measured of torn vectors, subdomain by subdomain, each by the process that works on it; one exchange.
+    #[doc(hidden)]
+    pub fn of_subdomains<const K: usize>(&self, measure: impl Fn(usize) -> [f64; K] + Sync) -> Vec<[f64; K]> {
+        let mut out = vec![[0.0; K]; self.subdomains()];
+        let own = out.par_iter_mut().with_min_len(SUBDOMAINS).enumerate();
+        own.filter(|(s, _)| self.is_here(*s))
+            .for_each(|(s, own)| *own = measure(s));
+        let mut at = 0;
+        let piece = |same: &[u32]| {
+            at += K * same.len();
+            (same[0] as usize, at - K * same.len()..at)
+        };
+        let pieces: Vec<_> = self.torn_ranks.chunk_by(|a, b| a == b).map(piece).collect();
+        self.exchange().complete(out.as_flattened_mut(), &pieces);
+        out
     }
 
     /// What this process has exchanged with those that solve the problem with it.

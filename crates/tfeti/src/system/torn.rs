@@ -13,7 +13,18 @@ impl Tfeti {
     /// # Panics
     /// If the vectors are shorter than [`torn_dim`](Self::torn_dim).
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
+        self.stiffness_less(x, None, y);
+    }
+
+    /// `y = K x - f`; of `f` only what belongs to subdomains of this process is read.
+    pub(super) fn stiffness_less(&self, x: &[f64], f: Option<&[f64]>, y: &mut [f64]) {
         let parts = &self.parts;
+        let less = |s: u32, y: &mut [f64]| {
+            if let Some(f) = f {
+                let own = &f[self.torn_range(s as usize)];
+                y.iter_mut().zip(own).for_each(|(y, f)| *y -= f);
+            }
+        };
         self.by_class(y, |class, members, columns| {
             let Some(base) = parts.subdomains.held(class) else {
                 return;
@@ -26,6 +37,7 @@ impl Tfeti {
                         let (rows, values) = base.stiffness.column(j);
                         *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
                     }
+                    less(s, y);
                 }
                 return;
             }
@@ -38,9 +50,10 @@ impl Tfeti {
                 x.iter().enumerate().for_each(|(i, v)| panel[i * count + m] = *v);
             }
             blocks.apply(&panel, &mut product, count);
-            for (m, y) in columns.into_iter().enumerate() {
+            for ((m, &s), y) in members.iter().enumerate().zip(columns) {
                 let values = product.iter().skip(m).step_by(count);
                 y.iter_mut().zip(values).for_each(|(y, v)| *y = *v);
+                less(s, y);
             }
         });
     }
@@ -82,10 +95,11 @@ impl Tfeti {
         }
         let (mut list, mut pieces) = (Vec::new(), Vec::new());
         for (class, own) in self.classes().classes().iter().enumerate() {
-            for (k, members) in own.members.chunks(PANEL).enumerate() {
-                let rank = ownership.rank_of(class, k * PANEL);
+            for members in own.members.chunks(PANEL) {
+                let first = members[0] as usize;
+                let rank = self.torn_ranks.get(first).map_or(0, |rank| *rank as usize);
                 pieces.extend(members.iter().map(|&s| (rank, self.torn_range(s as usize))));
-                if rank != ownership.exchange.rank() {
+                if !self.is_here(first) {
                     continue;
                 }
                 let columns: Vec<&mut [f64]> = members.iter().filter_map(|&s| targets[s as usize].take()).collect();

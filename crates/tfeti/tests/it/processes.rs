@@ -2,8 +2,8 @@
 //! product, of whole vectors or of the part that each rank keeps.
 
 use crate::common::*;
-use signorini_qp::{EqualityProjector, SymmetricOperator};
-use signorini_tfeti::internal::{InverseKind, SystemPart, on_ranks};
+use signorini_qp::{Equality, EqualityProjector, SymmetricOperator};
+use signorini_tfeti::internal::{ActiveSetFactor, InverseKind, SystemPart, on_ranks};
 use signorini_tfeti::{ActiveSetProjector, Communicator, InverseSettings, SetupReport, Tfeti, Traffic};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -44,9 +44,11 @@ fn all_bits(system: &Tfeti) -> Vec<u64> {
 
 #[test]
 fn any_number_of_ranks_computes_the_same_bits() {
-    // 192 translates in panels of 24, 24 different subdomains, 3 translates in one panel, of which four ranks are idle
+    // 192 translates in panels of 24, 81 in panels of 20 and 21, 24 different subdomains, 3 translates in one panel, of
+    // which four ranks are idle
     for (n, cells, perturbation, share, counts) in [
         (4, 2, 0.0, true, &[1, 2, 3, 4][..]),
+        (3, 2, 0.0, true, &[2, 3]),
         (2, 3, 0.0, false, &[2, 3]),
         (2, 2, 0.1, true, &[2, 4]),
         (1, 3, 0.0, true, &[5]),
@@ -117,20 +119,20 @@ fn message(system: &Tfeti) -> u64 {
 }
 
 /// What the default method asks of a system, of whole vectors or of the rank's part of them, which is completed. The
-/// largest number of exchanges of a call comes along.
-fn asked(system: &Tfeti, part: Option<&SystemPart>) -> (Vec<u64>, u64) {
-    let mut most = 0;
+/// exchanges of each call come along.
+fn asked(system: &Tfeti, part: Option<&SystemPart>, kind: ActiveSetFactor) -> (Vec<u64>, Vec<u64>) {
+    let mut exchanges = Vec::new();
     let (dual, coarse) = part.map_or((system.dual(), system.coarse()), |part| (part.dual(), part.coarse()));
     let take = |whole: &[f64]| part.map_or(whole.to_vec(), |part| part.take(whole));
     let contact = system.gluing().ranges().contact().end;
-    let mut space = ActiveSetProjector::new(coarse, contact, None).unwrap();
+    let mut space = ActiveSetProjector::with_factor(coarse, contact, None, kind).unwrap();
     let mut weights = vec![1.0; dual.dim()];
     weights[..contact].iter_mut().step_by(3).for_each(|w| *w = 0.0);
     space.set_weights(&weights).unwrap();
     let mut all = Vec::new();
     let mut before = system.traffic().exchanges;
     let mut tell = |found: &[f64]| {
-        most = most.max(system.traffic().exchanges - before);
+        exchanges.push(system.traffic().exchanges - before);
         let mut whole = vec![0.0; system.dual_dim()];
         match part {
             Some(part) if found.len() == dual.dim() => part.complete(found, &mut whole),
@@ -176,10 +178,13 @@ fn asked(system: &Tfeti, part: Option<&SystemPart>) -> (Vec<u64>, u64) {
     let mut alpha = vec![0.0; space.rows()];
     space.amplitudes(&x, &mut alpha);
     tell(&alpha);
-    (all.into_iter().map(f64::to_bits).collect(), most)
+    (all.into_iter().map(f64::to_bits).collect(), exchanges)
 }
 
-/// Parts of vectors, which are shorter, give the bits of whole ones, with one exchange a call and less in it.
+const KINDS: [ActiveSetFactor; 3] = [ActiveSetFactor::Auto, ActiveSetFactor::Split, ActiveSetFactor::Levels];
+
+/// Parts of vectors, which are shorter, give the bits of whole ones, with one exchange a call and less in it. Where the
+/// factor is spread a solve adds two exchanges, a model of it four.
 #[test]
 fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
     for (n, cells, perturbation, ranks) in [
@@ -192,21 +197,34 @@ fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
         let b = Brick::of(n, cells, perturbation);
         let plain = build(&b, InverseKind::Auto, true);
         assert!(plain.part().is_none(), "one process has whole vectors");
-        let expected = asked(&plain, None).0;
+        let expected = KINDS.map(|kind| asked(&plain, None, kind).0);
         let found = on_ranks(ranks, |c| {
             let system = system(&b, InverseKind::Auto, true, &c);
             let part = system.part().expect("nothing in the way");
-            let (bits, exchanges) = asked(&system, Some(&part));
+            let asked = KINDS.map(|kind| asked(&system, Some(&part), kind));
             let before = system.traffic().received;
             let x = vec![1.0; part.rows()];
             part.dual().apply(&x, &mut x.clone(), &mut part.dual().scratch());
             let received = system.traffic().received - before;
-            (bits, exchanges, part.rows(), received)
+            (asked, part.rows(), received)
         });
         for rank in found {
-            let (bits, exchanges, rows, received) = rank.expect("no panic");
+            let (asked, rows, received) = rank.expect("no panic");
+            for ((kind, expected), (bits, exchanges)) in KINDS.iter().zip(&expected).zip(asked) {
+                let what = format!("n = {n}, {ranks} ranks, {kind:?}");
+                assert!(bits == *expected, "{what}");
+                // small trees have no branches, nor has the sparse factor
+                let model = if *kind == ActiveSetFactor::Levels { 4 } else { 0 };
+                let spread = match (n, kind) {
+                    (4.., _) => 2,
+                    _ => 0,
+                };
+                let calls = [vec![1; 8], vec![1 + model + spread; 4], vec![1 + spread]].concat();
+                assert_eq!(exchanges[..13], calls, "{what}");
+                let rest = [1 + model + spread, spread, 1 + model + spread];
+                assert_eq!(exchanges[13..], rest, "{what}");
+            }
             let what = format!("n = {n}, {ranks} ranks");
-            assert!(bits == expected && exchanges == 1, "{what}: {exchanges} exchanges");
             assert!(rows <= plain.dual_dim());
             if n > 4 {
                 let (share, sent) = (
@@ -218,6 +236,54 @@ fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
                     "{what}: {share} of the rows, {sent} of the bytes"
                 );
             }
+        }
+    }
+}
+
+/// Of a factor that is spread a rank holds its branches and the top. That of methods without active sets gives the bits of
+/// one process, too: a half solve tells sums and unknowns, a transposed one unknowns.
+#[test]
+fn ranks_hold_their_branches_of_a_factor() {
+    let changing = Brick::of(5, 1, 0.0);
+    let held = |system: &Tfeti| {
+        let contact = system.gluing().ranges().contact().end;
+        let kind = ActiveSetFactor::Split;
+        let space = ActiveSetProjector::with_factor(system.coarse(), contact, None, kind).unwrap();
+        (space.factor().held(), space.factor().stored())
+    };
+    let (whole, stored) = held(&build(&changing, InverseKind::Auto, true));
+    assert_eq!(whole, stored);
+    for (ranks, most) in [(2, 0.55), (4, 0.55)] {
+        let found = on_ranks(ranks, |c| held(&system(&changing, InverseKind::Auto, true, &c)));
+        for (held, counted) in found.into_iter().map(|rank| rank.expect("no panic")) {
+            assert_eq!(counted, stored, "all ranks together");
+            let share = held as f64 / whole as f64;
+            assert!(share < most, "{ranks} ranks: {share}");
+        }
+    }
+    let steady = Brick::of(8, 1, 0.0);
+    let asked = |system: &Tfeti| {
+        let rows = system.coarse_factor().unwrap().orthonormal().expect("regular");
+        let (x, e, mut memory) = (
+            noise(system.dual_dim(), 5),
+            noise(system.coarse().rows(), 6),
+            rows.scratch(),
+        );
+        let (mut c, mut alpha, mut along) = (e.clone(), e.clone(), x.clone());
+        let before = system.traffic().exchanges;
+        rows.apply(&x, &mut c, &mut memory);
+        let halfway = system.traffic().exchanges;
+        rows.amplitudes(&e, &mut alpha, &mut memory);
+        let told = [halfway - before, system.traffic().exchanges - halfway];
+        rows.factor().project(&mut along, Some(&e), &mut memory);
+        let all = [c, alpha, along].concat();
+        (all.into_iter().map(f64::to_bits).collect::<Vec<u64>>(), told)
+    };
+    let expected = asked(&build(&steady, InverseKind::Auto, true)).0;
+    for ranks in [2, 3] {
+        for rank in on_ranks(ranks, |c| asked(&system(&steady, InverseKind::Auto, true, &c))) {
+            let (bits, told) = rank.expect("no panic");
+            assert!(bits == expected && told == [2, 1], "{ranks} ranks: {told:?}");
         }
     }
 }

@@ -27,6 +27,8 @@ pub(crate) struct Bunches {
 pub(super) struct Bunch {
     /// Equal regions.
     pub(super) regions: Vec<u32>,
+    /// The process whose branch they belong to; `None` if all work on them.
+    pub(super) rank: Option<u32>,
     /// Columns: those of a register, or one.
     pub(super) width: usize,
     /// Rows: own unknowns, and those behind.
@@ -43,8 +45,14 @@ impl Bunch {
 }
 
 impl Bunches {
-    /// For a tree whose region `r` equals the region `first[r]`; `buffer` is the length of that of a region's kernels.
-    pub(crate) fn new(tree: &CoarseTree, first: &[usize], buffer: impl Fn(usize) -> usize) -> Self {
+    /// For a tree whose region `r` equals the region `first[r]`; `buffer` is the length of that of a region's kernels,
+    /// `rank` the process of a region.
+    pub(crate) fn new(
+        tree: &CoarseTree,
+        first: &[usize],
+        buffer: impl Fn(usize) -> usize,
+        rank: impl Fn(usize) -> Option<u32>,
+    ) -> Self {
         let count = tree.regions.len();
         let (mut height, mut around) = (vec![0_usize; count], vec![None; count]);
         let mut families: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -64,27 +72,34 @@ impl Bunches {
                 .enumerate()
                 .filter(|(r, f)| height[*r] == h && !f.is_empty())
             {
-                let bunches = match family.len() < TOGETHER {
-                    true => family.len(),
-                    false => family.len().div_ceil(LANES),
-                };
-                for k in 0..bunches {
-                    let at = |k: usize| k * family.len() / bunches;
-                    let regions = family[at(k)..at(k + 1)].to_vec();
-                    (0..)
-                        .zip(&regions)
-                        .for_each(|(c, &r)| of[r as usize] = [all.len() as u32, c]);
-                    let width = if regions.len() == 1 { 1 } else { LANES };
-                    let (own, behind) = (6 * tree.regions[r].region.own.len(), 6 * tree.regions[r].behind.len());
-                    let length = (own + behind + buffer(r)) * width;
-                    all.push(Bunch {
-                        regions,
-                        width,
-                        own,
-                        behind,
-                        numbers: next..next + length,
-                    });
-                    next += length;
+                let together = family.len() >= TOGETHER;
+                let (own, behind) = (6 * tree.regions[r].region.own.len(), 6 * tree.regions[r].behind.len());
+                let mut sorted = family.clone();
+                sorted.sort_by_key(|&r| rank(r as usize));
+                for family in sorted.chunk_by(|a, b| rank(*a as usize) == rank(*b as usize)) {
+                    let bunches = if together {
+                        family.len().div_ceil(LANES)
+                    } else {
+                        family.len()
+                    };
+                    for k in 0..bunches {
+                        let at = |k: usize| k * family.len() / bunches;
+                        let regions = family[at(k)..at(k + 1)].to_vec();
+                        (0..)
+                            .zip(&regions)
+                            .for_each(|(c, &r)| of[r as usize] = [all.len() as u32, c]);
+                        let width = if together { LANES } else { 1 };
+                        let length = (own + behind + buffer(r)) * width;
+                        all.push(Bunch {
+                            rank: rank(regions[0] as usize),
+                            regions,
+                            width,
+                            own,
+                            behind,
+                            numbers: next..next + length,
+                        });
+                        next += length;
+                    }
                 }
             }
             heights.push(start..all.len());

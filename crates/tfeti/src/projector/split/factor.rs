@@ -9,7 +9,9 @@ use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
+use crate::processes::exchange::Exchange;
 use crate::projector::split::alike::Bunches;
+use crate::projector::split::branches::{Branches, Pass};
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
 use crate::projector::split::shared::{bits, share, shared_tiles};
@@ -31,6 +33,10 @@ pub(crate) struct SplitBase {
     contact: ContactTerms,
     /// Regions that are solved together, if equal ones are looked for.
     pub(super) bunches: Option<Bunches>,
+    /// Of several processes, if each has a branch.
+    pub(super) branches: Option<Branches>,
+    /// Numbers stored, by all processes together.
+    stored: usize,
     /// Leading rows whose weights change.
     rows: usize,
     /// Pivots up to this size count as zero.
@@ -67,7 +73,8 @@ pub(crate) struct Fronts(Vec<Front>);
 
 impl SplitBase {
     /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions
-    /// are stored once and solved together if it `shares` or nothing changes.
+    /// are stored once and solved together if it `shares` or nothing changes. Of the processes of an `exchange` each
+    /// has a branch of the tree.
     pub(crate) fn new(
         mut tree: CoarseTree,
         matrix: &CoarseMatrix,
@@ -76,6 +83,7 @@ impl SplitBase {
         contact: usize,
         write: &ContactRow<'_>,
         shares: bool,
+        exchange: Option<&Arc<Exchange>>,
     ) -> Result<Self, usize> {
         let steady = !tree.changes();
         let first = match steady {
@@ -95,6 +103,8 @@ impl SplitBase {
             pieces,
             contact: ContactTerms::new(tree.nodes.len(), contact, &|a, b| tree.front(a, b), write),
             bunches: None,
+            branches: exchange.and_then(|exchange| Branches::new(&tree, exchange)),
+            stored: 0,
             rows: contact,
             tree,
         };
@@ -105,6 +115,12 @@ impl SplitBase {
                 piece.tiles = tiles;
             }
             out.bunches = Some(out.bunch(&first));
+            out.stored = out.count_stored();
+            let branches = out.branches.as_ref();
+            let elsewhere = |r: usize| branches.is_some_and(|branches| !branches.is_here(r));
+            for (_, piece) in out.pieces.iter_mut().enumerate().filter(|(r, _)| elsewhere(*r)) {
+                piece.tiles = Arc::default();
+            }
             return Ok(out);
         }
         let mut fronts = vec![Front::default(); out.tree.nodes.len()];
@@ -121,7 +137,7 @@ impl SplitBase {
             changing: false,
             load: &load,
         };
-        work.grow(out.pieces.len().wrapping_sub(1), &mut fronts, &mut tiles)?;
+        work.run(&mut fronts, &mut tiles)?;
         out.base = fronts.into_iter().map(|f| f.columns).collect();
         for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
             piece.tiles = Arc::new(tiles);
@@ -135,6 +151,7 @@ impl SplitBase {
             }
             out.bunches = Some(out.bunch(&first));
         }
+        out.stored = out.count_stored();
         Ok(out)
     }
 
@@ -144,7 +161,8 @@ impl SplitBase {
             let piece = &self.pieces[r];
             piece.steady.buffer().max(piece.changing.buffer())
         };
-        Bunches::new(&self.tree, first, buffer)
+        let rank = |r: usize| self.branches.as_ref().and_then(|branches| branches.rank_of(r));
+        Bunches::new(&self.tree, first, buffer, rank)
     }
 
     /// Whether [`half_solve`](Self::half_solve) does something.
@@ -154,10 +172,12 @@ impl SplitBase {
 
     /// Length of the work memory of a solve.
     pub(crate) fn work(&self) -> usize {
-        match &self.bunches {
-            Some(bunches) => bunches.work(),
-            None => self.tree.dim() + self.pieces.last().map_or(0, |p| p.work),
-        }
+        let message = self.branches.as_ref().map_or(0, Branches::message);
+        message
+            + match &self.bunches {
+                Some(bunches) => bunches.work(),
+                None => self.tree.dim() + self.pieces.last().map_or(0, |p| p.work),
+            }
     }
 
     /// Leading rows whose weights change: others do not lead to blocks that change.
@@ -165,8 +185,23 @@ impl SplitBase {
         self.rows
     }
 
-    /// Numbers stored.
+    /// Numbers stored, by all processes together.
     pub(crate) fn stored(&self) -> usize {
+        self.stored
+    }
+
+    /// Numbers that this process holds of a factor.
+    pub(crate) fn held(&self, factor: &SplitFactor) -> usize {
+        let mut known: HashSet<*const Tiles> = HashSet::new();
+        let own = self
+            .pieces
+            .iter()
+            .filter(|piece| known.insert(Arc::as_ptr(&piece.tiles)));
+        let tiles = own.map(|piece| &*piece.tiles).chain(&factor.tiles);
+        tiles.map(Tiles::numbers).sum::<usize>() + self.base.iter().map(Vec::len).sum::<usize>()
+    }
+
+    fn count_stored(&self) -> usize {
         // equal regions share theirs
         let mut known: HashSet<*const Tiles> = HashSet::new();
         let pieces = self.pieces.iter();
@@ -184,6 +219,17 @@ impl SplitBase {
     /// Whether pairs of contact rows may stand in these lines.
     pub(crate) fn allows(&self, lines: &[LineWeight]) -> bool {
         self.contact.allow(lines)
+    }
+
+    /// Whether regions of a pass are within this one, and whether it is one.
+    pub(super) fn enters(&self, r: usize, pass: Option<Pass>) -> bool {
+        let both = self.branches.as_ref().zip(pass);
+        both.is_none_or(|(branches, pass)| branches.is_entered(r, pass))
+    }
+
+    pub(super) fn does(&self, r: usize, pass: Option<Pass>) -> bool {
+        let both = self.branches.as_ref().zip(pass);
+        both.is_none_or(|(branches, pass)| branches.is_done(branches.rank_of(r), pass))
     }
 
     /// Factor for other weights of the contact rows; reuses the memory of `old`.
@@ -211,7 +257,7 @@ impl SplitBase {
             changing: true,
             load: &load,
         };
-        work.grow(self.pieces.len().wrapping_sub(1), &mut fronts.0, &mut tiles)?;
+        work.run(&mut fronts.0, &mut tiles)?;
         Ok(SplitFactor { tiles })
     }
 }
@@ -252,10 +298,22 @@ struct Growth<'a, L: Fn(usize, &mut Front) + Sync> {
 }
 
 impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
-    /// Works on a region after those within. `fronts` and `tiles` are those of the regions within and its own.
-    fn grow(&self, r: usize, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
+    /// Works on all regions; of several processes on those of this one, and on what all work on.
+    fn run(&self, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
+        let root = self.base.pieces.len().wrapping_sub(1);
+        let Some(branches) = &self.base.branches else {
+            return self.grow(root, None, fronts, tiles);
+        };
+        let own = self.grow(root, Some(Pass::Branches), fronts, tiles);
+        branches.gather_updates(own, &self.base.tree, self.changing, fronts)?;
+        self.grow(root, Some(Pass::Top), fronts, tiles)
+    }
+
+    /// Works on a region after those within, as far as they belong to a `pass`. `fronts` and `tiles` are those of the
+    /// regions within and its own.
+    fn grow(&self, r: usize, pass: Option<Pass>, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
         let (tree, pieces) = (&self.base.tree, &self.base.pieces);
-        let Some(region) = tree.regions.get(r) else {
+        let Some(region) = tree.regions.get(r).filter(|_| self.base.enters(r, pass)) else {
             return Ok(());
         };
         if let Some([left, right]) = region.region.children {
@@ -265,9 +323,12 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
             let (s, rest) = tiles.split_at_mut(left + 1 - region.first_region);
             let t = &mut rest[..right - left];
             let worth = !self.changing || pieces[r].operations >= OPERATIONS;
-            let (a, b) = both(worth, || self.grow(left, a, s), || self.grow(right, b, t));
+            let (a, b) = both(worth, || self.grow(left, pass, a, s), || self.grow(right, pass, b, t));
             a?;
             b?;
+        }
+        if !self.base.does(r, pass) {
+            return Ok(());
         }
         let nodes = match self.changing {
             true => region.changing.clone(),

@@ -2,7 +2,8 @@
 //!
 //! Uses `linalg` and the matrix of `coarse`. `order` cuts the subdomains apart, `tree` groups blocks that are
 //! eliminated together, `fronts` knows what contact rows add, `factor` eliminates (a `front` at a time), `shared`
-//! eliminates equal regions once, `tiles` stores and `solve` solves, with equal regions together in `alike`.
+//! eliminates equal regions once, `tiles` stores and `solve` solves, with equal regions together in `alike`. Several
+//! processes have a branch of the tree each, in `branches`.
 //!
 //! Why not faer's: with faer's factor of the whole matrix, made anew at each change (8.9 times the time at n = 10), an
 //! iteration of the benchmark (F, lumped, both projectors, a sixth of a change of the active set) takes 1.13, 1.46 and
@@ -10,6 +11,7 @@
 //! n = 4 (F: 3.1 times); loops over groups of one shape are 10 to 15 % of that F. Ratios in one process, one thread.
 
 pub(crate) mod alike;
+pub(crate) mod branches;
 pub(crate) mod factor;
 pub(crate) mod front;
 pub(crate) mod fronts;

@@ -7,9 +7,11 @@
 use crate::linalg::both;
 use crate::linalg::tiles::{Digits, LANES, ShortTile, Tile};
 use crate::projector::split::alike::{Bunch, Bunches};
+use crate::projector::split::branches::{Branch, Pass};
 use crate::projector::split::factor::{SplitBase, SplitFactor};
 use crate::projector::split::tiles::Reads;
 use crate::tolerances::SOLVE_READS;
+use std::ops::Range;
 
 impl SplitBase {
     /// `y = (G W G^T)^-1 y`; `work` has the length [`SplitBase::work`] at least. If `changing`, `y` is zero but for
@@ -31,22 +33,78 @@ impl SplitBase {
         for (x, &block) in x.chunks_exact_mut(6).zip(&self.tree.blocks) {
             x.copy_from_slice(&y[6 * block as usize..][..6]);
         }
-        let rest = &mut rest[..self.pieces[root].work];
-        self.forward::<T>(root, factor, x, rest, changing);
-        self.backward::<T>(root, factor, x, rest);
+        let (rest, message) = rest.split_at_mut(self.pieces[root].work);
+        match &self.branches {
+            None => {
+                self.forward::<T>(root, None, factor, x, rest, changing);
+                self.backward::<T>(root, None, factor, x, rest);
+            }
+            Some(branches) => {
+                self.forward::<T>(root, Some(Pass::Branches), factor, x, rest, changing);
+                for branch in branches.of(true) {
+                    let sums = &rest[self.behind(branch)];
+                    message[branch.sums.clone()].copy_from_slice(sums);
+                }
+                branches.gather_sums(message);
+                for branch in branches.of(false) {
+                    rest[self.behind(branch)].copy_from_slice(&message[branch.sums.clone()]);
+                }
+                self.forward::<T>(root, Some(Pass::Top), factor, x, rest, changing);
+                self.backward::<T>(root, Some(Pass::Top), factor, x, rest);
+                self.backward::<T>(root, Some(Pass::Branches), factor, x, rest);
+            }
+        }
         for (x, &block) in x.chunks_exact(6).zip(&self.tree.blocks) {
             y[6 * block as usize..][..6].copy_from_slice(x);
+        }
+        self.complete(y, message);
+    }
+
+    /// The sums of a branch in the work memory, where the slots of the regions follow one another.
+    fn behind(&self, branch: &Branch) -> Range<usize> {
+        let start = self.pieces[..branch.root].iter().map(|piece| piece.slot).sum::<usize>();
+        start..start + branch.sums.len()
+    }
+
+    /// Several processes tell one another the unknowns of their branches.
+    fn complete(&self, y: &mut [f64], message: &mut [f64]) {
+        let Some(branches) = &self.branches else { return };
+        let (message, _) = message.as_chunks_mut::<6>();
+        let places = |branch: &Branch| {
+            let blocks = &self.tree.blocks[branch.blocks.clone()];
+            (branch.unknowns.start / 6..).zip(blocks.iter().map(|&block| 6 * block as usize))
+        };
+        for (k, start) in branches.of(true).flat_map(places) {
+            message[k].copy_from_slice(&y[start..start + 6]);
+        }
+        branches.gather_unknowns(message.as_flattened_mut());
+        for (k, start) in branches.of(false).flat_map(places) {
+            y[start..start + 6].copy_from_slice(&message[k]);
         }
     }
 
     /// Eliminates a region and those within; the sums for the blocks behind stand first in its slot of the memory. If
-    /// only blocks that are `changing` differ from zero, steady ones are left out.
-    fn forward<T: Reads>(&self, r: usize, factor: &SplitFactor, x: &mut [f64], work: &mut [f64], changing: bool) {
+    /// only blocks that are `changing` differ from zero, steady ones are left out. Only regions of the `pass` are.
+    fn forward<T: Reads>(
+        &self,
+        r: usize,
+        pass: Option<Pass>,
+        factor: &SplitFactor,
+        x: &mut [f64],
+        work: &mut [f64],
+        changing: bool,
+    ) {
+        if !self.enters(r, pass) {
+            return;
+        }
         let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
         let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
         let (work, slot) = work.split_at_mut(piece.work - piece.slot);
         let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
-        behind.fill(0.0);
+        let own_too = self.does(r, pass);
+        if own_too {
+            behind.fill(0.0);
+        }
         if changing && piece.is_steady {
             return;
         }
@@ -55,10 +113,10 @@ impl SplitBase {
             let (a, b) = work.split_at_mut(self.pieces[left].work);
             both(
                 piece.reads >= SOLVE_READS,
-                || self.forward::<T>(left, factor, x, a, changing),
-                || self.forward::<T>(right, factor, y, b, changing),
+                || self.forward::<T>(left, pass, factor, x, a, changing),
+                || self.forward::<T>(right, pass, factor, y, b, changing),
             );
-            for (child, memory) in [(left, &*a), (right, &*b)] {
+            for (child, memory) in [(left, &*a), (right, &*b)].into_iter().filter(|_| own_too) {
                 let sums = &memory[memory.len() - self.pieces[child].slot..];
                 let lift = &self.tree.regions[child].lift;
                 for (&place, sum) in lift.iter().zip(sums.chunks_exact(6)) {
@@ -73,24 +131,34 @@ impl SplitBase {
                 }
             }
         }
+        if !own_too {
+            return;
+        }
         if !changing {
             piece.steady.forward(T::of(&piece.tiles), own, behind, buffer);
         }
         piece.changing.forward(T::of(&factor.tiles[r]), own, behind, buffer);
     }
 
-    /// Back substitution in a region and those within; the blocks behind stand first in its slot of the memory.
-    fn backward<T: Reads>(&self, r: usize, factor: &SplitFactor, x: &mut [f64], work: &mut [f64]) {
+    /// Back substitution in a region and those within; the blocks behind stand first in its slot of the memory. Only in
+    /// regions of the `pass`.
+    fn backward<T: Reads>(&self, r: usize, pass: Option<Pass>, factor: &SplitFactor, x: &mut [f64], work: &mut [f64]) {
+        if !self.enters(r, pass) {
+            return;
+        }
         let (region, piece) = (&self.tree.regions[r], &self.pieces[r]);
         let (x, own) = x.split_at_mut(6 * (region.region.own.start - region.region.start));
         let (work, slot) = work.split_at_mut(piece.work - piece.slot);
         let (behind, buffer) = slot.split_at_mut(6 * region.behind.len());
-        piece.changing.backward(T::of(&factor.tiles[r]), own, behind, buffer);
-        piece.steady.backward(T::of(&piece.tiles), own, behind, buffer);
+        let own_too = self.does(r, pass);
+        if own_too {
+            piece.changing.backward(T::of(&factor.tiles[r]), own, behind, buffer);
+            piece.steady.backward(T::of(&piece.tiles), own, behind, buffer);
+        }
         if let Some([left, right]) = region.region.children {
             let (x, y) = self.divide(left, x);
             let (a, b) = work.split_at_mut(self.pieces[left].work);
-            for (child, memory) in [(left, &mut *a), (right, &mut *b)] {
+            for (child, memory) in [(left, &mut *a), (right, &mut *b)].into_iter().filter(|_| own_too) {
                 let start = memory.len() - self.pieces[child].slot;
                 let lift = &self.tree.regions[child].lift;
                 for (&place, v) in lift.iter().zip(memory[start..].chunks_exact_mut(6)) {
@@ -103,8 +171,8 @@ impl SplitBase {
             }
             both(
                 piece.reads >= SOLVE_READS,
-                || self.backward::<T>(left, factor, x, a),
-                || self.backward::<T>(right, factor, y, b),
+                || self.backward::<T>(left, pass, factor, x, a),
+                || self.backward::<T>(right, pass, factor, y, b),
             );
         }
     }
@@ -117,59 +185,110 @@ impl SplitBase {
 
     /// The same by bunches.
     fn solve_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, y: &mut [f64], work: &mut [f64]) {
-        let work = &mut work[..bunches.work()];
-        self.eliminate_bunches::<T>(bunches, factor, y, work);
+        let (work, rest) = work.split_at_mut(bunches.work());
+        self.eliminate_bunches::<T>(bunches, factor, y, work, rest);
         self.substitute_bunches::<T>(bunches, factor, work);
-        self.scatter(bunches, work, y);
+        self.scatter(bunches, work, y, rest);
     }
 
     /// `out = L^-1 y` where nothing changes, `L` Cholesky's factor in its order of the unknowns, which keep their places;
     /// else nothing.
     pub(crate) fn half_solve(&self, factor: &SplitFactor, y: &[f64], out: &mut [f64], work: &mut [f64]) {
         if let Some(bunches) = &self.bunches {
-            let work = &mut work[..bunches.work()];
-            self.eliminate_bunches::<Tile>(bunches, factor, y, work);
+            let (work, rest) = work.split_at_mut(bunches.work());
+            self.eliminate_bunches::<Tile>(bunches, factor, y, work, rest);
             self.apply_roots(bunches, work, false);
-            self.scatter(bunches, work, out);
+            self.scatter(bunches, work, out, rest);
         }
     }
 
     /// `out = L^-T y`, likewise.
     pub(crate) fn half_solve_transpose(&self, factor: &SplitFactor, y: &[f64], out: &mut [f64], work: &mut [f64]) {
         if let Some(bunches) = &self.bunches {
-            let work = &mut work[..bunches.work()];
+            let (work, rest) = work.split_at_mut(bunches.work());
             for bunch in &bunches.all {
                 self.gather(bunch, y, &mut work[bunch.numbers.clone()]);
             }
             self.apply_roots(bunches, work, true);
             self.substitute_bunches::<Tile>(bunches, factor, work);
-            self.scatter(bunches, work, out);
+            self.scatter(bunches, work, out, rest);
         }
     }
 
     fn apply_roots(&self, bunches: &Bunches, work: &mut [f64], before: bool) {
-        for bunch in &bunches.all {
+        for bunch in bunches.all.iter().filter(|bunch| self.is_here(bunch)) {
             let piece = &self.pieces[bunch.regions[0] as usize];
             let own = &mut work[bunch.numbers.start..][..bunch.own * bunch.width];
             piece.steady.apply_roots(&piece.tiles.exact, own, bunch.width, before);
         }
     }
 
-    fn eliminate_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, y: &[f64], work: &mut [f64]) {
-        for height in &bunches.heights {
-            bunches.over_height(height, work, true, &|bunch, part, below| {
-                self.gather(bunch, y, part);
-                self.take_sums(bunches, bunch, below, part);
-                self.solve_bunch::<T>(bunch, factor, part, true);
-            });
+    /// Whether a bunch is worked on by this process in a pass.
+    fn does_bunch(&self, bunch: &Bunch, pass: Pass) -> bool {
+        match &self.branches {
+            Some(branches) => branches.is_done(bunch.rank, pass),
+            None => pass == Pass::Branches,
         }
     }
 
+    fn is_here(&self, bunch: &Bunch) -> bool {
+        self.does_bunch(bunch, Pass::Branches) || self.does_bunch(bunch, Pass::Top)
+    }
+
+    fn eliminate_bunches<T: Reads>(
+        &self,
+        bunches: &Bunches,
+        factor: &SplitFactor,
+        y: &[f64],
+        work: &mut [f64],
+        message: &mut [f64],
+    ) {
+        let eliminate = |pass: Pass, work: &mut [f64]| {
+            for height in &bunches.heights {
+                bunches.over_height(height, work, true, &|bunch, part, below| {
+                    if self.does_bunch(bunch, pass) {
+                        self.gather(bunch, y, part);
+                        self.take_sums(bunches, bunch, below, part);
+                        self.solve_bunch::<T>(bunch, factor, part, true);
+                    }
+                });
+            }
+        };
+        eliminate(Pass::Branches, work);
+        let Some(branches) = &self.branches else { return };
+        let places = |branch: &Branch| {
+            let [k, column] = bunches.of[branch.root];
+            let bunch = &bunches.all[k as usize];
+            let first = bunch.numbers.start + bunch.own * bunch.width + column as usize;
+            (first..).step_by(bunch.width).take(bunch.behind)
+        };
+        for branch in branches.of(true) {
+            let sums = &mut message[branch.sums.clone()];
+            sums.iter_mut().zip(places(branch)).for_each(|(sum, k)| *sum = work[k]);
+        }
+        branches.gather_sums(message);
+        for branch in branches.of(false) {
+            let sums = &message[branch.sums.clone()];
+            sums.iter().zip(places(branch)).for_each(|(sum, k)| work[k] = *sum);
+        }
+        eliminate(Pass::Top, work);
+    }
+
     fn substitute_bunches<T: Reads>(&self, bunches: &Bunches, factor: &SplitFactor, work: &mut [f64]) {
+        if self.branches.is_some() {
+            self.substitute::<T>(bunches, Pass::Top, factor, work);
+        }
+        self.substitute::<T>(bunches, Pass::Branches, factor, work);
+    }
+
+    fn substitute<T: Reads>(&self, bunches: &Bunches, pass: Pass, factor: &SplitFactor, work: &mut [f64]) {
         let tree = &self.tree;
         let end = work.len();
         for height in bunches.heights.iter().rev() {
             bunches.over_height(height, work, false, &|bunch, part, above| {
+                if !self.does_bunch(bunch, pass) {
+                    return;
+                }
                 let before = end - above.len();
                 for (lane, &r) in bunch.regions.iter().enumerate() {
                     let Some(around) = bunches.around[r as usize] else {
@@ -190,9 +309,9 @@ impl SplitBase {
         }
     }
 
-    /// Own unknowns of all regions to `y`.
-    fn scatter(&self, bunches: &Bunches, work: &[f64], y: &mut [f64]) {
-        for bunch in &bunches.all {
+    /// Own unknowns of all regions to `y`; several processes tell one another theirs.
+    fn scatter(&self, bunches: &Bunches, work: &[f64], y: &mut [f64], memory: &mut [f64]) {
+        for bunch in bunches.all.iter().filter(|bunch| self.is_here(bunch)) {
             let part = &work[bunch.numbers.clone()];
             for (lane, &r) in bunch.regions.iter().enumerate() {
                 let blocks = &self.tree.blocks[self.tree.regions[r as usize].region.own.clone()];
@@ -203,6 +322,7 @@ impl SplitBase {
                 }
             }
         }
+        self.complete(y, memory);
     }
 
     /// Own unknowns from `y`, zero behind them.

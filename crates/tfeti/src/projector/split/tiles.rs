@@ -15,6 +15,11 @@ impl Tiles {
         self.short.clear();
     }
 
+    /// Numbers stored; a rounded tile is half a tile.
+    pub(crate) fn numbers(&self) -> usize {
+        Tile::NUMBERS * (2 * self.exact.len() + self.short.len()) / 2
+    }
+
     /// Rounds what has been packed.
     pub(crate) fn round(&mut self) {
         self.short.clear();

@@ -190,10 +190,19 @@ impl CoarseTree {
         let Some(root) = self.regions.last() else {
             return 0.0;
         };
-        let sum = |nodes: Range<usize>| self.nodes[nodes].iter().map(Node::cost).sum::<f64>();
+        let sum = |nodes: Range<usize>| self.nodes_cost(nodes);
         let own = root.steady.start..root.changing.end;
         let middle = (root.region.children).map_or(0, |[_, right]| self.regions[right].first_node);
         sum(own.clone()) + sum(0..middle).max(sum(middle..own.start))
+    }
+
+    /// The same of a region and those within, one after the other.
+    pub(crate) fn branch_cost(&self, r: usize) -> f64 {
+        self.nodes_cost(self.regions[r].first_node..self.regions[r].changing.end)
+    }
+
+    fn nodes_cost(&self, nodes: Range<usize>) -> f64 {
+        self.nodes[nodes].iter().map(Node::cost).sum()
     }
 
     /// Whether anything changes.

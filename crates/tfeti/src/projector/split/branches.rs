@@ -1,0 +1,221 @@
+//! Branches of a tree on the ranks of several processes.
+//!
+//! Each rank eliminates its branches, the regions outside of all branches (the *top*) every rank does. A region is
+//! worked on by the same operations wherever that is, and takes what the regions within leave in the same order, so
+//! bits do not depend on ranks. A factorisation tells once what branches do to the top, a solve likewise, and its result.
+
+use crate::processes::exchange::Exchange;
+use crate::projector::split::front::Front;
+use crate::projector::split::tree::CoarseTree;
+use crate::tolerances::BRANCHES;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Which regions are worked on: those of branches, or the top.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pass {
+    Branches,
+    Top,
+}
+
+/// The branches of all ranks.
+#[derive(Debug)]
+pub(crate) struct Branches {
+    exchange: Arc<Exchange>,
+    /// The rank of each region; `None` at the top.
+    ranks: Vec<Option<u32>>,
+    /// By rank and place.
+    all: Vec<Branch>,
+    /// Parts of the ranks in messages of unknowns and of sums.
+    unknowns: Vec<Range<usize>>,
+    sums: Vec<Range<usize>>,
+}
+
+#[derive(Debug)]
+pub(super) struct Branch {
+    rank: usize,
+    /// Its outermost region.
+    pub(super) root: usize,
+    /// Its blocks in the order of elimination, and its unknowns in a message.
+    pub(super) blocks: Range<usize>,
+    pub(super) unknowns: Range<usize>,
+    /// Sums for what is behind it in a message.
+    pub(super) sums: Range<usize>,
+    /// Its nodes whose parents are at the top.
+    crossing: Vec<usize>,
+}
+
+impl Branches {
+    /// For several ranks, with about equal work; `None` of one rank, or if cuts do not pay.
+    pub(super) fn new(tree: &CoarseTree, exchange: &Arc<Exchange>) -> Option<Self> {
+        let divided = match exchange.ranks() {
+            1 => return None,
+            ranks => divided(tree, ranks),
+        };
+        if divided.iter().filter(|roots| !roots.is_empty()).count() < 2 {
+            return None;
+        }
+        let mut out = Self {
+            exchange: exchange.clone(),
+            ranks: vec![None; tree.regions.len()],
+            all: Vec::new(),
+            unknowns: Vec::new(),
+            sums: Vec::new(),
+        };
+        let (mut unknowns, mut sums) = (0, 0);
+        for (rank, mut roots) in divided.into_iter().enumerate() {
+            let starts = (unknowns, sums);
+            roots.sort_unstable();
+            for root in roots {
+                let region = &tree.regions[root];
+                out.ranks[region.first_region..=root].fill(Some(rank as u32));
+                let end = region.changing.end;
+                let crosses = |k: &usize| tree.nodes[*k].parent.is_some_and(|parent| parent >= end);
+                let branch = Branch {
+                    rank,
+                    root,
+                    blocks: region.region.start..region.region.own.end,
+                    unknowns: unknowns..unknowns + 6 * (region.region.own.end - region.region.start),
+                    sums: sums..sums + 6 * region.behind.len(),
+                    crossing: (region.first_node..end).filter(crosses).collect(),
+                };
+                (unknowns, sums) = (branch.unknowns.end, branch.sums.end);
+                out.all.push(branch);
+            }
+            out.unknowns.push(starts.0..unknowns);
+            out.sums.push(starts.1..sums);
+        }
+        Some(out)
+    }
+
+    /// The rank of a region; `None` at the top.
+    pub(super) fn rank_of(&self, region: usize) -> Option<u32> {
+        self.ranks[region]
+    }
+
+    /// Whether what belongs to a rank, `None` at the top, is worked on here in a pass.
+    pub(super) fn is_done(&self, rank: Option<u32>, pass: Pass) -> bool {
+        match pass {
+            Pass::Branches => rank == Some(self.exchange.rank() as u32),
+            Pass::Top => rank.is_none(),
+        }
+    }
+
+    /// Whether regions of a pass are within a region, or it is one.
+    pub(super) fn is_entered(&self, region: usize, pass: Pass) -> bool {
+        let rank = self.ranks[region];
+        rank.is_none() || self.is_done(rank, pass)
+    }
+
+    /// Whether a region is worked on here at all.
+    pub(super) fn is_here(&self, region: usize) -> bool {
+        self.is_entered(region, Pass::Branches)
+    }
+
+    /// Length of the longer message.
+    pub(super) fn message(&self) -> usize {
+        let last = |parts: &[Range<usize>]| parts.last().map_or(0, |part| part.end);
+        last(&self.unknowns).max(last(&self.sums))
+    }
+
+    /// The branches of this rank, or of the others.
+    pub(super) fn of(&self, own: bool) -> impl Iterator<Item = &Branch> {
+        let rank = self.exchange.rank();
+        self.all.iter().filter(move |branch| (branch.rank == rank) == own)
+    }
+
+    /// Completes the sums of all branches.
+    pub(super) fn gather_sums(&self, message: &mut [f64]) {
+        self.exchange.gather(message, &self.sums);
+    }
+
+    /// Completes the unknowns of all branches.
+    pub(super) fn gather_unknowns(&self, message: &mut [f64]) {
+        self.exchange.gather(message, &self.unknowns);
+    }
+
+    /// Brings what the branches do to the top to all ranks, only of nodes that change if `changing`; an error of one
+    /// rank is one of all.
+    pub(super) fn gather_updates(
+        &self,
+        own: Result<(), usize>,
+        tree: &CoarseTree,
+        changing: bool,
+        fronts: &mut [Front],
+    ) -> Result<(), usize> {
+        let rank = self.exchange.rank();
+        let size = |k: usize| 6 * tree.nodes[k].border.len();
+        // columns from the block on the diagonal on
+        let columns = |k: usize| (0..size(k)).map(move |c| c * size(k) + c / 6 * 6..(c + 1) * size(k));
+        let told = |branch: &Branch| -> Vec<usize> {
+            let nodes = branch.crossing.iter().copied();
+            nodes.filter(|&k| tree.nodes[k].changing || !changing).collect()
+        };
+        let (mut message, mut parts) = (Vec::new(), Vec::new());
+        for r in 0..self.exchange.ranks() {
+            let start = message.len();
+            message.push(if r == rank && own.is_err() { 1.0 } else { 0.0 });
+            for k in self.all.iter().filter(|b| b.rank == r).flat_map(told) {
+                for rows in columns(k) {
+                    match r == rank && own.is_ok() {
+                        true => message.extend_from_slice(&fronts[k].update[rows]),
+                        false => message.resize(message.len() + rows.len(), 0.0),
+                    }
+                }
+            }
+            parts.push(start..message.len());
+        }
+        self.exchange.gather(&mut message, &parts);
+        own?;
+        for (r, part) in parts.into_iter().enumerate().filter(|(r, _)| *r != rank) {
+            // what a process that is lost sends is not a number
+            if message[part.start] != 0.0 {
+                return Err(0);
+            }
+            let mut rest = &message[part.start + 1..part.end];
+            for k in self.all.iter().filter(|b| b.rank == r).flat_map(told) {
+                let update = &mut fronts[k].update;
+                update.clear();
+                update.resize(size(k) * size(k), 0.0);
+                for rows in columns(k) {
+                    let (column, tail) = rest.split_at(rows.len());
+                    update[rows].copy_from_slice(column);
+                    rest = tail;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Outermost regions by rank: the largest branch is cut as long as that pays, for what is cut off is done by all.
+fn divided(tree: &CoarseTree, ranks: usize) -> Vec<Vec<usize>> {
+    let cost = |r: usize| tree.branch_cost(r);
+    let (mut branches, mut top) = (Vec::from_iter(tree.regions.len().checked_sub(1)), 0.0);
+    let (mut best, mut least) = (Vec::new(), f64::INFINITY);
+    while branches.len() <= BRANCHES * ranks {
+        branches.sort_by(|&a, &b| cost(b).total_cmp(&cost(a)).then(a.cmp(&b)));
+        // the largest to the rank with least
+        let mut loads = vec![(0.0, Vec::new()); ranks];
+        for &branch in &branches {
+            let all = loads.iter_mut();
+            if let Some(load) = all.reduce(|a, b| if b.0 < a.0 { b } else { a }) {
+                load.0 += cost(branch);
+                load.1.push(branch);
+            }
+        }
+        let longest = top + loads.iter().map(|load| load.0).fold(0.0, f64::max);
+        if longest < least {
+            least = longest;
+            best = loads.into_iter().map(|load| load.1).collect();
+        }
+        let Some(at) = branches.iter().position(|&r| tree.regions[r].region.children.is_some()) else {
+            break;
+        };
+        let cut = branches.remove(at);
+        let children: Vec<usize> = tree.regions[cut].region.children.into_iter().flatten().collect();
+        top += cost(cut) - children.iter().map(|&r| cost(r)).sum::<f64>();
+        branches.extend(children);
+    }
+    best
+}
