@@ -309,3 +309,43 @@ fn corners_edges_and_slivers_pass_hydrostatic_pressure() {
         }
     }
 }
+
+/// What a moving support does to mid-nodes beside a contact point is part of its slip, in the memory of the process, too.
+#[test]
+fn slip_beside_a_moving_support_is_that_of_the_displacement() {
+    let pull = History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, -0.5)]).expect("a table");
+    let scene = Scene::new(quadratic([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+        .with_support(Support::fixed(brick::X_MIN).with_motion([2e-3, 1e-3, 0.0], pull))
+        .with_load(Load::pressure(brick::Z_MAX, 1e8))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.2)))
+        .with_analysis(Analysis::quasistatic(1.0, 4));
+    let mut simulation = Simulation::new(scene, tight()).expect("model");
+    let mut last = vec![[0.0; 3]; simulation.scene().mesh().points().len()];
+    while !simulation.is_finished() {
+        let result = simulation.step().expect("step");
+        assert!(result.report().status.converged());
+        let now = result.displacement();
+        for (state, point) in result.points().iter().zip(simulation.constrained_points()) {
+            let slip = |c: usize| -> f64 {
+                let nodes = point.nodes();
+                nodes.map(|(n, w)| w * (now[n as usize][c] - last[n as usize][c])).sum()
+            };
+            let along = |c: usize| -> f64 {
+                let nodes = point.nodes();
+                nodes.map(|(n, w)| w * now[n as usize][c]).sum()
+            };
+            for c in [0, 1] {
+                assert!(
+                    (state.difference[c] - slip(c)).abs() < 1e-9,
+                    "{:?} {:?}",
+                    point.position(),
+                    state
+                );
+                assert!((state.tangential_displacement[c] - along(c)).abs() < 1e-9, "{state:?}");
+            }
+            let loss = (0..2).map(|c| state.friction_force[c] * slip(c)).sum::<f64>();
+            assert!(loss <= 1e-12 * state.normal_force.abs(), "{loss:e}");
+        }
+        last = now;
+    }
+}
