@@ -165,9 +165,10 @@ fn mortar_gap(
     let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
     let gap = partner - own;
     let size = surface.areas()[local].sqrt();
-    if matches!(scene.contacts[contact].gap, Gap::Measured) && -gap > size {
+    let (index, contact) = (contact, &scene.contacts[contact]);
+    if (contact.tied || matches!(contact.gap, Gap::Measured)) && -gap > size {
         return Err(ContactError::Overlap {
-            contact,
+            contact: index,
             node,
             partner: seen.partner[0].0,
             depth: -gap,
