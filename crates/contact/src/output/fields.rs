@@ -239,7 +239,7 @@ fn gap_at_rest(result: &StepResult, point: usize) -> f64 {
 fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
     let state = &result.recovered.points[point];
     let contact = &result.model.points[point];
-    let mut way = result.problem.pose(contact).drag(&contact.position()).map(|w| -w);
+    let mut way = result.problem.pose(contact).drag(&contact.contact.centre).map(|w| -w);
     for (node, weight) in contact.contact.sides.nodes() {
         (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
     }

@@ -185,7 +185,7 @@ impl StepProblem {
 
     /// Way of its obstacle past a point along a direction, m.
     fn carried(&self, point: &ConstrainedPoint, direction: &[f64; 3]) -> f64 {
-        dot(&self.pose(point).drag(&point.contact.position), direction)
+        dot(&self.pose(point).drag(&point.contact.centre), direction)
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:

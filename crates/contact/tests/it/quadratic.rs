@@ -349,3 +349,39 @@ fn slip_beside_a_moving_support_is_that_of_the_displacement() {
         last = now;
     }
 }
+
+/// An obstacle that turns is, for each point, where it is for the nodes that the point is the mean of: gaps to a floor that
+/// tilts, the way past a disc.
+#[test]
+fn obstacles_turn_past_the_nodes_of_a_point() {
+    let (angle, height) = (2e-3, 0.01);
+    let turned = |axis: [f64; 3], gap: f64| {
+        let floor = Obstacle::half_space([0.0, 0.0, -gap], [0.0, 0.0, 1.0]);
+        let contact = Contact::obstacle(brick::Z_MIN, floor).with_friction(Friction::coulomb(0.3));
+        let scene = Scene::new(quadratic([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_contact(contact.with_rotation([0.0; 3], axis, History::constant(angle)));
+        let mut simulation = Simulation::new(scene, tight()).expect("model");
+        (simulation.step().expect("step"), simulation)
+    };
+    let mean = |simulation: &Simulation, k: usize, f: &dyn Fn([f64; 3]) -> f64| -> f64 {
+        let places = simulation.scene().mesh().points();
+        let nodes = simulation.constrained_points()[k].nodes();
+        nodes.map(|(n, w)| w * f(places[n as usize])).sum()
+    };
+    let (tilted, simulation) = turned([0.0, 1.0, 0.0], height);
+    assert_eq!(tilted.summary().active, 0);
+    let distance = |[x, _, z]: [f64; 3]| z * angle.cos() + x * angle.sin() + height;
+    for (k, point) in tilted.points().iter().enumerate() {
+        assert!((point.gap - mean(&simulation, k, &distance)).abs() < 1e-12, "{point:?}");
+    }
+    let (dragged, simulation) = turned([0.0, 0.0, 1.0], 1.0);
+    for (k, point) in dragged.points().iter().enumerate() {
+        let way = [
+            mean(&simulation, k, &|x| angle * x[1]),
+            -mean(&simulation, k, &|x| angle * x[0]),
+        ];
+        let found = point.difference;
+        assert!((0..2).all(|c| (found[c] - way[c]).abs() < 1e-12), "{found:?} {way:?}");
+    }
+}
