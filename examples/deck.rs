@@ -26,19 +26,13 @@ pub fn command(mut arguments: impl Iterator<Item = String>) -> Result<(), Error>
     let (mut part, mut out, mut states) = (None, None, None);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
-            "--out" => out = arguments.next().map(PathBuf::from),
-            "--states" => states = arguments.next().map(PathBuf::from),
+            "--out" => out = Some(folder(arguments.next())),
+            "--states" => states = Some(folder(arguments.next())),
             _ if part.is_none() && !argument.starts_with('-') => part = Some(argument),
-            other => {
-                eprintln!("{other:?} is not understood; {USAGE}");
-                std::process::exit(2);
-            }
+            other => misused(&format!("{other:?} is not understood; ")),
         }
     }
-    let Some(part) = part else {
-        eprintln!("{USAGE}");
-        std::process::exit(2);
-    };
+    let Some(part) = part else { misused("") };
     let stop = Arc::new(AtomicBool::new(false));
     let flag = stop.clone();
     let handler = ctrlc::set_handler(move || {
@@ -53,6 +47,17 @@ pub fn command(mut arguments: impl Iterator<Item = String>) -> Result<(), Error>
         std::process::exit(STOPPED);
     }
     Ok(())
+}
+
+/// What follows an option that wants a folder.
+fn folder(argument: Option<String>) -> PathBuf {
+    let argument = argument.filter(|a| !a.starts_with('-'));
+    argument.map_or_else(|| misused("a folder is missing; "), PathBuf::from)
+}
+
+fn misused(what: &str) -> ! {
+    eprintln!("{what}{USAGE}");
+    std::process::exit(2);
 }
 
 /// Whether it was stopped.

@@ -178,7 +178,7 @@ fn the_files_are_these_and_begin_at_rest() {
         assert_eq!(read_to_string(contact).expect("a file").matches("<Piece").count(), 2);
     }
     let table = read_to_string(path("beam.csv")).expect("a table");
-    assert!(table.contains("-1 no contact point (held by a support), 0 open, 1 stick, 2 slip"));
+    assert!(table.contains("-1 no contact point (held by a support, or nothing faces it), 0 open, 1 stick, 2 slip"));
 }
 
 /// Every number of the table has the bits of the result.

@@ -9,7 +9,8 @@ signorini_fem_mesh::errors! {
     TfetiError from { Communication(CommunicationError) } {
         Singular { subdomain: usize, pivot: usize } =
             "subdomain {subdomain}: the stiffness matrix is singular beyond its six rigid motions (pivot {pivot}); a \
-            part of it hangs on a single node or edge, or its elements are degenerate: use another decomposition";
+            part of it hangs on a single node or edge, its elements are degenerate, or it has three or fewer quadratic \
+            tetrahedra with a Poisson's ratio above 0.4: use another decomposition";
         Collinear { subdomain: usize } =
             "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions";
         Material { element: usize, message: String } = "tetrahedron {element}: {message}";

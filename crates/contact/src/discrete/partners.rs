@@ -126,7 +126,7 @@ fn nodes(
             return Ok(None);
         };
         let depth = -partner.gap;
-        if matches!(contact.gap, Gap::Measured) && depth > size {
+        if (contact.tied || matches!(contact.gap, Gap::Measured)) && depth > size {
             let partner = partner.node;
             return Err(ContactError::Overlap {
                 contact: index,

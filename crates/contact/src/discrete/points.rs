@@ -17,7 +17,7 @@ use crate::error::ContactError;
 use crate::mortar::MortarNode;
 use crate::scene::{Gap, Pose, Scene};
 use crate::tolerances::SAME_NORMAL;
-use signorini_fem_mesh::{Surface, SurfaceFrame, vec3};
+use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
 use std::cmp::Ordering;
@@ -32,6 +32,9 @@ pub(crate) struct ContactPoint {
     pub(crate) sides: Sides,
     /// Its place, m.
     pub(crate) position: [f64; 3],
+    /// The mean of the places of its own nodes, m: that place unless these are several. What a linear displacement is
+    /// there, rows measure.
+    pub(crate) centre: [f64; 3],
     /// Normal into the obstacle and two tangents.
     pub(crate) frame: SurfaceFrame,
     /// A third of the areas of the facets of its side, m².
@@ -68,7 +71,7 @@ impl ContactPoint {
 
     /// What the obstacle opens by moving along the normal, m.
     pub(crate) fn opened(&self, pose: &Pose) -> f64 {
-        vector::dot(&pose.drag(&self.position), &self.frame.normal)
+        vector::dot(&pose.drag(&self.centre), &self.frame.normal)
     }
 
     /// Whether two conditions are on the same displacement: one of them then follows from the other.
@@ -133,6 +136,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 };
                 let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
+                    centre: centre(&scene.mesh, &sides),
                     surface: index,
                     sides,
                     position,
@@ -146,6 +150,16 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
         }
     }
     Ok(out)
+}
+
+fn centre(mesh: &TetMesh, sides: &Sides) -> [f64; 3] {
+    let place = |node: u32| mesh.points()[node as usize];
+    match sides.own.nodes() {
+        [(node, _)] => place(*node),
+        nodes => nodes.iter().fold([0.0; 3], |sum, &(node, weight)| {
+            vec3::add(sum, vec3::scale(weight, place(node)))
+        }),
+    }
 }
 
 /// The weighted gap of a node of a surface along a normal, m: from the node to the weighted mean of what it sees.
@@ -165,9 +179,10 @@ fn mortar_gap(
     let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
     let gap = partner - own;
     let size = surface.areas()[local].sqrt();
-    if matches!(scene.contacts[contact].gap, Gap::Measured) && -gap > size {
+    let (index, contact) = (contact, &scene.contacts[contact]);
+    if (contact.tied || matches!(contact.gap, Gap::Measured)) && -gap > size {
         return Err(ContactError::Overlap {
-            contact,
+            contact: index,
             node,
             partner: seen.partner[0].0,
             depth: -gap,
@@ -231,6 +246,7 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
             let shared = x.tags.iter().any(|t| y.tags.contains(t));
             if point.sides.own != other.sides.own {
                 point.sides.own = both(point, other);
+                point.centre = centre(&scene.mesh, &point.sides);
             }
             point.area = if shared && point.surface != other.surface {
                 point.area.max(other.area)
@@ -240,7 +256,7 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
         }
         Ordering::Less => {
             (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
-            point.sides = other.sides.clone();
+            (point.sides, point.centre) = (other.sides.clone(), other.centre);
             if x.friction_axis.is_some() || y.friction_axis.is_some() {
                 (point.frame, point.stretch) = (other.frame, other.stretch);
             }

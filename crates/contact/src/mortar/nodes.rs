@@ -23,6 +23,9 @@ pub(crate) struct MortarNode {
 ///
 /// The row of node `j` is `u_j - sum_k (M_jk / D_jj) u_k` with `M_jk = int psi_j phi_k`: it vanishes where both sides
 /// move alike by a linear function, and forces of constant pressure are in balance.
+///
+/// A node that is on both sides, as the tip of a crack, does not move against itself and has no point: its shape
+/// function is shared out to the other corners of each facet, so that constant pressure still passes.
 pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other);
@@ -34,8 +37,12 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -
             }
         }
     }
+    let is_tip = |node: u32| other.local(node).is_some();
     let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
         let own = surface.nodes()[local];
+        if is_tip(own) {
+            return None;
+        }
         let (mut area, mut normal) = (0.0, [0.0; 3]);
         let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
         let mut side: BTreeMap<u32, f64> = BTreeMap::new();
@@ -43,19 +50,30 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -
             let Some((cover, direction)) = &covers[facet as usize] else {
                 continue;
             };
-            area += cover.areas[corner as usize];
+            let corners = triangles[facet as usize].nodes;
+            let tips: Vec<usize> = (0..3).filter(|&c| is_tip(corners[c])).collect();
+            let share = |of: &[f64; 3]| {
+                let shared: f64 = tips.iter().map(|&c| of[c]).sum();
+                of[corner as usize] + shared / (3 - tips.len()) as f64
+            };
+            area += share(&cover.areas);
             (0..3).for_each(|c| normal[c] += cover.area * direction[c]);
             for (node, weight) in &cover.weights {
-                *weights.entry(*node).or_insert(0.0) += weight[corner as usize];
+                *weights.entry(*node).or_insert(0.0) += share(weight);
             }
             for (node, weight) in &cover.own {
-                *side.entry(*node).or_insert(0.0) += weight[corner as usize];
+                *side.entry(*node).or_insert(0.0) += share(weight);
+            }
+            if cover.own.is_empty() {
+                // dual shape functions see their own corner only
+                for (c, node) in [corner as usize].iter().chain(&tips).map(|&c| (c, corners[c])) {
+                    let mut alone = [0.0; 3];
+                    alone[c] = cover.areas[c];
+                    *side.entry(node).or_insert(0.0) += share(&alone);
+                }
             }
         }
-        if side.is_empty() {
-            side.insert(own, area);
-        }
-        // what is on both sides, as the tip of a crack, does not move against itself
+        // what is on both sides does not move against itself
         for (node, weight) in &mut side {
             if let Some(other) = weights.remove(node) {
                 *weight -= other;

@@ -35,8 +35,8 @@ pub enum ResultField {
     Slip,
     /// `slip_rate`, m/s, on the surfaces; 0 where nothing touches.
     SlipRate,
-    /// `state` on the surfaces: 0 open, 1 stick, 2 slip, -1 where there is no contact point (a support holds the node
-    /// along the normal). The head of the table says so, too.
+    /// `state` on the surfaces: 0 open, 1 stick, 2 slip, -1 where there is no contact point: a support holds the node
+    /// along the normal, or nothing faces it. The head of the table says so, too.
     State,
 }
 
@@ -74,7 +74,8 @@ impl ResultField {
 }
 
 /// What `state` means, in one line.
-pub(super) const LEGEND: &str = "state: -1 no contact point (held by a support), 0 open, 1 stick, 2 slip";
+pub(super) const LEGEND: &str =
+    "state: -1 no contact point (held by a support, or nothing faces it), 0 open, 1 stick, 2 slip";
 
 /// When a picture is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -238,7 +239,7 @@ fn gap_at_rest(result: &StepResult, point: usize) -> f64 {
 fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
     let state = &result.recovered.points[point];
     let contact = &result.model.points[point];
-    let mut way = result.problem.pose(contact).drag(&contact.position()).map(|w| -w);
+    let mut way = result.problem.pose(contact).drag(&contact.contact.centre).map(|w| -w);
     for (node, weight) in contact.contact.sides.nodes() {
         (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
     }

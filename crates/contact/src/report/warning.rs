@@ -158,7 +158,7 @@ pub enum Warning {
     /// The estimated error of the mesh is large at the end of a run.
     #[error(
         "step {step}: the mesh leaves an estimated error of {:.0} % in the energy norm, most of it at tetrahedron \
-        {tet}, {}; linear tetrahedra are too stiff, in bending above all: refine there, and compare",
+        {tet}, {}; elements are too stiff there, in bending above all linear ones: refine there, and compare",
         100.0 * error,
         at(place)
     )]

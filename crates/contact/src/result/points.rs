@@ -9,7 +9,7 @@ use signorini_tfeti::TangentialRows;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ContactState {
-    /// No force.
+    /// No normal force. Given friction (Tresca) knows no pressure and acts even so.
     Open,
     /// Pressed and without tangential difference, or without friction law.
     Stick,

@@ -82,7 +82,7 @@ pub(crate) fn summarise(
             problem.obstacles[0].get(touch.surface()),
             problem.obstacles[1].get(touch.surface()),
         ) {
-            let [now, old] = [now, old].map(|pose| pose.drag(&touch.contact.position));
+            let [now, old] = [now, old].map(|pose| pose.drag(&touch.contact.centre));
             for c in 0..3 {
                 s.obstacle_work += force[c] * (now[c] - old[c]);
             }

@@ -18,7 +18,8 @@ pub enum Friction {
     /// No friction: no tangential rows, no slip bounds, no history of the tangential displacement.
     #[default]
     None,
-    /// Given friction (Tresca): the slip bound is known and does not depend on the pressure.
+    /// Given friction (Tresca): the slip bound is known and does not depend on the pressure. It acts where nothing
+    /// touches, too.
     Tresca(SlipBound),
     /// Coulomb friction: the slip bound is the coefficient times the contact pressure.
     Coulomb(Coefficient),

@@ -252,10 +252,11 @@ impl StepResult {
     /// none. Forces over areas, averaged twice with the mass matrix of the facets: smooth on unequal triangles, where
     /// the plain quotient scatters by some per cent.
     ///
-    /// A constant pressure stays. The sum of pressure times area is that of the normal forces, to rounding, but for
-    /// nodes that have no contact point of this surface, which have zero and take no part (a support holds them along
-    /// the normal), and nodes that two surfaces share. The edge of contact is widened by two facets: pressures there,
-    /// and forces of few nodes, are the less to be trusted the fewer facets touch. At a crease it is that of the side
+    /// A constant pressure stays. The sum of pressure times [area](PointState::area) is that of the normal forces, to
+    /// rounding. It is not beside nodes that have no contact point of this surface (a support holds them along the
+    /// normal, or nothing faces them), which have zero and take no part, beside linear facets that are covered in part,
+    /// and at nodes that two surfaces share. The edge of contact is widened by two facets: pressures there, and forces
+    /// of few nodes, are the less to be trusted the fewer facets touch. At a crease it is that of the side
     /// that is pressed most, and nothing is averaged around it.
     ///
     /// ```

@@ -31,8 +31,8 @@ pub(crate) struct StepProblem {
     pub(crate) rhs: Vec<f64>,
     /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
     pub(crate) obstacles: [Vec<Pose>; 2],
-    /// The part of `c` that comes from supports, in tangential rows between bodies: what supports move there is not
-    /// in `B u`. By contact row, in row units; empty where no support moves such a point.
+    /// The part of `c` that comes from supports, in tangential rows of points of several nodes: what supports move
+    /// there is not in `B u`. By contact row, in row units; empty where no support moves or all points are one node.
     pub(crate) prescribed: Vec<f64>,
     /// Largest sizes of each body at earlier steps.
     pub(crate) peaks: Vec<Peak>,
@@ -76,9 +76,10 @@ impl StepProblem {
         self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset);
         self.prescribed.clear();
-        if model.plan.effects.motion && model.plan.effects.partners {
-            let between = |p: &&ConstrainedPoint| p.contact.sides.partner.is_some();
-            for (_, row, _) in model.points.iter().filter(between).flat_map(|p| p.along()) {
+        let several = model.plan.effects.partners || model.scene.mesh.order() == 2;
+        if model.plan.effects.motion && several {
+            let several = |p: &&ConstrainedPoint| p.contact.sides.nodes().nth(1).is_some();
+            for (_, row, _) in model.points.iter().filter(several).flat_map(|p| p.along()) {
                 let rows = self.prescribed.len().max(row + 1);
                 self.prescribed.resize(rows, 0.0);
                 self.prescribed[row] = self.offset[row];
@@ -184,7 +185,7 @@ impl StepProblem {
 
     /// Way of its obstacle past a point along a direction, m.
     fn carried(&self, point: &ConstrainedPoint, direction: &[f64; 3]) -> f64 {
-        dot(&self.pose(point).drag(&point.contact.position), direction)
+        dot(&self.pose(point).drag(&point.contact.centre), direction)
     }
 
     /// Displacement of a point along one of its tangential directions relative to the obstacle or the other body, m:

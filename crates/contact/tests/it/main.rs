@@ -7,6 +7,7 @@ mod column;
 mod common;
 mod compliance;
 mod contact_stress;
+mod crack;
 mod determinism;
 mod edges;
 mod edges_apart;

@@ -416,19 +416,21 @@ fn bad_pairs_are_named_and_the_plan_tells_whose_points_they_are() {
     assert!(matches!(error, ContactError::NoPartner { contact: 0, .. }), "{error}");
     let error = refused(joint().with_partner(second(brick::Z_MIN)));
     assert!(matches!(error, ContactError::SameSide { contact: 0, .. }), "{error}");
-    let error = refused(Contact::between(second(brick::Z_MAX), brick::Z_MIN));
-    let ContactError::Overlap {
-        node, partner, depth, ..
-    } = error
-    else {
-        panic!("{error}")
-    };
-    let mesh = blocks([3; 3], [2; 3], 1.0);
-    let [above, below] = [node, partner].map(|n| mesh.points()[n as usize][2]);
-    assert!(
-        (above - below - 2.0).abs() < 1e-9 && (depth - 2.0).abs() < 1e-9,
-        "{above} {below} {depth}"
-    );
+    for outer in [Contact::between, Contact::tied] {
+        let error = refused(outer(second(brick::Z_MAX), brick::Z_MIN));
+        let ContactError::Overlap {
+            node, partner, depth, ..
+        } = error
+        else {
+            panic!("{error}")
+        };
+        let mesh = blocks([3; 3], [2; 3], 1.0);
+        let [above, below] = [node, partner].map(|n| mesh.points()[n as usize][2]);
+        assert!(
+            (above - below - 2.0).abs() < 1e-9 && (depth - 2.0).abs() < 1e-9,
+            "{above} {below} {depth}"
+        );
+    }
     for (lower, upper, apart) in [(2, 2, vec![]), (3, 2, vec![(0, false)]), (2, 3, vec![(0, true)])] {
         let plan = Plan::new(&scene(lower, upper, joint()), &Settings::default()).expect("a plan");
         assert_eq!(plan.apart, apart);

@@ -288,12 +288,13 @@ fn what_cannot_be_paired_is_refused() {
         "{error}"
     );
     // sides that look away from each other
-    let outer = Contact::between(second(brick::Z_MAX), brick::Z_MIN);
-    let error = fails(column([2; 3]), outer);
-    assert!(
-        matches!(error, ContactError::Overlap { contact: 0, depth, .. } if (depth - 2.0).abs() < 1e-9),
-        "{error}"
-    );
+    for outer in [Contact::between, Contact::tied] {
+        let error = fails(column([2; 3]), outer(second(brick::Z_MAX), brick::Z_MIN));
+        assert!(
+            matches!(error, ContactError::Overlap { contact: 0, depth, .. } if (depth - 2.0).abs() < 1e-9),
+            "{error}"
+        );
+    }
     let error = fails(column([2; 3]), joint().with_motion([1.0, 0.0, 0.0], ramp()));
     assert!(matches!(error, ContactError::MovedPartner { contact: 0 }), "{error}");
     // bodies that lie behind each other, unless that is what is meant

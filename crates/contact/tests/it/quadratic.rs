@@ -309,3 +309,79 @@ fn corners_edges_and_slivers_pass_hydrostatic_pressure() {
         }
     }
 }
+
+/// What a moving support does to mid-nodes beside a contact point is part of its slip, in the memory of the process, too.
+#[test]
+fn slip_beside_a_moving_support_is_that_of_the_displacement() {
+    let pull = History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, -0.5)]).expect("a table");
+    let scene = Scene::new(quadratic([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+        .with_support(Support::fixed(brick::X_MIN).with_motion([2e-3, 1e-3, 0.0], pull))
+        .with_load(Load::pressure(brick::Z_MAX, 1e8))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.2)))
+        .with_analysis(Analysis::quasistatic(1.0, 4));
+    let mut simulation = Simulation::new(scene, tight()).expect("model");
+    let mut last = vec![[0.0; 3]; simulation.scene().mesh().points().len()];
+    while !simulation.is_finished() {
+        let result = simulation.step().expect("step");
+        assert!(result.report().status.converged());
+        let now = result.displacement();
+        for (state, point) in result.points().iter().zip(simulation.constrained_points()) {
+            let slip = |c: usize| -> f64 {
+                let nodes = point.nodes();
+                nodes.map(|(n, w)| w * (now[n as usize][c] - last[n as usize][c])).sum()
+            };
+            let along = |c: usize| -> f64 {
+                let nodes = point.nodes();
+                nodes.map(|(n, w)| w * now[n as usize][c]).sum()
+            };
+            for c in [0, 1] {
+                assert!(
+                    (state.difference[c] - slip(c)).abs() < 1e-9,
+                    "{:?} {:?}",
+                    point.position(),
+                    state
+                );
+                assert!((state.tangential_displacement[c] - along(c)).abs() < 1e-9, "{state:?}");
+            }
+            let loss = (0..2).map(|c| state.friction_force[c] * slip(c)).sum::<f64>();
+            assert!(loss <= 1e-12 * state.normal_force.abs(), "{loss:e}");
+        }
+        last = now;
+    }
+}
+
+/// An obstacle that turns is, for each point, where it is for the nodes that the point is the mean of: gaps to a floor that
+/// tilts, the way past a disc.
+#[test]
+fn obstacles_turn_past_the_nodes_of_a_point() {
+    let (angle, height) = (2e-3, 0.01);
+    let turned = |axis: [f64; 3], gap: f64| {
+        let floor = Obstacle::half_space([0.0, 0.0, -gap], [0.0, 0.0, 1.0]);
+        let contact = Contact::obstacle(brick::Z_MIN, floor).with_friction(Friction::coulomb(0.3));
+        let scene = Scene::new(quadratic([3.0, 1.0, 1.0], [6, 2, 2]), steel())
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_contact(contact.with_rotation([0.0; 3], axis, History::constant(angle)));
+        let mut simulation = Simulation::new(scene, tight()).expect("model");
+        (simulation.step().expect("step"), simulation)
+    };
+    let mean = |simulation: &Simulation, k: usize, f: &dyn Fn([f64; 3]) -> f64| -> f64 {
+        let places = simulation.scene().mesh().points();
+        let nodes = simulation.constrained_points()[k].nodes();
+        nodes.map(|(n, w)| w * f(places[n as usize])).sum()
+    };
+    let (tilted, simulation) = turned([0.0, 1.0, 0.0], height);
+    assert_eq!(tilted.summary().active, 0);
+    let distance = |[x, _, z]: [f64; 3]| z * angle.cos() + x * angle.sin() + height;
+    for (k, point) in tilted.points().iter().enumerate() {
+        assert!((point.gap - mean(&simulation, k, &distance)).abs() < 1e-12, "{point:?}");
+    }
+    let (dragged, simulation) = turned([0.0, 0.0, 1.0], 1.0);
+    for (k, point) in dragged.points().iter().enumerate() {
+        let way = [
+            mean(&simulation, k, &|x| angle * x[1]),
+            -mean(&simulation, k, &|x| angle * x[0]),
+        ];
+        let found = point.difference;
+        assert!((0..2).all(|c| (found[c] - way[c]).abs() < 1e-12), "{found:?} {way:?}");
+    }
+}

@@ -1,4 +1,4 @@
-//! Linear tetrahedra and loads, computed anew: no formula, table or rule is the library's.
+//! Linear and straight quadratic tetrahedra and loads, computed anew: no formula, table or rule is the library's.
 
 use crate::recipe::{Density, Elastic, Poly, Recipe};
 use crate::vec3::{Vec3, add, at, cross, dot, norm, scale, sub};
@@ -6,10 +6,11 @@ use signorini::contact::StepResult;
 use signorini::fem_mesh::FacetTag;
 use std::collections::HashMap;
 
-/// A tetrahedron with the gradients of its four functions.
+/// A tetrahedron of four or ten nodes: the gradients of its functions at points of equal weight that integrate its
+/// stiffness exactly.
 struct Element {
-    nodes: [u32; 4],
-    gradients: [Vec3; 4],
+    nodes: Vec<u32>,
+    gradients: Vec<Vec<Vec3>>,
     volume: f64,
     law: usize,
 }
@@ -18,6 +19,8 @@ struct Element {
 pub(crate) struct Side {
     pub(crate) tag: FacetTag,
     pub(crate) nodes: [u32; 3],
+    /// The nodes that take a third of a constant stress each: the corners, or the mid-nodes of a quadratic facet.
+    pub(crate) loaded: [u32; 3],
     /// Outward, of the length of its area.
     pub(crate) vector: Vec3,
 }
@@ -41,13 +44,17 @@ impl Mechanics {
         let mesh = &recipe.mesh;
         let points = mesh.points().to_vec();
         let one = recipe.elastic.len() == 1;
-        let cells = mesh.tets().iter().zip(mesh.regions());
+        let cells = mesh.tets().iter().zip(mesh.regions()).enumerate();
         let elements: Vec<Element> = cells
-            .map(|(nodes, region)| {
-                let (gradients, volume) = shape(nodes.map(|n| points[n as usize]));
+            .map(|(k, (nodes, region))| {
+                let (linear, volume) = shape(nodes.map(|n| points[n as usize]));
+                let mids = mesh.mids().get(k);
                 Element {
-                    nodes: *nodes,
-                    gradients,
+                    nodes: nodes.iter().chain(mids.into_iter().flatten()).copied().collect(),
+                    gradients: match mids {
+                        None => vec![linear.to_vec()],
+                        Some(_) => (0..4).map(|corner| quadratic(&linear, corner)).collect(),
+                    },
                     volume,
                     law: if one { 0 } else { *region as usize },
                 }
@@ -69,10 +76,22 @@ impl Mechanics {
     }
 
     /// Nodal forces that strain a tetrahedron to the displacements of its nodes, N.
-    pub(crate) fn strain(&self, element: usize, u: [Vec3; 4]) -> [Vec3; 4] {
+    pub(crate) fn strain(&self, element: usize, u: &[Vec3]) -> Vec<Vec3> {
         let e = &self.elements[element];
+        let mut out = vec![[0.0; 3]; u.len()];
+        for gradients in &e.gradients {
+            let stress = self.stress(e.law, gradients, u);
+            let part = e.volume / e.gradients.len() as f64;
+            for (force, g) in out.iter_mut().zip(gradients) {
+                *force = add(*force, stress.map(|row| part * dot(row, *g)));
+            }
+        }
+        out
+    }
+
+    fn stress(&self, law: usize, gradients: &[Vec3], u: &[Vec3]) -> [Vec3; 3] {
         let mut strain = [0.0; 6];
-        for (g, u) in e.gradients.iter().zip(u) {
+        for (g, u) in gradients.iter().zip(u) {
             let part = [
                 g[0] * u[0],
                 g[1] * u[1],
@@ -83,10 +102,9 @@ impl Mechanics {
             ];
             (0..6).for_each(|k| strain[k] += part[k]);
         }
-        let c = &self.laws[e.law];
+        let c = &self.laws[law];
         let s: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| c[i][j] * strain[j]).sum());
-        let stress = [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]];
-        e.gradients.map(|g| stress.map(|row| e.volume * dot(row, g)))
+        [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]]
     }
 
     /// Nodal forces of the strained tetrahedra: at the nodes, and their squares summed over the copies of each node.
@@ -97,9 +115,11 @@ impl Mechanics {
         for subdomain in frame.decomposition().subdomains() {
             let own = &frame.torn_displacement()[start..start + 3 * subdomain.nodes.len()];
             let mut force = vec![0.0; own.len()];
-            for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
-                let forces = self.strain(element as usize, tet.map(|n| at(own, n)));
-                for (n, f) in tet.iter().zip(forces) {
+            let quadratic = subdomain.quadratic_tets();
+            for (k, &element) in subdomain.elements.iter().enumerate() {
+                let tet: &[u32] = quadratic.get(k).map_or(&subdomain.tets[k], |tet| tet);
+                let u: Vec<Vec3> = tet.iter().map(|n| at(own, *n)).collect();
+                for (n, f) in tet.iter().zip(self.strain(element as usize, &u)) {
                     (0..3).for_each(|c| force[3 * *n as usize + c] += f[c]);
                 }
             }
@@ -126,11 +146,11 @@ impl Mechanics {
     fn diagonal(&self) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
         for (k, element) in self.elements.iter().enumerate() {
-            for a in 0..4 {
+            for a in 0..element.nodes.len() {
                 for c in 0..3 {
-                    let mut u = [[0.0; 3]; 4];
+                    let mut u = vec![[0.0; 3]; element.nodes.len()];
                     u[a][c] = 1.0;
-                    out[element.nodes[a] as usize] += self.strain(k, u)[a][c] / 3.0;
+                    out[element.nodes[a] as usize] += self.strain(k, &u)[a][c] / 3.0;
                 }
             }
         }
@@ -146,13 +166,17 @@ impl Mechanics {
         match density {
             Density::Body(value) => {
                 for e in &self.elements {
-                    let share = scale(e.volume / 4.0, *value);
-                    e.nodes.iter().for_each(|n| put(*n, share));
+                    // of quadratic functions those of mid-nodes have a fifth of the volume each
+                    let shares = if e.nodes.len() == 4 { [0.25, 0.0] } else { [-0.05, 0.2] };
+                    for (k, n) in e.nodes.iter().enumerate() {
+                        put(*n, scale(e.volume * shares[usize::from(k > 3)], *value));
+                    }
                 }
             }
             Density::BodyField(field) => {
                 for e in &self.elements {
-                    for (node, force) in self.spread(e.nodes, 6.0 * e.volume, |x| eval(field, x)) {
+                    let corners = [0, 1, 2, 3].map(|k| e.nodes[k]);
+                    for (node, force) in self.spread(corners, 6.0 * e.volume, |x| eval(field, x)) {
                         put(node, force);
                     }
                 }
@@ -161,13 +185,13 @@ impl Mechanics {
             Density::Traction(tag, value) => {
                 for side in self.sides.iter().filter(|s| s.tag == *tag) {
                     let share = scale(norm(side.vector) / 3.0, *value);
-                    side.nodes.iter().for_each(|n| put(*n, share));
+                    side.loaded.iter().for_each(|n| put(*n, share));
                 }
             }
             Density::Pressure(tag, value) => {
                 for side in self.sides.iter().filter(|s| s.tag == *tag) {
                     let share = scale(-value / 3.0, side.vector);
-                    side.nodes.iter().for_each(|n| put(*n, share));
+                    side.loaded.iter().for_each(|n| put(*n, share));
                 }
             }
             Density::TractionField(tag, field, pull) => {
@@ -243,6 +267,17 @@ fn shape(x: [Vec3; 4]) -> ([Vec3; 4], f64) {
     (gradients, volume)
 }
 
+/// Gradients of the ten quadratic functions at the point of the rule of degree 2 that is nearest to a corner, from those
+/// of the barycentric coordinates.
+fn quadratic(linear: &[Vec3; 4], corner: usize) -> Vec<Vec3> {
+    let near = (5.0 + 3.0 * 5f64.sqrt()) / 20.0;
+    let l = |k: usize| if k == corner { near } else { (1.0 - near) / 3.0 };
+    let corners = (0..4).map(|k| scale(4.0 * l(k) - 1.0, linear[k]));
+    let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+    let mids = edges.map(|[a, b]| add(scale(4.0 * l(b), linear[a]), scale(4.0 * l(a), linear[b])));
+    corners.chain(mids).collect()
+}
+
 fn matrix(elastic: &Elastic) -> [[f64; 6]; 6] {
     match elastic {
         Elastic::Matrix(matrix) => **matrix,
@@ -274,7 +309,8 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
             inner.insert(sorted(face), t[a]);
         }
     }
-    let side = |facet: &signorini::fem_mesh::Facet| {
+    let quadratic = recipe.mesh.order() == 2;
+    let side = |(k, facet): (usize, &signorini::fem_mesh::Facet)| {
         let [a, b, c] = facet.nodes.map(|n| points[n as usize]);
         let vector = scale(0.5, cross(sub(b, a), sub(c, a)));
         let inside = points[inner[&sorted(facet.nodes)] as usize];
@@ -282,17 +318,22 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
         Side {
             tag: facet.tag,
             nodes: facet.nodes,
+            loaded: if quadratic {
+                recipe.mesh.facet_mids(k)
+            } else {
+                facet.nodes
+            },
             vector: scale(sign, vector),
         }
     };
-    recipe.mesh.facets().iter().map(side).collect()
+    recipe.mesh.facets().iter().enumerate().map(side).collect()
 }
 
 /// What hangs together through tetrahedra.
 fn bodies(elements: &[Element], nodes: usize) -> Vec<usize> {
     let pairs = elements
         .iter()
-        .flat_map(|e| [1, 2, 3].map(|k| (e.nodes[0], e.nodes[k])));
+        .flat_map(|e| e.nodes[1..].iter().map(|n| (e.nodes[0], *n)));
     groups(nodes, pairs)
 }
 

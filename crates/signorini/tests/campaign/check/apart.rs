@@ -76,7 +76,7 @@ impl<'a> ApartJudge<'a> {
         self.base.copies(frame, &report.u, &sizes, &mut worst);
         self.base.supports(&report, &sizes, &mut worst);
         self.equilibrium(points, &report, (&load, &torn.0), &sizes, &mut worst);
-        self.balance(&report, &load, &sizes, &mut worst);
+        self.balance(points, &report, &load, &sizes, &mut worst);
         self.weights(points, &mut worst);
         self.ground(&report, &sizes, &mut worst);
         let now: Vec<At> = points.iter().enumerate().map(|(k, p)| self.at(k, p, &report)).collect();
@@ -153,7 +153,7 @@ impl<'a> ApartJudge<'a> {
                     && mechanics
                         .sides
                         .iter()
-                        .any(|s| p.sides.contains(&s.tag) && s.nodes.contains(&n))
+                        .any(|s| p.sides.contains(&s.tag) && (s.nodes.contains(&n) || s.loaded.contains(&n)))
             };
             self.scene.pairs.iter().any(|p| of(&p))
         };
@@ -180,7 +180,7 @@ impl<'a> ApartJudge<'a> {
         let mechanics = &self.base.mechanics;
         let nodes = |tags: &[FacetTag]| {
             let of = mechanics.sides.iter().filter(|s| tags.contains(&s.tag));
-            let mut nodes: Vec<u32> = of.flat_map(|s| s.nodes).collect();
+            let mut nodes: Vec<u32> = of.flat_map(|s| s.nodes.into_iter().chain(s.loaded)).collect();
             nodes.sort_unstable();
             nodes.dedup();
             nodes
@@ -225,7 +225,14 @@ impl<'a> ApartJudge<'a> {
     }
 
     /// Loads, supports and obstacles: forces between bodies cancel.
-    fn balance(&self, report: &Report<'_>, load: &[f64], sizes: &[Size], worst: &mut Worst) {
+    fn balance(
+        &self,
+        points: &[ConstrainedPoint],
+        report: &Report<'_>,
+        load: &[f64],
+        sizes: &[Size],
+        worst: &mut Worst,
+    ) {
         let places = &self.base.mechanics.points;
         let forces = sizes.iter().map(|s| s.forces.powi(2)).sum::<f64>().sqrt();
         let far = places.iter().map(|x| norm(*x)).fold(self.base.extent, f64::max);
@@ -235,8 +242,11 @@ impl<'a> ApartJudge<'a> {
             sum[1] = add(sum[1], cross(places[node as usize], force));
         };
         (0..places.len() as u32).for_each(|n| put(n, at(load, n)));
-        let obstacles = report.points.iter().filter(|p| p.partner.is_none());
-        obstacles.for_each(|p| put(p.node, p.force()));
+        for (point, state) in points.iter().zip(report.points).filter(|p| p.1.partner.is_none()) {
+            point
+                .nodes()
+                .for_each(|(n, weight)| put(n, scale(weight, state.force())));
+        }
         let supports = report.reactions.supports.iter().chain(&report.reactions.springs);
         supports.flat_map(|s| &s.nodes).for_each(|n| put(n.node, n.force));
         let said = report.reactions.imbalance();
@@ -258,7 +268,7 @@ impl<'a> ApartJudge<'a> {
             .collect();
         let mut expected: HashMap<u32, Vec3> = HashMap::new();
         for side in self.base.mechanics.sides.iter().filter(|s| s.tag == tag) {
-            for node in side.nodes.into_iter().filter(|n| !held.contains(n)) {
+            for node in side.loaded.into_iter().filter(|n| !held.contains(n)) {
                 let u = at(&report.u, node);
                 let own = expected.entry(node).or_default();
                 (0..3).for_each(|c| own[c] -= norm(side.vector) / 3.0 * stiffness[c] * u[c]);
@@ -315,18 +325,28 @@ impl<'a> ApartJudge<'a> {
             Some(rock) => {
                 let mut carried =
                     (rock.motion.as_ref()).map_or([0.0; 3], |(v, course)| scale(course.value(report.time), *v));
-                let mut place = sub(point.position(), carried);
+                let places = &self.base.mechanics.points;
+                let mean = (point.nodes()).fold([0.0; 3], |s, (n, w)| add(s, scale(w, places[n as usize])));
+                let (shifted, place) = (carried, sub(mean, carried));
                 if let Some((centre, axis, course)) = &rock.turn {
                     let (arm, angle) = (sub(place, *centre), course.value(report.time));
-                    let along = scale(dot(arm, *axis), *axis);
-                    let (sin, cos) = angle.sin_cos();
-                    // the place is turned back, and dragged along the surface
-                    let off = sub(arm, along);
-                    let back = add(scale(cos, off), scale(-sin, cross(*axis, off)));
-                    place = add(*centre, add(along, back));
                     carried = add(carried, scale(angle, cross(*axis, arm)));
                 }
-                (sub(moved, carried), rock.shape.distance(place).0 - dot(normal, moved))
+                // a quadratic point has the mean of the gaps at its nodes
+                let gaps = point.nodes().map(|(node, weight)| {
+                    let mut place = sub(places[node as usize], shifted);
+                    if let Some((centre, axis, course)) = &rock.turn {
+                        let (arm, angle) = (sub(place, *centre), course.value(report.time));
+                        let along = scale(dot(arm, *axis), *axis);
+                        let (sin, cos) = angle.sin_cos();
+                        // the place is turned back, and dragged along the surface
+                        let off = sub(arm, along);
+                        let back = add(scale(cos, off), scale(-sin, cross(*axis, off)));
+                        place = add(*centre, add(along, back));
+                    }
+                    weight * rock.shape.distance(place).0
+                });
+                (sub(moved, carried), gaps.sum::<f64>() - dot(normal, moved))
             }
             // plane sides touch at rest
             None if self.scene.bumps == 0.0 => (moved, -dot(normal, moved)),

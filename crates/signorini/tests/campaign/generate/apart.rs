@@ -409,6 +409,16 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             [1.0, more.between(0.1, 1.0), more.between(0.1, 1.0)].map(|k| k * stiffness),
         )
     });
+    // with a dice of its own; straight edges, and no mean volume strain
+    if Dice::new(seed ^ 0x0d2, number).chance(0.25) && recipe.mesh.tets().len() <= 400 {
+        recipe.mesh = recipe.mesh.raise_order().expect("order 2");
+        for elastic in &mut recipe.elastic {
+            if let Elastic::Isotropic(_, poisson) = elastic {
+                *poisson = poisson.min(0.4);
+            }
+        }
+        recipe.words.push("order 2".into());
+    }
     settings::describe(&mut recipe);
     Apart {
         recipe,
