@@ -2,7 +2,7 @@
 //!
 //! What decides are edges, rims and bending, and all of them scale with the thickness of a body. So the error is taken
 //! as a constant of the order times a power of the cells over the thickness, `2 V / S` with the volume and the surface:
-//! within a factor of two on the studies' parts, where equal numbers of tetrahedra leave 16 % and 48 %.
+//! within a factor of two and a half on the studies' parts, where equal numbers of tetrahedra leave 16 % and 48 %.
 
 use crate::discrete::DiscreteScene;
 use crate::report::Warning;

@@ -59,8 +59,8 @@ pub struct Plan {
     /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
     pub vector_bytes: u64,
     /// Error of the mesh to expect, relative in the energy norm, from its cells over the thickness of the bodies: within a
-    /// factor of two on most parts with cells of one size, less than half of it where they are finer at edges. After a
-    /// run [`discretisation_error`](crate::StepResult::discretisation_error) measures it. `None` where nothing is known.
+    /// factor of two and a half on the studies' parts, less where cells are finer at edges. After a run
+    /// [`discretisation_error`](crate::StepResult::discretisation_error) measures it. `None` where nothing is known.
     pub mesh_error: Option<f64>,
     /// Memory, and likely products and times.
     pub estimate: Estimate,
