@@ -174,9 +174,7 @@ fn bad_input_is_refused() {
 #[test]
 fn strong_grading_is_along_all_axes() {
     let graded = |powers: [f64; 3]| {
-        let mesh = Brick::new([1.0; 3], [8; 3])
-            .build()
-            .expect("brick");
+        let mesh = Brick::new([1.0; 3], [8; 3]).build().expect("brick");
         let mesh = mesh
             .map_points(|p| [0, 1, 2].map(|d| p[d].powf(powers[d])))
             .expect("graded");
