@@ -104,7 +104,14 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
                     &error.wanted_sizes(&mesh, options.target)?,
                 )?;
                 let (tets, relative) = (mesh.tets().len(), 100.0 * error.relative());
-                writeln!(out, "{stem}: {tets} tetrahedra, estimated error {relative:.2} %")?;
+                let planned = 100.0
+                    * Plan::new(last.scene(), &Settings::default())?
+                        .mesh_error
+                        .unwrap_or(f64::NAN);
+                writeln!(
+                    out,
+                    "{stem}: {tets} tetrahedra, estimated error {relative:.2} %, the plan's {planned:.1} %"
+                )?;
             }
             if let (Some(folder), Some(last)) = (&options.pictures, last) {
                 let text = draw::result(&last, Shown::VonMises, EYE);

@@ -180,6 +180,9 @@ pub(crate) const LINEAR_SLACK: f64 = 30.0;
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
 /// predicts active sets from gradients alone.
 pub(crate) const STIFF_ROWS: f64 = 5.0;
+/// The same in a linear mesh that is strongly graded along all axes: above 3 active sets ran in circles there, from 1 to
+/// 3 products are much the same.
+pub(crate) const STIFF_GRADED: f64 = 2.5;
 /// The same in a mesh of order 2, where points are means that share nodes and move one another. From 1 to 2.5 products
 /// are much the same on equal cells; on graded ones they grow with it.
 pub(crate) const STIFF_MEANS: f64 = 1.0;
@@ -243,6 +246,14 @@ pub(crate) const LARGE_COEFFICIENT: f64 = 3.0;
 
 /// Estimated error of the mesh, relative in the energy norm, above which it is large.
 pub(crate) const COARSE_MESH: f64 = 0.1;
+
+/// Error of a mesh of order 1 and 2, relative in the energy norm, with one cell over the thickness of the body, and the
+/// power of the number of cells with which it falls: the means of the studies' parts.
+pub(crate) const ERROR_OF_ONE: [f64; 2] = [0.6, 0.18];
+pub(crate) const ERROR_FALLS: f64 = 0.85;
+
+/// What supports leave of the normal of a facet that they hold, at most.
+pub(crate) const HELD_FACET: f64 = 1e-6;
 
 /// Strain over displacement by size below which it may be what the solver left of a rigid motion.
 pub(crate) const RIGID: f64 = 1e-6;

@@ -102,5 +102,5 @@ pub mod internal {
     pub use crate::subdomain::forecast::{Forecast, Rate};
     pub use crate::subdomain::kernel::Kernel;
     pub use crate::system::part::SystemPart;
-    pub use crate::tolerances::HELD;
+    pub use crate::tolerances::{HELD, HELD_MEANS};
 }

@@ -5,6 +5,7 @@
 
 mod cost;
 mod effects;
+mod mesh_error;
 mod plan;
 mod print;
 mod sanity;

@@ -2,14 +2,14 @@
 
 use super::cost::Estimate;
 use super::effects::Effects;
-use super::sanity;
+use super::{mesh_error, sanity};
 use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
 use crate::report::Warning;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::Directions;
-use signorini_tfeti::internal::{Forecast, HELD, Rate, forecast_levels};
+use signorini_tfeti::internal::{Forecast, HELD, HELD_MEANS, Rate, forecast_levels};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes of a scene and the method chosen for it.
@@ -58,6 +58,10 @@ pub struct Plan {
     pub method: MethodKind,
     /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
     pub vector_bytes: u64,
+    /// Error of the mesh to expect, relative in the energy norm, from its cells over the thickness of the bodies: within a
+    /// factor of two and a half on the studies' parts, less where cells are finer at edges. After a run
+    /// [`discretisation_error`](crate::StepResult::discretisation_error) measures it. `None` where nothing is known.
+    pub mesh_error: Option<f64>,
     /// Memory, and likely products and times.
     pub estimate: Estimate,
     warnings: Vec<Warning>,
@@ -112,6 +116,7 @@ impl Plan {
             let [low, high] = range.unwrap_or([p.gap; 2]);
             Some([p.gap.min(low), p.gap.max(high)])
         };
+        let warnings = sanity::warnings(scene, discrete);
         let mut plan = Self {
             effects,
             elements,
@@ -136,8 +141,9 @@ impl Plan {
                 MethodKind::Linear
             },
             vector_bytes: 0,
+            mesh_error: mesh_error::expected(scene, discrete, &warnings),
             estimate: Estimate::default(),
-            warnings: sanity::warnings(scene, discrete),
+            warnings,
         };
         let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
         let touching = points.iter().copied().chain(&discrete.ties);
@@ -173,18 +179,23 @@ impl Plan {
 /// set-up counts exactly.
 fn free_directions(point: &ContactPoint, fixed: &BTreeMap<u32, usize>) -> usize {
     let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
-    match (point.sides.own.nodes(), &point.sides.partner) {
-        // a side of several nodes is held where a good part of it is
-        (&[own], Some(partner)) => {
-            let part = |least: usize| {
-                let nodes = partner.nodes().iter().filter(|n| held(**n) >= least);
-                nodes.map(|n| n.1).sum::<f64>()
-            };
-            let partner = (1..=3).rev().find(|&least| part(least) >= HELD);
-            3 - held(own).min(partner.unwrap_or(0))
-        }
-        _ => 3 - point.sides.nodes().map(held).min().unwrap_or(3),
-    }
+    let Some(partner) = &point.sides.partner else {
+        return 3 - point.sides.nodes().map(held).min().unwrap_or(3);
+    };
+    // a side of several nodes is held where a good part of it is
+    let enough = if point.sides.own.nodes().len() > 1 {
+        HELD_MEANS
+    } else {
+        HELD
+    };
+    let of_side = |nodes: &[(u32, f64)]| {
+        let part = |least: usize| {
+            let nodes = nodes.iter().filter(|n| held(**n) >= least);
+            nodes.map(|n| n.1).sum::<f64>()
+        };
+        (1..=3).rev().find(|&least| part(least) >= enough).unwrap_or(0)
+    };
+    3 - of_side(point.sides.own.nodes()).min(of_side(partner.nodes()))
 }
 
 /// Number of directions fixed at each node.

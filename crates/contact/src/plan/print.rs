@@ -15,6 +15,15 @@ impl fmt::Display for Plan {
         write!(f, "plan")?;
         let mut line = |name: &str, text: String| write!(f, "\n  {name:<11} {text}");
         line("mesh", format!("{} tetrahedra, {} nodes", self.elements, self.nodes))?;
+        if let Some(error) = self.mesh_error {
+            let percent = (100.0 * error).round();
+            line(
+                "",
+                format!(
+                    "error of strains about {percent} %, within a factor of 2 to 3; discretisation_error() measures it"
+                ),
+            )?;
+        }
         line(
             "subdomains",
             format!("{} ({} torn unknowns)", self.subdomains, self.primal),

@@ -15,7 +15,8 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
-use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_MEANS, STIFF_ROWS};
+use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS};
+use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, SymmetricOperator, active_set, vector};
 use signorini_tfeti::internal::SystemPart;
@@ -51,10 +52,11 @@ impl ActiveSetSolver {
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
-        let stiff = if model.scene.mesh.order() == 2 {
-            STIFF_MEANS
-        } else {
-            STIFF_ROWS
+        let flat = || scale.iter().zip(&compliance).any(|(k, c)| k * c > STIFF_ROWS);
+        let stiff = match model.scene.mesh.order() {
+            2 => STIFF_MEANS,
+            _ if flat() && is_strongly_graded(&model.scene.mesh) => STIFF_GRADED,
+            _ => STIFF_ROWS,
         };
         for (scale, compliance) in scale.iter_mut().zip(compliance) {
             *scale = scale.min(stiff / compliance);

@@ -401,6 +401,46 @@ fn planes_of_symmetry_cost_no_products() {
     }
 }
 
+/// Quadratic cells between planes that hold them: no point has a row across, whatever share of its mean the planes hold,
+/// so that products grow like the root of length over thickness. With rows of half of the points they grew like that
+/// ratio, to the iteration limit.
+#[test]
+fn thin_quadratic_cells_between_planes_cost_few_products() {
+    let solved = |thick: f64, tied: bool| {
+        let mesh = blocks([6, 1, 4], [4, 1, 4], 1.0).map_points(|[x, y, z]| [x, thick * y, z]);
+        let mesh = mesh.expect("mapped").raise_order().expect("order 2");
+        let contact = match tied {
+            true => Contact::tied(second(brick::Z_MIN), brick::Z_MAX),
+            false => Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)),
+        };
+        let mut scene = Scene::new(mesh, uniform(YOUNG, POISSON))
+            .with_contact(contact)
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_load(Load::traction(second(brick::Z_MAX), [0.1 * PRESSURE, 0.0, -PRESSURE]))
+            .with_subdomains(2);
+        for tag in [brick::Y_MIN, brick::Y_MAX] {
+            for tag in [tag, second(tag)] {
+                scene = scene.with_support(Support::components(tag, [false, true, false]));
+            }
+        }
+        let (simulation, results) = run(scene, at(1e-6));
+        let ranges = simulation.tfeti().gluing().ranges();
+        let (plan, points) = (simulation.plan(), 2 * 5);
+        if tied {
+            assert_eq!([ranges.tied.len(), plan.tied_rows], [2 * points; 2]);
+        } else {
+            assert_eq!((ranges.normal.len(), ranges.tangential().len()), (points, points));
+            assert_eq!([plan.normal_rows, plan.tangential_rows], [points; 2]);
+        }
+        results[0].report.counters.products
+    };
+    for tied in [true, false] {
+        let [thick, thin] = [0.5, 0.01].map(|t| solved(t, tied));
+        println!("tied {tied}: {thick} products, {thin} where cells are fifty times thinner");
+        assert!(thin <= 6 * thick, "{tied}: {thick}, {thin}");
+    }
+}
+
 /// Sides that do not face each other, a tag on both sides, bodies inside each other: refused as where meshes match. The
 /// plan says which side has the points: that with the larger facets, or the first of those that are alike.
 #[test]

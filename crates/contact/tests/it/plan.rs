@@ -123,3 +123,53 @@ fn the_set_up_of_unshared_subdomains_takes_longer() {
     println!("{ratio}");
     assert!((2.2..8.8).contains(&ratio), "{ratio}");
 }
+
+/// The error that the plan expects is that of the estimate after the run within a factor of two and a half, on bodies
+/// that are compact, long or flat, and on a slice between planes. Of linear cells that lock it says nothing.
+#[test]
+fn the_plan_expects_the_error_of_the_mesh() {
+    let scene = |size: [f64; 3], cells: [usize; 3], order: usize, poisson: f64| {
+        let mesh = block(size, cells);
+        let mesh = if order == 2 {
+            mesh.raise_order().expect("order 2")
+        } else {
+            mesh
+        };
+        Scene::new(mesh, uniform(210e9, poisson))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e6]))
+    };
+    let plane = |tag| Support::components(tag, [false, true, false]);
+    let slice = scene([4.0, 0.5, 1.0], [16, 2, 4], 2, 0.3)
+        .with_support(plane(brick::Y_MIN))
+        .with_support(plane(brick::Y_MAX));
+    let pressed = |order: usize, n: usize| {
+        scene([3.0, 1.0, 1.0], [3 * n, n, n], order, 0.3)
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
+    };
+    for (name, scene) in [
+        ("brick", pressed(1, 5)),
+        ("brick of order 2", pressed(2, 3)),
+        ("bar", scene([8.0, 1.0, 1.0], [32, 4, 4], 1, 0.3)),
+        ("bar of order 2", scene([8.0, 1.0, 1.0], [16, 2, 2], 2, 0.3)),
+        ("plate", scene([5.0, 5.0, 0.5], [20, 20, 2], 1, 0.3)),
+        ("plate of order 2", scene([5.0, 5.0, 0.5], [10, 10, 1], 2, 0.3)),
+        ("slice", slice),
+    ] {
+        let simulation = run(scene, at(1e-6)).0;
+        let expected = simulation.plan().mesh_error.expect("an error");
+        let result = simulation.result().expect("a step");
+        let found = result.discretisation_error().expect("an estimate").relative();
+        println!("{name}: expected {expected:.3}, estimated {found:.3}");
+        assert!(
+            found < 2.5 * expected && expected < 2.5 * found,
+            "{name}: {expected}, {found}"
+        );
+        assert!(simulation.plan().to_string().contains("discretisation_error()"));
+    }
+    let locking = scene([1.0; 3], [2; 3], 1, 0.49);
+    assert_eq!(
+        Plan::new(&locking, &Settings::default()).expect("plan").mesh_error,
+        None
+    );
+}

@@ -12,6 +12,6 @@ mod parts;
 mod subdomains;
 
 pub use compact::compact_parts;
-pub use even::{PartCount, even_parts};
+pub use even::{PartCount, even_parts, is_strongly_graded};
 pub use parts::split_disconnected;
 pub use subdomains::{Decomposition, DecompositionError, NodeCopy, Subdomain};

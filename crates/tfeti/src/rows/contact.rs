@@ -5,7 +5,7 @@ use crate::linalg::entry;
 use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
-use crate::tolerances::{ANGLE, FIXED, HELD};
+use crate::tolerances::{ANGLE, FIXED, HELD, HELD_MEANS};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
 
@@ -154,24 +154,36 @@ impl Space {
         self.row(direction, length.recip())
     }
 
-    /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides:
-    /// the node of the first and a good part of the mean of the other. There, at a plane of symmetry that cuts both, a
-    /// row would see no slip, but how the displacement of the other side bends.
+    /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides,
+    /// a node or a good part of a mean. There, at a plane of symmetry that cuts both, a row would see no slip, but how
+    /// displacements bend beside the plane.
     fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();
         let fixed = (0..3).filter(|&k| eigen.eigenvalues[k] <= zero);
         let mut fixed: Vec<Vector3<f64>> = fixed.map(|k| eigen.eigenvectors.column(k).into()).collect();
-        if point.side.nodes().len() == 1 && point.partner.as_ref().is_some_and(|side| side.nodes().len() > 1) {
+        let (own, all) = (point.side.nodes().len(), self.nodes.len());
+        if all > own && all > 2 {
             let along = |d: &Vector3<f64>| d * d.transpose();
-            let own = Matrix3::identity() - self.nodes[0].1;
-            let other = point.nodes().zip(&self.nodes).skip(1);
-            let other: Matrix3<f64> = other.map(|((_, w), (_, free))| (Matrix3::identity() - free) * -w).sum();
+            let shares = point.nodes().zip(&self.nodes);
+            let shares = shares.map(|((_, w), (_, free))| (Matrix3::identity() - free) * w);
+            let shares: Vec<Matrix3<f64>> = shares.collect();
+            let other: Matrix3<f64> = shares[own..].iter().map(|share| -share).sum();
+            let (own, least) = match own {
+                1 => (Matrix3::identity() - self.nodes[0].1, HELD),
+                // the directions that supports hold at a good part of a mean
+                _ => {
+                    let held = SymmetricEigen::new(shares[..own].iter().sum::<Matrix3<f64>>());
+                    let found = (0..3).filter(|&k| held.eigenvalues[k] >= HELD_MEANS);
+                    let found = found.map(|k| along(&held.eigenvectors.column(k).into()));
+                    (found.sum(), HELD_MEANS)
+                }
+            };
             let left = fixed
                 .iter()
                 .fold(Matrix3::identity() - along(&normal), |p, d| p - along(d));
             let held = SymmetricEigen::new(left * own * other * own * left);
-            let found = (0..3).filter(|&k| held.eigenvalues[k] >= HELD);
+            let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
             fixed.extend(found.map(|k| Vector3::from(held.eigenvectors.column(k))));
         }
         fixed
