@@ -151,7 +151,7 @@ impl MeshChoice {
             .with_load(Load::traction(brick::X_MAX, [4.5e8, 0.0, -7.5e8]))
             .with_contact(floor.with_gap(GAP));
         Ok(match self.parts()? {
-            Some(parts) => scene.with_parts(parts),
+            Some(parts) => scene.with_parts_as_given(parts),
             None => scene,
         })
     }

@@ -172,7 +172,7 @@ fn arch() -> Result<Scene, Failure> {
         .with_load(Load::pressure(brick::Z_MAX, 4e8).with_history(ramp()?))
         .with_load(Load::traction(brick::X_MAX, [0.0, 1e8, -1e8]).with_history(waves()?))
         .with_contact(floor(0.001, 0.2))
-        .with_parts(parts)
+        .with_parts_as_given(parts)
         .with_analysis(steps(10)))
 }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::Write;
 use std::path::Path;
 
-use signorini::fem_mesh::decomposition::{PartCount, compact_parts, even_parts, split_disconnected};
+use signorini::fem_mesh::decomposition::{PartCount, even_parts, split_disconnected};
 use signorini::fem_mesh::{Facet, gmsh};
 use signorini::prelude::*;
 use signorini_studies::Failure;
@@ -154,23 +154,19 @@ impl CutLine {
 }
 
 /// Solves a case on a mesh with these parts, or with `3n x n x n` boxes.
-pub(crate) fn measure(
-    case: Case,
-    mesh: &TetMesh,
-    n: usize,
-    (cut, parts): (&str, Option<Vec<u32>>),
-) -> Result<CutLine, Failure> {
+pub(crate) fn measure(case: Case, mesh: &TetMesh, n: usize, (cut, parts): &Cut) -> Result<CutLine, Failure> {
     let scene = case.scene(mesh.clone(), n)?;
-    let scene = match parts {
-        Some(parts) => scene.with_parts(parts),
-        None => scene,
+    let scene = match parts.clone() {
+        Parts::Boxes => scene,
+        Parts::AsGiven(parts) => scene.with_parts_as_given(parts),
+        Parts::Compact(parts) => scene.with_parts(parts),
     };
     let (simulation, steps, _) = solve(scene, Settings::default(), &mut |_, _| Ok(()))?;
     let sizes = || simulation.decomposition().subdomains().iter().map(|s| s.tets.len());
     let [least, most] = [sizes().min(), sizes().max()].map(Option::unwrap_or_default);
     Ok(CutLine {
         case,
-        cut: cut.to_owned(),
+        cut: cut.clone(),
         subdomains: [sizes().count(), least, most],
         rows: simulation.tfeti().dual_dim(),
         products: steps.iter().map(|s| s.n_m).collect(),
@@ -179,8 +175,19 @@ pub(crate) fn measure(
     })
 }
 
-/// A name and the part numbers of the tetrahedra; `None` for boxes.
-pub(crate) type Cut = (String, Option<Vec<u32>>);
+/// A name and where the parts come from.
+pub(crate) type Cut = (String, Parts);
+
+/// Part numbers of the tetrahedra, as they are or made compact by the library, or boxes.
+#[derive(Debug, Clone)]
+pub(crate) enum Parts {
+    /// `3n x n x n` boxes.
+    Boxes,
+    /// Left as they are.
+    AsGiven(Vec<u32>),
+    /// Made compact by the library.
+    Compact(Vec<u32>),
+}
 
 /// The cuts of a mesh into about `3n³` parts: boxes, the library's, random Voronoi cells and those of a file, as
 /// they are and made compact, and grown parts made compact.
@@ -198,21 +205,20 @@ pub(crate) fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<
         // what is no number is no part: the decomposition tells how many are missing
         given.push(("file", numbers.map_while(Result::ok).collect()));
     }
-    let mut out = vec![("boxes".to_owned(), None)];
+    let mut out = vec![("boxes".to_owned(), Parts::Boxes)];
     let one = vec![0; mesh.tets().len()];
     // the library's own, into as many parts and into a number that no grid of boxes has
     for (name, count) in [("library", count), ("library, less", count * 4 / 5 + 1)] {
         let parts = even_parts(mesh, &one, PartCount::Exactly(count))?;
-        out.push((name.to_owned(), Some(parts)));
+        out.push((name.to_owned(), Parts::AsGiven(parts)));
     }
     for (name, parts) in given {
         let connected = split_disconnected(mesh, &parts)?;
-        let compact = compact_parts(mesh, &parts)?;
         // what is grown tetrahedron by tetrahedron hangs together by single faces, and is no body to speak of
         if name != "grown" {
-            out.push((name.to_owned(), Some(connected)));
+            out.push((format!("{name}, as given"), Parts::AsGiven(connected)));
         }
-        out.push((format!("{name}, compact"), Some(compact)));
+        out.push((name.to_owned(), Parts::Compact(parts)));
     }
     Ok(out)
 }
@@ -237,16 +243,16 @@ pub(crate) fn execute(options: &PerformanceOptions, out: &mut impl Write) -> Res
         let cuts = cuts(&mesh, n, options.parts.as_deref())?;
         for (case, name) in Case::ALL {
             let mut boxes = 0;
-            for (cut, parts) in &cuts {
-                let parts = (cut.as_str(), parts.clone());
-                let line = pool.install(|| measure(case, &mesh, n, parts))?;
+            for cut in &cuts {
+                let line = pool.install(|| measure(case, &mesh, n, cut))?;
                 if boxes == 0 {
                     boxes = line.total();
                 }
                 let [count, least, most] = line.subdomains;
                 writeln!(
                     out,
-                    "| {n} | {name} | {cut} | {count} ({least} to {most}) | {} | {} | {:.2} | {} | {:.1e}{} |",
+                    "| {n} | {name} | {} | {count} ({least} to {most}) | {} | {} | {:.2} | {} | {:.1e}{} |",
+                    line.cut,
                     line.rows,
                     line.total(),
                     line.total() as f64 / boxes as f64,

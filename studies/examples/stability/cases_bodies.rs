@@ -47,7 +47,7 @@ fn pair(part: f64) -> Result<Setup, Failure> {
     let setup = block.setup_on(mesh, Materials::uniform(block.material()?))?;
     let traction = |tag, value: [f64; 3]| LoadDensity::traction(own(tag), value.map(|v| part * v));
     Ok(setup
-        .map(|s| s.with_parts(parts))
+        .map(|s| s.with_parts_as_given(parts))
         .with_load(traction(brick::Z_MAX, block.top), History::table(block.top_history)?)
         .with_load(traction(brick::X_MAX, block.end), History::table(block.end_history)?))
 }

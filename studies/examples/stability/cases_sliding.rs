@@ -91,7 +91,7 @@ impl Sliding {
         }
         scene = match self.cut {
             Cut::Boxes(boxes) => scene.with_boxes(boxes),
-            Cut::Scattered(_) => scene.with_parts(parts),
+            Cut::Scattered(_) => scene.with_parts_as_given(parts),
         };
         if self.steps > 0 {
             scene = scene.with_analysis(Analysis::quasistatic(1.0, self.steps).with_formula(EULER));

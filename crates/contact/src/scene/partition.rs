@@ -1,7 +1,9 @@
 //! How the body is cut into subdomains.
 
+use std::collections::HashMap;
+
 use crate::error::ContactError;
-use signorini_fem_mesh::decomposition::{PartCount, even_parts};
+use signorini_fem_mesh::decomposition::{PartCount, compact_parts, even_parts};
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 
 /// Tetrahedra of a subdomain that a scene without a partition asks for. From 400 to 1500 the work is much the same.
@@ -27,12 +29,16 @@ pub enum Partition {
     Whole,
     /// Into boxes of the bounding box, by element centroids (see [`Decomposition::boxes`]).
     Boxes([usize; 3]),
-    /// By the given part number of every element.
+    /// By the given part number of every element, those of a graph partitioner for instance, made compact by
+    /// [`compact_parts`]; materials are mixed only where a given part mixes them.
     Parts(Vec<u32>),
+    /// By the given part number of every element, as they are: numbers without gaps, of parts that hang together.
+    AsGiven(Vec<u32>),
 }
 
 impl Partition {
-    /// The subdomains of a mesh; refuses a zero count, and part numbers with gaps or disconnected parts.
+    /// The subdomains of a mesh; refuses a zero count, and where parts are to stay as they are,
+    /// numbers with gaps and parts in pieces.
     pub(crate) fn decompose(&self, mesh: &TetMesh, materials: &Materials) -> Result<Decomposition, ContactError> {
         let even = |count| -> Result<Decomposition, ContactError> {
             let parts = even_parts(mesh, &same_material(mesh, materials)?, count)?;
@@ -46,7 +52,15 @@ impl Partition {
             Self::Subdomains(count) => even(PartCount::Exactly(*count)),
             Self::Whole => Ok(Decomposition::whole(mesh)),
             Self::Boxes(boxes) => Ok(Decomposition::boxes(mesh, *boxes)?),
-            Self::Parts(parts) => Ok(Decomposition::from_parts(mesh, parts)?),
+            Self::Parts(parts) => {
+                let mut groups = same_material(mesh, materials)?;
+                let parts_of: HashMap<u32, u32> = parts.iter().copied().zip(groups.iter().copied()).collect();
+                if parts.iter().zip(&groups).any(|(part, group)| parts_of[part] != *group) {
+                    groups.fill(0);
+                }
+                Ok(Decomposition::from_parts(mesh, &compact_parts(mesh, &groups, parts)?)?)
+            }
+            Self::AsGiven(parts) => Ok(Decomposition::from_parts(mesh, parts)?),
         }
     }
 }
@@ -63,4 +77,48 @@ fn same_material(mesh: &TetMesh, materials: &Materials) -> Result<Vec<u32>, Cont
         .collect();
     let label = |region: &u32| first[regions.partition_point(|known| known < region)];
     Ok(mesh.regions().iter().map(label).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use signorini_fem_mesh::{Brick, Hooke};
+
+    #[test]
+    fn given_parts_are_made_compact_and_mix_materials_only_where_they_did() {
+        let mesh = Brick::new([2.0, 1.0, 1.0], [8, 4, 4]).build().expect("mesh");
+        let centre = |tet: usize| mesh.tet_points(tet).iter().map(|p| p[0]).sum::<f64>() / 4.0;
+        let tets = mesh.tets().len();
+        let regions: Vec<u32> = (0..tets).map(|tet| u32::from(centre(tet) > 0.7)).collect();
+        let mesh = mesh.clone().with_regions(regions.clone()).expect("regions");
+        let steel = Hooke::isotropic(2e11, 0.3).expect("steel");
+        let rubber = Hooke::isotropic(1e7, 0.45).expect("rubber");
+        let materials = Materials::new(vec![(0, steel), (1, rubber)]).expect("table");
+        let mixed = |parts: &[u32]| {
+            let cut = Partition::Parts(parts.to_vec())
+                .decompose(&mesh, &materials)
+                .expect("cut");
+            let mut out = vec![(0, 0); cut.subdomains().len()];
+            for (&part, &region) in cut.parts().iter().zip(&regions) {
+                let (all, rubber) = &mut out[part as usize];
+                (*all, *rubber) = (*all + 1, *rubber + region);
+            }
+            out
+        };
+        // crumbs of each material, with gaps in the numbers
+        let crumbs: Vec<u32> = (0..tets)
+            .map(|tet| 10 * (2 * (tet as u32 % 3) + regions[tet]))
+            .collect();
+        let cut = mixed(&crumbs);
+        assert!(cut.iter().all(|&(all, rubber)| rubber == 0 || rubber == all), "{cut:?}");
+        let scattered = Partition::AsGiven(crumbs).decompose(&mesh, &materials);
+        assert!(scattered.is_err(), "parts as given hang together");
+        // slabs across the boundary of the materials stay across it
+        let slabs: Vec<u32> = (0..tets).map(|tet| u32::from(centre(tet) > 1.0)).collect();
+        let cut = mixed(&slabs);
+        assert!(
+            cut.len() == 2 && cut.iter().any(|&(all, rubber)| 0 < rubber && rubber < all),
+            "{cut:?}"
+        );
+    }
 }

@@ -29,7 +29,7 @@ fn on_the_floor(scene: Scene, friction: Friction) -> Scene {
     let parts = scene.mesh().components();
     scene
         .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
-        .with_parts(parts)
+        .with_parts_as_given(parts)
         .with_analysis(paper_steps(1.0, 3))
 }
 

@@ -107,7 +107,7 @@ fn of_two_bodies_the_one_pushed_most_is_named() {
     let parts = (0..tets.len()).map(|t| u32::from(t >= one.tets().len())).collect();
     let other = FacetTag(brick::Z_MAX.0 + 100);
     let scene = free(TetMesh::new(points, tets, facets).expect("mesh"))
-        .with_parts(parts)
+        .with_parts_as_given(parts)
         .with_load(Load::pressure(brick::Z_MAX, 3e6))
         .with_load(Load::pressure(other, 4e6));
     let (_, body, mode, force) = not_held(scene);

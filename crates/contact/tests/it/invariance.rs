@@ -22,7 +22,7 @@ fn scene(mesh: TetMesh, parts: Vec<u32>, r: &Rotation, shift: [f64; 3], law: Fri
         .with_load(traction(brick::Z_MAX, [0.0, 4e8, -30e8]).with_history(ramp()))
         .with_load(traction(brick::X_MAX, [9e8, 3e8, -15e8]).with_history(up_down_up()))
         .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(law))
-        .with_parts(parts)
+        .with_parts_as_given(parts)
         .with_analysis(paper_steps(1.0, 4))
 }
 

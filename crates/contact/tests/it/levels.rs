@@ -38,7 +38,7 @@ fn many(scene: Scene) -> Scene {
         numbers.entry(*cell).or_insert(next);
     }
     let parts = cells.iter().map(|cell| numbers[cell]).collect();
-    scene.with_parts(parts)
+    scene.with_parts_as_given(parts)
 }
 
 fn has_levels(simulation: &Simulation) -> bool {

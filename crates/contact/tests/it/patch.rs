@@ -43,7 +43,10 @@ fn cuts(scene: &Scene) -> Vec<(&'static str, Scene)> {
         ("whole", scene.clone()),
         ("3 boxes", scene.clone().with_boxes([3, 1, 1])),
         ("24 boxes", scene.clone().with_boxes([3, 4, 2])),
-        ("slanted parts", scene.clone().with_parts(slanted_parts(scene.mesh()))),
+        (
+            "slanted parts",
+            scene.clone().with_parts_as_given(slanted_parts(scene.mesh())),
+        ),
     ]
 }
 

@@ -64,7 +64,7 @@ fn the_plan_knows_what_very_small_subdomains_cost() {
             .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
             .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01));
         let scene = if small {
-            scene.with_parts(parts)
+            scene.with_parts_as_given(parts)
         } else {
             scene.with_boxes([3, 1, 1])
         };

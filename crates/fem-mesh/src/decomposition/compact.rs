@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, connected_sets};
 use crate::tables::{buckets, range};
 use crate::tolerances::{SETTLED, SWEEPS};
 use crate::vec3::{self, Vec3};
@@ -23,38 +23,40 @@ use super::subdomains::DecompositionError;
 /// so that parts keep similar numbers of them in graded meshes. What a part does not reach through faces goes to the
 /// neighbour that shares most with it.
 ///
-/// Parts do not reach from one body into another; regions of materials are no obstacle. The result is accepted by
-/// [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and numbered without
-/// gaps in the order of their first tetrahedra. There may be fewer than before, and more where a part lay in several
-/// bodies.
+/// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. The
+/// result is accepted by [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and
+/// numbered without gaps in the order of their first tetrahedra. There may be fewer than before, and more where a part
+/// lay in several groups or bodies. Boxes of equal cells stay as they are.
 ///
 /// # Errors
-/// [`DecompositionError::PartCount`] if there is not one number for each tetrahedron.
-pub fn compact_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
+/// [`DecompositionError::PartCount`] if there is not one number, or not one label, for each tetrahedron.
+pub fn compact_parts(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
+    expect_parts(mesh, groups)?;
     expect_parts(mesh, parts)?;
-    Ok(compact(mesh, &mesh.components(), parts))
+    let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
+    Ok(compact(mesh, &groups, parts))
 }
 
-/// As [`compact_parts`]; parts do not reach from one group into another.
-pub(crate) fn compact(mesh: &TetMesh, bodies: &[u32], parts: &[u32]) -> Vec<u32> {
+/// As [`compact_parts`], with groups that hang together.
+pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32> {
     let tets = parts.len();
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
-    let mut parts = within_bodies(bodies, parts);
+    let mut parts = within_groups(groups, parts);
     for _ in 0..SWEEPS {
-        let next = sweep(mesh, bodies, &centres, &parts);
+        let next = sweep(mesh, groups, &centres, &parts);
         let moved = next.iter().zip(&parts).filter(|(a, b)| a != b).count();
         parts = next;
         if moved as f64 <= SETTLED * tets as f64 {
             break;
         }
     }
-    join_pieces(mesh, bodies, &mut parts);
+    join_pieces(mesh, groups, &mut parts);
     renumbered(&parts)
 }
 
-/// One number for each part of a body, without gaps.
-fn within_bodies(bodies: &[u32], parts: &[u32]) -> Vec<u32> {
-    let mut pairs: Vec<(u32, u32)> = bodies.iter().copied().zip(parts.iter().copied()).collect();
+/// One number for each part of a group, without gaps.
+fn within_groups(groups: &[u32], parts: &[u32]) -> Vec<u32> {
+    let mut pairs: Vec<(u32, u32)> = groups.iter().copied().zip(parts.iter().copied()).collect();
     let all = pairs.clone();
     pairs.sort_unstable();
     pairs.dedup();
@@ -62,22 +64,22 @@ fn within_bodies(bodies: &[u32], parts: &[u32]) -> Vec<u32> {
     all.into_iter().map(place).collect()
 }
 
-/// The nearest of the own part and those of the same body that touch it, for every tetrahedron.
-fn sweep(mesh: &TetMesh, bodies: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec<u32> {
+/// The nearest of the own part and those of the same group that touch it, for every tetrahedron.
+fn sweep(mesh: &TetMesh, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec<u32> {
     let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
     let mut sums = vec![([0.0; 3], 0.0); count];
-    let mut body = vec![0; count];
+    let mut group = vec![0; count];
     for (tet, (&part, &centre)) in parts.iter().zip(centres).enumerate() {
         let (sum, number) = &mut sums[part as usize];
         *sum = vec3::add(*sum, centre);
         *number += 1.0;
-        body[part as usize] = bodies[tet];
+        group[part as usize] = groups[tet];
     }
     let means: Vec<Vec3> = sums
         .iter()
         .map(|(sum, number)| vec3::scale(1.0 / f64::max(*number, 1.0), *sum))
         .collect();
-    let touching = touching(mesh, parts, count, &body);
+    let touching = touching(mesh, parts, count, &group);
     let distance = |part: u32, centre: Vec3| {
         let off = vec3::sub(means[part as usize], centre);
         vec3::dot(off, off)
@@ -97,8 +99,8 @@ fn sweep(mesh: &TetMesh, bodies: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec
         .collect()
 }
 
-/// The parts of the same body that share a node with each part, ascending.
-fn touching(mesh: &TetMesh, parts: &[u32], count: usize, body: &[u32]) -> Vec<Vec<u32>> {
+/// The parts of the same group that share a node with each part, ascending.
+fn touching(mesh: &TetMesh, parts: &[u32], count: usize, group: &[u32]) -> Vec<Vec<u32>> {
     let (starts, corners) = buckets(mesh.points().len(), mesh.tets().as_flattened());
     let mut out = vec![Vec::new(); count];
     let mut here: Vec<u32> = Vec::new();
@@ -109,7 +111,7 @@ fn touching(mesh: &TetMesh, parts: &[u32], count: usize, body: &[u32]) -> Vec<Ve
         here.sort_unstable();
         here.dedup();
         for &a in &here {
-            let same = |b: &&u32| **b != a && body[a as usize] == body[**b as usize];
+            let same = |b: &&u32| **b != a && group[a as usize] == group[**b as usize];
             out[a as usize].extend(here.iter().filter(same));
         }
     }

@@ -60,13 +60,18 @@ fn spread(mesh: &TetMesh, parts: &[u32]) -> f64 {
         / parts.len() as f64
 }
 
+/// One label for all tetrahedra: any part may have any of them.
+fn one(mesh: &TetMesh) -> Vec<u32> {
+    vec![0; mesh.tets().len()]
+}
+
 #[test]
 fn random_cells_become_round_ones_of_similar_size() {
     let mesh = brick();
     let mean = mesh.tets().len() / 24;
     for seed in 1..4 {
         let cells = voronoi(&mesh, 24, seed);
-        let parts = compact_parts(&mesh, &cells).unwrap();
+        let parts = compact_parts(&mesh, &one(&mesh), &cells).unwrap();
         let cut = Decomposition::from_parts(&mesh, &parts).expect("connected, without gaps");
         assert_eq!(cut.subdomains().len(), 24);
         let sizes = |p: &[u32]| {
@@ -82,7 +87,7 @@ fn random_cells_become_round_ones_of_similar_size() {
         assert!(after.1 <= 3 * mean / 2, "{after:?}");
         assert!(spread(&mesh, &parts) < 0.8 * spread(&mesh, &cells));
         // a second time moves little
-        let again = compact_parts(&mesh, &parts).unwrap();
+        let again = compact_parts(&mesh, &one(&mesh), &parts).unwrap();
         let moved = again.iter().zip(&parts).filter(|(a, b)| a != b).count();
         assert!(20 * moved <= parts.len(), "{moved}");
     }
@@ -92,7 +97,7 @@ fn random_cells_become_round_ones_of_similar_size() {
 fn cubes_stay_as_they_are() {
     let mesh = brick();
     let boxes = Decomposition::boxes(&mesh, [3, 1, 1]).unwrap();
-    assert_eq!(compact_parts(&mesh, boxes.parts()).unwrap(), boxes.parts());
+    assert_eq!(compact_parts(&mesh, &one(&mesh), boxes.parts()).unwrap(), boxes.parts());
 }
 
 #[test]
@@ -116,7 +121,7 @@ fn parts_stay_within_their_body_and_hang_together() {
     let bodies = mesh.components();
     assert_eq!(bodies.iter().max(), Some(&1));
     for seed in 1..6 {
-        let parts = compact_parts(&mesh, &voronoi(&mesh, 12, seed)).unwrap();
+        let parts = compact_parts(&mesh, &one(&mesh), &voronoi(&mesh, 12, seed)).unwrap();
         assert_eq!(split_disconnected(&mesh, &parts).unwrap(), parts, "connected, in order");
         let mut of = vec![None; 64];
         for (&part, &body) in parts.iter().zip(&bodies) {
@@ -125,12 +130,30 @@ fn parts_stay_within_their_body_and_hang_together() {
     }
     // a checkerboard is in pieces all over
     let crumbs: Vec<u32> = (0..mesh.tets().len() as u32).map(|t| t % 7).collect();
-    let parts = compact_parts(&mesh, &crumbs).unwrap();
+    let parts = compact_parts(&mesh, &one(&mesh), &crumbs).unwrap();
     assert_eq!(split_disconnected(&mesh, &parts).unwrap(), parts);
 }
 
 #[test]
+fn parts_stay_within_their_group() {
+    let mesh = brick();
+    let groups: Vec<u32> = (0..mesh.tets().len())
+        .map(|t| u32::from(centre(&mesh, t)[0] > 1.2))
+        .collect();
+    let parts = compact_parts(&mesh, &groups, &voronoi(&mesh, 12, 1)).unwrap();
+    assert_eq!(split_disconnected(&mesh, &parts).unwrap(), parts, "connected, in order");
+    let mut of = vec![None; mesh.tets().len()];
+    for (&part, &group) in parts.iter().zip(&groups) {
+        assert_eq!(*of[part as usize].get_or_insert(group), group);
+    }
+}
+
+#[test]
 fn a_number_for_each_tetrahedron() {
-    let error = compact_parts(&brick(), &[0]).unwrap_err();
-    assert!(matches!(error, DecompositionError::PartCount { given: 1, .. }));
+    let mesh = brick();
+    let all = one(&mesh);
+    for (groups, parts) in [(&all[..], &[0][..]), (&[0], &all)] {
+        let error = compact_parts(&mesh, groups, parts).unwrap_err();
+        assert!(matches!(error, DecompositionError::PartCount { given: 1, .. }));
+    }
 }

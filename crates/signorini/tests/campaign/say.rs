@@ -129,7 +129,7 @@ pub(crate) fn scene(recipe: &Recipe) -> Result<Scene, Error> {
     Ok(match &recipe.pieces {
         Pieces::Whole => scene,
         Pieces::Boxes(boxes) => scene.with_boxes(*boxes),
-        Pieces::Parts(parts) => scene.with_parts(parts.clone()),
+        Pieces::Parts(parts) => scene.with_parts_as_given(parts.clone()),
     })
 }
 

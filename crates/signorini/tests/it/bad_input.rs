@@ -176,8 +176,8 @@ fn decompositions_supports_and_loads() {
     let count = check(cases! {
         "no boxes": attempt(good().with_boxes([3, 0, 1])) => Error::Decomposition(DecompositionError::NoBoxes { axis: "y", .. }), "along y";
         "parts for other elements": attempt(good().with_parts(vec![0; tets - 1])) => Error::Decomposition(DecompositionError::PartCount { .. }), "part numbers";
-        "a part number left out": attempt(good().with_parts(vec![1; tets])) => Error::Decomposition(DecompositionError::EmptyPart { part: 0, .. }), "part 0";
-        "a part in two pieces": attempt(good().with_parts(ends)) => Error::Decomposition(DecompositionError::DisconnectedPart { part: 0, .. }), "part 0", "2 pieces";
+        "a part number left out": attempt(good().with_parts_as_given(vec![1; tets])) => Error::Decomposition(DecompositionError::EmptyPart { part: 0, .. }), "part 0";
+        "a part in two pieces": attempt(good().with_parts_as_given(ends)) => Error::Decomposition(DecompositionError::DisconnectedPart { part: 0, .. }), "part 0", "2 pieces";
         "a support on an unknown tag": attempt(good().with_support(Support::fixed(FacetTag(99)))) => Error::Contact(ContactError::UnknownTag { tag: 99, .. }), "support 1", "99", "the tags 1, 2, 3";
         "a support at an unknown node": attempt(good().with_support(Support::fixed(vec![5, 1000]))) => Error::Contact(ContactError::UnknownNode { node: 1000, .. }), "support 1", "1000", "from 0";
         "a support without nodes": attempt(good().with_support(Support::fixed(Vec::new()))) => Error::Tfeti(TfetiError::EmptySupport { support: 1, .. }), "support 1";
