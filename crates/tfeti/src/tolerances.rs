@@ -45,6 +45,8 @@ pub(crate) const ALIKE: f64 = 4.0;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;
+/// Rows up to which a group has few: a node in a corner of three rough obstacles has nine, and the gluing of its copies.
+pub(crate) const DEPENDENT_FEW: usize = 30;
 /// The same in a group of many rows, where contact points share nodes: on few is there a null space, and what is added
 /// makes long waves along a thin body stiff.
 pub(crate) const DEPENDENT_JOINED: f64 = 0.03;
