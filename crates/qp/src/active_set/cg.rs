@@ -16,7 +16,9 @@
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
-use crate::tolerances::{ENOUGH, GROWN, MOST_STEPS, NEGATIVE_CURVATURE, PASSING, PASSING_STEP, ROUNDED_STEPS};
+use crate::tolerances::{
+    ENOUGH, GROWN, MOST_STEPS, NEGATIVE_CURVATURE, PASSING, PASSING_STEP, ROUNDED_STEPS, TAMED, WILD,
+};
 use crate::vector;
 
 use super::iterate::{Iterate, Lengths, natural_map};
@@ -57,7 +59,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         let mut enough = fallen(start);
         let last = goal.max_products.min(self.report.products() + MOST_STEPS);
         self.first_direction();
-        let (mut rho, mut steps) = (rho, 0);
+        let (mut rho, mut steps, mut tamed) = (rho, 0, false);
         while self.report.products() < last && rho > 0.0 {
             let coupled = self.multiply_direction();
             steps += 1;
@@ -79,6 +81,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let errors = self.errors();
             if errors.within(enough) {
                 let more = !errors.within(goal.limits);
+                // the next set would be predicted from what is mostly error
+                let wild = |size: f64| errors.all > WILD * size;
+                if more && !tamed && wild(goal.size) && wild(self.problem.operator.norm(self.x)) {
+                    let all = TAMED * self.problem.operator.norm(self.x).max(goal.size);
+                    (enough, tamed) = (Lengths { all, constrained: all }, true);
+                    continue;
+                }
                 let exact = errors.all > digits * first.all;
                 if more && exact && goal.goes_on && self.stays(goal) {
                     enough = fallen(errors);
