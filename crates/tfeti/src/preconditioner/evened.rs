@@ -9,23 +9,19 @@ use crate::dual::boundary::BoundaryMap;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::sparse::SolveMemory;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{LANCZOS, PIVOT};
+use crate::tolerances::{LANCZOS, PIVOT, STIFFER};
 use nalgebra::{DMatrix, SymmetricEigen};
 use rayon::prelude::*;
 use signorini_qp::vector;
 
-/// Scales the lumped blocks of classes that are stiffer, at each of their nodes, than others at any; `None` for those
+/// Scales the lumped blocks of classes all of whose elements are much stiffer than any of others; `None` for those
 /// with a Schur complement, which leaves eigenvalues near one, and those that another rank holds.
 pub(super) fn even_out(system: &Tfeti, map: &BoundaryMap, mut classes: Vec<Option<&mut BlockRows>>) {
     let subdomains = &system.parts.subdomains;
-    let range = |class: usize| {
-        let diagonal = subdomains.bases[class].diagonal.iter();
-        diagonal.fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], v| [v.min(a), v.max(b)])
-    };
-    let ranges: Vec<[f64; 2]> = (0..classes.len()).map(range).collect();
+    let ranges: Vec<[f64; 2]> = subdomains.bases.iter().map(|base| base.moduli).collect();
     let [soft, stiff] = [1, 0].map(|k| ranges.iter().map(move |r| r[k]));
     let (softest, stiffest) = (soft.fold(f64::INFINITY, f64::min), stiff.fold(0.0, f64::max));
-    if stiffest <= softest {
+    if stiffest <= STIFFER * softest {
         return;
     }
     let mut largest: Vec<f64> = (0..classes.len())
@@ -46,7 +42,7 @@ pub(super) fn even_out(system: &Tfeti, map: &BoundaryMap, mut classes: Vec<Optio
     order.sort_by(|&a, &b| ranges[a][1].total_cmp(&ranges[b][1]).then(a.cmp(&b)));
     let mut up_to: Vec<f64> = Vec::new();
     for &class in &order {
-        let softer = order[..up_to.len()].partition_point(|&k| ranges[k][1] < ranges[class][0]);
+        let softer = order[..up_to.len()].partition_point(|&k| STIFFER * ranges[k][1] < ranges[class][0]);
         let known = softer.checked_sub(1).map(|last| up_to[last]);
         let factor = known.map_or(1.0, |known| (known / largest[class]).min(1.0));
         if let Some(block) = classes[class].as_mut().filter(|_| factor < 1.0) {
