@@ -48,6 +48,8 @@ pub(crate) const ALIKE: f64 = 4.0;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;
+/// Rows up to which a group has few: a node in a corner of three rough obstacles has nine, and the gluing of its copies.
+pub(crate) const DEPENDENT_FEW: usize = 30;
 /// The same in a group of many rows, where contact points share nodes: on few is there a null space, and what is added
 /// makes long waves along a thin body stiff.
 pub(crate) const DEPENDENT_JOINED: f64 = 0.03;
@@ -61,6 +63,13 @@ pub(crate) const EXCHANGED_ROWS: usize = 1000;
 pub(crate) const GROUP_ROWS: usize = 120;
 /// Weight of the rows that an active set holds in the matrix of such a group, relative to their own entry.
 pub(crate) const HELD_ROWS: f64 = 1e8;
+
+/// Shear modulus over that of softer subdomains from which on conjugate gradients suit those first: of an error there
+/// is a thirtieth of the energy.
+pub(crate) const STIFFER: f64 = 30.0;
+/// Steps of Lanczos' method for the largest eigenvalue that a lumped block leaves: it is 1 % short at most on boxes of 4
+/// to 12 cells.
+pub(crate) const LANCZOS: usize = 8;
 
 // ---- what is worth a table, a cut or a thread; seconds are those of one core ----
 

@@ -227,10 +227,7 @@ fn page(findings: &[Finding], options: &CasesOptions) -> String {
     );
     let heads = HEADS.map(|[a, b]| format!("{a} {b}").trim().replace("- ", ""));
     text += "In the rows *pulled* of cubes the library cuts; pairs are compared with matching meshes of the finer \
-             side. Where the finer body is the stiffer one, conjugate gradients suit the spectrum of the soft body \
-             first, and the largest eigenvalues that the lumped preconditioner leaves in the other are above it; with \
-             `Preconditioner::Dirichlet` 8 below 12 cells, stiffness 1 : 1000, take 25 products like matching \
-             ones.\n\n";
+             side.\n\n";
     text += &format!("| {} |\n|{}\n", heads.join(" | "), "---|".repeat(heads.len()));
     for finding in findings {
         text += &format!("| {} |\n", row(finding).join(" | "));

@@ -65,7 +65,8 @@ impl Stack {
 pub(crate) fn cases() -> Vec<Case> {
     let base = Stack {
         blocks: 2,
-        cells: [3, 3],
+        // even: blocks have the same diagonals where they meet
+        cells: [4, 4],
         softer: 1.0,
         gap: 0.0,
         push: 0.1,
@@ -115,6 +116,7 @@ pub(crate) fn cases() -> Vec<Case> {
         ),
     ]);
     for (cells, softer, hard) in [
+        ([3, 3], 1.0, "the same nodes, facets cut along other diagonals"),
         (
             [3, 4],
             1.0,

@@ -147,9 +147,9 @@ fn nodes(
     Ok(found.filter(|found| match_facets(mesh, surface, found, &other.surface, rounding)))
 }
 
-/// Whether facets match where nodes have partners: those of other nodes differ, and of each facet two edges at least
-/// are edges of the other side. There may be other diagonals, but no nodes between; in a mesh of order 2, which has
-/// nodes on diagonals, all three.
+/// Whether facets match where nodes have partners: those of other nodes differ, and the partners of each facet are a
+/// facet of the other side. Other diagonals, or a node within, give nodes other areas: forces at nodes would be right
+/// in sum only.
 fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Surface, rounding: f64) -> bool {
     let place = |node: u32| &mesh.points()[node as usize];
     let mut owners = HashMap::new();
@@ -160,17 +160,14 @@ fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Su
             return false;
         }
     }
-    let edges = |t: [u32; 3]| [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]]);
-    let mut there: HashSet<[u32; 2]> = HashSet::new();
-    for triangle in other.triangles() {
-        for [a, b] in edges(triangle.map(|n| other.nodes()[n as usize])) {
-            there.extend([[a, b], [b, a]]);
-        }
-    }
-    surface.triangles().iter().all(|triangle| {
-        let seen = edges(triangle.map(|n| found[n as usize].node));
-        seen.iter().filter(|e| there.contains(*e)).count() > mesh.order()
-    })
+    let ascending = |mut nodes: [u32; 3]| {
+        nodes.sort_unstable();
+        nodes
+    };
+    let facets = other.triangles().iter().map(|t| t.map(|n| other.nodes()[n as usize]));
+    let there: HashSet<[u32; 3]> = facets.map(ascending).collect();
+    let mut seen = surface.triangles().iter().map(|t| t.map(|n| found[n as usize].node));
+    seen.all(|facet| there.contains(&ascending(facet)))
 }
 
 /// A contact node that looks for its partner.
@@ -266,7 +263,8 @@ impl<'a> OtherSide<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use signorini_fem_mesh::{Brick, FacetTag, brick};
+    use signorini_fem_mesh::mesh::orient_tets;
+    use signorini_fem_mesh::{Brick, Facet, FacetTag, brick};
 
     fn lower(tag: FacetTag) -> FacetTag {
         FacetTag(tag.0 + 100)
@@ -314,6 +312,33 @@ mod tests {
                 // edges of the surface have the normals of one row of facets
                 assert!((partner.gap - gap).abs() <= 1e-3 * gap, "{}", partner.gap);
             }
+        }
+    }
+
+    /// A facet that the other side has cut in three has the same edges and corners, and is not matched.
+    #[test]
+    fn a_node_within_a_facet_makes_meshes_apart() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let cone = |inner: Option<[f64; 3]>, top: f64, tag: FacetTag| {
+            let mut points = corners.to_vec();
+            points.extend(inner);
+            let apex = points.len() as u32;
+            points.push([0.3, 0.3, top]);
+            let nodes = match inner {
+                None => vec![[0, 1, 2]],
+                Some(_) => vec![[0, 1, 3], [1, 2, 3], [2, 0, 3]],
+            };
+            let mut tets: Vec<[u32; 4]> = nodes.iter().map(|[a, b, c]| [*a, *b, *c, apex]).collect();
+            orient_tets(&points, &mut tets);
+            let facets = nodes.into_iter().map(|nodes| Facet { nodes, tag }).collect();
+            TetMesh::new(points, tets, facets).expect("cone")
+        };
+        let (above, below) = (FacetTag(1), FacetTag(2));
+        let contact = Contact::between(above, below);
+        for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
+            let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
+            let paired = Paired::new(&mesh, 0, &contact).expect("partners");
+            assert_eq!(paired.is_apart(), apart);
         }
     }
 }

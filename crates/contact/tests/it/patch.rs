@@ -224,3 +224,54 @@ fn friction_alone_holds_the_body_up_to_the_threshold() {
         held_by_friction(margin);
     }
 }
+
+/// A quarter of a tube: x of the brick becomes the radius, y the angle.
+fn tube(inner: f64, cells: [usize; 3]) -> TetMesh {
+    block([10.0, std::f64::consts::FRAC_PI_2, 4.0], cells)
+        .map_points(|[x, y, z]| {
+            let radius = inner + x;
+            [radius * y.cos(), radius * y.sin(), z]
+        })
+        .expect("tube")
+}
+
+/// A tube tied in a tube under pressure from everywhere: where facets match the displacement is exact, elsewhere its
+/// error is that of facets that are apart, and falls with the square of their size, whichever side is named first.
+#[test]
+fn tied_curved_sides_pass_pressure_up_to_their_facets() {
+    let error = |[inside, outside]: [usize; 2], swap: bool, factor: usize| {
+        let cells = |along: usize| [2 * factor, along * factor, factor];
+        let mesh = with_second(&tube(10.0, cells(inside)), &tube(20.0, cells(outside)));
+        let (inner, outer) = (brick::X_MAX, second(brick::X_MIN));
+        let tie = if swap {
+            Contact::tied(outer, inner)
+        } else {
+            Contact::tied(inner, outer)
+        };
+        let mut scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.3)).with_contact(tie);
+        for (tag, axis) in [(brick::Y_MIN, 1), (brick::Y_MAX, 0), (brick::Z_MIN, 2)] {
+            for tag in [tag, second(tag)] {
+                scene = scene.with_support(Support::components(tag, [0, 1, 2].map(|c| c == axis)));
+            }
+        }
+        for tag in [brick::X_MIN, second(brick::X_MAX), brick::Z_MAX, second(brick::Z_MAX)] {
+            scene = scene.with_load(Load::pressure(tag, PRESSURE));
+        }
+        let result = solve(scene, at(1e-9));
+        let strain = -PRESSURE / YOUNG * (1.0 - 2.0 * 0.3);
+        let off = mesh.points().iter().zip(result.displacement.chunks(3));
+        let off = off.flat_map(|(x, u)| (0..3).map(|c| (u[c] - strain * x[c]).abs()).collect::<Vec<_>>());
+        off.fold(0.0, f64::max) / (30.0 * strain.abs())
+    };
+    for swap in [false, true] {
+        let matching = error([4, 4], swap, 1);
+        assert!(matching < 1e-8, "{matching:e}");
+        for cells in [[4, 5], [4, 6], [2, 6], [6, 2]] {
+            let [coarse, fine] = [1, 2].map(|factor| error(cells, swap, factor));
+            println!(
+                "{cells:?} {swap}: {coarse:e} {fine:e}, order {}",
+                (coarse / fine).log2()
+            );
+        }
+    }
+}

@@ -399,6 +399,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let free = self.moved.followed && steady && !place.vanishes;
         let error = at.report.constrained_error;
         at.work.coupling.begin(free, error, self.progress.waited);
+        let falls = place.errors.all < self.least_error;
         let expected = |left: f64| MAGNIFIED * (self.moved.jump + left);
         let goal = Goal {
             forcing: at
@@ -415,8 +416,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             goes_on: self.safeguard.is_none(),
             step: self.settings.natural_step,
             size: place.x_norm.max(self.settings.error_floor),
+            falls,
         };
-        let falls = place.errors.all < self.least_error;
         self.first_error = place.errors.constrained;
         self.least_error = self.least_error.min(place.errors.all);
         let matters = place.limits.constrained > PASSING_PART * place.limits.all;

@@ -53,6 +53,11 @@ impl BlockRows {
         3 * (self.pointers.len() - 1)
     }
 
+    /// Multiplies it by a factor.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.blocks.iter_mut().flatten().for_each(|v| *v *= factor);
+    }
+
     /// `y = A x` for all members of a panel.
     pub(crate) fn apply(&self, x: &[f64], y: &mut [f64], members: usize) {
         Arch::new().dispatch(Product {

@@ -12,6 +12,7 @@ use crate::error::TfetiError;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::dense;
 use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
+use crate::preconditioner::evened::even_out;
 use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
 use crate::preconditioner::split::{ClassRows, Eliminated, Split, Touched, is_thin};
@@ -94,7 +95,7 @@ impl DualPreconditioner {
     fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
         let map = system.parts.map.clone();
         let touched = Touched::new(system);
-        let classes = (0..map.classes.len())
+        let mut classes: Vec<Option<BoundaryStiffness>> = (0..map.classes.len())
             .into_par_iter()
             .map(|k| {
                 let held = system.parts.subdomains.held(k);
@@ -102,6 +103,13 @@ impl DualPreconditioner {
                 held.map(|own| BoundaryStiffness::new(own, class, kind)).transpose()
             })
             .collect::<Result<_, _>>()?;
+        if kind == Kind::Lumped {
+            let lumped = classes.iter_mut().map(|class| match class {
+                Some(BoundaryStiffness::Lumped(block)) => Some(block),
+                _ => None,
+            });
+            even_out(system, &map, lumped.collect());
+        }
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
         let gluing = system.gluing();
         let plain = gluing.is_aligned() && gluing.contact_compliance().is_empty();

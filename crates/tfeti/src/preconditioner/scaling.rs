@@ -4,7 +4,7 @@ use super::joined::{JoinedGroups, JoinedScratch, torn_entries};
 use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{DEPENDENT, GROUP_ROWS, SINGULAR};
+use crate::tolerances::{DEPENDENT, DEPENDENT_FEW, DEPENDENT_JOINED, GROUP_ROWS, SINGULAR};
 use signorini_qp::active_set::{ActiveSetView, Freedom};
 use std::collections::HashMap;
 
@@ -141,7 +141,12 @@ impl Scaling {
             }
             if gluing.is_dependent(rows[0].0) {
                 let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
-                (0..count).for_each(|k| matrix[k * (count + 1)] += DEPENDENT * size);
+                let part = if count > DEPENDENT_FEW {
+                    DEPENDENT_JOINED
+                } else {
+                    DEPENDENT
+                };
+                (0..count).for_each(|k| matrix[k * (count + 1)] += part * size);
             }
             let node = rows[0].0;
             let inverse = dense::inverse(matrix, count, 0.0);

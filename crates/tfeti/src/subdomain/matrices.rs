@@ -25,6 +25,8 @@ pub(crate) struct ClassBase {
     pub(crate) held: Option<ClassMatrices>,
     /// Of the stiffness that preconditioners are made of.
     pub(crate) diagonal: Vec<f64>,
+    /// Smallest and largest shear modulus of its elements, the mean of three.
+    pub(crate) moduli: [f64; 2],
     pub(crate) kernel: Kernel,
 }
 
@@ -55,14 +57,21 @@ impl Subdomains {
         classes: Classes,
         ownership: Ownership,
     ) -> Result<Self, TfetiError> {
-        let matrices = |class: &Class, points: &[[f64; 3]]| {
-            let s = class.members[0] as usize;
-            let subdomain = &decomposition.subdomains()[s];
+        let laws = |class: &Class| {
+            let subdomain = &decomposition.subdomains()[class.members[0] as usize];
             let elements = subdomain.elements.iter();
             let regions: Vec<u32> = elements.map(|&e| mesh.regions()[e as usize]).collect();
+            let laws = materials.of_tets(&regions);
+            laws.map_err(|e| TfetiError::Material {
+                element: subdomain.elements[0] as usize,
+                message: e.to_string(),
+            })
+        };
+        let matrices = |class: &Class, points: &[[f64; 3]], hooke: &[&Hooke]| {
+            let s = class.members[0] as usize;
+            let subdomain = &decomposition.subdomains()[s];
             let element = subdomain.elements[0] as usize;
             let material = |message| TfetiError::Material { element, message };
-            let hooke = materials.of_tets(&regions).map_err(|e| material(e.to_string()))?;
             let assemble = |laws: &[&Hooke]| {
                 let matrix = if subdomain.mids.is_empty() {
                     assemble_stiffness(points, &subdomain.tets, |t| laws[t])
@@ -76,12 +85,12 @@ impl Subdomains {
             let compressible = softer.iter().any(Option::is_some).then(|| {
                 let laws = softer
                     .iter()
-                    .zip(&hooke)
+                    .zip(hooke)
                     .map(|(soft, &law)| soft.as_ref().unwrap_or(law));
                 assemble(&laws.collect::<Vec<_>>())
             });
             Ok::<_, TfetiError>(ClassMatrices {
-                stiffness: assemble(&hooke)?,
+                stiffness: assemble(hooke)?,
                 compressible: compressible.transpose()?,
                 blocks: OnceLock::new(),
             })
@@ -90,11 +99,14 @@ impl Subdomains {
             let s = class.members[0] as usize;
             let nodes = decomposition.subdomains()[s].nodes.iter();
             let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
-            let held = ownership.holds(k).then(|| matrices(class, &points)).transpose()?;
+            let laws = laws(class)?;
+            let shear = |law: &&Hooke| (3..6).map(|i| law.voigt()[i][i]).sum::<f64>() / 3.0;
+            let held = (ownership.holds(k).then(|| matrices(class, &points, &laws))).transpose()?;
             let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.preconditioning().diagonal(i)).collect();
             Ok(ClassBase {
                 diagonal: held.as_ref().map_or_else(|| vec![0.0; 3 * class.nodes], diagonal),
                 held,
+                moduli: (laws.iter().map(shear)).fold([f64::INFINITY, 0.0], |[a, b], v| [v.min(a), v.max(b)]),
                 kernel: Kernel::new(&points, s)?,
             })
         };

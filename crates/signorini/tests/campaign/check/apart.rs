@@ -1,6 +1,7 @@
 //! The same check for bodies meshed apart. Of a contact point it takes from the library which nodes it is made of, and
 //! judges these, too: weights of either side sum to one, leave no moment where sides are flat, and areas are those of
-//! the sides where they face each other.
+//! the sides where they face each other; where that is all of both, uniform pressure is at each node of either side the
+//! area of that node.
 //!
 //! | condition | relative to |
 //! |---|---|
@@ -307,9 +308,35 @@ impl<'a> ApartJudge<'a> {
             let off = (norm(arm) - self.scene.bumps).max(0.0);
             worst.add("moment of weights", off, 1e-5 * self.base.extent);
         }
-        for (pair, area) in self.scene.pairs.iter().zip(areas).filter(|p| !p.0.tied) {
+        for (index, pair) in self.scene.pairs.iter().enumerate().filter(|p| !p.1.tied) {
+            let area = areas[index];
+            // where supports take points away there is more at their neighbours
+            if pair.whole && self.scene.bumps == 0.0 && area > (1.0 - 1e-9) * pair.common {
+                self.uniform(index, pair, points, worst);
+            }
             let steep = 1.0 + (4.0 * self.scene.bumps / pair.common.sqrt()).powi(2);
             worst.add("area", area - pair.common * steep, 1e-4 * pair.common);
+        }
+    }
+
+    /// What uniform pressure is at nodes of both sides, m²: their areas, outward on the side with the points.
+    fn uniform(&self, index: usize, pair: &Pair, points: &[ConstrainedPoint], worst: &mut Worst) {
+        let mut rest: HashMap<u32, f64> = HashMap::new();
+        for point in points.iter().filter(|p| p.surface() == index) {
+            for (node, weight) in point.nodes() {
+                *rest.entry(node).or_default() += weight * point.area();
+            }
+        }
+        let body = |node: u32| self.base.mechanics.body[node as usize];
+        let own = points.iter().find(|p| p.surface() == index).map(|p| body(p.node()));
+        for side in self.base.mechanics.sides.iter().filter(|s| pair.sides.contains(&s.tag)) {
+            for node in side.nodes {
+                let sign = if Some(body(node)) == own { -1.0 } else { 1.0 };
+                *rest.entry(node).or_default() += sign * norm(side.vector) / 3.0;
+            }
+        }
+        for off in rest.into_values() {
+            worst.add("uniform pressure", off.abs(), 1e-4 * pair.common);
         }
     }
 

@@ -20,6 +20,8 @@ pub(crate) struct Pair {
     pub(crate) axis: Option<(Vec3, f64)>,
     /// Area where both sides face each other, seen from above, m².
     pub(crate) common: f64,
+    /// Whether that is all of both.
+    pub(crate) whole: bool,
     pub(crate) compliance: [f64; 2],
 }
 
@@ -175,6 +177,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     if bumps > 0.0 {
         words.push(format!("bumps {:.1e}", bumps / length));
     }
+    let mut alike = Dice::new(seed ^ 0xd1a6, number);
     let soft = way / stress;
     let mut gives_way = |words: &mut Vec<String>| {
         let mut one = || {
@@ -202,10 +205,12 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         angle: 0.0,
         lengths: [lengths[0], lengths[1]],
     }];
+    let mut seen: Vec<[usize; 3]> = Vec::new();
     let (mut top, mut mesh, mut elastic) = (vec![lengths[2]], None::<TetMesh>, Vec::new());
     let mut pairs: Vec<Pair> = Vec::new();
     for body in 0..count {
         let (mut sizes, mut own, mut origin, mut below) = (lengths, cells, 0.0, 0);
+        let mut whole = false;
         let ratio = if body == 0 { 1.0 } else { dice.decades(1.0 / 3.0, 3.0) };
         if body > 0 {
             below = if twins { 0 } else { body - 1 };
@@ -231,10 +236,17 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             sizes = [foot.lengths[0], foot.lengths[1], lengths[2] * dice.between(0.4, 1.0)];
             let edge = |c: usize| lengths[c] / cells[c] as f64 * ratio;
             own = [0, 1, 2].map(|c| ((sizes[c] / edge(c)).round() as usize).clamp(1, 9));
+            whole = kind == 0 && !twins;
+            // the same nodes on both sides, with the same diagonals or others
+            if whole && alike.chance(0.6) {
+                own[..2].copy_from_slice(&seen[below][..2]);
+                words.push("same nodes".into());
+            }
             origin = top[below];
             top.push(origin + sizes[2]);
             feet.push(foot);
         }
+        seen.push(own);
         let mut brick = Brick::new(sizes, own).with_origin([-0.5 * sizes[0], -0.5 * sizes[1], origin]);
         if dice.chance(0.3) {
             brick = brick.perturbed(dice.between(0.02, 0.15), dice.seed());
@@ -288,6 +300,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             law,
             axis,
             common: foot.common(&feet[below]),
+            whole,
             compliance: if tied { [0.0; 2] } else { gives_way(&mut words) },
         });
     }

@@ -115,6 +115,9 @@ pub(crate) fn world(dice: &mut Dice) -> World {
     // where each body stands: on which one, from which cell along x, over how many
     let mut below = vec![0];
     let (mut tops, mut feet) = (vec![sizes[2]], vec![(0, cells[0])]);
+    // sum of the numbers along x and y, in cells of the first body, of the nodes in which diagonals of its upper side
+    // meet: even or odd
+    let mut upper = vec![cells[2]];
     let twins = count == 3 && cells[0] >= 3 && dice.chance(0.4);
     for body in 1..count {
         let on = if twins { 0 } else { body - 1 };
@@ -132,10 +135,24 @@ pub(crate) fn world(dice: &mut Dice) -> World {
         let height = sizes[2] * dice.between(0.4, 1.0);
         let cell = sizes[0] / cells[0] as f64;
         let lengths = [wide as f64 * cell, sizes[1], height];
-        let brick = Brick::new(lengths, [wide, cells[1], dice.whole(1, 2)]);
-        let brick = brick.with_origin([from as f64 * cell, 0.0, tops[on] + gap]);
-        let brick = brick.build().expect("brick").map_tags(|t| side(body, t));
-        mesh = mesh.append(&brick).expect("bodies");
+        let mut layers = dice.whole(1, 2);
+        // facets match where diagonals do; upside down and of an odd number of layers it has the others below
+        let over = !(from + upper[on]).is_multiple_of(2);
+        if over {
+            layers |= 1;
+            words.push("upside down".into());
+        }
+        let brick = Brick::new(lengths, [wide, cells[1], layers]);
+        let brick = brick
+            .with_origin([from as f64 * cell, 0.0, 0.0])
+            .build()
+            .expect("brick");
+        let brick = if over { upside_down(&brick, height) } else { brick };
+        upper.push(if over { from } else { from + layers });
+        let lifted = brick
+            .map_points(|[x, y, z]| [x, y, tops[on] + gap + z])
+            .expect("lifted");
+        mesh = mesh.append(&lifted.map_tags(|t| side(body, t))).expect("bodies");
         below.push(on);
         tops.push(tops[on] + gap + height);
         feet.push((from, wide));
@@ -200,6 +217,18 @@ fn finish(
         split,
         words,
     }
+}
+
+/// The image of a brick of a height in its middle plane.
+fn upside_down(brick: &TetMesh, height: f64) -> TetMesh {
+    let points = brick.points().iter().map(|[x, y, z]| [*x, *y, height - z]);
+    let tets = brick.tets().iter().map(|[a, b, c, d]| [*b, *a, *c, *d]);
+    let image = TetMesh::new(points.collect(), tets.collect(), brick.facets().to_vec());
+    image.expect("image").map_tags(|tag| match tag {
+        brick::Z_MIN => brick::Z_MAX,
+        brick::Z_MAX => brick::Z_MIN,
+        other => other,
+    })
 }
 
 /// Gives the part of the lower side beyond `x` a tag of its own.
