@@ -141,13 +141,13 @@ fn a_static_step_does_not_grow_with_the_mesh() {
     assert!(m.products <= 29 && m.fallbacks == 0, "{}", m.products);
 }
 
-/// A sheet a thirtieth as thick as long lies on the floor. It bends so easily that on the first sets the error is many
-/// times the forces; sets predicted from it led far away (1007 and 1309 products).
+/// A sheet 300 times as long as thick lies on the floor. It bends so easily that on the first sets the error is hundreds
+/// of times the forces; sets predicted from it led far away (3,925 and 7,077 products).
 #[test]
 fn a_sheet_that_bends_easily_is_solved_before_it_tells_the_next_set() {
-    for (friction, most) in [(Friction::None, 300), (Friction::coulomb(0.3), 950)] {
+    for (friction, most) in [(Friction::None, 2000), (Friction::coulomb(0.3), 4200)] {
         let m = run_block(Block {
-            lengths: [3.0, 1.0, 0.1],
+            lengths: [3.0, 1.0, 0.01],
             gap: 0.0,
             top: [0.0, 0.0, -1e8],
             end: [1e8, 0.0, 0.0],

@@ -37,8 +37,6 @@ pub(crate) struct Goal {
     pub(crate) goes_on: bool,
     pub(crate) step: f64,
     pub(crate) size: f64,
-    /// Whether the error is the least with which a set was entered.
-    pub(crate) falls: bool,
 }
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
@@ -83,9 +81,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let errors = self.errors();
             if errors.within(enough) {
                 let more = !errors.within(goal.limits);
-                // moves magnify the error, and the next set would be predicted from what is mostly error
+                // the next set would be predicted from what is mostly error
                 let wild = |size: f64| errors.all > WILD * size;
-                if more && !goal.falls && !tamed && wild(goal.size) && wild(self.problem.operator.norm(self.x)) {
+                if more && !tamed && wild(goal.size) && wild(self.problem.operator.norm(self.x)) {
                     let all = TAMED * self.problem.operator.norm(self.x).max(goal.size);
                     (enough, tamed) = (Lengths { all, constrained: all }, true);
                     continue;

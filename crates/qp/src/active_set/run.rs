@@ -416,7 +416,6 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             goes_on: self.safeguard.is_none(),
             step: self.settings.natural_step,
             size: place.x_norm.max(self.settings.error_floor),
-            falls,
         };
         self.first_error = place.errors.constrained;
         self.least_error = self.least_error.min(place.errors.all);

@@ -330,7 +330,7 @@ impl<'a> ApartJudge<'a> {
         let body = |node: u32| self.base.mechanics.body[node as usize];
         let own = points.iter().find(|p| p.surface() == index).map(|p| body(p.node()));
         for side in self.base.mechanics.sides.iter().filter(|s| pair.sides.contains(&s.tag)) {
-            for node in side.nodes {
+            for node in side.loaded {
                 let sign = if Some(body(node)) == own { -1.0 } else { 1.0 };
                 *rest.entry(node).or_default() += sign * norm(side.vector) / 3.0;
             }
