@@ -273,9 +273,9 @@ mod tests {
     /// A block over a larger one, bent about the y axis, with a gap.
     fn bent(gap: f64) -> TetMesh {
         let upper = Brick::new([1.0, 1.0, 0.5], [6, 4, 2]).build().expect("brick");
-        let below = Brick::new([2.0, 1.0, 0.5], [12, 4, 2]).build().expect("brick");
+        let below = Brick::new([7.0 / 3.0, 1.0, 0.5], [14, 4, 2]).build().expect("brick");
         let below = below
-            .map_points(|[x, y, z]| [x - 0.5, y, z - 0.5])
+            .map_points(|[x, y, z]| [x - 2.0 / 3.0, y, z - 0.5])
             .expect("moved")
             .map_tags(lower);
         // circles about the axis x = 0.5, z = -3; normals stay normals

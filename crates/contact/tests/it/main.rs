@@ -25,6 +25,7 @@ mod moving_field;
 mod moving_obstacle;
 mod orthotropic;
 mod pairs;
+mod pairs_cost;
 mod pairs_supported;
 mod partitions;
 mod patch;

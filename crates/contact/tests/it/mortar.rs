@@ -2,13 +2,13 @@
 
 use crate::common::*;
 
-const PRESSURE: f64 = 2.5e7;
-const YOUNG: f64 = 2e9;
-const POISSON: f64 = 0.3;
+pub(crate) const PRESSURE: f64 = 2.5e7;
+pub(crate) const YOUNG: f64 = 2e9;
+pub(crate) const POISSON: f64 = 0.3;
 
 /// Two blocks of unit size in units of length `unit`, one on the other, of so many cells each; tags of the upper one
 /// are those of the [`second`] body.
-fn blocks(lower: [usize; 3], upper: [usize; 3], unit: f64) -> TetMesh {
+pub(crate) fn blocks(lower: [usize; 3], upper: [usize; 3], unit: f64) -> TetMesh {
     let below = block([unit; 3], lower);
     let above = block([unit; 3], upper)
         .map_points(|[x, y, z]| [x, y, z + unit])
@@ -368,104 +368,6 @@ fn quadratic_bodies_meshed_apart_pass_uniform_pressure() {
                 assert!(error.relative() < 1e-5, "{what}: {error:?}");
             }
         }
-    }
-}
-
-/// Planes of symmetry that cut both bodies cost nothing, though the coarser side has a finer edge there: with a row for
-/// how the other side bends along the plane the blocks took 360 products.
-#[test]
-fn planes_of_symmetry_cost_no_products() {
-    let partial = |tag, axis: usize| Support::partial(tag, Directions::Components([0, 1, 2].map(|c| c == axis)));
-    let products = |tied: bool, symmetric: bool| {
-        let contact = match tied {
-            true => Contact::tied(second(brick::Z_MIN), brick::Z_MAX),
-            false => Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)),
-        };
-        let mut scene = Scene::new(blocks([6, 6, 4], [4, 8, 4], 1.0), uniform(YOUNG, POISSON))
-            .with_contact(contact)
-            .with_support(Support::fixed(brick::Z_MIN))
-            .with_load(Load::traction(
-                second(brick::Z_MAX),
-                [0.1 * PRESSURE, 0.05 * PRESSURE, -PRESSURE],
-            ))
-            .with_boxes([2, 2, 2]);
-        for axis in if symmetric { 0..2 } else { 0..0 } {
-            let tag = [brick::X_MIN, brick::Y_MIN][axis];
-            scene = scene
-                .with_support(partial(tag, axis))
-                .with_support(partial(second(tag), axis));
-        }
-        let (_, results) = run(scene, at(1e-6));
-        results[0].report.counters.products
-    };
-    for tied in [true, false] {
-        let [free, symmetric] = [false, true].map(|s| products(tied, s));
-        println!("tied {tied}: {free} products, with planes of symmetry {symmetric}");
-        assert!(10 * symmetric <= 13 * free, "{tied}: {free}, {symmetric}");
-    }
-}
-
-/// Quadratic cells between planes that hold them: no point has a row across, whatever share of its mean the planes hold,
-/// so that products grow like the root of length over thickness. With rows of half of the points they grew like that
-/// ratio, to the iteration limit.
-#[test]
-fn thin_quadratic_cells_between_planes_cost_few_products() {
-    let solved = |thick: f64, tied: bool| {
-        let mesh = blocks([6, 1, 4], [4, 1, 4], 1.0).map_points(|[x, y, z]| [x, thick * y, z]);
-        let mesh = mesh.expect("mapped").raise_order().expect("order 2");
-        let contact = match tied {
-            true => Contact::tied(second(brick::Z_MIN), brick::Z_MAX),
-            false => Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)),
-        };
-        let mut scene = Scene::new(mesh, uniform(YOUNG, POISSON))
-            .with_contact(contact)
-            .with_support(Support::fixed(brick::Z_MIN))
-            .with_load(Load::traction(second(brick::Z_MAX), [0.1 * PRESSURE, 0.0, -PRESSURE]))
-            .with_subdomains(2);
-        for tag in [brick::Y_MIN, brick::Y_MAX] {
-            for tag in [tag, second(tag)] {
-                scene = scene.with_support(Support::components(tag, [false, true, false]));
-            }
-        }
-        let (simulation, results) = run(scene, at(1e-6));
-        let ranges = simulation.tfeti().gluing().ranges();
-        let (plan, points) = (simulation.plan(), 2 * 5);
-        if tied {
-            assert_eq!([ranges.tied.len(), plan.tied_rows], [2 * points; 2]);
-        } else {
-            assert_eq!((ranges.normal.len(), ranges.tangential().len()), (points, points));
-            assert_eq!([plan.normal_rows, plan.tangential_rows], [points; 2]);
-        }
-        results[0].report.counters.products
-    };
-    for tied in [true, false] {
-        let [thick, thin] = [0.5, 0.01].map(|t| solved(t, tied));
-        println!("tied {tied}: {thick} products, {thin} where cells are fifty times thinner");
-        assert!(thin <= 6 * thick, "{tied}: {thick}, {thin}");
-    }
-}
-
-/// A stiff body takes no more products with more cells than the soft one it stands on, in as many boxes, than where
-/// meshes match. With lumped blocks as they are it took 35 instead of 26.
-#[test]
-fn a_stiff_body_with_more_cells_costs_no_products() {
-    let products = |lower: usize, upper: usize, stiffer: f64| {
-        let mesh = blocks([lower; 3], [upper; 3], 1.0);
-        let bodies = mesh.components();
-        let hooke = |young: f64| Hooke::isotropic(young, POISSON).expect("a law");
-        let materials = Materials::new(vec![(0, hooke(YOUNG)), (1, hooke(YOUNG * stiffer))]);
-        let mesh = mesh.with_regions(bodies).expect("regions");
-        let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX);
-        let scene = Scene::new(mesh, materials.expect("materials"))
-            .with_contact(contact.with_friction(Friction::coulomb(0.2)))
-            .with_support(Support::fixed(brick::Z_MIN))
-            .with_load(Load::traction(second(brick::Z_MAX), [1e5, 0.0, -1e6]))
-            .with_boxes([2, 2, 4]);
-        run(scene, Settings::default()).1[0].report.counters.products
-    };
-    for (lower, upper, stiffer) in [(8, 12, 1e3), (12, 8, 1e-3)] {
-        let (pair, matching) = (products(lower, upper, stiffer), products(12, 12, stiffer));
-        assert!(5 * pair <= 6 * matching, "{lower} {upper}: {pair}, {matching}");
     }
 }
 

@@ -179,9 +179,12 @@ impl Space {
                     (found.sum(), HELD_MEANS)
                 }
             };
+            // supports may fix the normal, too
+            let across = fixed.iter().fold(normal, |n, d| n - d * n.dot(d));
+            let across = across.try_normalize(ANGLE).unwrap_or_else(Vector3::zeros);
             let left = fixed
                 .iter()
-                .fold(Matrix3::identity() - along(&normal), |p, d| p - along(d));
+                .fold(Matrix3::identity() - along(&across), |p, d| p - along(d));
             let held = SymmetricEigen::new(left * own * other * own * left);
             let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
             fixed.extend(found.map(|k| Vector3::from(held.eigenvectors.column(k))));
