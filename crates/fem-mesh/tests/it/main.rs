@@ -6,6 +6,7 @@ mod even_parts;
 mod fields;
 #[cfg(feature = "gmsh")]
 mod gmsh;
+#[cfg(feature = "gmsh")]
 mod gmsh_quadratic;
 mod loads;
 mod merge;
