@@ -84,14 +84,19 @@ impl Hooke {
     /// element.
     #[must_use]
     pub fn is_nearly_incompressible(&self) -> bool {
-        self.poisson().is_some_and(|p| p > INCOMPRESSIBLE)
+        self.incompressible().is_some()
+    }
+
+    /// Poisson's ratio where it is above 0.4 by more than rounding: a ratio of 0.4 is not, in whatever unit of stress.
+    fn incompressible(&self) -> Option<f64> {
+        self.poisson().filter(|p| *p > INCOMPRESSIBLE * (1.0 + ASYMMETRY))
     }
 
     /// The law with a Poisson's ratio of 0.4 and the same Young's modulus, of one that is nearly incompressible: for
     /// preconditioners.
     #[must_use]
     pub fn compressible(&self) -> Option<Self> {
-        let poisson = self.poisson().filter(|p| *p > INCOMPRESSIBLE)?;
+        let poisson = self.incompressible()?;
         let young = 2.0 * self.voigt[3][3] * (1.0 + poisson);
         Self::isotropic(young, INCOMPRESSIBLE).ok()
     }
@@ -179,4 +184,19 @@ fn eigenvalue_range(voigt: &[[f64; 6]; 6]) -> (f64, f64) {
     let matrix = SMatrix::<f64, 6, 6>::from_fn(|i, j| weight(i) * weight(j) * voigt[i][j]);
     let eigenvalues = matrix.symmetric_eigenvalues();
     (eigenvalues.min(), eigenvalues.max())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The ratio is found from the stiffness, with rounding that depends on the unit of stress.
+    #[test]
+    fn a_ratio_of_two_fifths_is_not_nearly_incompressible() {
+        let law = |young: f64, poisson| Hooke::isotropic(young, poisson).expect("a law");
+        let laws: Vec<Hooke> = (1..200).map(|k| law(1.7e5 * f64::from(k).powi(3), 0.4)).collect();
+        assert!(laws.iter().any(|l| l.poisson().is_some_and(|p| p > INCOMPRESSIBLE)));
+        assert!(laws.iter().all(|l| !l.is_nearly_incompressible()));
+        assert!(law(1e6, 0.400_001).is_nearly_incompressible());
+    }
 }
