@@ -39,13 +39,10 @@ pub fn execute(options: &PicturesOptions, out: &mut impl Write) -> Result<(), Fa
         ("roller", own_mesh::scene(ROLLER)?, [0.7, -1.6, 0.5]),
     ] {
         let mut simulation = Simulation::new(scene, Settings::default())?;
-        let mut last = simulation.step()?;
-        while !simulation.is_finished() {
-            last = simulation.step()?;
-        }
-        last.require_converged()?;
+        simulation.run(&mut Silent)?.require_converged()?;
+        let last = simulation.result().ok_or("a scene without steps")?;
         let path = options.out.join(name).with_extension("svg");
-        save(&path, &result(&last, Shown::VonMises, eye))?;
+        save(&path, &result(last, Shown::VonMises, eye))?;
         writeln!(out, "{}", path.display())?;
     }
     Ok(())

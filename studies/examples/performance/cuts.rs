@@ -157,9 +157,9 @@ impl CutLine {
 pub(crate) fn measure(case: Case, mesh: &TetMesh, n: usize, (cut, parts): &Cut) -> Result<CutLine, Failure> {
     let scene = case.scene(mesh.clone(), n)?;
     let scene = match parts.clone() {
-        Parts::Boxes => scene,
-        Parts::AsGiven(parts) => scene.with_parts_as_given(parts),
-        Parts::Compact(parts) => scene.with_parts(parts),
+        Partition::AsGiven(parts) => scene.with_parts_as_given(parts),
+        Partition::Parts(parts) => scene.with_parts(parts),
+        _ => scene,
     };
     let (simulation, steps, _) = solve(scene, Settings::default(), &mut |_, _| Ok(()))?;
     let sizes = || simulation.decomposition().subdomains().iter().map(|s| s.tets.len());
@@ -175,19 +175,8 @@ pub(crate) fn measure(case: Case, mesh: &TetMesh, n: usize, (cut, parts): &Cut) 
     })
 }
 
-/// A name and where the parts come from.
-pub(crate) type Cut = (String, Parts);
-
-/// Part numbers of the tetrahedra, as they are or made compact by the library, or boxes.
-#[derive(Debug, Clone)]
-pub(crate) enum Parts {
-    /// `3n x n x n` boxes.
-    Boxes,
-    /// Left as they are.
-    AsGiven(Vec<u32>),
-    /// Made compact by the library.
-    Compact(Vec<u32>),
-}
+/// A name and the partition: given parts, or else the boxes that a case has.
+pub(crate) type Cut = (String, Partition);
 
 /// The cuts of a mesh into about `3n³` parts: boxes, the library's, random Voronoi cells and those of a file, as
 /// they are and made compact, and grown parts made compact.
@@ -205,20 +194,20 @@ pub(crate) fn cuts(mesh: &TetMesh, n: usize, file: Option<&Path>) -> Result<Vec<
         // what is no number is no part: the decomposition tells how many are missing
         given.push(("file", numbers.map_while(Result::ok).collect()));
     }
-    let mut out = vec![("boxes".to_owned(), Parts::Boxes)];
+    let mut out = vec![("boxes".to_owned(), Partition::Boxes([3 * n, n, n]))];
     let one = vec![0; mesh.tets().len()];
     // the library's own, into as many parts and into a number that no grid of boxes has
     for (name, count) in [("library", count), ("library, less", count * 4 / 5 + 1)] {
         let parts = even_parts(mesh, &one, PartCount::Exactly(count))?;
-        out.push((name.to_owned(), Parts::AsGiven(parts)));
+        out.push((name.to_owned(), Partition::AsGiven(parts)));
     }
     for (name, parts) in given {
         let connected = split_disconnected(mesh, &parts)?;
         // what is grown tetrahedron by tetrahedron hangs together by single faces, and is no body to speak of
         if name != "grown" {
-            out.push((format!("{name}, as given"), Parts::AsGiven(connected)));
+            out.push((format!("{name}, as given"), Partition::AsGiven(connected)));
         }
-        out.push((name.to_owned(), Parts::Compact(parts)));
+        out.push((name.to_owned(), Partition::Parts(parts)));
     }
     Ok(out)
 }

@@ -2,10 +2,11 @@
 
 use signorini::fem_mesh::Brick;
 use signorini::fem_mesh::decomposition::split_disconnected;
+use signorini::prelude::Partition;
 
 use crate::options;
 use crate::performance::PerformanceOptions;
-use crate::performance::cuts::{Case, CutLine, Parts, execute, measure, voronoi};
+use crate::performance::cuts::{Case, CutLine, execute, measure, voronoi};
 
 /// Dearest step over the mean one.
 fn spike(line: &CutLine) -> f64 {
@@ -58,7 +59,7 @@ fn no_step_of_a_ragged_cut_runs_in_circles() {
         Case::Program,
         &mesh,
         3,
-        &("as given".to_owned(), Parts::AsGiven(connected)),
+        &("as given".to_owned(), Partition::AsGiven(connected)),
     )
     .expect("run");
     assert!(spike(&line) < 2.0 && line.failed == 0, "{line:?}");

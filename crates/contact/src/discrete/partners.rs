@@ -125,26 +125,38 @@ fn nodes(
         let Some(mut partner) = other.partner(&seen_from) else {
             return Ok(None);
         };
-        let depth = -partner.gap;
-        if (contact.tied || matches!(contact.gap, Gap::Measured)) && depth > size {
-            let partner = partner.node;
-            return Err(ContactError::Overlap {
-                contact: index,
-                node,
-                partner,
-                depth,
-                size,
-            });
-        }
-        if depth.abs() <= rounding {
+        check_overlap(index, contact, [node, partner.node], partner.gap, size)?;
+        if partner.gap.abs() <= rounding {
             partner.gap = 0.0;
         }
         Ok(Some(partner))
     };
     let found: Vec<_> = surface.nodes().par_iter().enumerate().map(partner).collect();
     // of several errors the first, whichever thread has found one
-    let found: Option<Vec<Partner>> = found.into_iter().collect::<Result<_, _>>()?;
+    let found: Option<Vec<Partner>> = found.into_iter().collect::<Result<_, ContactError>>()?;
     Ok(found.filter(|found| match_facets(mesh, surface, found, &other.surface, rounding)))
+}
+
+/// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given: tied
+/// sides may be apart, not one within the other. `size` is the root of the area of the node, m.
+pub(super) fn check_overlap(
+    index: usize,
+    contact: &Contact,
+    [node, partner]: [u32; 2],
+    gap: f64,
+    size: f64,
+) -> Result<(), ContactError> {
+    let measured = contact.tied || matches!(contact.gap, Gap::Measured);
+    if measured && -gap > size {
+        return Err(ContactError::Overlap {
+            contact: index,
+            node,
+            partner,
+            depth: -gap,
+            size,
+        });
+    }
+    Ok(())
 }
 
 /// Whether facets match where nodes have partners: those of other nodes differ, and the partners of each facet are a

@@ -11,11 +11,11 @@
 use super::creases::{SurfaceSide, creases};
 use super::means::{Means, mean_gap};
 use super::normals::{along_axis, shape_frames};
-use super::partners::{Paired, Partners};
+use super::partners::{Paired, Partners, check_overlap};
 use super::side::Sides;
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
-use crate::scene::{Gap, Pose, Scene};
+use crate::scene::{Pose, Scene};
 use crate::tolerances::SAME_NORMAL;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh, vec3};
 use signorini_qp::vector;
@@ -178,17 +178,8 @@ fn mortar_gap(
     };
     let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
     let gap = partner - own;
-    let size = surface.areas()[local].sqrt();
-    let (index, contact) = (contact, &scene.contacts[contact]);
-    if (contact.tied || matches!(contact.gap, Gap::Measured)) && -gap > size {
-        return Err(ContactError::Overlap {
-            contact: index,
-            node,
-            partner: seen.partner[0].0,
-            depth: -gap,
-            size,
-        });
-    }
+    let (nodes, size) = ([node, seen.partner[0].0], surface.areas()[local].sqrt());
+    check_overlap(contact, &scene.contacts[contact], nodes, gap, size)?;
     Ok(gap)
 }
 

@@ -75,6 +75,18 @@ pub(crate) fn assert_certified(result: &Solved, what: &str) {
     );
 }
 
+/// Every point has this pressure, to a relative error.
+pub(crate) fn assert_pressure(points: &[PointState], pressure: f64, within: f64, what: &str) {
+    for point in points {
+        let found = -point.normal_force / point.area;
+        assert!(
+            (found / pressure - 1.0).abs() < within,
+            "{what}: {found:.6e} at {}",
+            point.node
+        );
+    }
+}
+
 /// The default method, the paper's and its one inexact loop.
 pub(crate) fn methods() -> [Method; 3] {
     [Method::default(), Method::paper(), Method::one_loop()]

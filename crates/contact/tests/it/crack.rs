@@ -70,14 +70,7 @@ fn pressure_passes_through_a_closed_crack() {
                 );
             let result = solve(scene, at(1e-10));
             assert_certified(&result, "crack");
-            for p in &result.points {
-                let found = -p.normal_force / p.area;
-                assert!(
-                    (found / pressure - 1.0).abs() < 1e-5,
-                    "order {order}: {found:.6e} at {}",
-                    p.node
-                );
-            }
+            assert_pressure(&result.points, pressure, 1e-5, &format!("order {order}"));
         }
     }
 }

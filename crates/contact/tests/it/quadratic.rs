@@ -172,9 +172,7 @@ fn pressure_passes_between_quadratic_bodies() {
             .collect();
         assert_close(&result.displacement, &exact, 1e-7, "column");
         assert_eq!(result.points.is_empty(), tied);
-        for point in &result.points {
-            assert!((-point.normal_force / (point.area * pressure) - 1.0).abs() < 1e-6);
-        }
+        assert_pressure(&result.points, pressure, 1e-6, "column");
     }
 }
 
@@ -299,14 +297,7 @@ fn corners_edges_and_slivers_pass_hydrostatic_pressure() {
         let exact: Vec<f64> = mesh.points().iter().flatten().map(|c| strain * c).collect();
         assert_close(&result.displacement, &exact, 1e-6, "displacement");
         assert_eq!(result.points.iter().filter(|p| p.node == 0).count(), 3);
-        for point in &result.points {
-            let found = -point.normal_force / point.area;
-            assert!(
-                (found / pressure - 1.0).abs() < 1e-5,
-                "{thin}: {found} at {}",
-                point.node
-            );
-        }
+        assert_pressure(&result.points, pressure, 1e-5, &thin.to_string());
     }
 }
 

@@ -83,10 +83,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
                 let more = !errors.within(goal.limits);
                 // the next set would be predicted from what is mostly error
                 let wild = |size: f64| errors.all > WILD * size;
-                if more && !tamed && wild(goal.size) && wild(self.problem.operator.norm(self.x)) {
-                    let all = TAMED * self.problem.operator.norm(self.x).max(goal.size);
-                    (enough, tamed) = (Lengths { all, constrained: all }, true);
-                    continue;
+                if more && !tamed && wild(goal.size) {
+                    let size = self.problem.operator.norm(self.x).max(goal.size);
+                    if wild(size) {
+                        let all = TAMED * size;
+                        (enough, tamed) = (Lengths { all, constrained: all }, true);
+                        continue;
+                    }
                 }
                 let exact = errors.all > digits * first.all;
                 if more && exact && goal.goes_on && self.stays(goal) {
