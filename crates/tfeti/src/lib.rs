@@ -5,7 +5,7 @@
 //!
 //! | symbol | here | meaning |
 //! |---|---|---|
-//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent ones are removed and reported, or kept |
+//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and what they do; dependent ones are left out, or kept |
 //! | `F = B K+ B^T` | [`DualOperator`] | a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
 //! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium: `G lambda = e` |
 //! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, with row weights if wanted |
@@ -41,7 +41,7 @@
 //!
 //! let (f, mut product) = (system.dual(), vec![0.0; system.dual_dim()]);
 //! f.apply(&lambda, &mut product, &mut f.scratch());
-//! println!("{}", system.report());
+//! println!("{} bytes", system.report().inverse_bytes);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -94,7 +94,7 @@ pub mod internal {
     pub use crate::projector::forecast::{LevelsForecast, forecast_levels};
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
-    pub use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+    pub use crate::rows::kinds::{RemovalReason, RemovedRow};
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;

@@ -133,13 +133,15 @@ impl DiscreteScene {
 fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) -> Vec<ContactConstraint> {
     let point = |p: &ContactPoint| {
         let contact = &scene.contacts[p.surface];
-        ContactConstraint::new(p.sides.own.clone(), p.frame)
-            .with_partner(p.sides.partner.clone())
-            .with_friction(contact.friction().is_some())
-            .with_moving_obstacle(contact.moves() && !contact.tied)
-            .with_tied(contact.tied)
-            .with_stretch(p.stretch)
-            .with_compliance(p.compliance.map(|c| c / p.area))
+        ContactConstraint {
+            partner: p.sides.partner.clone(),
+            friction: contact.friction().is_some(),
+            moving: contact.moves() && !contact.tied,
+            tied: contact.tied,
+            stretch: p.stretch,
+            compliance: p.compliance.map(|c| c / p.area),
+            ..ContactConstraint::new(p.sides.own.clone(), p.frame)
+        }
     };
     points.iter().chain(ties).map(point).collect()
 }

@@ -165,7 +165,7 @@ impl SymmetricOperator for DualOperator {
         let Some(part) = &self.part else {
             return x.iter().sum();
         };
-        let mut whole = vec![0.0; self.gluing.rows_full_rank()];
+        let mut whole = vec![0.0; self.gluing.ranges().total()];
         part.complete(x, &mut whole);
         whole.iter().sum()
     }

@@ -98,7 +98,7 @@ impl Scaling {
         let gives_way: HashMap<usize, f64> = gluing.compliance().map(|(row, c)| (row, c / smallest)).collect();
         // Rows by group: a mesh node, or nodes that contact points join.
         let groups = gluing.node_groups();
-        let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
+        let mut members: Vec<(u32, u32)> = (0..gluing.ranges().total())
             .filter_map(|row| gluing.node(row).map(|node| (groups.of(node), row as u32)))
             .collect();
         members.sort_unstable();

@@ -137,12 +137,6 @@ impl Gluing {
         &self.ranges
     }
 
-    /// Number of rows of `B`: the length of dual vectors. `B` has full rank, except at [dependent
-    /// nodes](Self::dependent_nodes).
-    pub fn rows_full_rank(&self) -> usize {
-        self.ranges.total()
-    }
-
     /// Number of rows as the paper counts them: three for each additional copy of a node, three for each supported node
     /// and three (without friction one) for each contact point, supported or not.
     pub fn rows_as_paper(&self) -> usize {

@@ -1,25 +1,9 @@
-//! Names of the rows of `B` and of those that were left out.
+//! Where each kind of row stands in `B`, and which rows were left out.
 
-use std::fmt;
 use std::ops::Range;
 
-/// The groups of rows, in the order in which they stand in `B`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum RowKind {
-    /// Non-penetration, one row per contact point: `N`.
-    Normal,
-    /// Friction, one or two rows per contact point: `T`.
-    Tangential,
-    /// Gluing of the copies of a node: `B_int`.
-    Interface,
-    /// Tied constraints, one to three rows each: sides that move alike.
-    Tied,
-    /// Supports: `B_Dir`.
-    Dirichlet,
-}
-
 /// Why a row that the paper counts is not in `B`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RemovalReason {
     /// The support (its number) repeats a direction that is fixed already, with the same prescribed value.
@@ -35,31 +19,16 @@ pub enum RemovalReason {
     NoNormalRow,
 }
 
-impl fmt::Display for RemovalReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::DoubledSupport { support } => {
-                write!(f, "direction supported twice (support {support})")
-            }
-            Self::NormalFixed => f.write_str("normal direction supported"),
-            Self::TangentFixed => f.write_str("tangential direction supported"),
-            Self::NoNormalRow => f.write_str("no normal row"),
-        }
-    }
-}
-
 /// A row that would make `B` lose rank and was therefore left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RemovedRow {
     /// Mesh node.
     pub node: u32,
-    /// Kind of the row.
-    pub kind: RowKind,
     /// Why it was left out.
     pub reason: RemovalReason,
 }
 
-/// Where each kind of row stands in a dual vector.
+/// Where each kind of row stands in a dual vector, in this order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct RowRanges {
     /// Normal rows.
@@ -87,7 +56,7 @@ impl RowRanges {
         self.normal.start..self.intervals.end
     }
 
-    /// Number of rows of `B`.
+    /// Number of rows of `B`: the length of dual vectors.
     pub fn total(&self) -> usize {
         self.dirichlet.end
     }

@@ -66,7 +66,6 @@ impl From<u32> for Side {
 /// A node in an edge or a corner has several, with other normals or partners; rows of such a node may depend on one
 /// another.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct ContactConstraint {
     /// Nodes on the body whose outward normal is given.
     pub side: Side,
@@ -78,17 +77,18 @@ pub struct ContactConstraint {
     pub friction: bool,
     /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
     pub moving: bool,
-    /// Whether both sides move alike: equalities in place of contact and friction.
+    /// Whether both sides move alike, in all directions that supports leave free, in place of contact and friction.
     pub tied: bool,
-    /// How far the point gives way along the normal and along the surface under a force, m/N; 0 for not at all.
+    /// How far the point gives way along the normal and along the surface under a force, m/N: finite, 0 for not at all.
     pub compliance: [f64; 2],
-    /// Factor of the second tangential row beside the first, 1 for isotropic friction. An ellipse with this ratio of
+    /// Factor of the second tangential row beside the first, finite and positive, 1 for isotropic friction. An ellipse with this ratio of
     /// its axes, along the tangents, is a disc in the rows.
     pub stretch: f64,
 }
 
 impl ContactConstraint {
-    /// A node, or a side of several, that may touch a rigid obstacle that does not move, without friction.
+    /// A node, or a side of several, that may touch a rigid obstacle that does not move, without friction. What else
+    /// there is to say is said by its fields.
     #[must_use]
     pub fn new(side: impl Into<Side>, frame: SurfaceFrame) -> Self {
         let (side, partner) = (side.into(), None);
@@ -115,34 +115,6 @@ impl ContactConstraint {
     #[must_use]
     pub fn with_friction(mut self, friction: bool) -> Self {
         self.friction = friction;
-        self
-    }
-
-    /// Whether the obstacle moves along the surface.
-    #[must_use]
-    pub fn with_moving_obstacle(mut self, moving: bool) -> Self {
-        self.moving = moving;
-        self
-    }
-
-    /// Friction along the second tangent over that along the first: finite and positive.
-    #[must_use]
-    pub fn with_stretch(mut self, stretch: f64) -> Self {
-        self.stretch = stretch;
-        self
-    }
-
-    /// How far it gives way along the normal and along the surface under a force, m/N: finite and not negative.
-    #[must_use]
-    pub fn with_compliance(mut self, compliance: [f64; 2]) -> Self {
-        self.compliance = compliance;
-        self
-    }
-
-    /// Both sides move alike, in all directions that supports leave free.
-    #[must_use]
-    pub fn with_tied(mut self, tied: bool) -> Self {
-        self.tied = tied;
         self
     }
 

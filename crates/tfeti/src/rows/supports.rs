@@ -2,7 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
+use crate::rows::kinds::{RemovalReason, RemovedRow};
 use crate::tolerances::{AGREEING, FIXED};
 use signorini_fem_mesh::vec3::{dot, norm};
 
@@ -170,17 +170,13 @@ pub struct PrescribedDirection {
 /// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
 pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<Vec<PrescribedDirection>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
-    let of = |node: &FixedNode| {
-        let directions = node.directions.iter();
-        let (node, of) = (node.node, |d: &FixedDirection| (d.direction, d.support));
-        directions
-            .map(of)
-            .map(move |(direction, support)| PrescribedDirection {
-                node,
-                direction,
-                support,
-            })
-            .collect::<Vec<_>>()
+    let of = |fixed: &FixedNode| {
+        let prescribed = |d: &FixedDirection| PrescribedDirection {
+            node: fixed.node,
+            direction: d.direction,
+            support: d.support,
+        };
+        fixed.directions.iter().map(prescribed).collect::<Vec<_>>()
     };
     Ok(merged.nodes.iter().flat_map(of).collect())
 }
@@ -217,11 +213,11 @@ impl MergedSupports {
                 if motion.is_some_and(|(_, value)| !value.iter().all(|v| v.is_finite())) {
                     return Err(TfetiError::BadMotion { support: s, node });
                 }
-                let directions_of = || FixedNode {
+                let new = || FixedNode {
                     node,
-                    directions: Vec::new(),
+                    ..FixedNode::default()
                 };
-                let entry = fixed[node as usize].get_or_insert_with(directions_of);
+                let entry = fixed[node as usize].get_or_insert_with(new);
                 for direction in &directions {
                     merged.removed.extend(add_direction(entry, s, *direction, motion)?);
                 }
@@ -317,7 +313,6 @@ fn add_direction(
     }
     Ok(Some(RemovedRow {
         node: fixed_node.node,
-        kind: RowKind::Dirichlet,
         reason: RemovalReason::DoubledSupport { support },
     }))
 }

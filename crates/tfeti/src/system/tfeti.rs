@@ -207,7 +207,7 @@ impl Tfeti {
 
     /// Length of dual vectors.
     pub fn dual_dim(&self) -> usize {
-        self.parts.gluing.rows_full_rank()
+        self.parts.gluing.ranges().total()
     }
 
     /// Length of torn vectors: the paper's `n_p`.

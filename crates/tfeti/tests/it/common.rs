@@ -131,7 +131,7 @@ pub(crate) fn column(system: &Tfeti, row: usize) -> Vec<(usize, [f64; 6])> {
 
 /// Dense `B B^T` of all rows.
 pub(crate) fn gram(g: &Gluing) -> Vec<Vec<f64>> {
-    let rows: Vec<std::collections::BTreeMap<(usize, usize), f64>> = (0..g.rows_full_rank())
+    let rows: Vec<std::collections::BTreeMap<(usize, usize), f64>> = (0..g.ranges().total())
         .map(|r| {
             let mut map = std::collections::BTreeMap::new();
             g.row(r)
