@@ -72,32 +72,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
     let (mut nodes, mut elements) = (false, false);
     while reader.skip_blanks() {
         match reader.line() {
-            b"$PhysicalNames" => {
-                reader.section = "$PhysicalNames";
-                out.names = reader.names()?;
-                reader.end(b"$EndPhysicalNames")?;
-            }
-            b"$Entities" => {
-                reader.section = "$Entities";
-                out.entities = reader.entities()?;
-                reader.end(b"$EndEntities")?;
-            }
+            b"$PhysicalNames" => out.names = reader.section("$PhysicalNames", Reader::names)?,
+            b"$Entities" => out.entities = reader.section("$Entities", Reader::entities)?,
             b"$Nodes" => {
-                reader.section = "$Nodes";
-                (out.tags, out.points) = reader.nodes()?;
-                reader.end(b"$EndNodes")?;
+                (out.tags, out.points) = reader.section("$Nodes", Reader::nodes)?;
                 nodes = true;
             }
             b"$Elements" => {
-                reader.section = "$Elements";
-                (out.elements, out.mids) = reader.elements()?;
-                reader.end(b"$EndElements")?;
+                (out.elements, out.mids) = reader.section("$Elements", Reader::elements)?;
                 elements = true;
             }
             b"$PartitionedEntities" => {
-                return Err(GmshError::Partitioned {
-                    section: "$PartitionedEntities",
-                });
+                let section = "$PartitionedEntities";
+                return Err(GmshError::Partitioned { section });
             }
             other => reader.skip_section(other)?,
         }
@@ -213,9 +200,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn end(&mut self, name: &[u8]) -> Result<(), GmshError> {
+    /// A section up to and with its end.
+    fn section<T>(&mut self, name: &'static str, read: fn(&mut Self) -> Result<T, GmshError>) -> Result<T, GmshError> {
+        self.section = name;
+        let found = read(self)?;
+        self.end()?;
+        Ok(found)
+    }
+
+    fn end(&mut self) -> Result<(), GmshError> {
         self.skip_blanks();
-        if self.line() == name {
+        if self.line().strip_prefix(b"$End") == self.section.as_bytes().get(1..) {
             Ok(())
         } else {
             self.damaged("the end of the section is expected")
@@ -244,7 +239,7 @@ impl<'a> Reader<'a> {
                 _ => return self.damaged("the number 1 is expected, which tells the byte order"),
             };
         }
-        self.end(b"$EndMeshFormat")
+        self.end()
     }
 
     /// Names of groups: text also in binary files.
