@@ -4,7 +4,7 @@
 //! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
 //! no sum depends on their number, so the result is the same bit for bit for any thread count.
 
-use crate::element::{Block, Columns};
+use crate::element::{Block, TetNodes};
 use crate::material::Hooke;
 use crate::tables::{buckets, range};
 use rayon::prelude::*;
@@ -80,12 +80,6 @@ where
     let indptr = std::iter::once(0).chain(column_ends).collect();
     Ok(CsMat::new_csc((3 * nodes, 3 * nodes), indptr, indices, data))
 }
-
-/// Node numbers of a tetrahedron: four of a linear one, ten of a quadratic one.
-pub trait TetNodes: Copy + Sync + Columns {}
-
-impl TetNodes for [u32; 4] {}
-impl TetNodes for [u32; 10] {}
 
 /// Which nodes share a tetrahedron, and which tetrahedra surround each node.
 struct Pattern {

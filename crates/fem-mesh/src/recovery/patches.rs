@@ -110,7 +110,6 @@ impl Around {
 
 impl StrainRecovery {
     /// Fits all patches of a mesh.
-    #[must_use]
     pub fn new(mesh: &TetMesh) -> Self {
         let around = Around::new(mesh);
         if mesh.order() == 2 {
