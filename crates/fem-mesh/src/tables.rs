@@ -2,15 +2,6 @@
 
 /// Sorts the positions of `keys`, which are below `count`, into one bucket for each key, ascending in each. Returns the
 /// start of each bucket (and the end of the last) and the positions.
-///
-/// ```
-/// let (starts, positions) = signorini_fem_mesh::internal::buckets(3, &[2, 0, 2]);
-/// assert_eq!((starts, positions), (vec![0, 1, 1, 3], vec![1, 0, 2]));
-/// ```
-///
-/// # Panics
-/// If a key is not below `count`.
-#[must_use]
 pub fn buckets(count: usize, keys: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; count + 1];
     for &key in keys {
@@ -34,14 +25,6 @@ pub(crate) fn range(starts: &[u32], bucket: usize) -> std::ops::Range<usize> {
 }
 
 /// A partition of the numbers below a count: numbers that are joined, directly or by others, are in one set.
-///
-/// ```
-/// let mut sets = signorini_fem_mesh::internal::DisjointSets::new(5);
-/// sets.join(4, 1);
-/// sets.join(1, 2);
-/// assert_eq!((sets.first(4), sets.first(3)), (1, 3));
-/// assert_eq!(sets.numbers(), [0, 1, 1, 2, 1]);
-/// ```
 #[derive(Debug, Clone)]
 pub struct DisjointSets {
     /// A smaller member of the same set, or the number itself.
@@ -50,7 +33,6 @@ pub struct DisjointSets {
 
 impl DisjointSets {
     /// Every number alone.
-    #[must_use]
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),
@@ -58,18 +40,12 @@ impl DisjointSets {
     }
 
     /// Makes one set of those of two numbers.
-    ///
-    /// # Panics
-    /// If a number is not below the count.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.first(a), self.first(b));
         self.parent[a.max(b)] = a.min(b) as u32;
     }
 
     /// The smallest number of the set with this one.
-    ///
-    /// # Panics
-    /// If the number is not below the count.
     pub fn first(&mut self, mut number: usize) -> usize {
         while self.parent[number] as usize != number {
             let parent = self.parent[number] as usize;
@@ -80,7 +56,6 @@ impl DisjointSets {
     }
 
     /// The set of each number; sets are counted in the order of their smallest numbers.
-    #[must_use]
     pub fn numbers(&mut self) -> Vec<u32> {
         let mut out = vec![0; self.parent.len()];
         let mut count = 0;

@@ -20,6 +20,7 @@
 //! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products
 //! run in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of
 //! threads.
+//! Functions that take an index or a vector panic, like slices, if it is out of range or too short.
 //!
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};

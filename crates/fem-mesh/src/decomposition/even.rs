@@ -90,7 +90,6 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
 
 /// Whether cells are graded so strongly along all axes that many are flat.
 #[doc(hidden)]
-#[must_use]
 pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
     shares(mesh).0.iter().all(|ratio| *ratio > STRONGLY)
 }

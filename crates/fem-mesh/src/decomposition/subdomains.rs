@@ -20,28 +20,21 @@ pub struct Subdomain {
 
 impl Subdomain {
     /// Number of displacement unknowns, three for each local node.
-    #[must_use]
     pub fn dofs(&self) -> usize {
         3 * self.nodes.len()
     }
 
     /// The ten nodes of each tetrahedron in local numbers; empty in a mesh of order 1.
-    #[must_use]
     pub fn quadratic_tets(&self) -> Vec<[u32; 10]> {
         quadratic_tets(&self.tets, &self.mids)
     }
 
     /// Local number of a global node, if it is here.
-    #[must_use]
     pub fn local(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()
     }
 
     /// Coordinates of the local nodes.
-    ///
-    /// # Panics
-    /// If the subdomain belongs to another, larger mesh.
-    #[must_use]
     pub fn points(&self, mesh: &TetMesh) -> Vec<[f64; 3]> {
         self.nodes.iter().map(|&n| mesh.points()[n as usize]).collect()
     }
@@ -87,7 +80,6 @@ pub struct Decomposition {
 
 impl Decomposition {
     /// No decomposition: each body of the mesh is one subdomain.
-    #[must_use]
     pub fn whole(mesh: &TetMesh) -> Self {
         Self::build(mesh, mesh.components())
     }
@@ -131,43 +123,31 @@ impl Decomposition {
     }
 
     /// The subdomains, by part number.
-    #[must_use]
     pub fn subdomains(&self) -> &[Subdomain] {
         &self.subdomains
     }
 
     /// The copies of a global node, by ascending subdomain.
-    ///
-    /// # Panics
-    /// If there is no such node.
-    #[must_use]
     pub fn copies(&self, node: usize) -> &[NodeCopy] {
         &self.copies[range(&self.copy_start, node)]
     }
 
     /// The subdomain that owns a tetrahedron.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn part_of(&self, tet: usize) -> u32 {
         self.part_of[tet]
     }
 
     /// The subdomain of every tetrahedron.
-    #[must_use]
     pub fn parts(&self) -> &[u32] {
         &self.part_of
     }
 
     /// Number of global nodes.
-    #[must_use]
     pub fn nodes(&self) -> usize {
         self.copy_start.len() - 1
     }
 
     /// Number of displacement unknowns of all subdomains together, the paper's n_p.
-    #[must_use]
     pub fn torn_dofs(&self) -> usize {
         3 * self.copies.len()
     }

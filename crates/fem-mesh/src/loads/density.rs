@@ -56,25 +56,21 @@ pub enum LoadDensity {
 
 impl LoadDensity {
     /// The same force per volume everywhere.
-    #[must_use]
     pub fn body(value: [f64; 3]) -> Self {
         Self::Body(value)
     }
 
     /// Force per volume that depends on the point.
-    #[must_use]
     pub fn body_field(value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
         Self::BodyField(Function(Arc::new(value)))
     }
 
     /// The same force per area on all facets of a tag.
-    #[must_use]
     pub fn traction(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::Traction { tag, value }
     }
 
     /// Force per area that depends on the point and the outward unit normal.
-    #[must_use]
     pub fn traction_field(
         tag: FacetTag,
         value: impl Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync + 'static,
@@ -86,19 +82,16 @@ impl LoadDensity {
     }
 
     /// Pressure, positive into the body.
-    #[must_use]
     pub fn pressure(tag: FacetTag, value: f64) -> Self {
         Self::Pressure { tag, value }
     }
 
     /// A force, spread evenly over all facets of a tag.
-    #[must_use]
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::Force { tag, value }
     }
 
     /// Forces at single nodes.
-    #[must_use]
     pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
         Self::NodalForces(forces)
     }

@@ -83,7 +83,6 @@ const ODD_CELL: [[usize; 4]; 5] = [[0, 1, 2, 4], [3, 2, 1, 7], [5, 4, 7, 1], [6,
 
 impl Brick {
     /// A brick with its corner of smallest coordinates at the origin.
-    #[must_use]
     pub fn new(lengths: [f64; 3], cells: [usize; 3]) -> Self {
         Self {
             origin: [0.0; 3],
@@ -119,7 +118,6 @@ impl Brick {
     }
 
     /// Number of the node at a grid point, counted from 0 to `cells` along each axis.
-    #[must_use]
     pub fn node(&self, [i, j, k]: [usize; 3]) -> usize {
         i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
     }

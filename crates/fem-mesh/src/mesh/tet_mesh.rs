@@ -122,40 +122,31 @@ impl TetMesh {
     }
 
     /// Coordinates of the nodes.
-    #[must_use]
     pub fn points(&self) -> &[[f64; 3]] {
         &self.points
     }
 
     /// Corners of each tetrahedron: all its nodes in a mesh of order 1.
-    #[must_use]
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.tets
     }
 
     /// Tagged boundary facets, oriented outward, in the order given.
-    #[must_use]
     pub fn facets(&self) -> &[Facet] {
         &self.facets
     }
 
     /// Material region of each tetrahedron.
-    #[must_use]
     pub fn regions(&self) -> &[u32] {
         &self.regions
     }
 
     /// The tetrahedron that the tagged facet number `facet` bounds.
-    ///
-    /// # Panics
-    /// If there is no such facet.
-    #[must_use]
     pub fn facet_owner(&self, facet: usize) -> usize {
         self.owners[facet] as usize
     }
 
     /// The tags in use, ascending.
-    #[must_use]
     pub fn tags(&self) -> Vec<FacetTag> {
         let mut tags: Vec<_> = self.facets.iter().map(|f| f.tag).collect();
         tags.sort_unstable();
@@ -164,7 +155,6 @@ impl TetMesh {
     }
 
     /// Nodes on the facets of a tag, mid-nodes too, ascending; empty if the tag is absent.
-    #[must_use]
     pub fn nodes_on(&self, tag: FacetTag) -> Vec<u32> {
         let on_tag = self.facets.iter().filter(|f| f.tag == tag);
         let mut nodes: Vec<_> = on_tag.flat_map(|f| f.nodes).collect();
@@ -178,28 +168,16 @@ impl TetMesh {
     }
 
     /// Coordinates of the four corners of a tetrahedron.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn tet_points(&self, tet: usize) -> [[f64; 3]; 4] {
         self.tets[tet].map(|n| self.points[n as usize])
     }
 
     /// Coordinates of the three corners of a tagged facet.
-    ///
-    /// # Panics
-    /// If there is no such facet.
-    #[must_use]
     pub fn facet_points(&self, facet: usize) -> [[f64; 3]; 3] {
         self.facets[facet].nodes.map(|n| self.points[n as usize])
     }
 
     /// Volume of a tetrahedron, positive.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn volume(&self, tet: usize) -> f64 {
         match self.mids.get(tet) {
             None => vec3::tet_volume(&self.tet_points(tet)),
@@ -208,23 +186,17 @@ impl TetMesh {
     }
 
     /// Volume of the whole mesh.
-    #[must_use]
     pub fn total_volume(&self) -> f64 {
         (0..self.tets.len()).map(|t| self.volume(t)).sum()
     }
 
     /// Smallest axis-parallel box around the mesh: its lowest and highest corner.
-    #[must_use]
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
         check::extent(&self.points)
     }
 
     /// The tetrahedra across the four faces of a tetrahedron, `None` at the boundary. Face number
     /// i is opposite to node i.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn neighbours(&self, tet: usize) -> [Option<usize>; 4] {
         self.neighbours[tet].map(|n| (n != NONE).then_some(n as usize))
     }
@@ -236,13 +208,11 @@ impl TetMesh {
     /// The body of each tetrahedron: 0, 1, ... in the order of the first tetrahedron of each.
     /// Tetrahedra belong to the same body if a path through common faces joins them; a common
     /// edge or node alone is a hinge and does not join.
-    #[must_use]
     pub fn components(&self) -> Vec<u32> {
         connected_sets(&self.neighbours, |_, _| true)
     }
 
     /// All triangles of the boundary, tagged or not, by ascending tetrahedron and face.
-    #[must_use]
     pub fn boundary_facets(&self) -> Vec<BoundaryFacet> {
         let mut facets = Vec::new();
         for (t, (tet, neighbours)) in self.tets.iter().zip(&self.neighbours).enumerate() {

@@ -235,12 +235,10 @@ fn boundaries(classes: &Classes, gluing: &Gluing) -> Vec<BoundaryClass> {
     let mut touch = |subdomain: u32, local: u32| {
         touched[classes.place(subdomain as usize).0][local as usize] = true;
     };
-    for block in 0..gluing.blocks() {
-        gluing.block(block).iter().for_each(|e| touch(e.subdomain, e.local));
-    }
-    for nodal in 0..gluing.nodal_rows() {
-        gluing.nodal(nodal).iter().for_each(|e| touch(e.subdomain, e.local));
-    }
+    let blocks = (0..gluing.blocks()).flat_map(|block| gluing.block(block));
+    blocks.for_each(|e| touch(e.subdomain, e.local));
+    let nodal = (0..gluing.nodal_rows()).flat_map(|nodal| gluing.nodal(nodal));
+    nodal.for_each(|e| touch(e.subdomain, e.local));
     let boundary = |(class, touched): (&Class, Vec<bool>)| BoundaryClass {
         nodes: (0..class.nodes as u32).filter(|&n| touched[n as usize]).collect(),
         members: class.members.clone(),

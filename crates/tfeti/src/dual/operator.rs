@@ -86,22 +86,13 @@ pub(crate) fn multiply_members(out: &mut [f64], x: &[f64], a: &[f64], members: u
     }
 }
 
-/// Writes the boundary rows of a panel into full columns.
-fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
-    let width = full.len() / dim;
-    for (&node, values) in nodes.iter().zip(boundary.chunks_exact(3 * width)) {
-        for (k, value) in values.iter().enumerate() {
-            full[(k % width) * dim + 3 * node as usize + k / width] = *value;
-        }
-    }
-}
-
-/// Reads the boundary rows of full columns.
-fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
-    let width = full.len() / dim;
-    for (&node, values) in nodes.iter().zip(boundary.chunks_exact_mut(3 * width)) {
-        for (k, value) in values.iter_mut().enumerate() {
-            *value = full[(k % width) * dim + 3 * node as usize + k / width];
+/// Calls `f` for each place on the boundary of a panel of so many members with that in full columns.
+fn for_places(nodes: &[u32], dim: usize, members: usize, mut f: impl FnMut(usize, usize)) {
+    for (k, &node) in nodes.iter().enumerate() {
+        for c in 0..3 {
+            for m in 0..members {
+                f((3 * k + c) * members + m, m * dim + 3 * node as usize + c);
+            }
         }
     }
 }
@@ -139,9 +130,9 @@ impl SymmetricOperator for DualOperator {
                     }
                     let full = &mut full[..dim * columns];
                     full.fill(0.0);
-                    expand(nodes, x, full, dim);
+                    for_places(nodes, dim, columns, |own, at| full[at] = x[own]);
                     inverse.full.apply(&base.kernel, full, columns, memory);
-                    restrict(nodes, full, y, dim);
+                    for_places(nodes, dim, columns, |own, at| y[own] = full[at]);
                 }
             });
         self.gluing.add_compliance(x, y);

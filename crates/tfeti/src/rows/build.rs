@@ -203,15 +203,15 @@ impl Builder<'_> {
         for p in tied {
             let of = &contact[p.point];
             let first = self.gluing.nodal_rows();
+            let mut directions = Vec::with_capacity(3);
             for row in std::iter::once(&p.normal).chain(&p.tangential) {
                 self.contact_row(of, row, &p.prescribed);
+                directions.push((row.direction, row.scale));
             }
-            let rows = first..first + 1 + p.tangential.len();
-            let all = std::iter::once(&p.normal).chain(&p.tangential);
             self.gluing.tied.push(TiedRows {
                 point: p.point,
-                rows,
-                directions: all.map(|row| (row.direction, row.scale)).collect(),
+                rows: first..self.gluing.nodal_rows(),
+                directions,
             });
             self.gluing.aligned &= is_aligned(of, p);
         }

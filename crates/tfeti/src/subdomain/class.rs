@@ -35,9 +35,6 @@ impl Classes {
     }
 
     /// Class of a subdomain and its position among the members.
-    ///
-    /// # Panics
-    /// If there is no such subdomain.
     pub fn place(&self, subdomain: usize) -> (usize, usize) {
         let (class, member) = self.place[subdomain];
         (class as usize, member as usize)

@@ -179,10 +179,8 @@ fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorEr
     let mut lower = coarse_graph(decomposition);
     let pattern = Columns::of_blocks(&mut lower, 6);
     let (pointers, rows) = quotient(&pattern, 6);
-    let order: Vec<u32> = minimum_degree(&pointers, &rows)?
-        .into_iter()
-        .map(|b| b as u32)
-        .collect();
+    let order = minimum_degree(&pointers, &rows)?.into_iter().map(|b| b as u32);
+    let order: Vec<u32> = order.collect();
     let stored = Symbolic::ordered(&pattern, &order, 6)?.stored();
     let mut graph = lower.clone();
     for (a, list) in lower.iter().enumerate() {

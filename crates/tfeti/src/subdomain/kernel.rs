@@ -14,9 +14,12 @@ pub struct Kernel {
     /// Positions of the nodes relative to their mean, divided by `radius`.
     arms: Vec<[f64; 3]>,
     /// `(t, omega) = transform * amplitudes`, row-major.
-    transform: [[f64; 6]; 6],
-    inverse: [[f64; 6]; 6],
+    transform: Block,
+    inverse: Block,
 }
+
+/// Six rows of six.
+pub(crate) type Block = [[f64; 6]; 6];
 
 /// Mean of some points.
 pub(crate) fn mean(points: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
@@ -93,14 +96,14 @@ impl Kernel {
         // Cholesky of the Gram matrix, twice: the second pass removes what rounding left for slender subdomains.
         for _ in 0..2 {
             let lower = cholesky6(&kernel.gram()).ok_or_else(|| collinear.clone())?;
-            let inverse_transposed = transpose(&invert_lower(&lower));
+            let inverse_transposed = transposed(&invert_lower(&lower));
             kernel.transform = product(&kernel.transform, &inverse_transposed);
-            kernel.inverse = product(&transpose(&lower), &kernel.inverse);
+            kernel.inverse = product(&transposed(&lower), &kernel.inverse);
         }
         Ok(kernel)
     }
 
-    fn gram(&self) -> [[f64; 6]; 6] {
+    fn gram(&self) -> Block {
         let mut gram = [[0.0; 6]; 6];
         for node in 0..self.arms.len() {
             let block = self.node_modes(node);
@@ -129,9 +132,6 @@ impl Kernel {
     }
 
     /// The rows of `R` at one node: `[component][mode]`.
-    ///
-    /// # Panics
-    /// If there is no such node.
     pub fn node_modes(&self, node: usize) -> [[f64; 6]; 3] {
         let mut out = [[0.0; 6]; 3];
         for mode in 0..6 {
@@ -199,9 +199,6 @@ impl Kernel {
     }
 
     /// `u += factor R amplitudes` for a local vector of length `3 nodes`.
-    ///
-    /// # Panics
-    /// If there are fewer than six amplitudes.
     pub fn add_motion(&self, factor: f64, amplitudes: &[f64], u: &mut [f64]) {
         let motion = self.motion(amplitudes);
         for (arm, target) in self.arms.iter().zip(u.chunks_exact_mut(3)) {
@@ -213,19 +210,19 @@ impl Kernel {
     }
 }
 
-fn identity() -> [[f64; 6]; 6] {
+fn identity() -> Block {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
 }
 
-fn transpose(a: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+pub(crate) fn transposed(a: &Block) -> Block {
     std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
-fn product(a: &[[f64; 6]; 6], b: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+pub(crate) fn product(a: &Block, b: &Block) -> Block {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-fn cholesky6(a: &[[f64; 6]; 6]) -> Option<[[f64; 6]; 6]> {
+fn cholesky6(a: &Block) -> Option<Block> {
     let mut l = [[0.0; 6]; 6];
     let scale = (0..6).map(|i| a[i][i]).fold(0.0, f64::max);
     for j in 0..6 {
@@ -244,7 +241,7 @@ fn cholesky6(a: &[[f64; 6]; 6]) -> Option<[[f64; 6]; 6]> {
     Some(l)
 }
 
-fn invert_lower(l: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+fn invert_lower(l: &Block) -> Block {
     let mut x = [[0.0; 6]; 6];
     for j in 0..6 {
         x[j][j] = 1.0 / l[j][j];

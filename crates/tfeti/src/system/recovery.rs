@@ -52,9 +52,6 @@ impl Tfeti {
     }
 
     /// `out = B u` for a torn vector.
-    ///
-    /// # Panics
-    /// If a vector is too short.
     pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
         let gluing = self.gluing();
         let interface = gluing.ranges().interface.clone();
@@ -75,9 +72,6 @@ impl Tfeti {
     }
 
     /// `f += B^T x` for a torn vector.
-    ///
-    /// # Panics
-    /// If a vector is too short.
     pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
         self.add_some_transposed(x, f, |_| true);
     }
@@ -138,9 +132,6 @@ impl Tfeti {
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
     /// their [stiffness](Self::copy_stiffness).
-    ///
-    /// # Panics
-    /// If `u` is shorter than a torn vector.
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
         let mut sums = vec![0.0; self.nodes];

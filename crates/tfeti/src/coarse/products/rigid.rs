@@ -9,6 +9,7 @@ use crate::linalg::both;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench};
 use crate::subdomain::matrices::Subdomains;
+use crate::subdomain::ownership::pieces;
 use crate::tolerances::{PARTS, SUBDOMAIN_TASK};
 use signorini_fem_mesh::internal::buckets;
 use std::ops::Range;
@@ -70,7 +71,7 @@ impl RigidTables {
             nodal_pointers,
             nodal,
             tasks: vec![],
-            pieces: pieces(&ranks),
+            pieces: pieces(&ranks, 6),
             ranks,
         };
         let work = |s: usize| 4 * out.nodal_of(s).len() + out.globs.sides_of(s).len() + 4;
@@ -186,16 +187,6 @@ impl RigidTables {
             || others(contact, dirichlet),
         );
     }
-}
-
-fn pieces(ranks: &[u32]) -> Vec<(usize, Range<usize>)> {
-    let mut at = 0;
-    let piece = |same: &[u32]| {
-        let start = at;
-        at += 6 * same.len();
-        (same[0] as usize, start..at)
-    };
-    ranks.chunk_by(|a, b| a == b).map(piece).collect()
 }
 
 /// Force of the rows that are no interface rows on one copy.
