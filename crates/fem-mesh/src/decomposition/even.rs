@@ -3,7 +3,7 @@
 use super::compact::{compact, join_pieces};
 use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
-use crate::mesh::{TetMesh, connected_sets};
+use crate::mesh::{TetMesh, connected_sets, extent};
 use crate::tables::{buckets, range};
 use crate::tolerances::{BOX, FILLED, GRADED, LARGER, PLANE, REACH, SNAP, STRONGLY};
 use crate::vec3::{self, Vec3};
@@ -97,7 +97,10 @@ pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
 /// How strongly cells are graded along each axis, and what each tetrahedron counts in a cut across it; none where all
 /// count alike.
 fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
-    let lengths = |tet: usize| [0, 1, 2].map(|d| reach(mesh, tet, d)).map(|[low, high]| high - low);
+    let lengths = |tet: usize| {
+        let (low, high) = extent(mesh.tet_points(tet));
+        vec3::sub(high, low)
+    };
     let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
     let mut grading = [1.0; 3];
     let shares = [0, 1, 2].map(|d| {
@@ -112,15 +115,6 @@ fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
         (grading[d] > GRADED).then(|| lengths.into_iter().map(share).collect())
     });
     (grading, shares)
-}
-
-/// Where a tetrahedron begins and ends along an axis.
-fn reach(mesh: &TetMesh, tet: usize, axis: usize) -> [f64; 2] {
-    let places = mesh.tet_points(tet).map(|p| p[axis]);
-    [
-        places.into_iter().fold(f64::MAX, f64::min),
-        places.into_iter().fold(f64::MIN, f64::max),
-    ]
 }
 
 struct Cutter<'a> {
@@ -210,7 +204,10 @@ impl Cutter<'_> {
     fn plane(&self, tets: &[u32], axis: usize, middle: usize, least: usize, most: usize) -> Option<usize> {
         let far = (PLANE * middle.min(tets.len() - middle) as f64) as usize;
         let places = middle.saturating_sub(far).max(least)..=(middle + far).min(most);
-        let ends = |k: usize| reach(self.mesh, tets[k] as usize, axis);
+        let ends = |k: usize| {
+            let (low, high) = extent(self.mesh.tet_points(tets[k] as usize));
+            [low[axis], high[axis]]
+        };
         let mut next = vec![f64::MAX; tets.len() + 1];
         (0..tets.len())
             .rev()
@@ -231,19 +228,9 @@ impl Cutter<'_> {
 
     /// Edges of the box around these tetrahedra, and their volume.
     fn size(&self, tets: &[u32]) -> (Vec3, f64) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        let mut volume = 0.0;
-        for &tet in tets {
-            volume += self.mesh.volume(tet as usize);
-            for point in self.mesh.tet_points(tet as usize) {
-                for d in 0..3 {
-                    low[d] = low[d].min(point[d]);
-                    high[d] = high[d].max(point[d]);
-                }
-            }
-        }
-        (std::array::from_fn(|d| high[d] - low[d]), volume)
+        let volume = tets.iter().map(|&tet| self.mesh.volume(tet as usize)).sum();
+        let (low, high) = extent(tets.iter().flat_map(|&tet| self.mesh.tet_points(tet as usize)));
+        (vec3::sub(high, low), volume)
     }
 
     fn box_surface(&self, tets: &[u32]) -> f64 {

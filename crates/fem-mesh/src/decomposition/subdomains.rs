@@ -113,7 +113,14 @@ impl Decomposition {
                 }
             })
             .collect();
-        let (copy_start, copies) = collect_copies(nodes, &subdomains);
+        let (mut torn, mut node_of) = (Vec::new(), Vec::new());
+        for (subdomain, own) in (0..).zip(&subdomains) {
+            let copies = (0..own.nodes.len() as u32).map(|local| NodeCopy { subdomain, local });
+            torn.extend(copies);
+            node_of.extend_from_slice(&own.nodes);
+        }
+        let (copy_start, positions) = buckets(nodes, &node_of);
+        let copies = positions.iter().map(|&k| torn[k as usize]).collect();
         Self {
             subdomains,
             part_of,
@@ -151,18 +158,4 @@ impl Decomposition {
     pub fn torn_dofs(&self) -> usize {
         3 * self.copies.len()
     }
-}
-
-fn collect_copies(nodes: usize, subdomains: &[Subdomain]) -> (Vec<u32>, Vec<NodeCopy>) {
-    let (mut torn, mut node_of) = (Vec::new(), Vec::new());
-    for (number, subdomain) in subdomains.iter().enumerate() {
-        torn.extend((0..subdomain.nodes.len()).map(|local| NodeCopy {
-            subdomain: number as u32,
-            local: local as u32,
-        }));
-        node_of.extend_from_slice(&subdomain.nodes);
-    }
-    let (start, positions) = buckets(nodes, &node_of);
-    let copies = positions.iter().map(|&k| torn[k as usize]).collect();
-    (start, copies)
 }

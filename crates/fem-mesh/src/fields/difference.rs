@@ -2,7 +2,7 @@
 
 use crate::element::{Piece, integral};
 use crate::material::Materials;
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, extent};
 use crate::tolerances::OUTSIDE;
 use crate::vec3::{sub, tet_volume};
 
@@ -34,12 +34,8 @@ impl<'m> Locator<'m> {
             tets: vec![Vec::new(); boxes.iter().product()],
         };
         for tet in 0..mesh.tets().len() {
-            let points = mesh.tet_points(tet);
-            let corner = |pick: fn(f64, f64) -> f64, start: f64| {
-                let value = |d: usize| points.iter().map(|p| p[d]).fold(start, pick);
-                locator.grid_box(std::array::from_fn(value))
-            };
-            let (from, to) = (corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY));
+            let (low, high) = extent(mesh.tet_points(tet));
+            let (from, to) = (locator.grid_box(low), locator.grid_box(high));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     for k in from[2]..=to[2] {

@@ -192,7 +192,7 @@ impl TetMesh {
 
     /// Smallest axis-parallel box around the mesh: its lowest and highest corner.
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
-        check::extent(&self.points)
+        check::extent(self.points.iter().copied())
     }
 
     /// The tetrahedra across the four faces of a tetrahedron, `None` at the boundary. Face number

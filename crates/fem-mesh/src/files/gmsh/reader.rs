@@ -41,8 +41,6 @@ pub(super) struct Contents {
     pub(super) points: Vec<[f64; 3]>,
     /// Triangles and tetrahedra in the order of the file.
     pub(super) elements: Vec<Element>,
-    /// Nodes on the edges 01, 12, 02, 03, 13, 23 of each tetrahedron of second order.
-    pub(super) mids: Vec<[u64; 6]>,
 }
 
 /// A triangle or a tetrahedron.
@@ -50,9 +48,11 @@ pub(super) struct Element {
     pub(super) tag: u64,
     /// The surface or volume that it belongs to.
     pub(super) entity: i32,
-    /// Numbers of the corners; four only for a tetrahedron.
-    pub(super) nodes: [u64; 4],
-    pub(super) is_tet: bool,
+    /// Numbers of its nodes, corners first, those of a tetrahedron of second order as
+    /// [`TetMesh::quadratic`](crate::TetMesh::quadratic) has them.
+    pub(super) nodes: [u64; 10],
+    /// How many there are.
+    pub(super) count: usize,
 }
 
 /// Reads the contents of a file.
@@ -79,7 +79,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
                 nodes = true;
             }
             b"$Elements" => {
-                (out.elements, out.mids) = reader.section("$Elements", Reader::elements)?;
+                out.elements = reader.section("$Elements", Reader::elements)?;
                 elements = true;
             }
             b"$PartitionedEntities" => {
@@ -317,8 +317,8 @@ impl<'a> Reader<'a> {
         Ok((tags, points))
     }
 
-    fn elements(&mut self) -> Result<(Vec<Element>, Vec<[u64; 6]>), GmshError> {
-        let (mut out, mut mids) = (Vec::new(), Vec::new());
+    fn elements(&mut self) -> Result<Vec<Element>, GmshError> {
+        let mut out = Vec::new();
         for _ in 0..self.header()? {
             let (_dimension, entity, kind) = (self.int()?, self.int()?, self.int()?);
             let name = match TYPES.iter().find(|t| t.0 == kind) {
@@ -332,24 +332,21 @@ impl<'a> Reader<'a> {
                 for node in &mut nodes[..count] {
                     *node = self.size()?;
                 }
-                let [a, b, c, d, ..] = nodes;
                 if kind == TET_10 {
                     // Gmsh has the edges 23 and 13 in this order
-                    let [.., e, f, g, h, i, j] = nodes;
-                    mids.push([e, f, g, h, j, i]);
+                    nodes.swap(8, 9);
                 }
-                let is_tet = matches!(kind, TET_4 | TET_10);
-                if is_tet || matches!(kind, TRIANGLE_3 | TRIANGLE_6) {
+                if [TRIANGLE_3, TRIANGLE_6, TET_4, TET_10].contains(&kind) {
                     out.push(Element {
                         tag,
                         entity,
-                        nodes: [a, b, c, d],
-                        is_tet,
+                        nodes,
+                        count,
                     });
                 }
             }
         }
-        Ok((out, mids))
+        Ok(out)
     }
 
     /// Skips a section of another kind, up to and with its end.
