@@ -11,7 +11,7 @@ use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
 /// Pattern of groups of columns. Rows are counted from the first of these columns on; rows beyond them (*behind*)
-/// belong to others. Rows below a group come in units of `unit` consecutive ones.
+/// belong to others. Rows below a group come in units of `unit` consecutive ones, three or six.
 #[derive(Debug, Clone)]
 pub(crate) struct Supernodes {
     pub(super) unit: usize,
@@ -208,11 +208,9 @@ impl<T: Stored, X: Unknown> WithSimd for Solve<'_, T, X> {
         let work = self.work;
         match (self.forward, work.factor.unit) {
             (true, 6) => work.forward::<S, 6>(simd),
-            (true, 3) => work.forward::<S, 3>(simd),
-            (true, _) => work.forward::<S, 1>(simd),
+            (true, _) => work.forward::<S, 3>(simd),
             (false, 6) => work.backward::<S, 6>(simd),
-            (false, 3) => work.backward::<S, 3>(simd),
-            (false, _) => work.backward::<S, 1>(simd),
+            (false, _) => work.backward::<S, 3>(simd),
         }
     }
 }
@@ -317,7 +315,7 @@ mod tests {
     /// A factor in two groups whose rows below lie within and behind.
     #[test]
     fn both_directions_solve_with_the_product_of_the_factor() {
-        for unit in [1, 3, 6] {
+        for unit in [3, 6] {
             let (widths, units) = ([4 * unit, 2 * unit], [vec![4, 6, 8], vec![6, 8]]);
             let (own, all) = (6 * unit, 9 * unit);
             let mut supernodes = Supernodes::new(unit);

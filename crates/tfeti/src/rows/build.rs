@@ -15,23 +15,13 @@ use signorini_fem_mesh::decomposition::NodeCopy;
 use signorini_fem_mesh::vec3::dot;
 
 impl Gluing {
-    /// Builds the rows. `stiffness` weighs the copies of a node in
-    /// contact and support rows, its default all alike.
+    /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. The rows of springs to the
+    /// ground are the last of the support rows; with them comes the stiffness of all copies, with which they are
+    /// compared: the row of a soft one is as much smaller as it is softer.
     ///
     /// # Errors
-    /// [`TfetiError`] for bad supports or contact points, and where `stiffness` belongs to another decomposition.
-    pub fn new(
-        decomposition: &Decomposition,
-        supports: &[NodeSupport],
-        contact: &[ContactConstraint],
-        stiffness: &CopyStiffness,
-    ) -> Result<Self, TfetiError> {
-        Self::with_springs(decomposition, supports, contact, stiffness, (&[], stiffness))
-    }
-
-    /// The same with springs to the ground, whose rows are the last of the support rows, and the stiffness of all
-    /// copies, with which springs are compared: the row of a soft one is as much smaller as it is softer.
-    pub(crate) fn with_springs(
+    /// [`TfetiError`] for bad supports, contact points or springs.
+    pub(crate) fn new(
         decomposition: &Decomposition,
         supports: &[NodeSupport],
         contact: &[ContactConstraint],
@@ -39,7 +29,6 @@ impl Gluing {
         springs: (&[NodalSpring], &CopyStiffness),
     ) -> Result<Self, TfetiError> {
         let nodes = decomposition.nodes();
-        stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact, &merged, nodes, squares)?;

@@ -27,7 +27,7 @@ pub struct PrescribedPoint {
 /// normal displacement at a time is the sum over cases of `factor(case, t) * value`.
 ///
 /// # Errors
-/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong supports, unknown nodes, wrong frames.
+/// [`TfetiError`] as of a set-up: wrong supports, unknown nodes, wrong frames.
 pub fn prescribed_points(
     contact: &[ContactConstraint],
     supports: &[NodeSupport],

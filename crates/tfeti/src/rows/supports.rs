@@ -167,7 +167,7 @@ pub struct PrescribedDirection {
 /// The directions that supports fix, nodes ascending, each once.
 ///
 /// # Errors
-/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
+/// [`TfetiError`] as of a set-up: wrong or contradictory supports, unknown nodes.
 pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<Vec<PrescribedDirection>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
     let of = |fixed: &FixedNode| {

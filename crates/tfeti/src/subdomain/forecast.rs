@@ -93,7 +93,7 @@ impl<'a> Forecast<'a> {
             let mut report = size.report(dense[k]);
             if size.is_packed(dense[k]) {
                 let (pattern, symbolic) = &analysed[k];
-                report.bytes = 8 * packed::stored(pattern, &symbolic.order(), 3) as u64;
+                report.bytes = 8 * packed::stored(pattern, &symbolic.order()) as u64;
             }
             report
         };

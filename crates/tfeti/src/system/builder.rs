@@ -182,7 +182,7 @@ impl<'a> TfetiBuilder<'a> {
             false => all.clone().unless_alike(self.decomposition),
         };
         let springs = (self.springs, &all);
-        let gluing = Gluing::with_springs(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
+        let gluing = Gluing::new(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
         Ok((Arc::new(gluing), stiffness))
     }
 }

@@ -2,9 +2,8 @@
 
 use crate::common::{Brick, gluing, gram, is_orthonormal, rigid, smallest_eigenvalue};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, SurfaceFrame, brick};
-use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{
-    ContactConstraint, Directions, Gluing, Motion, NodeSupport, Side, TangentialRows, TfetiBuilder, TfetiError,
+    ContactConstraint, Directions, Motion, NodeSupport, Side, TangentialRows, TfetiBuilder, TfetiError,
 };
 
 #[test]
@@ -189,7 +188,10 @@ fn a_whole_body_has_no_interface_rows() {
     let whole = Decomposition::whole(&b.mesh);
     let frame: SurfaceFrame = b.frames[0];
     let contact = rigid(&b.bottom, &vec![frame; b.bottom.len()], true);
-    let g = Gluing::new(&whole, &b.supports(), &contact, &CopyStiffness::default()).unwrap();
+    let supports = b.supports();
+    let builder = TfetiBuilder::new(&b.mesh, &whole, &b.materials).with_supports(&supports);
+    let system = builder.with_contact(&contact).build().unwrap();
+    let g = system.gluing();
     assert!(g.ranges().interface.is_empty());
     assert!(g.contact().iter().all(|c| (c.scale - 1.0).abs() < 1e-15));
     let down = |row: &[(usize, usize, f64)]| matches!(row, [(0, dof, v)] if dof % 3 == 2 && *v == -1.0);
