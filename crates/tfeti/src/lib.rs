@@ -75,7 +75,7 @@ pub use projector::active_set::ActiveSetProjector;
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
 pub use rows::gluing::{ContactRows, Gluing, SpringRow, TangentialRows, TiedRows};
-pub use rows::kinds::RowRanges;
+pub use rows::ranges::RowRanges;
 pub use rows::side::{ContactConstraint, Side};
 pub use rows::supports::{Directions, Motion, NodalSpring, NodeSupport};
 pub use subdomain::cost::InverseSettings;
@@ -95,7 +95,6 @@ pub mod internal {
     pub use crate::projector::forecast::{LevelsForecast, forecast_levels};
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
-    pub use crate::rows::kinds::{RemovalReason, RemovedRow};
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;

@@ -37,7 +37,7 @@ impl Extents {
         let mut sets = DisjointSets::new(subdomains.len());
         for (tet, &own) in decomposition.parts().iter().enumerate() {
             let others = mesh.neighbours(tet).into_iter().flatten();
-            let others = others.map(|t| decomposition.part_of(t)).filter(|other| *other > own);
+            let others = others.map(|t| decomposition.parts()[t]).filter(|other| *other > own);
             others.for_each(|other| sets.join(own as usize, other as usize));
         }
         let numbers = sets.numbers();

@@ -139,11 +139,6 @@ impl Decomposition {
         &self.copies[range(&self.copy_start, node)]
     }
 
-    /// The subdomain that owns a tetrahedron.
-    pub fn part_of(&self, tet: usize) -> u32 {
-        self.part_of[tet]
-    }
-
     /// The subdomain of every tetrahedron.
     pub fn parts(&self) -> &[u32] {
         &self.part_of

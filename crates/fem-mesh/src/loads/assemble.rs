@@ -166,7 +166,7 @@ fn traction<'a>(
 ) -> Result<Vec<Vec<f64>>, LoadError> {
     let mut facets = vec![Vec::new(); decomposition.subdomains().len()];
     for (facet, _) in mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag) {
-        facets[decomposition.part_of(mesh.facet_owner(facet)) as usize].push(facet);
+        facets[decomposition.parts()[mesh.facet_owner(facet)] as usize].push(facet);
     }
     if facets.iter().all(Vec::is_empty) {
         return Err(LoadError::UnknownTag {

@@ -1,7 +1,7 @@
 //! Weights of the rows of `B` in the coarse matrix.
 
 use crate::error::TfetiError;
-use crate::rows::kinds::RowRanges;
+use crate::rows::ranges::RowRanges;
 use crate::tolerances::UNIT;
 use signorini_qp::internal::LineWeight;
 use std::ops::Range;

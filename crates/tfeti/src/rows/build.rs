@@ -37,7 +37,6 @@ impl Gluing {
             row_pointers: vec![0],
             prescribed: vec![Vec::new(); merged.cases],
             aligned: stiffness.is_plain(),
-            removed: [found.removed.clone(), merged.removed.clone()].concat(),
             ..Self::default()
         };
         let mut builder = Builder {

@@ -2,7 +2,6 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::rows::kinds::{RemovalReason, RemovedRow};
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
 use crate::tolerances::{ANGLE, FIXED, HELD, HELD_MEANS};
@@ -60,13 +59,12 @@ pub(super) struct PointRows {
     pub(super) prescribed: Vec<(u32, [f64; 3])>,
 }
 
-/// Rows of all points, what was left out, and the points without normal row.
+/// Rows of all points, and the points without normal row.
 #[derive(Debug, Default)]
 pub(super) struct AllRows {
     pub(super) rows: Vec<PointRows>,
     /// Rows of tied constraints: the first as the normal one.
     pub(super) tied: Vec<PointRows>,
-    pub(super) removed: Vec<RemovedRow>,
     prescribed: Vec<PrescribedPoint>,
 }
 
@@ -207,11 +205,6 @@ fn complement(fixed: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
 }
 
 impl AllRows {
-    fn remove(&mut self, point: &ContactConstraint, reason: RemovalReason) {
-        let node = point.side.first();
-        self.removed.push(RemovedRow { node, reason });
-    }
-
     /// The rows of a tied constraint: the axes, or all directions that are left.
     fn tie(&mut self, index: usize, point: &ContactConstraint, space: Space) {
         let fixed = space.fixed(point, Vector3::zeros());
@@ -241,14 +234,6 @@ impl AllRows {
         let fixed = space.fixed(point, normal);
         let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
         if fixed.len() == 3 || (normal - along).norm() <= FIXED {
-            self.remove(point, RemovalReason::NormalFixed);
-            let reason = match fixed.len() {
-                3 => RemovalReason::TangentFixed,
-                _ => RemovalReason::NoNormalRow,
-            };
-            for _ in 0..if point.friction { 2 } else { 0 } {
-                self.remove(point, reason);
-            }
             let value = |(case, v): &(u32, [f64; 3])| (*case, dot(*v, point.frame.normal));
             self.prescribed.push(PrescribedPoint {
                 point: index,
@@ -276,9 +261,6 @@ impl AllRows {
                     let length = along[0].hypot(along[1]);
                     let free = (tangents[0] * along[1] - tangents[1] * along[0]) / length;
                     tangential.push(space.unit_row(free));
-                }
-                for _ in 0..if point.friction { count } else { 0 } {
-                    self.remove(point, RemovalReason::TangentFixed);
                 }
                 space.unit_row(normal)
             }

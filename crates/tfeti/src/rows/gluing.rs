@@ -3,9 +3,9 @@
 //! It is stored by what its rows do: an *interface block* is three rows (x, y, z) that combine the copies of one node
 //! with the same coefficients; every other row, a *nodal row*, is a list of (copy, vector). Supports and contact act on
 //! the mean of the copies, the interface rows on its complement, so the rows are independent by construction, except at
-//! [dependent nodes](Gluing::dependent_nodes); what else would depend is reported in [`Gluing::removed`].
+//! [dependent nodes](Gluing::dependent_nodes); what else would depend is left out.
 
-use crate::rows::kinds::{RemovedRow, RowRanges};
+use crate::rows::ranges::RowRanges;
 use crate::rows::side::ContactConstraint;
 use signorini_fem_mesh::internal::DisjointSets;
 
@@ -114,7 +114,6 @@ pub struct Gluing {
     pub(super) row_nodes: Vec<u32>,
     pub(super) contact: Vec<ContactRows>,
     pub(super) tied: Vec<TiedRows>,
-    pub(super) removed: Vec<RemovedRow>,
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
     /// The rows of springs, which are the last ones.
     pub(super) springs: Vec<SpringRow>,
@@ -137,7 +136,7 @@ impl Gluing {
         &self.ranges
     }
 
-    /// Number of rows as the paper counts them: three for each additional copy of a node, three for each supported node
+    /// Number of rows as the paper counts them, with those that are left out: three for each additional copy of a node, three for each supported node
     /// and three (without friction one) for each contact point, supported or not.
     pub fn rows_as_paper(&self) -> usize {
         self.paper_rows
@@ -172,11 +171,6 @@ impl Gluing {
     /// The contact points that have a normal row, in the order of the normal rows.
     pub fn contact(&self) -> &[ContactRows] {
         &self.contact
-    }
-
-    /// Rows left out because they would depend on others, with the reason.
-    pub fn removed(&self) -> &[RemovedRow] {
-        &self.removed
     }
 
     /// Row offsets `(row, value)` of displacement case `case` with factor one, rows ascending.

@@ -2,7 +2,6 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::rows::kinds::{RemovalReason, RemovedRow};
 use crate::tolerances::{AGREEING, FIXED};
 use signorini_fem_mesh::vec3::{dot, norm};
 
@@ -14,7 +13,7 @@ pub enum Directions {
     All,
     /// Single components x, y, z.
     Components([bool; 3]),
-    /// Any directions; they are normalised, and dependent ones are removed and reported.
+    /// Any directions; they are normalised, and dependent ones are left out.
     Vectors(Vec<[f64; 3]>),
 }
 
@@ -148,7 +147,6 @@ impl FixedNode {
 pub(super) struct MergedSupports {
     /// Nodes with at least one fixed direction, ascending (each counts three rows in the paper).
     pub(super) nodes: Vec<FixedNode>,
-    pub(super) removed: Vec<RemovedRow>,
     pub(super) cases: usize,
 }
 
@@ -219,7 +217,7 @@ impl MergedSupports {
                 };
                 let entry = fixed[node as usize].get_or_insert_with(new);
                 for direction in &directions {
-                    merged.removed.extend(add_direction(entry, s, *direction, motion)?);
+                    add_direction(entry, s, *direction, motion)?;
                 }
             }
         }
@@ -255,13 +253,13 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, Tfe
     Ok(directions)
 }
 
-/// Orthonormalises a direction against those already fixed; `Some` if it adds nothing.
+/// Orthonormalises a direction against those already fixed, and adds it if something is left.
 fn add_direction(
     fixed_node: &mut FixedNode,
     support: usize,
     direction: [f64; 3],
     motion: Option<(u32, [f64; 3])>,
-) -> Result<Option<RemovedRow>, TfetiError> {
+) -> Result<(), TfetiError> {
     let mut rest = direction;
     let mut values: Vec<(u32, f64)> = Vec::new();
     let mut size = 0.0_f64;
@@ -300,7 +298,7 @@ fn add_direction(
             values,
             support,
         });
-        return Ok(None);
+        return Ok(());
     }
     if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > AGREEING * size) {
         return Err(TfetiError::ContradictorySupports {
@@ -311,8 +309,5 @@ fn add_direction(
             difference,
         });
     }
-    Ok(Some(RemovedRow {
-        node: fixed_node.node,
-        reason: RemovalReason::DoubledSupport { support },
-    }))
+    Ok(())
 }

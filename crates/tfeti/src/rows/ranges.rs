@@ -1,32 +1,6 @@
-//! Where each kind of row stands in `B`, and which rows were left out.
+//! Where each kind of row stands in `B`.
 
 use std::ops::Range;
-
-/// Why a row that the paper counts is not in `B`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum RemovalReason {
-    /// The support (its number) repeats a direction that is fixed already, with the same prescribed value.
-    DoubledSupport {
-        /// Position in the list of supports.
-        support: usize,
-    },
-    /// The normal direction of a contact point is fixed by supports: the point cannot open or close.
-    NormalFixed,
-    /// A tangential direction of a contact point is fixed by supports.
-    TangentFixed,
-    /// Friction cannot act where there is no contact row.
-    NoNormalRow,
-}
-
-/// A row that would make `B` lose rank and was therefore left out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RemovedRow {
-    /// Mesh node.
-    pub node: u32,
-    /// Why it was left out.
-    pub reason: RemovalReason,
-}
 
 /// Where each kind of row stands in a dual vector, in this order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
