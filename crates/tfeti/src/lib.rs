@@ -88,7 +88,7 @@ pub use system::tfeti::Tfeti;
 #[doc(hidden)]
 pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
-    pub use crate::dual::operator::DualScratch;
+    pub use crate::dual::boundary::PanelScratch;
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;

@@ -26,10 +26,6 @@ pub struct DualOperator {
     part: Option<Arc<RowPart>>,
 }
 
-/// Work memory of a product with `F`.
-#[derive(Debug)]
-pub struct DualScratch(PanelScratch);
-
 impl DualOperator {
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
@@ -98,24 +94,24 @@ fn for_places(nodes: &[u32], dim: usize, members: usize, mut f: impl FnMut(usize
 }
 
 impl SymmetricOperator for DualOperator {
-    type Scratch = DualScratch;
+    type Scratch = PanelScratch;
 
     fn dim(&self) -> usize {
         self.map.rows()
     }
 
-    fn scratch(&self) -> DualScratch {
-        DualScratch(self.map.scratch(|panel| {
+    fn scratch(&self) -> PanelScratch {
+        self.map.scratch(|panel| {
             let (inverse, columns) = (self.inverses[panel.class].as_ref()?, panel.columns.len());
             let dim = self.subdomains.bases[panel.class].diagonal.len();
             let full = if inverse.full.is_packed() { 0 } else { dim * columns };
             inverse.boundary.is_none().then(|| (full, inverse.full.need(columns)))
-        }))
+        })
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {
         self.map
-            .by_panels(x, y, self.parallel, &mut s.0, &|panel, x, y, full, memory| {
+            .by_panels(x, y, self.parallel, s, &|panel, x, y, full, memory| {
                 let (columns, class) = (panel.columns.len(), panel.class);
                 let Some(inverse) = &self.inverses[class] else {
                     return;

@@ -15,7 +15,7 @@ use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, Spars
 use crate::preconditioner::evened::even_out;
 use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
-use crate::preconditioner::split::{ClassRows, Eliminated, Split, Touched, is_thin};
+use crate::preconditioner::split::{ClassRows, Eliminated, Split, is_thin};
 use crate::preconditioner::springs::Springs;
 use crate::subdomain::matrices::ClassMatrices;
 use crate::system::part::SystemPart;
@@ -94,12 +94,12 @@ impl Tfeti {
 impl DualPreconditioner {
     fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
         let map = system.parts.map.clone();
-        let touched = Touched::new(system);
+        let touched = ClassRows::of_classes(system);
         let mut classes: Vec<Option<BoundaryStiffness>> = (0..map.classes.len())
             .into_par_iter()
             .map(|k| {
                 let held = system.parts.subdomains.held(k);
-                let class = (&map.classes[k], touched.class(k));
+                let class = (&map.classes[k], &touched[k]);
                 held.map(|own| BoundaryStiffness::new(own, class, kind)).transpose()
             })
             .collect::<Result<_, _>>()?;
