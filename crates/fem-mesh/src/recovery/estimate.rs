@@ -61,7 +61,7 @@ impl StrainRecovery {
         expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
         let laws = materials.of_tets(mesh.regions())?;
         let both = match mesh.order() {
-            1 => self.linear(&laws, &strains(mesh, u)?),
+            1 => self.linear(mesh, &laws, &strains(mesh, u)?),
             _ => energies(mesh, &laws, &nodal_vectors(mesh, u)?, &self.fits, &self.corners),
         };
         Ok(DiscretisationError {
@@ -72,7 +72,7 @@ impl StrainRecovery {
     }
 
     /// Error energy and elastic energy of each tetrahedron in a mesh of order 1.
-    fn linear(&self, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
+    fn linear(&self, mesh: &TetMesh, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
         let at = |k: usize| {
             let mut sum = [0.0; 6];
             for place in self.pointers[k]..self.pointers[k + 1] {
@@ -91,8 +91,9 @@ impl StrainRecovery {
             // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
             let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
             let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
-            let error = self.volumes[tet] * (squares + laws[tet].energy_density(&sum)) / 20.0;
-            [error, self.volumes[tet] * laws[tet].energy_density(&strains[tet])]
+            let volume = mesh.volume(tet);
+            let error = volume * (squares + laws[tet].energy_density(&sum)) / 20.0;
+            [error, volume * laws[tet].energy_density(&strains[tet])]
         };
         (0..strains.len()).into_par_iter().map(of_tet).collect()
     }

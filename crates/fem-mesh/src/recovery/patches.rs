@@ -23,8 +23,6 @@ pub struct StrainRecovery {
     pub(super) weights: Vec<f64>,
     /// Patches of the corners of each tetrahedron.
     pub(super) corners: Vec<[u32; 4]>,
-    /// Of each tetrahedron.
-    pub(super) volumes: Vec<f64>,
     /// The patches in a mesh of order 2, instead of their weights.
     pub(super) fits: Vec<Fit>,
 }
@@ -149,7 +147,6 @@ impl StrainRecovery {
             tets,
             weights,
             corners: around.corners(mesh),
-            volumes: cells.iter().map(|c| c.volume).collect(),
             fits: Vec::new(),
         }
     }
@@ -166,7 +163,6 @@ impl StrainRecovery {
             tets: Vec::new(),
             weights: Vec::new(),
             corners: around.corners(mesh),
-            volumes: (0..mesh.tets().len()).map(|tet| mesh.volume(tet)).collect(),
             fits: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::tolerances::PIVOT;
+use signorini_fem_mesh::vec3::{add, dot, sub};
 
 /// Orthonormal basis of the kernel of a subdomain's stiffness matrix.
 ///
@@ -26,17 +27,8 @@ pub(crate) fn mean(points: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
     let count = points.clone().count().max(1) as f64;
     // The first point is taken off first, so that bodies far from the origin lose nothing.
     let first = points.clone().next().unwrap_or([0.0; 3]);
-    let mut sum = [0.0; 3];
-    for p in points {
-        for c in 0..3 {
-            sum[c] += p[c] - first[c];
-        }
-    }
-    [
-        first[0] + sum[0] / count,
-        first[1] + sum[1] / count,
-        first[2] + sum[2] / count,
-    ]
+    let sum = points.fold([0.0; 3], |sum, p| add(sum, sub(p, first)));
+    std::array::from_fn(|c| first[c] + sum[c] / count)
 }
 
 /// The motion `t + omega x arm` of `motion = (t, omega)`.
@@ -68,25 +60,13 @@ impl Kernel {
     pub fn new(points: &[[f64; 3]], subdomain: usize) -> Result<Self, TfetiError> {
         let count = points.len().max(1) as f64;
         let centre = mean(points.iter().copied());
-        let mut arms: Vec<[f64; 3]> = points
-            .iter()
-            .map(|p| [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]])
-            .collect();
-        let radius = (arms
-            .iter()
-            .map(|r| r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
-            .sum::<f64>()
-            / count)
-            .sqrt();
+        let mut arms: Vec<[f64; 3]> = points.iter().map(|p| sub(*p, centre)).collect();
+        let radius = (arms.iter().map(|r| dot(*r, *r)).sum::<f64>() / count).sqrt();
         let collinear = TfetiError::Collinear { subdomain };
         if !(radius.is_finite() && radius > 0.0) {
             return Err(collinear);
         }
-        for arm in &mut arms {
-            for c in arm.iter_mut() {
-                *c /= radius;
-            }
-        }
+        arms.as_flattened_mut().iter_mut().for_each(|c| *c /= radius);
         let mut kernel = Self {
             radius,
             arms,
@@ -133,60 +113,31 @@ impl Kernel {
 
     /// The rows of `R` at one node: `[component][mode]`.
     pub fn node_modes(&self, node: usize) -> [[f64; 6]; 3] {
-        let mut out = [[0.0; 6]; 3];
-        for mode in 0..6 {
-            let mut motion = [0.0; 6];
-            for i in 0..6 {
-                motion[i] = self.transform[i][mode];
-            }
-            let u = displacement(&motion, &self.arms[node]);
-            for c in 0..3 {
-                out[c][mode] = u[c];
-            }
-        }
-        out
+        let motion = |mode: usize| self.transform.map(|row| row[mode]);
+        let u: [[f64; 3]; 6] = std::array::from_fn(|mode| displacement(&motion(mode), &self.arms[node]));
+        std::array::from_fn(|c| u.map(|u| u[c]))
     }
 
     /// The whole `R`, column-major, `3 nodes x 6`.
     pub fn modes(&self) -> Vec<f64> {
-        let dim = 3 * self.nodes();
-        let mut out = vec![0.0; 6 * dim];
-        for node in 0..self.nodes() {
-            let block = self.node_modes(node);
-            for c in 0..3 {
-                for mode in 0..6 {
-                    out[mode * dim + 3 * node + c] = block[c][mode];
-                }
-            }
-        }
-        out
+        let blocks: Vec<_> = (0..self.nodes()).map(|node| self.node_modes(node)).collect();
+        let column = |mode: usize| blocks.iter().flat_map(move |block| block.map(|row| row[mode]));
+        (0..6).flat_map(column).collect()
     }
 
     /// Motion `(t, omega)` about the centroid of given amplitudes, `omega` in displacement at [`Kernel::radius`].
     pub(crate) fn motion(&self, amplitudes: &[f64]) -> [f64; 6] {
-        let mut out = [0.0; 6];
-        for i in 0..6 {
-            out[i] = (0..6).map(|j| self.transform[i][j] * amplitudes[j]).sum();
-        }
-        out
+        std::array::from_fn(|i| (0..6).map(|j| self.transform[i][j] * amplitudes[j]).sum())
     }
 
     /// Amplitudes of a motion: the inverse of [`Kernel::motion`].
     pub(crate) fn amplitudes(&self, motion: &[f64; 6]) -> [f64; 6] {
-        let mut out = [0.0; 6];
-        for i in 0..6 {
-            out[i] = (0..6).map(|j| self.inverse[i][j] * motion[j]).sum();
-        }
-        out
+        std::array::from_fn(|i| (0..6).map(|j| self.inverse[i][j] * motion[j]).sum())
     }
 
     /// `R^T f` of forces whose wrench about the centroid is given.
     pub(crate) fn project_wrench(&self, wrench: &[f64; 6]) -> [f64; 6] {
-        let mut out = [0.0; 6];
-        for i in 0..6 {
-            out[i] = (0..6).map(|j| self.transform[j][i] * wrench[j]).sum();
-        }
-        out
+        std::array::from_fn(|i| (0..6).map(|j| self.transform[j][i] * wrench[j]).sum())
     }
 
     /// `R^T f` for a local vector of length `3 nodes`.

@@ -2,7 +2,7 @@
 
 use crate::coarse::space::Coarse;
 use crate::dual::boundary::BoundaryMap;
-use crate::dual::inverses::{ClassInverse, invert};
+use crate::dual::inverses::invert;
 use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::processes::communicator::Communicator;
@@ -17,7 +17,7 @@ use crate::subdomain::forecast::Forecast;
 use crate::subdomain::kernel::mean;
 use crate::subdomain::matrices::Subdomains;
 use crate::subdomain::ownership::Ownership;
-use crate::system::report::{SetupReport, class_reports};
+use crate::system::report::SetupReport;
 use crate::system::tfeti::{Parts, Tfeti};
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::sync::Arc;
@@ -151,19 +151,19 @@ impl<'a> TfetiBuilder<'a> {
                 Coarse::new(map, subdomains.clone(), gluing, centres)
             },
         );
-        let (inverses, coarse) = (inverses?, coarse?);
+        let ((inverses, classes), coarse) = (inverses?, coarse?);
         exchange.check()?;
-        let factors = inverses.0.iter().flatten().count();
+        let factors = inverses.iter().flatten().count();
         let report = SetupReport {
-            classes: class_reports(&subdomains.classes, &map, &inverses),
-            inverse_bytes: inverses.0.iter().flatten().map(ClassInverse::bytes).sum(),
+            inverse_bytes: classes.iter().map(|class| class.bytes).sum(),
+            classes,
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
             factorisations: 1 + factors,
             analysed: known.map_or(factors, |_| 0),
             assembly_seconds,
         };
-        let inverses = Arc::new(inverses.0);
+        let inverses = Arc::new(inverses);
         let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone(), gluing.clone());
         let parts = Parts {
             subdomains,

@@ -1,8 +1,5 @@
 //! What the set-up did.
 
-use crate::dual::boundary::BoundaryMap;
-use crate::dual::inverses::{ClassInverse, Inverses};
-use crate::subdomain::class::Classes;
 use crate::subdomain::cost::ClassReport;
 
 /// Choices, memory and work of the set-up. Sizes stand where they belong: rows in [`Gluing`](crate::Gluing), unknowns
@@ -24,16 +21,4 @@ pub struct SetupReport {
     pub analysed: usize,
     /// Seconds to assemble stiffness and kernels.
     pub assembly_seconds: f64,
-}
-
-pub(super) fn class_reports(classes: &Classes, map: &BoundaryMap, inverses: &Inverses) -> Vec<ClassReport> {
-    let (inverses, dense) = inverses;
-    let report = |k: usize| ClassReport {
-        members: classes.classes()[k].members.len(),
-        unknowns: 3 * classes.classes()[k].nodes,
-        boundary: 3 * map.classes[k].nodes.len(),
-        dense: dense[k],
-        bytes: inverses[k].as_ref().map_or(0, ClassInverse::bytes),
-    };
-    (0..inverses.len()).map(report).collect()
 }
