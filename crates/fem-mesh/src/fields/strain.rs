@@ -19,7 +19,6 @@ errors! {
     }
 }
 
-/// Barycentric coordinates of the centroid.
 const CENTROID: [f64; 4] = [0.25; 4];
 
 /// Checks the length of a table.

@@ -48,7 +48,6 @@ pub fn assemble_load(
     }
 }
 
-/// Area of all facets of a tag.
 fn tagged_area(mesh: &TetMesh, tag: FacetTag) -> f64 {
     let tagged = mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag);
     if mesh.order() == 2 {

@@ -21,7 +21,7 @@ pub(crate) struct Clusters {
 impl Clusters {
     /// Clusters of these subdomains, each within one rigid part; in a `grid` they are alike.
     pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains, grid: Option<&[[u32; 3]]>) -> Self {
-        let (at, parts) = (mobility.centres(), mobility.part_of());
+        let (at, parts) = (mobility.centres(), &mobility.part_of);
         let members = members(parts, at, grid);
         let mut of = vec![0; at.len()];
         for (k, list) in members.iter().enumerate() {

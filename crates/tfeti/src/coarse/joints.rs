@@ -47,7 +47,7 @@ fn copies(gluing: &Gluing, first_block: usize, nodes: usize, runs: usize) -> Vec
 /// Pairs of subdomains that the interface joins rigidly, ascending.
 pub(crate) fn rigid_pairs(gluing: &Gluing, position: impl Fn(usize, usize) -> [f64; 3]) -> Vec<(u32, u32)> {
     let mut pairs: HashMap<(u32, u32), Shared> = HashMap::new();
-    for glob in gluing.globs() {
+    for glob in &gluing.globs {
         let (nodes, runs) = (glob.nodes as usize, glob.runs as usize);
         for node in 0..nodes {
             let copies = copies(gluing, glob.block(0, node), nodes, runs);

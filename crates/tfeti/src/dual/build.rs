@@ -188,17 +188,14 @@ impl BoundaryMap {
             let rank = self.parts.partition_point(|part| part.end <= 3 * copy as usize);
             (rank, copy, place)
         };
-        let mut nodal = |nodal: usize| {
+        for nodal in 0..gluing.nodal_rows() {
             let copies = gluing.nodal(nodal).iter().map(|e| copy(e.subdomain, e.local));
             let row = gluing.nodal_row(nodal);
             cut.enter(row..row + 1, &copies.collect::<Vec<_>>());
-        };
-        let interface = &gluing.ranges().interface;
-        (0..interface.start).for_each(&mut nodal);
-        (interface.start..gluing.nodal_rows()).for_each(nodal);
+        }
         for block in 0..gluing.blocks() {
             let copies = gluing.block(block).iter().map(|e| copy(e.subdomain, e.local));
-            let row = interface.start + 3 * block;
+            let row = gluing.ranges().interface.start + 3 * block;
             cut.enter(row..row + 3, &copies.collect::<Vec<_>>());
         }
         // of the rows here

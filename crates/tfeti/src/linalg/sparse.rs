@@ -307,7 +307,6 @@ impl SparseCholesky {
         self.values.len()
     }
 
-    /// Old number of each unknown.
     pub(crate) fn order(&self) -> Vec<u32> {
         self.symbolic.order()
     }

@@ -112,7 +112,7 @@ impl DualPreconditioner {
         }
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
         let gluing = system.gluing();
-        let plain = gluing.is_aligned() && gluing.contact_compliance().is_empty();
+        let plain = gluing.is_aligned && gluing.contact_compliance().is_empty();
         let needs_scaling = !plain || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
         let springs = Springs::new(system, needs_scaling);
@@ -133,7 +133,7 @@ impl DualPreconditioner {
     }
 
     fn stiffness_product(&self, x: &[f64], y: &mut [f64], (s, factors): (&mut PanelScratch, &Factors)) {
-        let divide = self.scaling.as_ref().map(Scaling::weights);
+        let divide = self.scaling.as_ref().map(|scaling| &scaling.weights[..]);
         self.map
             .by_panels(x, y, self.map.is_large(), s, &|panel, x, y, interior, memory| {
                 let columns = panel.columns.len();

@@ -36,7 +36,7 @@ impl Gluing {
             block_pointers: vec![0],
             row_pointers: vec![0],
             prescribed: vec![Vec::new(); merged.cases],
-            aligned: stiffness.is_plain(),
+            is_aligned: stiffness.is_plain(),
             ..Self::default()
         };
         let mut builder = Builder {
@@ -143,7 +143,7 @@ impl Builder<'_> {
                 scale: p.normal.scale,
                 tangential: TangentialRows::None,
             });
-            self.gluing.aligned &= is_aligned(of(p), p);
+            self.gluing.is_aligned &= is_aligned(of(p), p);
         }
         let normal = self.gluing.nodal_rows();
         let mut ends = [normal; 2];
@@ -186,7 +186,6 @@ impl Builder<'_> {
         self.gluing.contact_compliance = out;
     }
 
-    /// Rows of tied constraints.
     fn tied(&mut self, contact: &[ContactConstraint], tied: &[PointRows]) {
         for p in tied {
             let of = &contact[p.point];
@@ -201,7 +200,7 @@ impl Builder<'_> {
                 rows: first..self.gluing.nodal_rows(),
                 directions,
             });
-            self.gluing.aligned &= is_aligned(of, p);
+            self.gluing.is_aligned &= is_aligned(of, p);
         }
     }
 

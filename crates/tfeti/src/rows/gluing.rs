@@ -108,7 +108,8 @@ pub struct Gluing {
     pub(super) block_pointers: Vec<u32>,
     pub(super) block_entries: Vec<BlockEntry>,
     pub(super) block_nodes: Vec<u32>,
-    pub(super) globs: Vec<Glob>,
+    /// In the order of their blocks.
+    pub(crate) globs: Vec<Glob>,
     pub(super) row_pointers: Vec<u32>,
     pub(super) row_entries: Vec<CopyEntry>,
     pub(super) row_nodes: Vec<u32>,
@@ -120,10 +121,10 @@ pub struct Gluing {
     /// Of each contact row, in row units, m/N; empty where none gives way.
     pub(super) contact_compliance: Vec<f64>,
     /// Mesh nodes that contact points join.
-    pub(super) groups: NodeGroups,
+    pub(crate) groups: NodeGroups,
     pub(super) paper_rows: usize,
     /// Whether `B B^T` is the identity, but for rows of dependent nodes.
-    pub(super) aligned: bool,
+    pub(crate) is_aligned: bool,
     /// Nodes whose rows may depend on one another, ascending.
     pub(super) dependent: Vec<u32>,
     /// Those of them whose rows may depend on one another.
@@ -156,16 +157,6 @@ impl Gluing {
     /// Whether a node is one of the [dependent nodes](Self::dependent_nodes).
     pub fn is_dependent(&self, node: u32) -> bool {
         self.dependent.binary_search(&node).is_ok()
-    }
-
-    /// Mesh nodes that contact points join.
-    pub(crate) fn node_groups(&self) -> &NodeGroups {
-        &self.groups
-    }
-
-    /// Whether `B B^T` is the identity, but for rows of dependent nodes.
-    pub(crate) fn is_aligned(&self) -> bool {
-        self.aligned
     }
 
     /// The contact points that have a normal row, in the order of the normal rows.
@@ -250,18 +241,12 @@ impl Gluing {
         sum
     }
 
-    /// Number of interface blocks.
     pub(crate) fn blocks(&self) -> usize {
         self.block_pointers.len() - 1
     }
 
     pub(crate) fn block(&self, block: usize) -> &[BlockEntry] {
         &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
-    }
-
-    /// The globs, in the order of their blocks.
-    pub(crate) fn globs(&self) -> &[Glob] {
-        &self.globs
     }
 
     /// Number of rows that are not interface rows: contact rows, then support rows.
@@ -273,7 +258,6 @@ impl Gluing {
         &self.row_entries[self.row_pointers[nodal] as usize..self.row_pointers[nodal + 1] as usize]
     }
 
-    /// Row number of a nodal row.
     pub(crate) fn nodal_row(&self, nodal: usize) -> usize {
         if nodal < self.ranges.interface.start {
             nodal

@@ -40,7 +40,6 @@ impl Classes {
         (class as usize, member as usize)
     }
 
-    /// Number of subdomains.
     pub(crate) fn subdomains(&self) -> usize {
         self.place.len()
     }

@@ -96,7 +96,6 @@ impl Kernel {
         gram
     }
 
-    /// Number of nodes.
     pub(crate) fn nodes(&self) -> usize {
         self.arms.len()
     }

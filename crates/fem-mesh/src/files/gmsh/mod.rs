@@ -188,7 +188,6 @@ fn mesh<const N: usize>(
     build(points, tets, facets)
 }
 
-/// The facets that lie on the boundary of the mesh.
 fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {
     let sorted = |mut nodes: [u32; 3]| {
         nodes.sort_unstable();

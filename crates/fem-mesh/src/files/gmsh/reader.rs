@@ -30,7 +30,6 @@ pub(super) type Name = (i32, i32, String);
 /// Number and physical groups of a surface or volume.
 pub(super) type Entity = (i32, Vec<i32>);
 
-/// What a file holds.
 #[derive(Default)]
 pub(super) struct Contents {
     pub(super) names: Vec<Name>,
@@ -55,7 +54,6 @@ pub(super) struct Element {
     pub(super) count: usize,
 }
 
-/// Reads the contents of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
     let mut reader = Reader {
         bytes,

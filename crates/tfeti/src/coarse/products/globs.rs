@@ -67,7 +67,7 @@ impl GlobTables {
         let mut out = Self::default();
         let mut shapes: HashMap<(usize, Vec<u32>), [u32; 2]> = HashMap::new();
         let mut rules: Vec<Range<usize>> = Vec::new();
-        for glob in gluing.globs() {
+        for glob in &gluing.globs {
             let sides = sides_of(gluing, glob);
             let first = out.subdomains.len();
             for side in &sides {
@@ -135,12 +135,10 @@ impl GlobTables {
         }
     }
 
-    /// Number of sides.
     pub(crate) fn len(&self) -> usize {
         self.subdomains.len()
     }
 
-    /// Sides of a subdomain.
     pub(crate) fn sides_of(&self, subdomain: usize) -> &[u32] {
         let pointers = &self.side_pointers;
         &self.sides[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
