@@ -33,14 +33,12 @@ pub fn assemble_load(
     match load {
         LoadDensity::Body(value) => body(mesh, decomposition, Density::Constant(*value)),
         LoadDensity::BodyField(value) => body(mesh, decomposition, Density::Varying(&|x, _| value(x))),
-        LoadDensity::Traction { tag, value } => traction(mesh, decomposition, *tag, |_| Density::Constant(*value)),
-        LoadDensity::TractionField { tag, value } => {
-            traction(mesh, decomposition, *tag, |_| Density::Varying(&**value))
-        }
-        LoadDensity::Pressure { tag, value } => {
+        LoadDensity::Traction(tag, value) => traction(mesh, decomposition, *tag, |_| Density::Constant(*value)),
+        LoadDensity::TractionField(tag, value) => traction(mesh, decomposition, *tag, |_| Density::Varying(&**value)),
+        LoadDensity::Pressure(tag, value) => {
             traction(mesh, decomposition, *tag, |n| Density::Constant(scale(-value, n)))
         }
-        LoadDensity::Force { tag, value } => {
+        LoadDensity::Force(tag, value) => {
             let share = scale(1.0 / tagged_area(mesh, *tag), *value);
             traction(mesh, decomposition, *tag, |_| Density::Constant(share))
         }
