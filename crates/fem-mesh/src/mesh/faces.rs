@@ -43,13 +43,6 @@ pub(crate) struct FaceTable {
     entries: Vec<Entry>,
 }
 
-/// The tetrahedra at a face, as (tetrahedron, face) pairs.
-pub(crate) enum Sides {
-    Nobody,
-    One(usize, usize),
-    Two(usize, usize),
-}
-
 impl FaceTable {
     /// Expects node numbers below `nodes`.
     pub(crate) fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
@@ -107,21 +100,14 @@ impl FaceTable {
         Ok(neighbours)
     }
 
-    /// The tetrahedra that have the three nodes as a face. Expects valid node numbers.
-    pub(crate) fn sides(&self, nodes: [u32; 3]) -> Sides {
+    /// The tetrahedra that have the three nodes as a face, and the number of this. Expects valid node numbers.
+    pub(crate) fn sides(&self, nodes: [u32; 3]) -> impl Iterator<Item = (usize, usize)> {
         let ([smallest, middle, largest], _) = sorted(nodes);
         let bucket = &self.entries[range(&self.start, smallest as usize)];
         let key = (middle, largest);
         let begin = bucket.partition_point(|e| (e.middle, e.largest) < key);
-        let mut found = bucket[begin..]
-            .iter()
-            .take_while(|e| (e.middle, e.largest) == key)
-            .map(|e| ((e.slot / 4) as usize, (e.slot % 4) as usize));
-        match (found.next(), found.next()) {
-            (None, _) => Sides::Nobody,
-            (Some((tet, face)), None) => Sides::One(tet, face),
-            (Some((first, _)), Some((second, _))) => Sides::Two(first, second),
-        }
+        let found = bucket[begin..].iter().take_while(move |e| (e.middle, e.largest) == key);
+        found.map(|e| ((e.slot / 4) as usize, (e.slot % 4) as usize))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::vec3::{self, Vec3};
 use super::check;
 use super::curved;
 use super::error::MeshError;
-use super::faces::{FaceTable, NONE, Sides, connected_sets, face_nodes};
+use super::faces::{FaceTable, NONE, connected_sets, face_nodes};
 
 /// Name of a part of the boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -243,35 +243,27 @@ fn place_facets(
                 nodes,
             });
         }
-        match table.sides(given) {
-            Sides::Nobody => {
-                return Err(MeshError::FacetUnknown {
-                    facet: number,
-                    nodes: given,
-                });
-            }
-            Sides::Two(first, second) => {
-                let facet = number;
-                return Err(MeshError::FacetInside {
-                    facet,
-                    nodes: given,
-                    first,
-                    second,
-                });
-            }
-            Sides::One(tet, face) => {
-                if let Some(first) = taken.insert((tet, face), number) {
-                    let second = number;
-                    return Err(MeshError::FacetRepeated {
-                        first,
-                        second,
-                        nodes: given,
-                    });
-                }
-                facet.nodes = outward(given, face_nodes(&tets[tet], face));
-                owners.push(tet as u32);
-            }
+        let nodes = given;
+        let mut sides = table.sides(given);
+        let Some((tet, face)) = sides.next() else {
+            let facet = number;
+            return Err(MeshError::FacetUnknown { facet, nodes });
+        };
+        if let Some((second, _)) = sides.next() {
+            let (facet, first) = (number, tet);
+            return Err(MeshError::FacetInside {
+                facet,
+                nodes,
+                first,
+                second,
+            });
         }
+        if let Some(first) = taken.insert((tet, face), number) {
+            let second = number;
+            return Err(MeshError::FacetRepeated { first, second, nodes });
+        }
+        facet.nodes = outward(given, face_nodes(&tets[tet], face));
+        owners.push(tet as u32);
     }
     Ok((facets, owners))
 }

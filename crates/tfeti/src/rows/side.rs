@@ -150,12 +150,11 @@ impl ContactConstraint {
         for side in std::iter::once(&self.side).chain(&self.partner) {
             side.check(point, nodes)?;
         }
-        if !(self.stretch.is_finite() && self.stretch > 0.0) {
-            let (node, stretch) = (self.side.first(), self.stretch);
+        let (node, stretch) = (self.side.first(), self.stretch);
+        if !(stretch.is_finite() && stretch > 0.0) {
             return Err(TfetiError::BadStretch { point, node, stretch });
         }
         if let Some(&compliance) = self.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
-            let node = self.side.first();
             return Err(TfetiError::BadCompliance {
                 point,
                 node,
@@ -168,7 +167,6 @@ impl ContactConstraint {
             let expected = if i == j { 1.0 } else { 0.0 };
             let error = (dot(axes[i], axes[j]) - expected).abs();
             if error.is_nan() || error > UNIT {
-                let node = self.side.first();
                 return Err(TfetiError::BadFrame { point, node });
             }
         }

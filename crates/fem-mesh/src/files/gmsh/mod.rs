@@ -152,7 +152,7 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshErro
         }
         regions.push(volumes.of(element.entity).unwrap_or(0));
     }
-    let facets = (facets, surfaces.grouped);
+    let facets = (facets, surfaces.are_groups());
     let mesh = match (linear.len(), quadratic.len()) {
         (0, 0) => return Err(GmshError::NoTetrahedra),
         (_, 0) => mesh(TetMesh::new, file.points, linear, facets)?,
@@ -200,12 +200,8 @@ fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {
         .collect()
 }
 
-/// From entities to tags, for one dimension.
-struct Tags {
-    group_of: HashMap<i32, u32>,
-    /// Whether the file has physical groups of this dimension.
-    grouped: bool,
-}
+/// From entities to physical groups, for one dimension; empty of a file without these.
+struct Tags(HashMap<i32, u32>);
 
 impl Tags {
     fn new(what: &'static str, entities: &[reader::Entity]) -> Result<Self, GmshError> {
@@ -226,15 +222,17 @@ impl Tags {
                 }
             }
         }
-        let grouped = !group_of.is_empty();
-        Ok(Self { group_of, grouped })
+        Ok(Self(group_of))
+    }
+
+    fn are_groups(&self) -> bool {
+        !self.0.is_empty()
     }
 
     fn of(&self, entity: i32) -> Option<u32> {
-        if self.grouped {
-            self.group_of.get(&entity).copied()
-        } else {
-            Some(entity.unsigned_abs())
+        match self.are_groups() {
+            true => self.0.get(&entity).copied(),
+            false => Some(entity.unsigned_abs()),
         }
     }
 }
