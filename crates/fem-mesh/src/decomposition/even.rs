@@ -4,7 +4,7 @@ use super::compact::{compact, join_pieces};
 use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
-use crate::tables::{buckets, range};
+use crate::tables::Lists;
 use crate::tolerances::{BOX, FILLED, GRADED, LARGER, PLANE, REACH, SNAP, STRONGLY};
 use crate::vec3::{self, Vec3};
 
@@ -39,26 +39,27 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         return Err(DecompositionError::NoParts);
     }
     let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
-    let (starts, members) = buckets(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
+    let members = Lists::by_key(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let cutter = |shares| Cutter {
         mesh,
         centres: &centres,
         shares,
     };
-    let own = |group: usize| &members[range(&starts, group)];
     let plain = cutter([const { None }; 3]);
     // elsewhere long cells along an axis are not layers
-    let boxes: Vec<bool> = (0..starts.len() - 1).map(|group| plain.is_box(own(group))).collect();
+    let boxes: Vec<bool> = (0..members.count())
+        .map(|group| plain.is_box(members.of(group)))
+        .collect();
     let (grading, shares) = match boxes.contains(&true) {
         true => shares(mesh),
         false => ([1.0; 3], [const { None }; 3]),
     };
     let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
     let (mut slabs, mut next) = (vec![0; tets], 0);
-    let mut whole = vec![false; starts.len() - 1];
-    for group in 0..starts.len() - 1 {
-        let own = own(group);
+    let mut whole = vec![false; members.count()];
+    for group in 0..members.count() {
+        let own = members.of(group);
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
         let layered = graded.as_ref().filter(|_| boxes[group]);

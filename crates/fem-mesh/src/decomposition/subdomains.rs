@@ -1,7 +1,7 @@
 //! Decomposition into subdomains that are torn apart at their common nodes.
 
 use crate::mesh::{TetMesh, quadratic_tets};
-use crate::tables::{buckets, range};
+use crate::tables::Lists;
 
 /// A part of the mesh with its own numbering of nodes and tetrahedra.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -73,9 +73,8 @@ errors! {
 pub struct Decomposition {
     subdomains: Vec<Subdomain>,
     part_of: Vec<u32>,
-    /// Copies of node n: `copies[copy_start[n]..copy_start[n + 1]]`, by ascending subdomain.
-    copy_start: Vec<u32>,
-    copies: Vec<NodeCopy>,
+    /// Copies of each node, by ascending subdomain.
+    copies: Lists<NodeCopy>,
 }
 
 impl Decomposition {
@@ -87,12 +86,12 @@ impl Decomposition {
     /// Expects part numbers without gaps.
     pub(super) fn build(mesh: &TetMesh, part_of: Vec<u32>) -> Self {
         let parts = part_of.iter().max().map_or(0, |&p| p as usize + 1);
-        let (starts, tets) = buckets(parts, &part_of);
+        let tets = Lists::by_key(parts, &part_of);
         let nodes = mesh.points().len();
         let mut local = vec![0u32; nodes];
         let subdomains: Vec<_> = (0..parts)
             .map(|part| {
-                let elements = tets[range(&starts, part)].to_vec();
+                let elements = tets.of(part).to_vec();
                 let global = |&tet: &u32| mesh.tets()[tet as usize];
                 let own_mids = || elements.iter().filter_map(|&tet| mesh.mids().get(tet as usize));
                 let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
@@ -119,12 +118,10 @@ impl Decomposition {
             torn.extend(copies);
             node_of.extend_from_slice(&own.nodes);
         }
-        let (copy_start, positions) = buckets(nodes, &node_of);
-        let copies = positions.iter().map(|&k| torn[k as usize]).collect();
+        let copies = Lists::by_key(nodes, &node_of).map(|k| torn[k as usize]);
         Self {
             subdomains,
             part_of,
-            copy_start,
             copies,
         }
     }
@@ -136,7 +133,7 @@ impl Decomposition {
 
     /// The copies of a global node, by ascending subdomain.
     pub fn copies(&self, node: usize) -> &[NodeCopy] {
-        &self.copies[range(&self.copy_start, node)]
+        self.copies.of(node)
     }
 
     /// The subdomain of every tetrahedron.
@@ -146,11 +143,11 @@ impl Decomposition {
 
     /// Number of global nodes.
     pub fn nodes(&self) -> usize {
-        self.copy_start.len() - 1
+        self.copies.count()
     }
 
     /// Number of displacement unknowns of all subdomains together, the paper's n_p.
     pub fn torn_dofs(&self) -> usize {
-        3 * self.copies.len()
+        3 * self.copies.items().len()
     }
 }

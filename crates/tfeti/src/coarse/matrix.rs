@@ -7,7 +7,7 @@ use crate::rows::gluing::{BlockEntry, Gluing};
 use crate::subdomain::kernel::{Block, Kernel, transposed};
 use crate::subdomain::matrices::{ClassBase, Subdomains};
 use rayon::prelude::*;
-use signorini_fem_mesh::internal::buckets;
+use signorini_fem_mesh::internal::Lists;
 
 /// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
 #[derive(Debug)]
@@ -56,25 +56,11 @@ impl<'a> ModeTable<'a> {
     }
 }
 
-/// Rows of each subdomain, by their buckets.
-struct Touching {
-    starts: Vec<u32>,
-    rows: Vec<u32>,
-}
-
-impl Touching {
-    /// From the subdomains of each row.
-    fn new<R: Iterator<Item = u32>>(subdomains: usize, rows: impl Iterator<Item = R>) -> Self {
-        let pairs = (0..).zip(rows).flat_map(|(row, own)| own.map(move |s| (s, row)));
-        let (keys, numbers): (Vec<u32>, Vec<u32>) = pairs.unzip();
-        let (starts, positions) = buckets(subdomains, &keys);
-        let rows = positions.into_iter().map(|k| numbers[k as usize]).collect();
-        Self { starts, rows }
-    }
-
-    fn of(&self, subdomain: usize) -> &[u32] {
-        &self.rows[self.starts[subdomain] as usize..self.starts[subdomain + 1] as usize]
-    }
+/// Rows of each subdomain, from the subdomains of each row.
+fn touching<R: Iterator<Item = u32>>(subdomains: usize, rows: impl Iterator<Item = R>) -> Lists<u32> {
+    let pairs = (0..).zip(rows).flat_map(|(row, own)| own.map(move |s| (s, row)));
+    let (keys, numbers): (Vec<u32>, Vec<u32>) = pairs.unzip();
+    Lists::by_key(subdomains, &keys).map(|k| numbers[k as usize])
 }
 
 impl CoarseMatrix {
@@ -82,7 +68,7 @@ impl CoarseMatrix {
         let subdomains = modes.subdomains.count();
         let blocks = (0..gluing.blocks()).map(|b| gluing.block(b).iter().map(|e| e.subdomain));
         let nodal = (0..gluing.nodal_rows()).map(|k| gluing.nodal(k).iter().map(|e| e.subdomain));
-        let touching = [Touching::new(subdomains, blocks), Touching::new(subdomains, nodal)];
+        let touching = [touching(subdomains, blocks), touching(subdomains, nodal)];
         let columns: Vec<(Vec<u32>, Vec<f64>)> = (0..subdomains)
             .into_par_iter()
             .map(|s| block_column(gluing, modes, &touching, s))
@@ -310,7 +296,7 @@ impl Moments {
 fn block_column(
     gluing: &Gluing,
     modes: &ModeTable<'_>,
-    [blocks, nodal]: &[Touching; 2],
+    [blocks, nodal]: &[Lists<u32>; 2],
     subdomain: usize,
 ) -> (Vec<u32>, Vec<f64>) {
     let own = subdomain as u32;

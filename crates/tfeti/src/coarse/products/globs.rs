@@ -9,7 +9,7 @@ use crate::rows::gluing::{Glob, Gluing};
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::{GLOB_TASK, PARTS};
 use pulp::{Arch, Simd, WithSimd};
-use signorini_fem_mesh::internal::buckets;
+use signorini_fem_mesh::internal::Lists;
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::ops::Range;
@@ -30,8 +30,7 @@ pub(crate) struct GlobTables {
     coefficients: Vec<f64>,
     tasks: Vec<Task>,
     /// Sides of each subdomain.
-    side_pointers: Vec<u32>,
-    sides: Vec<u32>,
+    sides: Lists<u32>,
 }
 
 /// A glob and where its data stand.
@@ -114,7 +113,7 @@ impl GlobTables {
             globs,
         };
         out.tasks = shares(&work, GLOB_TASK, PARTS).into_iter().map(task).collect();
-        (out.side_pointers, out.sides) = buckets(subdomains, &out.subdomains);
+        out.sides = Lists::by_key(subdomains, &out.subdomains);
         out
     }
 
@@ -140,8 +139,7 @@ impl GlobTables {
     }
 
     pub(crate) fn sides_of(&self, subdomain: usize) -> &[u32] {
-        let pointers = &self.side_pointers;
-        &self.sides[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
+        self.sides.of(subdomain)
     }
 
     /// Wrench on a subdomain, about its centre, from those on its sides.
