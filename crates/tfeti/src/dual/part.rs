@@ -57,8 +57,7 @@ fn units(gluing: &Gluing, ranks: usize, rank_of: &dyn Fn(u32) -> usize) -> Vec<U
     };
     let globs = gluing.globs.iter().map(|glob: &Glob| {
         let [start, end] = [0, glob.runs as usize].map(|run| interface.start + 3 * glob.block(run, 0));
-        // the last run combines all copies
-        let entries = gluing.block(glob.block(glob.runs as usize - 1, 0)).iter();
+        let entries = gluing.copies(glob, 0).iter();
         Unit {
             rows: start..end,
             ranks: touched(&mut entries.map(|e| e.subdomain)),

@@ -249,6 +249,11 @@ impl Gluing {
         &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
     }
 
+    /// The copies of a node of a glob: its last run combines all of them.
+    pub(crate) fn copies(&self, glob: &Glob, node: usize) -> &[BlockEntry] {
+        self.block(glob.block(glob.runs as usize - 1, node))
+    }
+
     /// Number of rows that are not interface rows: contact rows, then support rows.
     pub(crate) fn nodal_rows(&self) -> usize {
         self.row_pointers.len() - 1
