@@ -99,8 +99,9 @@ pub mod internal {
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
-    pub use crate::subdomain::forecast::{Forecast, Rate};
+    pub use crate::subdomain::forecast::Forecast;
     pub use crate::subdomain::kernel::Kernel;
+    pub use crate::subdomain::rate::Rate;
     pub use crate::system::part::SystemPart;
     pub use crate::tolerances::{HELD, HELD_MEANS};
 }

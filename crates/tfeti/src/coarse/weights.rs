@@ -24,7 +24,6 @@ pub(crate) fn along(line: &LineWeight, pair: [f64; 2]) -> [f64; 2] {
 
 impl RowWeights {
     /// A diagonal only.
-    #[must_use]
     pub fn diagonal(diagonal: Vec<f64>) -> Self {
         let lines = Vec::new();
         Self { diagonal, lines }

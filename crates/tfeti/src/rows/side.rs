@@ -16,13 +16,11 @@ pub struct Side(Vec<(u32, f64)>);
 
 impl Side {
     /// A single node.
-    #[must_use]
     pub fn node(node: u32) -> Self {
         Self(vec![(node, 1.0)])
     }
 
     /// Mesh nodes with their weights; they are checked where rows are made of them.
-    #[must_use]
     pub fn new(nodes: Vec<(u32, f64)>) -> Self {
         Self(nodes)
     }
@@ -89,7 +87,6 @@ pub struct ContactConstraint {
 impl ContactConstraint {
     /// A node, or a side of several, that may touch a rigid obstacle that does not move, without friction. What else
     /// there is to say is said by its fields.
-    #[must_use]
     pub fn new(side: impl Into<Side>, frame: SurfaceFrame) -> Self {
         let (side, partner) = (side.into(), None);
         Self {

@@ -77,13 +77,11 @@ pub struct NodeSupport {
 
 impl NodeSupport {
     /// Fixes all components of the nodes at zero.
-    #[must_use]
     pub fn fixed(nodes: Vec<u32>) -> Self {
         Self::partial(nodes, Directions::All)
     }
 
     /// Fixes some directions of the nodes at zero.
-    #[must_use]
     pub fn partial(nodes: Vec<u32>, directions: Directions) -> Self {
         Self {
             nodes,

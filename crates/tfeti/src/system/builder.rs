@@ -40,7 +40,6 @@ pub struct TfetiBuilder<'a> {
 
 impl<'a> TfetiBuilder<'a> {
     /// A body without supports and contact.
-    #[must_use]
     pub fn new(mesh: &'a TetMesh, decomposition: &'a Decomposition, materials: &'a Materials) -> Self {
         Self {
             mesh,
@@ -59,7 +58,6 @@ impl<'a> TfetiBuilder<'a> {
     /// The body of a forecast, without supports and contact. What the forecast found of mesh, decomposition and
     /// materials is not looked for again; sharing and inverses are as it was told.
     #[doc(hidden)]
-    #[must_use]
     pub fn of_forecast(forecast: &'a Forecast<'a>) -> Self {
         Self {
             share_translates: forecast.share_translates,
